@@ -1,0 +1,47 @@
+"""What can go wrong, one class a room.
+
+::
+
+    ShaftprintError
+    ├── SettingsError         a vessel or campaign file that cannot be used
+    ├── RecordingError        a logger file that cannot be read
+    ├── SignalError           a channel that does not give a usable signal
+    ├── ResponseError         a test line or response that cannot be estimated
+    ├── StructureError        a model structure or parameter that makes no sense
+    ├── IdentificationError   a fit that cannot be set up or has no acceptable result
+    └── FingerprintError      a fingerprint file that cannot be read or compared
+
+Every message says which file, channel, second or field, what was expected, what was found and what to do.
+"""
+
+
+class ShaftprintError(Exception):
+    """Base of all errors that a user can mend."""
+
+
+class SettingsError(ShaftprintError):
+    """A vessel or campaign file cannot be used."""
+
+
+class RecordingError(ShaftprintError):
+    """A logger file cannot be read."""
+
+
+class SignalError(ShaftprintError):
+    """A channel does not give a usable signal."""
+
+
+class ResponseError(ShaftprintError):
+    """A test line or a frequency response cannot be estimated."""
+
+
+class StructureError(ShaftprintError):
+    """A model structure or one of its parameters makes no sense."""
+
+
+class IdentificationError(ShaftprintError):
+    """A fit cannot be set up or has no acceptable result."""
+
+
+class FingerprintError(ShaftprintError):
+    """A fingerprint file cannot be read or compared."""

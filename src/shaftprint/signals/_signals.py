@@ -1,0 +1,157 @@
+"""The noun of the room: what a prepared recording consists of."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+from shaftprint.arrays import FloatArray
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Repair:
+    """One place where a raw channel was not taken at its word."""
+
+    channel: str
+    """Name of the channel in the recording."""
+    kind: str
+    """``"outlier"``, ``"missing pulse"``, ``"doubled pulse"``, ``"dropout"`` or ``"saturated"``."""
+    time_s: float
+    """When it starts, in seconds of the recording."""
+    count: int
+    """How many samples or pulses it concerns."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class WorkingPoint:
+    """The steady state around which the responses are normalised."""
+
+    engine_speed_rev_s: float
+    """Mean engine speed ``n_0`` [rev/s]."""
+    shaft_torque_nm: float
+    """Mean shaft torque ``M_s0`` [N m], measured at the gauge."""
+    engine_speed_std_rev_s: float
+    """Standard deviation of ``n_0`` [rev/s]."""
+    shaft_torque_std_nm: float
+    """Standard deviation of ``M_s0`` [N m]: scatter between steady stretches, without the gauge's own scale error."""
+    set_point_v: float
+    """Mean set-point voltage [V] of the stretches that were used."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class SetPointCalibration:
+    """The line from set-point voltage to engine speed, ``n_set = slope U + intercept`` (thesis eq. 3.2)."""
+
+    slope_rev_s_per_v: float
+    """Slope [rev/s per V]."""
+    intercept_rev_s: float
+    """Intercept [rev/s]."""
+    covariance: FloatArray
+    """Covariance of (slope, intercept), shape (2, 2)."""
+    level_v: FloatArray
+    """Mean voltage of each steady level [V], shape (levels,), ascending."""
+    level_rev_s: FloatArray
+    """Mean engine speed of each steady level [rev/s], shape (levels,)."""
+    level_std_rev_s: FloatArray
+    """Standard deviation of each mean speed [rev/s], shape (levels,)."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class StripAngles:
+    """The angles between the reflection strips of a multi-pulse shaft (thesis eqs 3.3-3.5, table 3.4)."""
+
+    channel: str
+    """Name of the pulse channel."""
+    angle_rev: FloatArray
+    """Angle from each strip to the next [rev], shape (strips,); they sum to 1."""
+    std_rev: FloatArray
+    """Standard deviation of each angle [rev], shape (strips,)."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StepDelay:
+    """Time between the set point and the speed crossing the middle of one step (thesis table 3.3)."""
+
+    staircase: str
+    """Name of the staircase."""
+    set_point_time_s: float
+    """When the set point crosses the middle of the step [s]."""
+    speed_time_s: float
+    """When the engine speed crosses the middle of the step [s]."""
+    rising: bool
+    """Whether the step raises the speed."""
+
+    @property
+    def delay_s(self) -> float:
+        """Level-crossing delay [s]: transport delay, rise time of the loop and sensor delay together."""
+        return self.speed_time_s - self.set_point_time_s
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class SpeedSignal:
+    """One speed channel, referred to the engine side, on the common grid, with what its sensor does to it."""
+
+    name: str
+    """Name of the sensor in the vessel file, such as ``n_e``."""
+    channel: str
+    """Name of the channel in the recording."""
+    speed_rev_s: FloatArray
+    """Engine-side speed [rev/s], shape (samples,)."""
+    pulse_rate_hz: float
+    """Mean number of pulses a second: the rate at which the speed is really sampled."""
+    averaging_s: float
+    """Length of the window over which the value is a mean [s]; 0 where the averaging has been removed."""
+    hold_s: float
+    """Time for which a value is held until the next [s]; 0 where values are interpolated."""
+    delay_s: float
+    """Total delay of the value behind the true speed [s]; 0 where values are stamped at mid-period."""
+
+    @property
+    def nyquist_hz(self) -> float:
+        """Highest frequency that this sensor shows without aliasing [Hz]."""
+        return self.pulse_rate_hz / 2.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Signals:
+    """A recording in physical units on one uniform time grid, with every repair and calibration listed."""
+
+    rate_hz: float
+    """Sample rate of the grid [Hz]."""
+    start_s: float
+    """Time of the first sample, in seconds of the recording."""
+    set_point_rev_s: FloatArray
+    """Engine-speed set point ``n_set`` [rev/s], shape (samples,)."""
+    shaft_torque_nm: FloatArray
+    """Shaft torque ``M_s`` at the gauge [N m], shape (samples,)."""
+    speeds: Mapping[str, SpeedSignal]
+    """Every speed channel by sensor name, in the order of the vessel file; the first is the one that is identified."""
+    working_point: WorkingPoint
+    """Steady state for normalisation."""
+    calibration: SetPointCalibration
+    """Set-point line before the DC scale."""
+    dc_scale: float
+    """Factor on ``n_set - n_0`` that makes ``n / n_set`` go to 1 at low frequency."""
+    dc_scale_std: float
+    """Standard deviation of the DC scale."""
+    strips: tuple[StripAngles, ...]
+    """Strip angles of the multi-pulse channels."""
+    step_delays: tuple[StepDelay, ...]
+    """Delay of each step of the staircases."""
+    repairs: tuple[Repair, ...]
+    """What was repaired, in order of time."""
+    mode: Literal["shaftprint", "thesis"]
+    """Whether each step was done shaftprint's way or the thesis' way."""
+    recording_sha256: str
+    """SHA-256 of the raw file."""
+    recording_name: str
+    """File name of the raw recording."""
+
+    @property
+    def engine_speed(self) -> SpeedSignal:
+        """The speed channel that is identified: the first of the vessel file."""
+        return next(iter(self.speeds.values()))
+
+    @property
+    def samples(self) -> int:
+        """Number of samples of the grid."""
+        return self.set_point_rev_s.size

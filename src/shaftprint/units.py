@@ -1,0 +1,36 @@
+"""Conversions between the units of the trade and SI; speeds are revolutions a second inside shaftprint.
+
+========================= ============================================================
+quantity                  unit inside
+========================= ============================================================
+rotational speed ``n``    rev/s (engine side unless the name says ``shaft``)
+torque ``M``              N m
+angle of a shaft          rev (of that shaft); phase of a response: rad
+frequency of a test line  Hz; ``omega`` in rad/s
+time                      s since the start of the recording
+========================= ============================================================
+"""
+
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+SECONDS_PER_MINUTE = 60.0
+
+_Number = TypeVar("_Number", float, NDArray[np.float64])
+
+
+def rev_s_from_rpm(speed_rpm: _Number) -> _Number:
+    """Convert a rotational speed from rpm to rev/s."""
+    return speed_rpm / SECONDS_PER_MINUTE
+
+
+def rpm_from_rev_s(speed_rev_s: _Number) -> _Number:
+    """Convert a rotational speed from rev/s to rpm."""
+    return speed_rev_s * SECONDS_PER_MINUTE
+
+
+def decibel(magnitude: _Number) -> _Number:
+    """Convert an amplitude ratio to decibel, ``20 log10``."""
+    return 20.0 * np.log10(magnitude)
