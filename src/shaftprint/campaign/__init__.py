@@ -1,0 +1,31 @@
+"""What is asked of the ship: sines, chirps and staircases of the speed set point, from a TOML file.
+
+===================== ======== ====================================================================
+quantity              unit     meaning
+===================== ======== ====================================================================
+time                  s        since the start of the recording
+set point ``U``       V        what is put out to the governor; a lower voltage asks for more speed
+                               on the Stan Tug
+offset                V        set point outside of every excitation, and the middle of sines and
+                               chirps
+amplitude             V        half of peak to peak
+frequency             Hz       of a test line; never rad/s
+===================== ======== ====================================================================
+
+A sine and a chirp start at phase zero, ``U = offset + amplitude sin(phase)``. A staircase jumps.
+Every excitation holds in the half-open interval from its start to its stop.
+"""
+
+from shaftprint.campaign._campaign import Campaign, Excitation, load_campaign
+from shaftprint.campaign._excitations import Chirp, Sine, Staircase
+from shaftprint.campaign._setpoint import setpoint
+
+__all__ = [
+    "Campaign",
+    "Chirp",
+    "Excitation",
+    "Sine",
+    "Staircase",
+    "load_campaign",
+    "setpoint",
+]

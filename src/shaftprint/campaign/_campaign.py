@@ -1,0 +1,101 @@
+"""The noun of the room: everything that is asked of the ship during one recording."""
+
+from importlib.resources import files
+from itertools import pairwise
+from pathlib import Path
+from typing import Self, TypeAlias
+
+from pydantic import model_validator
+
+from shaftprint.campaign._excitations import Chirp, Sine, Staircase
+from shaftprint.settings import Name, Number, PositiveNumber, Settings, load_settings
+
+Excitation: TypeAlias = Sine | Chirp | Staircase
+
+
+class Campaign(Settings):
+    """A test of one shaft line: excitations one after the other around a constant set point."""
+
+    name: Name
+    """Name of the test."""
+    duration_s: PositiveNumber
+    """Length of the recording that it needs [s]."""
+    offset_v: Number
+    """Set point outside of every excitation [V]."""
+    sample_rate_hz: PositiveNumber | None = None
+    """Rate at which the test is meant to be recorded [Hz]; no frequency may reach half of it."""
+    sines: tuple[Sine, ...] = ()
+    """Sines of constant frequency."""
+    chirps: tuple[Chirp, ...] = ()
+    """Logarithmic sweeps."""
+    staircases: tuple[Staircase, ...] = ()
+    """Steps between constant levels."""
+
+    @property
+    def excitations(self) -> tuple[Excitation, ...]:
+        """Every excitation in the order of time."""
+        found: tuple[Excitation, ...] = (*self.sines, *self.chirps, *self.staircases)
+        return tuple(sorted(found, key=lambda excitation: excitation.start_s))
+
+    @model_validator(mode="after")
+    def _can_be_sailed(self) -> Self:
+        found = [*self._names_twice(), *self._overlaps(), *self._too_late(), *self._too_fast()]
+        if not self.excitations:
+            found.append("expected at least one sine, chirp or staircase, found none.")
+        if found:
+            raise ValueError(" ".join(found))
+        return self
+
+    def _names_twice(self) -> list[str]:
+        names = [excitation.name for excitation in self.excitations]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        return [
+            f"expected every excitation to have its own name, found {name} twice." for name in twice
+        ]
+
+    def _overlaps(self) -> list[str]:
+        return [
+            f"expected {later.name} to start after {earlier.name} has stopped at {earlier.stop_s:g} s, "
+            f"found a start at {later.start_s:g} s."
+            for earlier, later in pairwise(self.excitations)
+            if later.start_s < earlier.stop_s
+        ]
+
+    def _too_late(self) -> list[str]:
+        return [
+            f"expected {excitation.name} to stop within duration_s = {self.duration_s:g}, "
+            f"found a stop at {excitation.stop_s:g} s."
+            for excitation in self.excitations
+            if excitation.stop_s > self.duration_s
+        ]
+
+    def _too_fast(self) -> list[str]:
+        if self.sample_rate_hz is None:
+            return []
+        highest = [(sine.name, sine.frequency_hz) for sine in self.sines]
+        highest += [
+            (chirp.name, max(chirp.start_frequency_hz, chirp.stop_frequency_hz))
+            for chirp in self.chirps
+        ]
+        nyquist = self.sample_rate_hz / 2.0
+        return [
+            f"expected {name} below half of sample_rate_hz, {nyquist:g} Hz, found {frequency:g} Hz."
+            for name, frequency in highest
+            if frequency >= nyquist
+        ]
+
+
+def load_campaign(path_or_name: str | Path) -> Campaign:
+    """Read a campaign file, or a shipped one by its name such as ``thesis``.
+
+    Parameters
+    ----------
+    path_or_name
+        Path of a TOML file, or the name of a shipped campaign.
+
+    Raises
+    ------
+    SettingsError
+        If the file cannot be used; the message lists every field that is wrong.
+    """
+    return load_settings(path_or_name, Campaign, shipped=files(__package__) / "shipped")

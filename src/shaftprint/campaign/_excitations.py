@@ -1,0 +1,104 @@
+"""The three kinds of excitation and what makes each of them possible."""
+
+import math
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
+
+# A window of a whole number of periods may fall short by rounding of its decimal stop time.
+_PERIOD_ROUNDING = 1e-9
+
+
+class Sine(Settings):
+    """A sine of constant frequency, analysed over a whole number of periods once it has settled."""
+
+    name: Name
+    """Name of the line, such as ``S1``."""
+    frequency_hz: PositiveNumber
+    """Frequency [Hz]."""
+    amplitude_v: PositiveNumber
+    """Amplitude [V], half of peak to peak."""
+    start_s: NotNegativeNumber
+    """When the sine begins, at phase zero [s]."""
+    settled_s: NotNegativeNumber
+    """When the analysis may begin [s]: the response to the start has died out."""
+    stop_s: PositiveNumber
+    """When the sine ends [s]."""
+
+    @model_validator(mode="after")
+    def _window_holds_a_period(self) -> Self:
+        if not self.start_s <= self.settled_s < self.stop_s:
+            raise ValueError(
+                "expected start_s <= settled_s < stop_s, "
+                f"found {self.start_s:g}, {self.settled_s:g}, {self.stop_s:g}."
+            )
+        if self.periods < 1:
+            raise ValueError(
+                f"expected at least one period of {1.0 / self.frequency_hz:g} s between settled_s and "
+                f"stop_s, found {self.stop_s - self.settled_s:g} s."
+            )
+        return self
+
+    @property
+    def periods(self) -> int:
+        """Whole periods between settled_s and stop_s, the ``i`` of thesis table 3.5."""
+        length = self.stop_s - self.settled_s
+        return math.floor(length * self.frequency_hz + _PERIOD_ROUNDING)
+
+    @property
+    def window_s(self) -> float:
+        """Length of those periods [s], ``T = i / f`` (thesis eq. 3.8)."""
+        return self.periods / self.frequency_hz
+
+    @property
+    def window_stop_s(self) -> float:
+        """End of those periods [s], the stop of thesis table 3.5."""
+        return self.settled_s + self.window_s
+
+
+class Chirp(Settings):
+    """A sine whose frequency grows or falls exponentially with time (logarithmic sweep)."""
+
+    name: Name
+    """Name of the chirp, such as ``C11``."""
+    start_frequency_hz: PositiveNumber
+    """Frequency at its start [Hz]."""
+    stop_frequency_hz: PositiveNumber
+    """Frequency at its end [Hz]."""
+    amplitude_v: PositiveNumber
+    """Amplitude [V], half of peak to peak."""
+    start_s: NotNegativeNumber
+    """When it begins, at phase zero [s]."""
+    stop_s: PositiveNumber
+    """When it ends [s]."""
+
+    @model_validator(mode="after")
+    def _sweeps(self) -> Self:
+        if not self.start_s < self.stop_s:
+            raise ValueError(f"expected start_s < stop_s, found {self.start_s:g}, {self.stop_s:g}.")
+        if self.start_frequency_hz == self.stop_frequency_hz:
+            raise ValueError(
+                f"expected two different frequencies, found {self.start_frequency_hz:g} Hz twice; "
+                "a constant frequency belongs under [[sines]]."
+            )
+        return self
+
+
+class Staircase(Settings):
+    """Constant set points, one after the other, with sudden jumps between them."""
+
+    name: Name
+    """Name of the staircase, such as ``St1``."""
+    levels_v: Annotated[tuple[Number, ...], Field(min_length=1)]
+    """Set points in the order of time [V], not relative to the offset, shape (levels,)."""
+    dwell_s: PositiveNumber
+    """Time on each level [s]."""
+    start_s: NotNegativeNumber
+    """When the first level begins [s]."""
+
+    @property
+    def stop_s(self) -> float:
+        """When the last level ends [s]."""
+        return self.start_s + self.dwell_s * len(self.levels_v)

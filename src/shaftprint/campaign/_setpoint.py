@@ -1,0 +1,69 @@
+"""The set-point voltage over time."""
+
+import math
+from typing import assert_never
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from shaftprint.arrays import FloatArray
+from shaftprint.campaign._campaign import Campaign, Excitation
+from shaftprint.campaign._excitations import Chirp, Sine, Staircase
+
+
+def setpoint(campaign: Campaign, time_s: ArrayLike) -> FloatArray:
+    """Return the set point of a campaign at given times.
+
+    A value depends on its own time only, so a long recording may be rendered in chunks of any size.
+
+    Parameters
+    ----------
+    campaign
+        What is asked of the ship.
+    time_s
+        Times since the start of the recording [s], any shape, in any order.
+
+    Returns
+    -------
+    voltage
+        Set point [V], shape of ``time_s``; the offset outside of every excitation.
+    """
+    time = np.asarray(time_s, dtype=np.float64)
+    voltage = np.full(time.shape, campaign.offset_v)
+    if time.size == 0:
+        return voltage
+    first, last = float(time.min()), float(time.max())
+    for excitation in campaign.excitations:
+        if excitation.start_s <= last and first < excitation.stop_s:
+            inside = (time >= excitation.start_s) & (time < excitation.stop_s)
+            elapsed = time[inside] - excitation.start_s
+            voltage[inside] = _voltage(excitation, elapsed, campaign.offset_v)
+    return voltage
+
+
+def _voltage(excitation: Excitation, elapsed_s: FloatArray, offset_v: float) -> FloatArray:
+    match excitation:
+        case Sine():
+            phase = 2.0 * math.pi * excitation.frequency_hz * elapsed_s
+            return offset_v + excitation.amplitude_v * np.sin(phase)
+        case Chirp():
+            return offset_v + excitation.amplitude_v * np.sin(_chirp_phase(excitation, elapsed_s))
+        case Staircase():
+            step = np.floor(elapsed_s / excitation.dwell_s).astype(np.intp)
+            # the quotient may round up to the number of levels just before the end
+            step = np.minimum(step, len(excitation.levels_v) - 1)
+            return np.asarray(excitation.levels_v)[step]
+        case _:
+            assert_never(excitation)
+
+
+def _chirp_phase(chirp: Chirp, elapsed_s: FloatArray) -> FloatArray:
+    """Return the phase [rad] of a logarithmic sweep: the integral of ``2 pi f_0 k^(t/T)``.
+
+    ``2 pi f_0 T / ln(k) (k^(t/T) - 1)`` with ``k = f_1 / f_0``, as in the logarithmic method of
+    ``scipy.signal.chirp``.
+    """
+    duration = chirp.stop_s - chirp.start_s
+    log_ratio = math.log(chirp.stop_frequency_hz / chirp.start_frequency_hz)
+    scale = 2.0 * math.pi * chirp.start_frequency_hz * duration / log_ratio
+    return scale * np.expm1(log_ratio * elapsed_s / duration)

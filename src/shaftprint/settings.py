@@ -1,0 +1,210 @@
+"""Settings files: TOML read into frozen models, with every error of a file in one message.
+
+A settings file carries the unit of every number in its key: ``frequency_hz``, ``inertia_kg_m2``.
+"""
+
+import difflib
+import tomllib
+from collections.abc import Mapping, Sequence
+from importlib.resources import as_file, files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeVar, get_args
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic_core import ErrorDetails
+
+from shaftprint.errors import SettingsError
+from shaftprint.files import written_whole
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
+PositiveNumber = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0.0)]
+NotNegativeNumber = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0.0)]
+PositiveInteger = Annotated[int, Field(strict=True, gt=0)]
+Name = Annotated[str, Field(strict=True, min_length=1)]
+
+_UNITS = (
+    "rad_s", "rev_s", "kg_m2", "kg_m3", "per_unit", "khz", "mhz", "hz", "rpm", "deg", "rad", "rev", "knm", "nm",
+    "kw", "hp", "w", "mv", "ma", "v", "us", "ms", "min", "mm", "cm", "h", "s", "m",
+)  # fmt: skip
+
+
+class Settings(BaseModel):
+    """Base of every table of a settings file: frozen, and unknown keys are refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+_Model = TypeVar("_Model", bound=Settings)
+
+
+def read_settings(path: str | Path, model_class: type[_Model]) -> _Model:
+    """Read a TOML file into a model.
+
+    Parameters
+    ----------
+    path
+        The settings file.
+    model_class
+        What the file describes.
+
+    Raises
+    ------
+    SettingsError
+        If the file cannot be read, is not TOML, or has fields that cannot be used; the message then
+        lists all of them, each with its dotted path (rows are counted from 1), what was expected
+        and what was found.
+    """
+    path = Path(path)
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise SettingsError(f"{path}: expected a settings file, found nothing there.") from None
+    except (OSError, UnicodeDecodeError) as error:
+        raise SettingsError(f"{path}: expected a text file in UTF-8, found {error}.") from None
+    except tomllib.TOMLDecodeError as error:
+        raise SettingsError(f"{path}: expected TOML, found a mistake: {error}.") from None
+    try:
+        return model_class.model_validate(content)
+    except ValidationError as error:
+        raise SettingsError(_describe_all(path, error, model_class, content)) from None
+
+
+def load_settings(
+    path_or_name: str | Path, model_class: type[_Model], *, shipped: Traversable
+) -> _Model:
+    """Read a settings file, or one of those that come with the package by its name.
+
+    Parameters
+    ----------
+    path_or_name
+        A path, or the name of a shipped file such as ``stan-tug-1205``: text without a folder and
+        without the ending ``.toml``.
+    model_class
+        What the file describes.
+    shipped
+        The folder of the shipped files.
+
+    Raises
+    ------
+    SettingsError
+        As ``read_settings``; if the name is not that of a shipped file, the message lists the names.
+    """
+    text = str(path_or_name)
+    is_path = (
+        isinstance(path_or_name, Path) or text.endswith(".toml") or "/" in text or "\\" in text
+    )
+    if is_path:
+        return read_settings(path_or_name, model_class)
+    names = shipped_names(shipped)
+    if text not in names:
+        raise SettingsError(
+            f'"{text}": expected a path that ends in .toml or one of the shipped names '
+            f"{', '.join(names)}."
+        )
+    with as_file(shipped / f"{text.replace('-', '_')}.toml") as path:
+        return read_settings(path, model_class)
+
+
+def shipped_names(shipped: Traversable) -> tuple[str, ...]:
+    """Return the names of the settings files in a folder of the package, sorted."""
+    found = (entry.name for entry in shipped.iterdir() if entry.name.endswith(".toml"))
+    return tuple(sorted(name.removesuffix(".toml").replace("_", "-") for name in found))
+
+
+def write_template(kind: Literal["vessel", "campaign"], path: str | Path) -> None:
+    """Write a commented settings file that can be loaded as it stands, to be filled in.
+
+    Parameters
+    ----------
+    kind
+        What to describe.
+    path
+        A file that does not exist yet.
+
+    Raises
+    ------
+    SettingsError
+        If the file exists already or cannot be written; nothing is left half-written.
+    """
+    text = (files("shaftprint") / kind / "template.toml").read_text(encoding="utf-8")
+    try:
+        with written_whole(Path(path)) as part:
+            part.write_text(text, encoding="utf-8")
+    except FileExistsError as error:
+        raise SettingsError(str(error)) from None
+    except OSError as error:
+        raise SettingsError(f"{path}: the file cannot be written ({error}).") from None
+
+
+def _describe_all(
+    path: Path, error: ValidationError, model_class: type[Settings], content: Mapping[str, Any]
+) -> str:
+    rows = [_describe(details, model_class, content) for details in error.errors()]
+    count = "1 field" if len(rows) == 1 else f"{len(rows)} fields"
+    return "\n  ".join([f"{path}: {count} cannot be used.", *rows])
+
+
+def _describe(details: ErrorDetails, model_class: type[Settings], content: Any) -> str:
+    where = _dotted_path(details["loc"], content)
+    match details["type"]:
+        case "missing":
+            return f"{where}: expected a value, found none; add the key."
+        case "extra_forbidden":
+            known = _known_keys(model_class, details["loc"][:-1])
+            return f"{where}: expected no such key; {_advice(str(details['loc'][-1]), known)}"
+        case "value_error":
+            return f"{where}: {details['msg'].removeprefix('Value error, ')}"
+        case _:
+            expected = details["msg"].removeprefix("Input should be ")
+            return f"{where}: expected {expected}, found {details['input']!r}."
+
+
+def _dotted_path(location: Sequence[int | str], content: Any) -> str:
+    """Write a location as ``sines[4].frequency_hz (S4)``, rows counted from 1, with the row's name."""
+    text, name = "", ""
+    for step in location:
+        text += f"[{step + 1}]" if isinstance(step, int) else f".{step}"
+        try:
+            content = content[step]
+        except (KeyError, IndexError, TypeError):
+            content = None
+        if isinstance(step, int) and isinstance(content, Mapping) and "name" in content:
+            name = f" ({content['name']})"
+    return (text.removeprefix(".") or "the file") + name
+
+
+def _known_keys(model_class: type[Settings], location: Sequence[int | str]) -> tuple[str, ...]:
+    """Return the keys of the table at a location, following fields and rows of the model."""
+    table: type[Settings] = model_class
+    for step in location:
+        if isinstance(step, str):
+            table = _model_within(table.model_fields[step].annotation)
+    return tuple(table.model_fields)
+
+
+def _model_within(annotation: Any) -> type[Settings]:
+    """Find the model in an annotation such as ``tuple[Sine, ...]`` or ``Logger | None``."""
+    if isinstance(annotation, type) and issubclass(annotation, Settings):
+        return annotation
+    inner = (
+        item for item in get_args(annotation) if item is not Ellipsis and item is not type(None)
+    )
+    return _model_within(next(inner))
+
+
+def _advice(key: str, known: Sequence[str]) -> str:
+    for candidate in known:
+        if _without_unit(candidate) == _without_unit(key):
+            return f"the value is wanted as {candidate}: convert it to that unit."
+    close = difflib.get_close_matches(key, known, n=1)
+    if close:
+        return f"is {close[0]} meant?"
+    return f"the known keys are {', '.join(known)}."
+
+
+def _without_unit(key: str) -> str:
+    for unit in _UNITS:
+        if key.endswith(f"_{unit}"):
+            return key.removesuffix(f"_{unit}")
+    return key

@@ -1,0 +1,46 @@
+"""The installation: engine, gearbox, propeller, inertias and sensors, from a TOML file.
+
+===================== ============ ==============================================================
+quantity              unit         meaning
+===================== ============ ==============================================================
+rated power           kW           brake power of one engine at rated speed
+engine speed          rpm          crankshaft
+gear ratio ``i``      1            engine speed over propeller-shaft speed, greater than 0
+shaft torque ``M_s``  N m          on the propeller shaft at the gauge, positive when the engine
+                                   drives the propeller
+inertia               kg m2        of a row on its own shaft; the sums are referred to the
+                                   propeller shaft (engine-side rows times ``i`` squared)
+``K_Q``               1            effective torque coefficient at zero advance,
+                                   ``Q / (rho n^2 D^5)``
+===================== ============ ==============================================================
+
+The torque gauge sits on the propeller shaft: *upstream* of it is what lies towards the engine,
+*downstream* what lies towards the propeller.
+"""
+
+from shaftprint.vessel._inertia import InertiaRow
+from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, RackMap, WorkingPoint
+from shaftprint.vessel._sensors import (
+    Logger,
+    Sensors,
+    SetPointSensor,
+    ShaftTorqueSensor,
+    SpeedSensor,
+)
+from shaftprint.vessel._vessel import Vessel, load_vessel
+
+__all__ = [
+    "Engine",
+    "Gearbox",
+    "InertiaRow",
+    "Logger",
+    "Propeller",
+    "RackMap",
+    "Sensors",
+    "SetPointSensor",
+    "ShaftTorqueSensor",
+    "SpeedSensor",
+    "Vessel",
+    "WorkingPoint",
+    "load_vessel",
+]

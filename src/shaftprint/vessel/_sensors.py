@@ -1,0 +1,142 @@
+"""What was measured, on which channel, and what is known of each sensor."""
+
+from typing import Literal, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import Field, model_validator
+
+from shaftprint.arrays import FloatArray
+from shaftprint.settings import (
+    Name,
+    NotNegativeNumber,
+    Number,
+    PositiveInteger,
+    PositiveNumber,
+    Settings,
+)
+
+
+class SpeedSensor(Settings):
+    """A pick-up that gives pulses as strips on a shaft pass by."""
+
+    name: Name
+    """Name of the speed that it gives, such as ``n_e``."""
+    channel: Name
+    """Name of the channel in the recording."""
+    shaft: Literal["engine", "propeller"]
+    """Which shaft carries the strips."""
+    pulses_per_revolution: PositiveInteger
+    """Number of strips around the shaft."""
+    unit: Literal["V"]
+    """Unit of the channel: the raw pulse voltage."""
+    edge: Literal["rising", "falling"] = "rising"
+    """Which edge of a pulse marks the angle of the strip."""
+    pulse_width_deg: PositiveNumber | None = None
+    """Angle of the shaft during which a pulse is high [deg]."""
+    strip_angles_deg: tuple[PositiveNumber, ...] | None = None
+    """Angles between the strips as found earlier [deg], for comparison only, shape (strips,)."""
+    jitter_us: NotNegativeNumber | None = None
+    """Standard deviation of the time of an edge [us]."""
+
+    @model_validator(mode="after")
+    def _strips_fit_on_the_shaft(self) -> Self:
+        strips = self.pulses_per_revolution
+        if self.pulse_width_deg is not None and self.pulse_width_deg * strips >= 360.0:
+            raise ValueError(
+                f"expected pulse_width_deg below {360.0 / strips:g} for {strips} strips, "
+                f"found {self.pulse_width_deg:g}."
+            )
+        angles = self.strip_angles_deg
+        # 0.1 deg: printed tables are rounded (table 3.4 of the thesis adds up to 360.02 deg)
+        if angles is not None and (len(angles) != strips or abs(sum(angles) - 360.0) > 0.1):
+            raise ValueError(
+                f"expected strip_angles_deg to hold {strips} angles that add up to 360, "
+                f"found {len(angles)} that add up to {sum(angles):g}."
+            )
+        return self
+
+
+class ShaftTorqueSensor(Settings):
+    """Strain gauges with telemetry on the propeller shaft.
+
+    ``M_s = scale_nm_per_unit * reading - zero_nm``.
+    """
+
+    channel: Name
+    """Name of the channel in the recording."""
+    unit: Literal["V", "N m"]
+    """Unit of the channel."""
+    scale_nm_per_unit: Number
+    """Torque for one unit of the channel [N m per unit]; negative where the gauge is mounted reversed."""
+    scale_std_fraction: NotNegativeNumber | None = None
+    """Relative standard deviation of the scale."""
+    zero_nm: Number
+    """Torque that the scaled channel shows when there is none [N m]; it is subtracted."""
+    zero_std_nm: NotNegativeNumber | None = None
+    """Standard deviation of the zero [N m]."""
+    latency_s: NotNegativeNumber
+    """Time by which the telemetry is late [s]."""
+    latency_std_s: NotNegativeNumber | None = None
+    """Standard deviation of the latency [s]."""
+    full_scale_nm: PositiveNumber
+    """Largest torque that the telemetry can pass on [N m], either sign."""
+    resolution_nm: PositiveNumber | None = None
+    """Smallest step of the telemetry [N m]."""
+
+    @model_validator(mode="after")
+    def _scale_is_usable(self) -> Self:
+        if self.scale_nm_per_unit == 0.0:
+            raise ValueError("expected scale_nm_per_unit other than 0, found 0.")
+        return self
+
+    def torque_nm(self, reading: ArrayLike) -> FloatArray:
+        """Return the shaft torque [N m] for readings in the channel's unit, of any shape."""
+        return self.scale_nm_per_unit * np.asarray(reading, dtype=np.float64) - self.zero_nm
+
+
+class SetPointSensor(Settings):
+    """The voltage that asks the governor for a speed."""
+
+    channel: Name
+    """Name of the channel in the recording."""
+    unit: Literal["V"]
+    """Unit of the channel."""
+    noise_v: NotNegativeNumber | None = None
+    """Standard deviation of the logger's noise [V]."""
+
+
+class Logger(Settings):
+    """The instrument that recorded the channels."""
+
+    sample_rate_hz: PositiveNumber
+    """Samples a second of every channel [Hz]."""
+    clock_tolerance_ppm: NotNegativeNumber | None = None
+    """Largest error of its crystal [parts per million]."""
+
+
+class Sensors(Settings):
+    """All sensors of the instrumented shaft line."""
+
+    speed: tuple[SpeedSensor, ...] = Field(min_length=1)
+    """Speed pick-ups; the first is the one that is identified."""
+    shaft_torque: ShaftTorqueSensor
+    """The torque gauge."""
+    set_point: SetPointSensor
+    """The speed set point."""
+
+    @model_validator(mode="after")
+    def _names_and_channels_differ(self) -> Self:
+        names = [sensor.name for sensor in self.speed]
+        channels = [sensor.channel for sensor in self.speed]
+        channels += [self.shaft_torque.channel, self.set_point.channel]
+        found = []
+        for what, values in (("name", names), ("channel", channels)):
+            twice = sorted({value for value in values if values.count(value) > 1})
+            if twice:
+                found.append(
+                    f"expected every sensor to have its own {what}, found {', '.join(twice)} twice."
+                )
+        if found:
+            raise ValueError(" ".join(found))
+        return self

@@ -1,0 +1,98 @@
+"""The noun of the room: the installation of one shaft line."""
+
+import math
+from importlib.resources import files
+from pathlib import Path
+from typing import Literal, Self
+
+from pydantic import Field, model_validator
+
+from shaftprint.settings import Name, PositiveNumber, Settings, load_settings
+from shaftprint.vessel._inertia import InertiaRow
+from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, WorkingPoint
+from shaftprint.vessel._sensors import Logger, Sensors
+
+
+class Vessel(Settings):
+    """One shaft line of a ship, with its sensors."""
+
+    name: Name
+    """Name of the ship and the shaft line."""
+    water_density_kg_m3: PositiveNumber
+    """Density of the water [kg/m3]."""
+    engine: Engine
+    """The engine."""
+    gearbox: Gearbox
+    """The reduction gear."""
+    propeller: Propeller
+    """The propeller."""
+    working_point: WorkingPoint
+    """Expected steady state between the test signals."""
+    inertia: tuple[InertiaRow, ...] = Field(min_length=2)
+    """Rotating masses from the damper to the water around the propeller."""
+    sensors: Sensors
+    """What was measured."""
+    logger: Logger | None = None
+    """The instrument that recorded."""
+
+    @model_validator(mode="after")
+    def _inertia_on_both_sides(self) -> Self:
+        names = [row.name for row in self.inertia]
+        twice = sorted({name for name in names if names.count(name) > 1})
+        if twice:
+            raise ValueError(
+                f"expected every inertia row to have its own name, found {', '.join(twice)} twice."
+            )
+        for side, value in (
+            ("upstream", self.inertia_upstream_kg_m2),
+            ("downstream", self.inertia_downstream_kg_m2),
+        ):
+            if value <= 0.0:
+                raise ValueError(f"expected some inertia {side} of the torque gauge, found none.")
+        return self
+
+    @property
+    def inertia_upstream_kg_m2(self) -> float:
+        """Inertia between engine and torque gauge, referred to the propeller shaft [kg m2]."""
+        return self._inertia_kg_m2("upstream")
+
+    @property
+    def inertia_downstream_kg_m2(self) -> float:
+        """Inertia between torque gauge and water, referred to the propeller shaft [kg m2]."""
+        return self._inertia_kg_m2("downstream")
+
+    @property
+    def inertia_upstream_std_kg_m2(self) -> float:
+        """Standard deviation of the upstream inertia [kg m2], rows taken as independent."""
+        return self._inertia_std_kg_m2("upstream")
+
+    @property
+    def inertia_downstream_std_kg_m2(self) -> float:
+        """Standard deviation of the downstream inertia [kg m2], rows taken as independent."""
+        return self._inertia_std_kg_m2("downstream")
+
+    def _inertia_kg_m2(self, gauge: Literal["upstream", "downstream"]) -> float:
+        ratio = self.gearbox.ratio
+        return math.fsum(row.referred_kg_m2(ratio) for row in self.inertia if row.gauge == gauge)
+
+    def _inertia_std_kg_m2(self, gauge: Literal["upstream", "downstream"]) -> float:
+        ratio = self.gearbox.ratio
+        return math.hypot(
+            *(row.referred_std_kg_m2(ratio) for row in self.inertia if row.gauge == gauge)
+        )
+
+
+def load_vessel(path_or_name: str | Path) -> Vessel:
+    """Read a vessel file, or a shipped one by its name such as ``stan-tug-1205``.
+
+    Parameters
+    ----------
+    path_or_name
+        Path of a TOML file, or the name of a shipped vessel.
+
+    Raises
+    ------
+    SettingsError
+        If the file cannot be used; the message lists every field that is wrong.
+    """
+    return load_settings(path_or_name, Vessel, shipped=files(__package__) / "shipped")
