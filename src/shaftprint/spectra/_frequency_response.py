@@ -6,7 +6,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
-from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, frozen_bool, frozen_complex, frozen_float
+from shaftprint.arrays import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    frozen_bool,
+    frozen_complex,
+    frozen_float,
+)
 from shaftprint.errors import ResponseError
 
 
@@ -30,10 +37,10 @@ class FrequencyResponse:
     """Names of the outputs, such as ``("n", "M_s")``."""
     lines: tuple[str, ...] = ()
     """Names of the lines, such as ``("S1", ...)``; numbered when empty."""
-    degrees_of_freedom: FloatArray | None = None
-    """Real degrees of freedom behind each covariance, shape (lines,); infinite where it is known."""
-    used: BoolArray | None = None
-    """Which lines a fit should use by default, shape (lines,)."""
+    degrees_of_freedom: FloatArray = field(default_factory=lambda: np.empty(0))
+    """Real degrees of freedom behind each covariance, shape (lines,); infinite, as for a known one, when not given."""
+    used: BoolArray = field(default_factory=lambda: np.empty(0, dtype=np.bool_))
+    """Which lines a fit should use by default, shape (lines,); all when not given."""
     remarks: Mapping[str, str] = field(default_factory=dict)
     """Why a line is not used, by line name."""
     averaging_s: float = 0.0
@@ -60,9 +67,13 @@ class FrequencyResponse:
         _expect_shape("covariance", self.covariance, (count, size, size))
         names = self.lines or tuple(f"line {number}" for number in range(1, count + 1))
         if len(names) != count:
-            raise ResponseError(f"lines: expected {count} names, one a frequency, found {len(names)}.")
-        dof = np.full(count, np.inf) if self.degrees_of_freedom is None else self.degrees_of_freedom
-        used = np.ones(count, dtype=bool) if self.used is None else self.used
+            raise ResponseError(
+                f"lines: expected {count} names, one a frequency, found {len(names)}."
+            )
+        dof = (
+            self.degrees_of_freedom if np.size(self.degrees_of_freedom) else np.full(count, np.inf)
+        )
+        used = self.used if np.size(self.used) else np.ones(count, dtype=np.bool_)
         _expect_shape("degrees_of_freedom", dof, (count,))
         _expect_shape("used", used, (count,))
         frequency = frozen_float(self.frequency_hz)

@@ -1,0 +1,159 @@
+"""The verb of the room: fit a structure to a frequency response."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_bool, frozen_float
+from shaftprint.errors import IdentificationError
+from shaftprint.identify._covariance import estimate_covariance
+from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
+from shaftprint.identify._identification import Cluster, Identification, Settings
+from shaftprint.identify._levenberg_marquardt import Descent, descend
+from shaftprint.identify._objective import Objective, build_objective
+from shaftprint.models import Structure, is_stable, margins
+from shaftprint.spectra import FrequencyResponse
+
+# Starts belong to one optimum when their costs differ by less than this share, ...
+SAME_COST = 1e-3
+# ... or by less than this share of the cost of no model at all (for data without noise).
+SAME_COST_OF_NOTHING = 1e-9
+# ... and no parameter differs by more than this share of the width between its bounds.
+SAME_PLACE = 0.02
+POLISH_TOLERANCE = 1e-14
+
+
+def identify(
+    structure: Structure,
+    response: FrequencyResponse,
+    *,
+    rng: np.random.Generator,
+    settings: Settings | None = None,
+    lines: Sequence[str] | None = None,
+) -> Identification:
+    """Fit a structure to a frequency response from many starts; the lowest cost that is stable wins.
+
+    Parameters
+    ----------
+    structure
+        Structure with the response's input and outputs. Held parameters of a speed sensor take the response's values.
+    response
+        Data with covariance.
+    rng
+        Source of the start values.
+    settings
+        How to search and weigh.
+    lines
+        Names of the lines to fit; those that the response marks as used by default.
+
+    Raises
+    ------
+    IdentificationError
+        If structure and response do not fit together, there are too few data, or no start reached a stable model.
+    """
+    chosen = settings or Settings()
+    sensed = _with_sensor(structure, response)
+    objective = build_objective(
+        sensed,
+        response,
+        weighting=chosen.weighting,
+        priors=chosen.priors,
+        regularisation=chosen.regularisation,
+        lines=lines,
+    )
+    start = chosen.draw.starts(objective.lower, objective.upper, chosen.starts, rng)
+    descent = descend(
+        objective.residuals,
+        start,
+        objective.lower,
+        objective.upper,
+        tolerance=chosen.tolerance,
+        max_iterations=chosen.max_iterations,
+    )
+    clusters, winner = _judged(objective, _clustered(objective, descent), chosen)
+    theta = winner.values[list(objective.free)]
+    fitted = np.isin(response.omega_rad_s, objective.s.imag)
+    model = sensed.response(winner.values, 1j * response.omega_rad_s)
+    outputs = {name: i for i, name in enumerate(response.outputs)}
+    measured = response.response[:, 0]
+    variance = np.diagonal(response.covariance, axis1=1, axis2=2).T
+    return Identification(
+        structure=sensed,
+        response=response,
+        fitted=frozen_bool(fitted),
+        settings=chosen,
+        values=winner.values,
+        covariance=frozen_float(estimate_covariance(objective, theta)),
+        cost=winner.cost,
+        degrees_of_freedom=objective.data.size + len(chosen.priors) - theta.size,
+        data_count=objective.data.size,
+        fit_percent={n: fit_percent(measured[i, fitted], model[i, fitted]) for n, i in outputs.items()},
+        fit_ceiling={
+            n: fit_ceiling(measured[i, fitted], (variance[i] + variance[len(outputs) + i])[fitted])
+            for n, i in outputs.items()
+        },
+        clusters=clusters,
+        margins=None if sensed.loop is None else margins(sensed, winner.values),
+    )
+
+
+def _with_sensor(structure: Structure, response: FrequencyResponse) -> Structure:
+    """Return the structure with the pick-up's held parameters at the values of the data."""
+    sensor = {
+        "T_average": response.averaging_s,
+        "T_hold": response.hold_s,
+        "t_pickup": response.pick_up_delay_s,
+    }
+    held = {p.name: sensor[p.name] for p in structure.parameters if p.held and p.name in sensor}
+    return structure.held_at(**held) if held else structure
+
+
+def _clustered(objective: Objective, descent: Descent) -> list[tuple[FloatArray, float, int]]:
+    """Return parameters, cost and number of starts of each distinct optimum, lowest cost first."""
+    order = np.argsort(descent.cost, kind="stable")
+    theta, cost = descent.theta[order], descent.cost[order]
+    nothing = 0.5 * float(np.sum((objective.weights @ objective.data[:, :, None]) ** 2))
+    width = objective.upper - objective.lower
+    found: list[tuple[FloatArray, float, int]] = []
+    for place, value in zip(theta, cost, strict=True):
+        for i, (other, lowest, count) in enumerate(found):
+            close = value - lowest <= SAME_COST * lowest + SAME_COST_OF_NOTHING * nothing
+            if close and np.all(np.abs(place - other) <= SAME_PLACE * width):
+                found[i] = (other, lowest, count + 1)
+                break
+        else:
+            found.append((place, float(value), 1))
+    return found
+
+
+def _judged(
+    objective: Objective, found: list[tuple[FloatArray, float, int]], settings: Settings
+) -> tuple[tuple[Cluster, ...], Cluster]:
+    """Return all optima and the winner: the lowest cost that is stable, polished to the last digit."""
+    clusters: list[Cluster] = []
+    winner: Cluster | None = None
+    for theta, cost, starts in found:
+        if winner is not None:
+            values = frozen_float(objective.complete(theta))
+            clusters.append(Cluster(values=values, cost=cost, starts=starts, stable=None))
+            continue
+        polished = descend(
+            objective.residuals,
+            theta[None, :],
+            objective.lower,
+            objective.upper,
+            tolerance=POLISH_TOLERANCE,
+            max_iterations=settings.max_iterations,
+        )
+        values = frozen_float(objective.complete(polished.theta[0]))
+        stable = is_stable(objective.structure, values)
+        cluster = Cluster(values=values, cost=float(polished.cost[0]), starts=starts, stable=stable)
+        clusters.append(cluster)
+        if stable or not settings.require_stable:
+            winner = cluster
+    if winner is None:
+        raise IdentificationError(
+            f"structure {objective.structure.name}: none of {settings.starts} starts reached a stable model; the "
+            f"lowest cost is {clusters[0].cost:.4g}. Check the data and bounds, or allow unstable models."
+        )
+    return tuple(clusters), winner

@@ -1,0 +1,42 @@
+"""Start values of a search, drawn within the bounds."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+
+
+class Draw(ABC):
+    """A way to draw start values."""
+
+    __slots__ = ()
+
+    @abstractmethod
+    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
+        """Return start values within the bounds, shape (count, parameters)."""
+
+
+@dataclass(frozen=True, slots=True)
+class LatinHypercube(Draw):
+    """Each parameter's range is cut into as many cells as there are starts; every cell is met once.
+
+    The delay of a structure without lag has a local optimum every turn of the fast lines' phase; 50 uniform starts
+    miss the
+    global one in one of eight noise draws, 50 stratified ones in none of forty (``docs/benchmarks.md``).
+    """
+
+    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
+        """Return one start in every cell of every parameter, in random combination."""
+        cells = np.argsort(rng.random((lower.size, count)), axis=1).T
+        return lower + (cells + rng.random((count, lower.size))) / count * (upper - lower)
+
+
+@dataclass(frozen=True, slots=True)
+class Uniform(Draw):
+    """Independent uniform draws: the thesis' random starts (section 5.1)."""
+
+    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
+        """Return independent uniform starts."""
+        return lower + rng.random((count, lower.size)) * (upper - lower)

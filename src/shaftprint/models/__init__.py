@@ -1,0 +1,75 @@
+"""Grey-box model structures: blocks, their composition, exact delays, exact gradients, stability.
+
+Arithmetic only: no data, no files, no plots.
+
+=============== ======= ==============================================================================================
+quantity        unit    meaning and sign
+=============== ======= ==============================================================================================
+``n``           -       deviation of engine speed over its working-point value; positive faster
+``n_set``       -       deviation of the engine-speed set point over the same working-point speed
+``e``           -       ``n_set - n``: positive when the engine is too slow
+``E_n``         s       integral of ``e``
+``M_s``         -       deviation of shaft torque at the gauge over its working-point value; positive driving the
+propeller
+``s``           rad/s   Laplace variable, ``1j omega`` on the frequency axis
+``tau``         s       inertia time ``2 pi I n_s0 / M_s0``, of the inertia that the index names
+=============== ======= ==============================================================================================
+
+Feedback is negative: the closed loop of forward ``G`` and back ``H`` is ``G / (1 + G H)``.
+"""
+
+from shaftprint.models._blocks import (
+    Constant,
+    Delay,
+    FilteredDerivative,
+    Gain,
+    Integrator,
+    PadeDelay,
+    PIGovernor,
+    SecondOrderLag,
+    Shaft,
+    SpeedSensor,
+    TorqueBalance,
+)
+from shaftprint.models._catalogue import STRUCTURES, structure
+from shaftprint.models._expression import Block, Expression, Inverse, Sensitivity, feedback
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._stability import (
+    Margins,
+    is_stable,
+    loop_gain,
+    margins,
+    poles,
+    unstable_poles,
+)
+from shaftprint.models._structure import Combination, Structure
+
+__all__ = [
+    "STRUCTURES",
+    "Block",
+    "Combination",
+    "Constant",
+    "Delay",
+    "Expression",
+    "FilteredDerivative",
+    "Gain",
+    "Integrator",
+    "Inverse",
+    "Margins",
+    "PIGovernor",
+    "PadeDelay",
+    "Parameter",
+    "SecondOrderLag",
+    "Sensitivity",
+    "Shaft",
+    "SpeedSensor",
+    "Structure",
+    "TorqueBalance",
+    "feedback",
+    "is_stable",
+    "loop_gain",
+    "margins",
+    "poles",
+    "structure",
+    "unstable_poles",
+]

@@ -1,0 +1,360 @@
+"""The building blocks of a propulsion line: governor, engine, line of shafts, delays and sensors."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.models._expression import Block, Polynomials
+from shaftprint.models._parameter import Parameter
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Constant(Block):
+    """A fixed number, such as the -1 of a difference."""
+
+    number: float
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """No parameters."""
+        return ()
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return the number at every frequency."""
+        return np.full(s.shape, self.number, dtype=np.complex128)
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return nothing."""
+        return ()
+
+    def ratio(self, *values: float) -> Polynomials:
+        """Return the number over one."""
+        return np.array([self.number]), np.array([1.0])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Gain(Block):
+    """A free gain ``k``, such as the fuel-rack gain ``v`` of the engine map (thesis eq. 2.18)."""
+
+    gain: Parameter
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The gain."""
+        return (self.gain,)
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return ``k``."""
+        (k,) = values
+        return k * np.ones_like(s)
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return ``dk = 1``."""
+        return (np.ones_like(response),)
+
+    def ratio(self, *values: float) -> Polynomials:
+        """Return ``k / 1``."""
+        return np.array([values[0]]), np.array([1.0])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Integrator(Block):
+    """The integral ``1 / s`` of the speed error (thesis eq. 2.15)."""
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """No parameters."""
+        return ()
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return ``1 / s``."""
+        return 1.0 / s
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return nothing."""
+        return ()
+
+    def ratio(self, *values: float) -> Polynomials:
+        """Return ``1 / s``."""
+        return np.array([1.0]), np.array([1.0, 0.0])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PIGovernor(Block):
+    """Proportional and integral governor ``K_p + K_i / s`` (thesis eqs 2.14-2.16, 4.3)."""
+
+    proportional: Parameter
+    integral: Parameter
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """``K_p``, ``K_i``."""
+        return (self.proportional, self.integral)
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return ``K_p + K_i / s``."""
+        k_p, k_i = values
+        return k_p + k_i / s
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return ``1`` and ``1 / s``."""
+        return np.ones_like(s), 1.0 / s
+
+    def ratio(self, *values: float) -> Polynomials:
+        """Return ``(K_p s + K_i) / s``."""
+        return np.array(values), np.array([1.0, 0.0])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FilteredDerivative(Block):
+    """The filtered derivative term ``K_d s / (T_f s + 1)`` of a PID governor (thesis eq. 4.18)."""
+
+    derivative: Parameter
+    filter_time: Parameter
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """``K_d``, ``T_f``."""
+        return (self.derivative, self.filter_time)
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return ``K_d s / (T_f s + 1)``."""
+        k_d, t_f = values
+        return k_d * s / (t_f * s + 1.0)
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return ``s / (T_f s + 1)`` and ``-H s / (T_f s + 1)``."""
+        _, t_f = values
+        filtered = s / (t_f * s + 1.0)
+        return filtered, -response * filtered
+
+    def ratio(self, *values: float) -> Polynomials:
+        """Return ``K_d s / (T_f s + 1)``."""
+        return np.array([values[0], 0.0]), np.array([values[1], 1.0])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SecondOrderLag(Block):
+    """Second-order lag ``omega_n^2 / (s^2 + 2 zeta omega_n s + omega_n^2)``.
+
+    Thesis eq. 4.22 prints ``zeta omega_n s``; with it every second-order result of the thesis would be unstable.
+    """
+
+    frequency: Parameter
+    damping: Parameter
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """``omega_n``, ``zeta``."""
+        return (self.frequency, self.damping)
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return the lag."""
+        omega_n, zeta = values
+        return omega_n**2 / (s * (s + 2.0 * zeta * omega_n) + omega_n**2)
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return the derivatives to ``omega_n`` and ``zeta``.
+
+        With ``D`` the denominator, ``dH/domega_n = 2 s (s + zeta omega_n) omega_n / D^2`` and
+        ``dH/dzeta = -2 s H^2 / omega_n``.
+        """
+        omega_n, zeta = values
+        square = response * response * (2.0 * s)
+        return square * ((s + zeta * omega_n) / omega_n**3), square * (-1.0 / omega_n)
+
+    def ratio(self, *values: float) -> Polynomials:
+        """Return numerator and denominator."""
+        omega_n, zeta = values
+        return np.array([omega_n**2]), np.array([1.0, 2.0 * zeta * omega_n, omega_n**2])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Delay(Block):
+    """Exact transport delay ``exp(-s t)`` (thesis eq. 4.20), wherever it sits."""
+
+    time: Parameter
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The delay."""
+        return (self.time,)
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return ``exp(-s t)``."""
+        (t,) = values
+        return np.exp(-s * t)
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return ``-s exp(-s t)``."""
+        return (-s * response,)
+
+
+PADE_5 = (30240.0, 15120.0, 3360.0, 420.0, 30.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PadeDelay(Block):
+    """Fifth-order Pade approximation of a delay, to compare with the exact one only.
+
+    Thesis eq. 4.24 lacks the powers of ``s``: its terms are ``c_k (s t)^k``. Accurate for ``omega t`` below about 4.
+    """
+
+    time: Parameter
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The delay."""
+        return (self.time,)
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return ``P(-s t) / P(s t)``."""
+        (t,) = values
+        x = s * t
+        return np.asarray(np.polyval(PADE_5[::-1], -x) / np.polyval(PADE_5[::-1], x))
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return ``-s (P'(-x) + H P'(x)) / P(x)`` at ``x = s t``."""
+        (t,) = values
+        x = s * t
+        slope = np.polyder(np.array(PADE_5[::-1]))
+        change = np.polyval(slope, -x) + response * np.polyval(slope, x)
+        return (np.asarray(-s * change / np.polyval(PADE_5[::-1], x)),)
+
+    def ratio(self, *values: float) -> Polynomials:
+        """Return numerator and denominator in ``s``."""
+        powers = np.array(PADE_5) * values[0] ** np.arange(6)
+        return (powers * (-1.0) ** np.arange(6))[::-1], powers[::-1]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Shaft(Block):
+    """Rigid line of shafts from torque to speed, ``1 / (tau s + k_q - g)``.
+
+    ``tau`` is the sum of the inertia times given, ``k_q`` the slope of the propeller torque (2 for a quadratic law) and
+    ``g`` that of the engine torque (thesis eqs 2.13, 2.18, 2.20; eq. 4.2 is the case of one inertia and ``g = 0``).
+    """
+
+    inertia: tuple[Parameter, ...]
+    propeller_slope: Parameter
+    engine_slope: Parameter | None = None
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Inertia times, ``k_q``, and ``g`` where there is one."""
+        end = () if self.engine_slope is None else (self.engine_slope,)
+        return (*self.inertia, self.propeller_slope, *end)
+
+    def _totals(self, values: tuple[FloatArray, ...]) -> tuple[FloatArray, FloatArray]:
+        count = len(self.inertia)
+        tau = values[0] if count == 1 else sum(values[1:count], start=values[0])
+        slope = values[count] if self.engine_slope is None else values[count] - values[count + 1]
+        return tau, slope
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return ``1 / (tau s + k_q - g)``."""
+        tau, slope = self._totals(values)
+        return 1.0 / (tau * s + slope)
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return ``-s H^2`` for each inertia time, ``-H^2`` for ``k_q``, ``H^2`` for ``g``."""
+        square = response * response
+        to_inertia = -s * square
+        end = () if self.engine_slope is None else (square,)
+        return (*(to_inertia for _ in self.inertia), -square, *end)
+
+    def ratio(self, *values: float) -> Polynomials:
+        """Return ``1 / (tau s + k_q - g)``."""
+        tau, slope = self._totals(tuple(np.asarray(value) for value in values))
+        return np.array([1.0]), np.array([float(tau), float(slope)])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SpeedSensor(Block):
+    """A pulse pick-up: mean over a window, hold until the next pulse, delay of the time stamp.
+
+    ``sinhc(s T_average / 2) sinhc(s T_hold / 2) exp(-s t_pickup)`` with ``sinhc(x) = sinh(x) / x``; on the frequency
+    axis
+    these are the ``sinc`` of the one-revolution mean and of the hold. ``t_pickup`` is the whole delay of the value
+    behind the
+    true speed, half the window and half the hold included; it is zero for values stamped at mid-period.
+    """
+
+    averaging: Parameter
+    hold: Parameter
+    delay: Parameter
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """``T_average``, ``T_hold``, ``t_pickup``."""
+        return (self.averaging, self.hold, self.delay)
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return the sensor's response."""
+        averaging, hold, delay = values
+        return _sinhc(s * averaging / 2.0) * _sinhc(s * hold / 2.0) * np.exp(-s * delay)
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return the derivatives to both windows and to the delay."""
+        averaging, hold, delay = values
+        lagged = np.exp(-s * delay) * (s / 2.0)
+        mean, held = s * averaging / 2.0, s * hold / 2.0
+        return (
+            lagged * _sinhc_slope(mean) * _sinhc(held),
+            lagged * _sinhc(mean) * _sinhc_slope(held),
+            -s * response,
+        )
+
+
+SERIES_BELOW = 0.02
+
+
+def _sinhc(x: ComplexArray) -> ComplexArray:
+    """Return ``sinh(x) / x``; by its series near zero, where the quotient is 0 / 0."""
+    small = np.abs(x) < SERIES_BELOW
+    safe = np.where(small, 1.0, x)
+    square = x * x
+    return np.where(
+        small,
+        1.0 + square / 6.0 * (1.0 + square / 20.0 * (1.0 + square / 42.0)),
+        np.sinh(safe) / safe,
+    )
+
+
+def _sinhc_slope(x: ComplexArray) -> ComplexArray:
+    """Return the derivative of ``sinh(x) / x``."""
+    small = np.abs(x) < SERIES_BELOW
+    safe = np.where(small, 1.0, x)
+    square = x * x
+    series = x / 3.0 * (1.0 + square / 10.0 * (1.0 + square / 28.0 * (1.0 + square / 54.0)))
+    return np.where(small, series, (np.cosh(safe) - np.sinh(safe) / safe) / safe)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TorqueBalance(Block):
+    """Torque at the gauge over speed, ``tau_dn s + k_q``: what is downstream of the gauge must be turned.
+
+    Free body cut at the gauge: ``M_s - M_p = 2 pi I_dn dn_s/dt``, with ``M_p* = k_q n*``.
+    """
+
+    inertia: Parameter
+    propeller_slope: Parameter
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """``tau_dn``, ``k_q``."""
+        return (self.inertia, self.propeller_slope)
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return ``tau_dn s + k_q``."""
+        tau, slope = values
+        return tau * s + slope
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return ``s`` and ``1``."""
+        return s, np.ones_like(s)
+
+    def ratio(self, *values: float) -> Polynomials:
+        """Return ``(tau_dn s + k_q) / 1``."""
+        return np.array(values), np.array([1.0])

@@ -1,0 +1,248 @@
+"""Composition of blocks into responses: products, sums, feedback, each with its exact gradient.
+
+An expression is a tree of blocks. Its response at ``s`` and the derivatives of that response with respect to the
+parameters are found in one walk (forward differentiation)::
+
+    series      d(G H)      = dG H + G dH
+    parallel    d(G + H)    = dG + dH
+    inverse     d(1 / G)    = -dG / G^2
+    feedback    S = 1 / (1 + L),   dS = -S^2 dL
+
+A parameter that occurs in several blocks is one parameter: its derivatives add up. A block that occurs in several
+places
+of one walk is evaluated once.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.models._parameter import Parameter
+
+Values: TypeAlias = Mapping[str, FloatArray]
+Gradient: TypeAlias = dict[str, ComplexArray]
+Dual: TypeAlias = tuple[ComplexArray, Gradient]
+Polynomials: TypeAlias = tuple[NDArray[np.floating], NDArray[np.floating]]
+
+
+@dataclass(slots=True)
+class Walk:
+    """One evaluation: where, at which parameter values, with derivatives to which parameters."""
+
+    s: ComplexArray
+    """Laplace variable [rad/s], shape (frequencies,)."""
+    values: Values
+    """Parameter values by name, each of shape (..., 1)."""
+    wanted: Collection[str]
+    """Names of the parameters whose derivatives are wanted."""
+    known: "dict[int, Dual]" = field(default_factory=dict)
+    """Results of this walk by node."""
+
+    def dual(self, node: "Expression") -> Dual:
+        """Return value and gradient of a node, evaluated at most once a walk."""
+        found = self.known.get(id(node))
+        if found is None:
+            found = self.known[id(node)] = node.evaluate(self)
+        return found
+
+
+class Expression(ABC):
+    """A response made of blocks; composed with ``*``, ``+`` and ``feedback``."""
+
+    __slots__ = ()
+
+    @abstractmethod
+    def evaluate(self, walk: Walk) -> Dual:
+        """Return the response, shape (..., frequencies), and its derivatives by parameter name."""
+
+    @abstractmethod
+    def children(self) -> "tuple[Expression, ...]":
+        """Return the expressions of which this one is made."""
+
+    @abstractmethod
+    def polynomials(self, values: Mapping[str, float]) -> Polynomials | None:
+        """Return numerator and denominator in ``s``, highest power first; None where there is a delay."""
+
+    def __mul__(self, other: "Expression") -> "Expression":
+        """Put two expressions in series."""
+        return Series(self, other)
+
+    def __add__(self, other: "Expression") -> "Expression":
+        """Put two expressions in parallel."""
+        return Parallel(self, other)
+
+    def nodes(self) -> "Iterator[Expression]":
+        """Walk over this expression and all below it, children first, each object once."""
+        seen: set[int] = set()
+        yield from _nodes(self, seen)
+
+
+def _nodes(node: Expression, seen: set[int]) -> Iterator[Expression]:
+    if id(node) in seen:
+        return
+    seen.add(id(node))
+    for child in node.children():
+        yield from _nodes(child, seen)
+    yield node
+
+
+class Block(Expression):
+    """A building block: a transfer function of a few parameters, with its derivatives.
+
+    A block of one's own is a frozen dataclass with :class:`Parameter` fields and the two methods ``transfer`` and
+    ``derivatives``; ``ratio`` too if it is rational in ``s``.
+    """
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def parameters(self) -> tuple[Parameter, ...]:
+        """Parameters in the order in which ``transfer`` takes them."""
+
+    @abstractmethod
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return the transfer function at ``s``; values have shape (..., 1), the result (..., frequencies)."""
+
+    @abstractmethod
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return the derivative of ``transfer`` to each parameter; ``response`` is its value."""
+
+    def ratio(self, *values: float) -> Polynomials | None:
+        """Return numerator and denominator in ``s``, highest power first, or None where it is not rational."""
+        return None
+
+    def evaluate(self, walk: Walk) -> Dual:
+        """Return the response and the wanted derivatives."""
+        values = [walk.values[parameter.name] for parameter in self.parameters]
+        response = self.transfer(walk.s, *values)
+        names = [parameter.name for parameter in self.parameters]
+        if not any(name in walk.wanted for name in names):
+            return response, {}
+        gradient: Gradient = {}
+        for name, derivative in zip(names, self.derivatives(walk.s, response, *values), strict=True):
+            if name in walk.wanted:
+                gradient[name] = gradient[name] + derivative if name in gradient else derivative
+        return response, gradient
+
+    def children(self) -> tuple[Expression, ...]:
+        """Return nothing: a block is a leaf."""
+        return ()
+
+    def polynomials(self, values: Mapping[str, float]) -> Polynomials | None:
+        """Return numerator and denominator at the given values."""
+        return self.ratio(*(values[parameter.name] for parameter in self.parameters))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Series(Expression):
+    """Two expressions one after the other: ``G H``."""
+
+    first: Expression
+    second: Expression
+
+    def evaluate(self, walk: Walk) -> Dual:
+        """Apply the product rule."""
+        g, dg = walk.dual(self.first)
+        h, dh = walk.dual(self.second)
+        gradient = {name: derivative * h for name, derivative in dg.items()}
+        for name, derivative in dh.items():
+            term = g * derivative
+            gradient[name] = gradient[name] + term if name in gradient else term
+        return g * h, gradient
+
+    def children(self) -> tuple[Expression, ...]:
+        """Return both expressions."""
+        return (self.first, self.second)
+
+    def polynomials(self, values: Mapping[str, float]) -> Polynomials | None:
+        """Multiply numerators and denominators."""
+        one, two = self.first.polynomials(values), self.second.polynomials(values)
+        if one is None or two is None:
+            return None
+        return np.polymul(one[0], two[0]), np.polymul(one[1], two[1])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Parallel(Expression):
+    """Two expressions side by side: ``G + H``."""
+
+    first: Expression
+    second: Expression
+
+    def evaluate(self, walk: Walk) -> Dual:
+        """Apply the sum rule."""
+        g, dg = walk.dual(self.first)
+        h, dh = walk.dual(self.second)
+        gradient = dict(dg)
+        for name, derivative in dh.items():
+            gradient[name] = gradient[name] + derivative if name in gradient else derivative
+        return g + h, gradient
+
+    def children(self) -> tuple[Expression, ...]:
+        """Return both expressions."""
+        return (self.first, self.second)
+
+    def polynomials(self, values: Mapping[str, float]) -> Polynomials | None:
+        """Bring both on one denominator."""
+        one, two = self.first.polynomials(values), self.second.polynomials(values)
+        if one is None or two is None:
+            return None
+        numerator = np.polyadd(np.polymul(one[0], two[1]), np.polymul(two[0], one[1]))
+        return numerator, np.polymul(one[1], two[1])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Inverse(Expression):
+    """The inverse ``1 / G``."""
+
+    of: Expression
+
+    def evaluate(self, walk: Walk) -> Dual:
+        """Apply the quotient rule."""
+        g, dg = walk.dual(self.of)
+        inverse = 1.0 / g
+        square = -inverse * inverse
+        return inverse, {name: square * derivative for name, derivative in dg.items()}
+
+    def children(self) -> tuple[Expression, ...]:
+        """Return the expression that is inverted."""
+        return (self.of,)
+
+    def polynomials(self, values: Mapping[str, float]) -> Polynomials | None:
+        """Exchange numerator and denominator."""
+        found = self.of.polynomials(values)
+        return None if found is None else (found[1], found[0])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sensitivity(Expression):
+    """What feedback leaves of an error: ``S = 1 / (1 + L)`` for the loop gain ``L`` under negative feedback."""
+
+    loop: Expression
+
+    def evaluate(self, walk: Walk) -> Dual:
+        """Apply ``dS = -S^2 dL``."""
+        gain, dgain = walk.dual(self.loop)
+        response = 1.0 / (1.0 + gain)
+        square = -response * response
+        return response, {name: square * derivative for name, derivative in dgain.items()}
+
+    def children(self) -> tuple[Expression, ...]:
+        """Return the loop gain."""
+        return (self.loop,)
+
+    def polynomials(self, values: Mapping[str, float]) -> Polynomials | None:
+        """Return ``D / (D + N)`` for the loop gain ``N / D``."""
+        found = self.loop.polynomials(values)
+        return None if found is None else (found[1], np.polyadd(found[1], found[0]))
+
+
+def feedback(forward: Expression, back: Expression | None = None) -> Expression:
+    """Return the closed loop ``G / (1 + G H)`` under negative feedback; ``H`` is 1 where it is not given."""
+    return forward * Sensitivity(forward if back is None else forward * back)

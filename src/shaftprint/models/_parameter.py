@@ -1,0 +1,51 @@
+"""A parameter of a structure: its name, unit, bounds and meaning."""
+
+from dataclasses import dataclass, replace
+
+from shaftprint.errors import StructureError
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One number of a model, free within its bounds or held at its value."""
+
+    name: str
+    """Symbol, the same in code, files, tables and documentation, such as ``K_p``."""
+    unit: str
+    """Unit, ``-`` where there is none."""
+    lower: float
+    """Lower bound of the search."""
+    upper: float
+    """Upper bound of the search."""
+    value: float
+    """Value where it is held, and the centre of a sensitivity analysis."""
+    meaning: str
+    """What it stands for, in a few words."""
+    held: bool = False
+    """Whether it keeps its value during a fit."""
+
+    def __post_init__(self) -> None:
+        """Check the bounds.
+
+        Raises
+        ------
+        StructureError
+            If the bounds are not in order or the value lies outside them.
+        """
+        if not self.lower < self.upper:
+            raise StructureError(
+                f"parameter {self.name}: expected lower bound < upper bound, found {self.lower} and {self.upper}."
+            )
+        if not self.lower <= self.value <= self.upper:
+            raise StructureError(
+                f"parameter {self.name}: expected a value from {self.lower} to {self.upper} {self.unit}, "
+                f"found {self.value}; change the value or the bounds."
+            )
+
+    def held_at(self, value: float) -> "Parameter":
+        """Return the parameter held at a value; its bounds are widened to include the value."""
+        return replace(self, value=value, held=True, lower=min(self.lower, value), upper=max(self.upper, value))
+
+    def free_between(self, lower: float, upper: float) -> "Parameter":
+        """Return the parameter free between two bounds, its value moved inside them."""
+        return replace(self, lower=lower, upper=upper, value=min(max(self.value, lower), upper), held=False)
