@@ -1,0 +1,13 @@
+"""Names and sizes of the native container, which is NetCDF-4: what writer and reader agree on."""
+
+FORMAT = "shaftprint recording"
+"""Root attribute ``format`` of the container."""
+
+VERSION = 1
+"""Root attribute ``format_version``; a reader refuses later ones."""
+
+GROUP = "channels"
+"""The group that holds one data set a channel."""
+
+CHUNK_SAMPLES = 262_144
+"""Samples of one compressed block: 131 s at 2000 Hz, 512 KiB of counts."""

@@ -1,0 +1,46 @@
+"""Opening a logger file with the one reader that knows its format."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from shaftprint.errors import RecordingError
+from shaftprint.recording._recording import Recording
+from shaftprint.recording.readers import READERS, Reader
+
+
+def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **hints: object) -> Recording:
+    """Open a raw logger file, read only; samples are read as they are asked for.
+
+    Parameters
+    ----------
+    path
+        The file.
+    readers
+        Formats to try; exactly one must claim the file.
+    hints
+        What the file does not say, such as ``sample_rate_hz`` for a MATLAB file without a clock.
+
+    Raises
+    ------
+    RecordingError
+        If the file does not exist, is empty, is of no or of several of the formats, or cannot be
+        read.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise RecordingError(f"{path}: expected a logger file, found none there.")
+    try:
+        if path.stat().st_size == 0:
+            raise RecordingError(f"{path}: expected a logger file, found an empty one.")
+        claims = [reader for reader in readers if reader.is_mine(path)]
+        if len(claims) == 1:
+            return claims[0].read(path, **hints)
+    except OSError as error:
+        raise RecordingError(f"{path}: the file cannot be read ({error}).") from None
+    if claims:
+        names = " and ".join(reader.NAME for reader in claims)
+        raise RecordingError(
+            f"{path}: expected one format, found that it may be {names}; pass the right one as readers."
+        )
+    names = ", ".join(reader.NAME for reader in readers)
+    raise RecordingError(f"{path}: expected one of the formats {names}, found none of them.")

@@ -1,0 +1,146 @@
+"""The noun of the room: a raw logger file, untouched, with its channels read on request."""
+
+import hashlib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import RecordingError
+
+Counts: TypeAlias = NDArray[np.int16] | NDArray[np.float64]
+Source: TypeAlias = Callable[[int, int], NDArray[Any]]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Channel:
+    """One channel of a recording, on its own clock; ``value = counts * scale + offset``."""
+
+    name: str
+    """Name of the channel."""
+    unit: str
+    """Unit of the scaled value, such as ``V``; empty where the file does not say."""
+    rate_hz: float
+    """Sample rate [Hz]."""
+    start_s: float
+    """Time of the first sample [s]."""
+    count: int
+    """Number of samples."""
+    source: Source = field(repr=False)
+    """Gives the raw counts of the samples [start, stop)."""
+    scale: float = 1.0
+    """Value of one count [unit]; 1 where the file holds values."""
+    offset: float = 0.0
+    """Value at count zero [unit]; 0 where the file holds values."""
+    long_name: str = ""
+    """What the channel is, in words."""
+
+    def __post_init__(self) -> None:
+        """Check that the channel can be placed in time.
+
+        Raises
+        ------
+        RecordingError
+            If the rate is not positive, the scale is zero, or a number is not finite.
+        """
+        numbers = (self.rate_hz, self.start_s, self.scale, self.offset)
+        if not np.all(np.isfinite(numbers)) or self.rate_hz <= 0.0 or self.scale == 0.0:
+            raise RecordingError(
+                f"channel {self.name}: expected a positive rate, a scale other than 0 and finite "
+                f"numbers, found rate {self.rate_hz:g} Hz, start {self.start_s:g} s, "
+                f"scale {self.scale:g}, offset {self.offset:g}."
+            )
+
+    @property
+    def duration_s(self) -> float:
+        """Length of the channel [s], each sample counted with its period."""
+        return self.count / self.rate_hz
+
+    def read(self, start: int, stop: int) -> Counts:
+        """Return the raw counts of the samples [start, stop), shape (stop - start,).
+
+        Raises
+        ------
+        RecordingError
+            If the samples are not in the recording or the file can no longer be read.
+        """
+        if not 0 <= start <= stop <= self.count:
+            raise RecordingError(
+                f"channel {self.name}: expected samples within [0, {self.count}), found [{start}, {stop})."
+            )
+        return self.source(start, stop)
+
+    def values(self, start: int, stop: int) -> FloatArray:
+        """Return the samples [start, stop) in the channel's unit, shape (stop - start,).
+
+        Raises
+        ------
+        RecordingError
+            As ``read``.
+        """
+        values = self.read(start, stop).astype(np.float64)
+        values *= self.scale
+        values += self.offset
+        return values
+
+    def time_s(self, start: int, stop: int) -> FloatArray:
+        """Return the times of the samples [start, stop) [s], shape (stop - start,)."""
+        return self.start_s + np.arange(start, stop) / self.rate_hz
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Recording:
+    """A raw logger file, open for reading; close it or use it in a ``with`` statement."""
+
+    path: Path
+    """The file."""
+    sha256: str
+    """SHA-256 of the whole file, hexadecimal."""
+    format: str
+    """Name of the file format."""
+    channels: Mapping[str, Channel]
+    """Every channel by its name, in the order of the file."""
+    release: Callable[[], None] = field(repr=False, default=lambda: None)
+    """What ``close`` does."""
+
+    def channel(self, name: str) -> Channel:
+        """Return a channel by its name.
+
+        Raises
+        ------
+        RecordingError
+            If there is none of that name; the message lists those that there are.
+        """
+        if name not in self.channels:
+            raise RecordingError(
+                f'{self.path}: expected a channel "{name}", found {", ".join(self.channels) or "none"}.'
+            )
+        return self.channels[name]
+
+    def close(self) -> None:
+        """Release the file; channels cannot be read afterwards."""
+        self.release()
+
+    def __enter__(self) -> Self:
+        """Return the recording itself."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Close the recording."""
+        self.close()
+
+
+def sha256_of(path: Path) -> str:
+    """Return the SHA-256 of a file, hexadecimal, without holding the file in memory."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

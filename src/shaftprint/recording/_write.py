@@ -1,0 +1,53 @@
+"""Copying channels into the native container."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from shaftprint.recording._container import CHUNK_SAMPLES
+from shaftprint.recording._recording import Channel
+from shaftprint.recording._writer import RecordingWriter
+
+
+def write_recording(
+    path: str | Path,
+    channels: Iterable[Channel],
+    *,
+    attributes: Mapping[str, str | float] | None = None,
+    overwrite: bool = False,
+) -> None:
+    """Write channels, each on its own clock, into the native container.
+
+    Parameters
+    ----------
+    path
+        The file to write, whole or not at all.
+    channels
+        Channels of any recording; counts are copied as they are.
+    attributes
+        Facts on the whole recording.
+    overwrite
+        Whether a file of that name may be replaced.
+
+    Raises
+    ------
+    RecordingError
+        If the file exists and may not be replaced, or cannot be written.
+    """
+    with RecordingWriter(path, attributes=attributes, overwrite=overwrite) as writer:
+        for channel in channels:
+            is_counts = channel.read(0, 0).dtype == np.int16
+            writer.declare(
+                channel.name,
+                unit=channel.unit,
+                rate_hz=channel.rate_hz,
+                start_s=channel.start_s,
+                scale=channel.scale,
+                offset=channel.offset,
+                long_name=channel.long_name,
+                dtype="int16" if is_counts else "float64",
+            )
+            for start in range(0, channel.count, CHUNK_SAMPLES):
+                stop = min(start + CHUNK_SAMPLES, channel.count)
+                writer.append(channel.name, channel.read(start, stop))

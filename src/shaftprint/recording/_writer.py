@@ -1,0 +1,179 @@
+"""Writing the native container as a stream, whole or not at all."""
+
+from collections.abc import Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Literal, Self
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from shaftprint.errors import RecordingError
+from shaftprint.files import written_whole
+from shaftprint.recording._channel_writer import ChannelWriter
+from shaftprint.recording._container import FORMAT, GROUP, VERSION
+from shaftprint.recording._recording import Channel
+
+
+class RecordingWriter:
+    """Write a recording channel by channel, in pieces of any size.
+
+    The file gets its name only when the ``with`` block ends without error; until then it has a
+    temporary name in the same folder, and an error leaves nothing behind::
+
+        with RecordingWriter("test.nc") as writer:
+            writer.declare("M_s", unit="V", rate_hz=2000.0, scale=10.0 / 32768.0)
+            writer.append("M_s", counts)
+    """
+
+    def __init__(
+        self,
+        path: str | Path,
+        *,
+        attributes: Mapping[str, str | float] | None = None,
+        overwrite: bool = False,
+    ) -> None:
+        """Say where the recording belongs; nothing is written before the ``with`` block begins.
+
+        Parameters
+        ----------
+        path
+            The finished file.
+        attributes
+            Facts on the whole recording, such as ``{"ship": "Stan Tug 1205"}``.
+        overwrite
+            Whether a file of that name may be replaced.
+        """
+        self._path = Path(path)
+        self._attributes = dict(attributes or {})
+        self._overwrite = overwrite
+        self._stack = ExitStack()
+        self._open: dict[str, ChannelWriter] = {}
+        self._file: Any = None
+
+    def __enter__(self) -> Self:
+        """Open the file under its temporary name.
+
+        Raises
+        ------
+        RecordingError
+            If the file exists and may not be replaced, or its folder cannot be written.
+        """
+        try:
+            part = self._stack.enter_context(written_whole(self._path, overwrite=self._overwrite))
+            self._file = self._stack.enter_context(h5py.File(part, "w", track_order=True))
+        except OSError as error:
+            raise self._cannot_be_written(error) from None
+        root = {"Conventions": "CF-1.11", "format": FORMAT, "format_version": VERSION}
+        self._file.attrs.update(root | self._attributes)
+        self._file.create_group(GROUP, track_order=True)
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Finish the file and give it its name, or delete it after an error.
+
+        Raises
+        ------
+        RecordingError
+            If the last samples cannot be written.
+        """
+        if error is not None:
+            self._stack.__exit__(kind, error, trace)
+            return
+        try:
+            with self._stack:
+                for number, channel in enumerate(self._open.values()):
+                    channel.finish(number)
+        except OSError as failure:
+            raise self._cannot_be_written(failure) from None
+
+    def declare(
+        self,
+        name: str,
+        *,
+        unit: str,
+        rate_hz: float,
+        start_s: float = 0.0,
+        scale: float = 1.0,
+        offset: float = 0.0,
+        long_name: str = "",
+        dtype: Literal["int16", "float64"] = "int16",
+    ) -> None:
+        """Announce a channel before its first samples.
+
+        Parameters
+        ----------
+        name
+            Name of the channel.
+        unit
+            Unit of the scaled value.
+        rate_hz
+            Sample rate [Hz].
+        start_s
+            Time of the first sample [s].
+        scale, offset
+            ``value = counts * scale + offset`` [unit].
+        long_name
+            What the channel is, in words.
+        dtype
+            ``float64`` for values that never were counts; scale 1 and offset 0 then.
+
+        Raises
+        ------
+        RecordingError
+            If the name is taken or cannot be used, or the clock or scale is impossible.
+        """
+        if not name or "/" in name or name in self._open:
+            raise RecordingError(f'{self._path}: expected a new channel name without "/", found "{name}".')
+        channel = Channel(
+            name=name,
+            unit=unit,
+            rate_hz=rate_hz,
+            start_s=start_s,
+            count=0,
+            scale=scale,
+            offset=offset,
+            long_name=long_name,
+            source=lambda start, stop: np.zeros(0, dtype=dtype),
+        )
+        self._open[name] = ChannelWriter(self._file[GROUP], channel, np.dtype(dtype))
+
+    def append(self, name: str, counts: NDArray[Any]) -> None:
+        """Add samples to a channel.
+
+        Parameters
+        ----------
+        name
+            A declared channel.
+        counts
+            Raw counts of its type, shape (samples,), any number of them.
+
+        Raises
+        ------
+        RecordingError
+            If the channel was not declared, the counts are of another type, or the disk is full.
+        """
+        if name not in self._open:
+            raise RecordingError(
+                f'{self._path}: expected a declared channel ({", ".join(self._open) or "none yet"}), found "{name}".'
+            )
+        channel = self._open[name]
+        if counts.ndim != 1 or counts.dtype != channel.dtype:
+            raise RecordingError(
+                f"{self._path}, channel {name}: expected a vector of {channel.dtype}, "
+                f"found {counts.dtype} of shape {counts.shape}."
+            )
+        try:
+            channel.append(counts)
+        except OSError as error:
+            raise self._cannot_be_written(error) from None
+
+    def _cannot_be_written(self, error: OSError) -> RecordingError:
+        return RecordingError(f"{self._path}: the recording cannot be written: {error}")
