@@ -4,6 +4,7 @@ A settings file carries the unit of every number in its key: ``frequency_hz``, `
 """
 
 import difflib
+import re
 import tomllib
 from collections.abc import Mapping, Sequence
 from importlib.resources import as_file, files
@@ -23,10 +24,22 @@ NotNegativeNumber = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=
 PositiveInteger = Annotated[int, Field(strict=True, gt=0)]
 Name = Annotated[str, Field(strict=True, min_length=1)]
 
-_UNITS = (
-    "rad_s", "rev_s", "kg_m2", "kg_m3", "per_unit", "khz", "mhz", "hz", "rpm", "deg", "rad", "rev", "knm", "nm",
-    "kw", "hp", "w", "mv", "ma", "v", "us", "ms", "min", "mm", "cm", "h", "s", "m",
-)  # fmt: skip
+# The ending of a key that names its unit; matches the longest, as a search finds the leftmost.
+_UNIT = re.compile(r"_(rad_s|rev_s|kg_m2|kg_m3|k?hz|mhz|rpm|deg|rad|rev|k?nm|k?w|hp|m?v|ma|[um]?s|min|h|[cm]?m)$")
+
+# What pydantic expects, in the words of somebody who fills in a file.
+_EXPECTED = {
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "string_type": "text in quotes",
+    "string_too_short": "text",
+    "finite_number": "a finite number",
+    "greater_than": "a number greater than {gt:g}",
+    "greater_than_equal": "a number not less than {ge:g}",
+    "less_than_equal": "a number not greater than {le:g}",
+    "tuple_type": "a list in brackets, or [[rows]] in double brackets",
+    "model_type": "a [table]",
+}
 
 
 class Settings(BaseModel):
@@ -70,9 +83,7 @@ def read_settings(path: str | Path, model_class: type[_Model]) -> _Model:
         raise SettingsError(_describe_all(path, error, model_class, content)) from None
 
 
-def load_settings(
-    path_or_name: str | Path, model_class: type[_Model], *, shipped: Traversable
-) -> _Model:
+def load_settings(path_or_name: str | Path, model_class: type[_Model], *, shipped: Traversable) -> _Model:
     """Read a settings file, or one of those that come with the package by its name.
 
     Parameters
@@ -91,16 +102,13 @@ def load_settings(
         As ``read_settings``; if the name is not that of a shipped file, the message lists the names.
     """
     text = str(path_or_name)
-    is_path = (
-        isinstance(path_or_name, Path) or text.endswith(".toml") or "/" in text or "\\" in text
-    )
+    is_path = isinstance(path_or_name, Path) or text.endswith(".toml") or "/" in text or "\\" in text
     if is_path:
         return read_settings(path_or_name, model_class)
     names = shipped_names(shipped)
     if text not in names:
         raise SettingsError(
-            f'"{text}": expected a path that ends in .toml or one of the shipped names '
-            f"{', '.join(names)}."
+            f'"{text}": expected a path that ends in .toml or one of the shipped names {", ".join(names)}.'
         )
     with as_file(shipped / f"{text.replace('-', '_')}.toml") as path:
         return read_settings(path, model_class)
@@ -137,9 +145,7 @@ def write_template(kind: Literal["vessel", "campaign"], path: str | Path) -> Non
         raise SettingsError(f"{path}: the file cannot be written ({error}).") from None
 
 
-def _describe_all(
-    path: Path, error: ValidationError, model_class: type[Settings], content: Mapping[str, Any]
-) -> str:
+def _describe_all(path: Path, error: ValidationError, model_class: type[Settings], content: Mapping[str, Any]) -> str:
     rows = [_describe(details, model_class, content) for details in error.errors()]
     count = "1 field" if len(rows) == 1 else f"{len(rows)} fields"
     return "\n  ".join([f"{path}: {count} cannot be used.", *rows])
@@ -155,9 +161,12 @@ def _describe(details: ErrorDetails, model_class: type[Settings], content: Any) 
             return f"{where}: expected no such key; {_advice(str(details['loc'][-1]), known)}"
         case "value_error":
             return f"{where}: {details['msg'].removeprefix('Value error, ')}"
-        case _:
-            expected = details["msg"].removeprefix("Input should be ")
-            return f"{where}: expected {expected}, found {details['input']!r}."
+        case "too_short":
+            limits = details["ctx"]
+            return f"{where}: expected at least {limits['min_length']} entries, found {limits['actual_length']}."
+        case kind:
+            expected = _EXPECTED.get(kind, details["msg"].removeprefix("Input should be "))
+            return f"{where}: expected {expected.format_map(details.get('ctx', {}))}, found {details['input']!r}."
 
 
 def _dotted_path(location: Sequence[int | str], content: Any) -> str:
@@ -187,16 +196,16 @@ def _model_within(annotation: Any) -> type[Settings]:
     """Find the model in an annotation such as ``tuple[Sine, ...]`` or ``Logger | None``."""
     if isinstance(annotation, type) and issubclass(annotation, Settings):
         return annotation
-    inner = (
-        item for item in get_args(annotation) if item is not Ellipsis and item is not type(None)
-    )
-    return _model_within(next(inner))
+    # the model comes first in every annotation that holds one
+    return _model_within(get_args(annotation)[0])
 
 
 def _advice(key: str, known: Sequence[str]) -> str:
     for candidate in known:
         if _without_unit(candidate) == _without_unit(key):
-            return f"the value is wanted as {candidate}: convert it to that unit."
+            hertz = key.endswith("_rad_s") and candidate.endswith("_hz")
+            how = "divide it by 2 pi" if hertz else "convert it to that unit"
+            return f"the value is wanted as {candidate}: {how}."
     close = difflib.get_close_matches(key, known, n=1)
     if close:
         return f"is {close[0]} meant?"
@@ -204,7 +213,4 @@ def _advice(key: str, known: Sequence[str]) -> str:
 
 
 def _without_unit(key: str) -> str:
-    for unit in _UNITS:
-        if key.endswith(f"_{unit}"):
-            return key.removesuffix(f"_{unit}")
-    return key
+    return _UNIT.sub("", key)

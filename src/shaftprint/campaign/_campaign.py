@@ -49,9 +49,7 @@ class Campaign(Settings):
     def _names_twice(self) -> list[str]:
         names = [excitation.name for excitation in self.excitations]
         twice = sorted({name for name in names if names.count(name) > 1})
-        return [
-            f"expected every excitation to have its own name, found {name} twice." for name in twice
-        ]
+        return [f"expected every excitation to have its own name, found {name} twice." for name in twice]
 
     def _overlaps(self) -> list[str]:
         return [
@@ -73,10 +71,7 @@ class Campaign(Settings):
         if self.sample_rate_hz is None:
             return []
         highest = [(sine.name, sine.frequency_hz) for sine in self.sines]
-        highest += [
-            (chirp.name, max(chirp.start_frequency_hz, chirp.stop_frequency_hz))
-            for chirp in self.chirps
-        ]
+        highest += [(chirp.name, max(chirp.start_frequency_hz, chirp.stop_frequency_hz)) for chirp in self.chirps]
         nyquist = self.sample_rate_hz / 2.0
         return [
             f"expected {name} below half of sample_rate_hz, {nyquist:g} Hz, found {frequency:g} Hz."

@@ -31,8 +31,7 @@ class Sine(Settings):
     def _window_holds_a_period(self) -> Self:
         if not self.start_s <= self.settled_s < self.stop_s:
             raise ValueError(
-                "expected start_s <= settled_s < stop_s, "
-                f"found {self.start_s:g}, {self.settled_s:g}, {self.stop_s:g}."
+                f"expected start_s <= settled_s < stop_s, found {self.start_s:g}, {self.settled_s:g}, {self.stop_s:g}."
             )
         if self.periods < 1:
             raise ValueError(

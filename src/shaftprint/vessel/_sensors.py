@@ -134,9 +134,7 @@ class Sensors(Settings):
         for what, values in (("name", names), ("channel", channels)):
             twice = sorted({value for value in values if values.count(value) > 1})
             if twice:
-                found.append(
-                    f"expected every sensor to have its own {what}, found {', '.join(twice)} twice."
-                )
+                found.append(f"expected every sensor to have its own {what}, found {', '.join(twice)} twice.")
         if found:
             raise ValueError(" ".join(found))
         return self

@@ -40,9 +40,7 @@ class Vessel(Settings):
         names = [row.name for row in self.inertia]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
-            raise ValueError(
-                f"expected every inertia row to have its own name, found {', '.join(twice)} twice."
-            )
+            raise ValueError(f"expected every inertia row to have its own name, found {', '.join(twice)} twice.")
         for side, value in (
             ("upstream", self.inertia_upstream_kg_m2),
             ("downstream", self.inertia_downstream_kg_m2),
@@ -77,9 +75,7 @@ class Vessel(Settings):
 
     def _inertia_std_kg_m2(self, gauge: Literal["upstream", "downstream"]) -> float:
         ratio = self.gearbox.ratio
-        return math.hypot(
-            *(row.referred_std_kg_m2(ratio) for row in self.inertia if row.gauge == gauge)
-        )
+        return math.hypot(*(row.referred_std_kg_m2(ratio) for row in self.inertia if row.gauge == gauge))
 
 
 def load_vessel(path_or_name: str | Path) -> Vessel:
