@@ -9,7 +9,7 @@ from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.errors import IdentificationError
 from shaftprint.identify._objective import MaximumLikelihood, Prior, Weighting
 from shaftprint.identify._starts import Draw, LatinHypercube
-from shaftprint.models import Margins, Structure
+from shaftprint.models import Margins, Structure, margins
 from shaftprint.spectra import FrequencyResponse
 
 # Two-sided 95 % of the normal distribution.
@@ -115,8 +115,6 @@ class Identification:
     """FitPercent that the noise allows, of each output."""
     clusters: tuple[Cluster, ...]
     """Optima of the search, lowest cost first; those that won or would have won are checked for stability."""
-    margins: Margins | None
-    """Stability margins; None for a structure without feedback."""
 
     @property
     def parameters(self) -> tuple[Estimate, ...]:
@@ -149,6 +147,16 @@ class Identification:
         std = np.sqrt(np.diag(self.covariance))
         with np.errstate(invalid="ignore"):
             return np.asarray(self.covariance / np.outer(std, std))
+
+    @property
+    def margins(self) -> Margins | None:
+        """Stability margins, found anew at each call; None for a structure without feedback."""
+        return None if self.structure.loop is None else margins(self.structure, self.values)
+
+    @property
+    def is_likelihood(self) -> bool:
+        """Whether ``2 cost`` is a chi-square: the fit was weighted by the covariance."""
+        return isinstance(self.settings.weighting, MaximumLikelihood)
 
     @property
     def reached(self) -> int:

@@ -11,7 +11,7 @@ from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify._identification import Cluster, Identification, Settings
 from shaftprint.identify._levenberg_marquardt import Descent, descend
 from shaftprint.identify._objective import Objective, build_objective
-from shaftprint.models import Structure, is_stable, margins
+from shaftprint.models import Structure, is_stable
 from shaftprint.spectra import FrequencyResponse
 
 # Starts belong to one optimum when their costs differ by less than this share, ...
@@ -93,7 +93,6 @@ def identify(
             for n, i in outputs.items()
         },
         clusters=clusters,
-        margins=None if sensed.loop is None else margins(sensed, winner.values),
     )
 
 

@@ -19,7 +19,7 @@ from shaftprint.arrays import BoolArray, FloatArray, IntArray
 
 Residuals = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
-FIRST_DAMPING = 1e-3
+FIRST_DAMPING = 0.1
 LARGEST_DAMPING = 1e12
 BOUND_PASSES = 3
 # 64 ulp of the cost: below it a gain cannot be told from rounding.
@@ -106,7 +106,7 @@ def descend(
         gradient[taken] = np.einsum("spr,sr->sp", jacobian[good], r[good])
         hessian[taken] = jacobian[good] @ jacobian[good].swapaxes(1, 2)
         scale[taken] = np.maximum(scale[taken], np.einsum("spp->sp", hessian[taken]))
-        damping[taken] *= np.clip(1.0 - (2.0 * gain[good] - 1.0) ** 3, 1.0 / 10.0, 2.0)
+        damping[taken] *= np.clip(1.0 - (2.0 * gain[good] - 1.0) ** 3, 1.0 / 3.0, 2.0)
         growth[taken] = 2.0
         damping[kept] *= growth[kept]
         growth[kept] *= 2.0

@@ -199,7 +199,7 @@ def build_objective(
     places = {p.name: i for i, p in enumerate(names)}
     return Objective(
         structure=structure,
-        s=1j * response.omega_rad_s[chosen],
+        s=np.asarray(1j * response.omega_rad_s[chosen], dtype=np.complex128),
         data=data,
         covariance=covariance,
         weights=weights,

@@ -24,7 +24,8 @@ HIGHEST_RAD_S = 1e5
 INDENTATION = np.exp(1j * np.linspace(0.0, np.pi / 2.0, 33))
 PHASE_STEP_RAD = 0.05
 BISECTIONS = 60
-NEWTON_STEPS = 40
+NEWTON_STEPS = 30
+NEWTON_GRID = 25
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -154,8 +155,9 @@ def _newton_roots(structure: Structure, table: FloatArray) -> ComplexArray:
     omega, gain = _swept_loop(structure, table)
     strong = omega[np.abs(gain) >= 1.0]
     reach = max(20.0, 4.0 * float(strong[-1])) if strong.size else 20.0
-    real, imaginary = np.meshgrid(np.linspace(-reach, reach / 4.0, 41), np.linspace(0.0, reach, 41))
-    s = (real + 1j * imaginary).ravel() + 1e-3
+    real, imaginary = np.meshgrid(np.linspace(-reach, reach / 4.0, NEWTON_GRID), np.linspace(0.0, reach, NEWTON_GRID))
+    slow = -np.geomspace(1e-3, reach, 4 * NEWTON_GRID)
+    s = np.concatenate([(real + 1j * imaginary).ravel() + 1e-3, slow])
     for _ in range(NEWTON_STEPS):
         step = 1e-6 * (1.0 + np.abs(s))
         with np.errstate(all="ignore"):

@@ -42,27 +42,37 @@ class Structure:
     """Combinations of parameters worth reporting."""
     parameters: tuple[Parameter, ...] = field(default=())
     """All parameters, in the order in which the outputs mention them; found from the blocks where not given."""
+    blocks: tuple[Block, ...] = field(init=False)
+    """All blocks, each once."""
+    loop: Expression | None = field(init=False)
+    """Loop gain of the feedback in this structure; None where there is none."""
 
     def __post_init__(self) -> None:
-        """Collect the parameters of all blocks.
+        """Collect the blocks, their parameters and the feedback loop.
 
         Raises
         ------
         StructureError
-            If two blocks describe a parameter of one name differently.
+            If two blocks describe a parameter of one name differently, or there is more than one feedback loop.
         """
+        nodes = self._nodes()
+        object.__setattr__(self, "blocks", tuple(node for node in nodes if isinstance(node, Block)))
         found: dict[str, Parameter] = {}
-        for node in self._nodes():
-            if isinstance(node, Block):
-                for parameter in node.parameters:
-                    known = found.setdefault(parameter.name, parameter)
-                    if known != parameter:
-                        raise StructureError(
-                            f"structure {self.name}: parameter {parameter.name} occurs twice with different "
-                            "bounds, values or units; use one Parameter for both."
-                        )
+        for parameter in (p for block in self.blocks for p in block.parameters):
+            if found.setdefault(parameter.name, parameter) != parameter:
+                raise StructureError(
+                    f"structure {self.name}: parameter {parameter.name} occurs twice with different "
+                    "bounds, values or units; use one Parameter for both."
+                )
         if not self.parameters:
             object.__setattr__(self, "parameters", tuple(found.values()))
+        loops = [node.loop for node in nodes if isinstance(node, Sensitivity)]
+        if len(loops) > 1:
+            raise StructureError(
+                f"structure {self.name}: expected one feedback loop, found {len(loops)}; use one Sensitivity object "
+                "for all outputs."
+            )
+        object.__setattr__(self, "loop", loops[0] if loops else None)
 
     def _nodes(self) -> list[Expression]:
         seen: dict[int, Expression] = {}
@@ -80,28 +90,6 @@ class Structure:
     def free(self) -> tuple[Parameter, ...]:
         """Parameters that a fit may change."""
         return tuple(parameter for parameter in self.parameters if not parameter.held)
-
-    @property
-    def blocks(self) -> tuple[Block, ...]:
-        """All blocks, each once."""
-        return tuple(node for node in self._nodes() if isinstance(node, Block))
-
-    @property
-    def loop(self) -> Expression | None:
-        """Loop gain of the feedback in this structure; None where there is none.
-
-        Raises
-        ------
-        StructureError
-            If there is more than one feedback loop.
-        """
-        loops = [node.loop for node in self._nodes() if isinstance(node, Sensitivity)]
-        if len(loops) > 1:
-            raise StructureError(
-                f"structure {self.name}: expected one feedback loop, found {len(loops)}; use one Sensitivity object "
-                "for all outputs."
-            )
-        return loops[0] if loops else None
 
     def held_at(self, **values: float) -> "Structure":
         """Return the structure with the named parameters held at the given values.

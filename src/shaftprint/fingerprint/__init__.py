@@ -1,0 +1,38 @@
+"""The fingerprint of a propulsion line: parameters, physical values, margins and conditions, as a JSON record.
+
+=================== =========== ==================================================================================
+quantity            unit        meaning
+=================== =========== ==================================================================================
+``I_dn``, ``I_up``  kg m2       inertia downstream and upstream of the torque gauge, at the propeller shaft
+``K_Q``             -           torque coefficient of the propeller at the working point
+gain margin         -           factor on the loop gain that reaches instability
+phase margin        deg         smallest over all crossovers
+delay margin        s           smallest extra delay in the loop that reaches instability
+=================== =========== ==================================================================================
+"""
+
+from shaftprint.fingerprint._fingerprint import (
+    Conditions,
+    Fingerprint,
+    Quality,
+    Quantity,
+    SourceFile,
+    read_fingerprint,
+    write_fingerprint,
+)
+from shaftprint.fingerprint._margins import margin_quantities
+from shaftprint.fingerprint._physical import physical_quantities
+from shaftprint.fingerprint._take import take_fingerprint
+
+__all__ = [
+    "Conditions",
+    "Fingerprint",
+    "Quality",
+    "Quantity",
+    "SourceFile",
+    "margin_quantities",
+    "physical_quantities",
+    "read_fingerprint",
+    "take_fingerprint",
+    "write_fingerprint",
+]

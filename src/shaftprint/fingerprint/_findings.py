@@ -1,0 +1,121 @@
+"""What a reader of a fingerprint must know, in words."""
+
+import numpy as np
+
+from shaftprint.fingerprint._fingerprint import Quantity
+from shaftprint.identify import Estimate, Identification
+
+# A combination is worth naming when it is known this much better, relative to its size, than a parameter in it.
+BETTER_KNOWN = 0.4
+# Parameters whose standard deviation exceeds this share of their value are called hardly known.
+HARDLY_KNOWN = 0.1
+# 99 % point of the ratio chi-square / degrees of freedom is near 1 + 2.33 sqrt(2 / dof).
+NORMAL_99 = 2.326
+FEW_STARTS = 0.1
+
+
+def findings_of(
+    identification: Identification, physical: tuple[Quantity, ...], left_out: dict[str, str]
+) -> tuple[str, ...]:
+    """Return the findings of one identification, most important first."""
+    return (
+        *_stability(identification),
+        *_misfit(identification),
+        *_bounds(identification),
+        *_search(identification),
+        *_hardly_known(identification),
+        *_sensor_checks(identification),
+        *_against_expected(physical),
+        *(f"Line {name} is left out: {reason}." for name, reason in left_out.items()),
+    )
+
+
+def _stability(identification: Identification) -> list[str]:
+    margin = identification.margins
+    if margin is None:
+        return []
+    if not margin.stable:
+        return [f"The identified line is unstable: {margin.unstable_poles} poles in the right half plane."]
+    words = "ample" if margin.gain_margin >= 2.0 else "small" if margin.gain_margin >= 1.3 else "very small"
+    return [
+        f"The governed line is stable; its gain margin of {margin.gain_margin:.2f} at "
+        f"{margin.gain_margin_rad_s:.1f} rad/s is {words}."
+    ]
+
+
+def _misfit(identification: Identification) -> list[str]:
+    count = identification.degrees_of_freedom
+    if count <= 0 or not identification.is_likelihood:
+        return []
+    ratio = 2.0 * identification.cost / count
+    if ratio <= 1.0 + NORMAL_99 * np.sqrt(2.0 / count):
+        return []
+    return [
+        "The structure does not explain the data within their noise: chi-square is "
+        f"{2.0 * identification.cost:.0f} for {count} degrees of freedom; the standard deviations are too small for it."
+    ]
+
+
+def _bounds(identification: Identification) -> list[str]:
+    return [
+        f"{e.name} stopped at its bound {e.value:g} {e.unit}: widen the bound or doubt the structure."
+        for e in identification.parameters
+        if e.at_bound
+    ]
+
+
+def _search(identification: Identification) -> list[str]:
+    starts, reached = identification.settings.starts, identification.reached
+    if reached > FEW_STARTS * starts:
+        return []
+    return [f"Only {reached} of {starts} starts reached the optimum: use more starts."]
+
+
+def _hardly_known(identification: Identification) -> list[str]:
+    found = []
+    for estimate in identification.parameters:
+        if estimate.std <= HARDLY_KNOWN * abs(estimate.value) or estimate.name in identification.settings.priors:
+            continue
+        text = f"{estimate.name} = {_written(estimate)} is hardly known from this test"
+        better = [c for c in identification.combinations if _is_better(c, estimate, identification)]
+        known = ", ".join(f"{c.name} = {_written(c)}" for c in better)
+        found.append(text + (f"; known is {known}." if better else "."))
+    return found
+
+
+def _is_better(combination: Estimate, estimate: Estimate, identification: Identification) -> bool:
+    of = next(c.of for c in identification.structure.combinations if c.name == combination.name)
+    values = dict(zip(identification.structure.names, identification.values.tolist(), strict=True))
+    moved = {**values, estimate.name: values[estimate.name] + max(1e-3, 1e-3 * abs(values[estimate.name]))}
+    if of(moved) == of(values):
+        return False
+    share = combination.std / max(abs(combination.value), 1e-300)
+    return share < BETTER_KNOWN * estimate.std / max(abs(estimate.value), 1e-300)
+
+
+def _sensor_checks(identification: Identification) -> list[str]:
+    return [
+        f"k_q = {_written(e)} instead of 2: the torque gauge has a zero offset, there is constant friction, or the "
+        "inflow is not zero."
+        for e in identification.parameters
+        if e.name == "k_q" and abs(e.value - 2.0) > max(3.0 * e.std, 0.02)
+    ]
+
+
+def _against_expected(physical: tuple[Quantity, ...]) -> list[str]:
+    found = []
+    for quantity in physical:
+        if quantity.expected is None or not quantity.name.startswith("I"):
+            continue
+        spread = np.hypot(quantity.std, quantity.expected_std or 0.0)
+        if abs(quantity.value - quantity.expected) > 3.0 * spread:
+            factor = max(quantity.expected / quantity.value, quantity.value / quantity.expected)
+            found.append(
+                f"{quantity.name} = {quantity.value:.3g} {quantity.unit} against {quantity.expected:.3g} "
+                f"{quantity.unit} of the vessel file: a factor {factor:.2f}."
+            )
+    return found
+
+
+def _written(estimate: Estimate) -> str:
+    return f"{estimate.value:.4g} +/- {estimate.std:.2g} {estimate.unit}"

@@ -1,0 +1,169 @@
+"""The noun of the room: what is kept of one test, as a JSON record."""
+
+from datetime import datetime
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from shaftprint.errors import FingerprintError
+from shaftprint.files import written_whole
+
+SCHEMA_VERSION = 1
+
+
+class _Record(BaseModel):
+    """A frozen part of a fingerprint; fields that it does not know are refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="strings", strict=False)
+
+
+class Quantity(_Record):
+    """A number with its unit and uncertainty."""
+
+    name: str
+    """Field term or formula, such as ``K_p`` or ``t_d + t_sp``."""
+    unit: str
+    """Unit, ``-`` where there is none."""
+    value: float
+    """Estimate."""
+    std: float
+    """Standard deviation; infinite where the test says nothing about it."""
+    at_bound: bool = False
+    """Whether the search stopped at a bound."""
+    expected: float | None = None
+    """Value from another source, such as the torsional vibration calculation."""
+    expected_std: float | None = None
+    """Standard deviation of that value."""
+    meaning: str = ""
+    """What it stands for."""
+
+
+class SourceFile(_Record):
+    """A file that went into the fingerprint."""
+
+    name: str
+    """File name or the name of a shipped file."""
+    sha256: str
+    """SHA-256 of its content."""
+
+
+class Conditions(_Record):
+    """Under which conditions the fingerprint holds."""
+
+    vessel: str
+    """Name of the vessel and shaft line."""
+    campaign: str
+    """Name of the test."""
+    engine_speed: Quantity
+    """Working-point engine speed."""
+    shaft_torque: Quantity
+    """Working-point shaft torque at the gauge."""
+    speed_channel: str
+    """Speed sensor that was identified."""
+    mode: Literal["shaftprint", "thesis"]
+    """How the signals were prepared."""
+    lines_used: tuple[str, ...]
+    """Test lines that were fitted."""
+    lines_left_out: dict[str, str]
+    """Test lines that were not, with the reason."""
+
+
+class Quality(_Record):
+    """How well the model explains the data, and how good the data were."""
+
+    fit_percent: dict[str, float]
+    """FitPercent of each output (thesis eq. 2.41)."""
+    fit_ceiling: dict[str, float]
+    """FitPercent that the noise allows."""
+    chi_square: float
+    """Sum of squared weighted residuals; of the order of ``degrees_of_freedom`` when the model explains the data."""
+    degrees_of_freedom: int
+    """Number of data and priors minus the number of free parameters."""
+    starts: int
+    """Starts of the search."""
+    starts_at_optimum: int
+    """How many of them reached the result."""
+    snr_overall: dict[str, float]
+    """Overall signal-to-noise ratio of each channel (thesis eq. 3.9)."""
+    snr_local_db: dict[str, dict[str, float]]
+    """Local signal-to-noise ratio by channel and line [dB] (thesis eq. 3.10)."""
+    repairs: dict[str, int]
+    """Number of repairs by channel and kind."""
+
+
+class Fingerprint(_Record):
+    """Physical and normalised parameters of one propulsion line with uncertainty, margins and conditions."""
+
+    schema_version: Annotated[int, Field(ge=1, le=SCHEMA_VERSION)] = SCHEMA_VERSION
+    """Version of this record's layout."""
+    shaftprint_version: str
+    """Version of shaftprint that made it."""
+    created: datetime
+    """When it was made, with time zone."""
+    sources: tuple[SourceFile, ...]
+    """Recording, vessel and campaign with their hashes."""
+    conditions: Conditions
+    """Where it holds."""
+    structure: str
+    """Name of the model structure."""
+    parameters: tuple[Quantity, ...]
+    """Free parameters, normalised."""
+    held: dict[str, float]
+    """Parameters that were held, with their values."""
+    covariance: tuple[tuple[float, ...], ...]
+    """Covariance of the free parameters, in their order."""
+    combinations: tuple[Quantity, ...]
+    """Combinations of parameters."""
+    physical: tuple[Quantity, ...]
+    """Physical values, each with what was expected."""
+    margins: tuple[Quantity, ...]
+    """Stability margins; empty for a structure without feedback."""
+    quality: Quality
+    """Fit and data quality."""
+    findings: tuple[str, ...]
+    """What a reader must know, in words."""
+
+    def quantity(self, name: str) -> Quantity:
+        """Return a parameter, combination, physical value or margin by its name.
+
+        Raises
+        ------
+        FingerprintError
+            If there is none of that name.
+        """
+        found = (*self.parameters, *self.combinations, *self.physical, *self.margins)
+        for quantity in found:
+            if quantity.name == name:
+                return quantity
+        raise FingerprintError(
+            f"the fingerprint has no {name!r}; it has {', '.join(quantity.name for quantity in found)}."
+        )
+
+
+def write_fingerprint(fingerprint: Fingerprint, path: str | Path) -> None:
+    """Write a fingerprint as JSON, whole or not at all; an existing file is replaced."""
+    with written_whole(Path(path), overwrite=True) as part:
+        part.write_text(fingerprint.model_dump_json(indent=2) + "\n", encoding="utf-8")
+
+
+def read_fingerprint(path: str | Path) -> Fingerprint:
+    """Read a fingerprint from JSON; what was written comes back equal.
+
+    Raises
+    ------
+    FingerprintError
+        If the file is missing, is no fingerprint, or has fields that are wrong; all of them are listed.
+    """
+    place = Path(path)
+    try:
+        text = place.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise FingerprintError(f"{place}: expected a fingerprint in JSON, but it cannot be read: {error}.") from error
+    try:
+        return Fingerprint.model_validate_json(text)
+    except ValidationError as error:
+        wrong = "; ".join(
+            f"{'.'.join(str(part) for part in e['loc']) or 'the file'}: {e['msg']}" for e in error.errors()
+        )
+        raise FingerprintError(f"{place} is not a fingerprint of schema {SCHEMA_VERSION}: {wrong}.") from error

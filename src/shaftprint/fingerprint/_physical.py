@@ -1,0 +1,144 @@
+"""From normalised parameters to physical values.
+
+With the working point ``n_s0`` [rev/s] of the propeller shaft and ``M_s0`` [N m] at the gauge::
+
+    I      = tau M_s0 / (2 pi n_s0)                     inertia, thesis eq. 2.23
+    K_Q    = M_s0 eta_R / (rho n_s0^2 D^5)              thesis eqs 2.9-2.11 at J = 0
+    dM/dn  = v K_p M_s0 / n_e0                          proportional governor action on the shaft torque
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.fingerprint._fingerprint import Quantity
+from shaftprint.identify import Identification
+from shaftprint.units import SECONDS_PER_MINUTE
+
+if TYPE_CHECKING:
+    from shaftprint.signals import WorkingPoint
+    from shaftprint.vessel import Vessel
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Physical:
+    name: str
+    unit: str
+    needs: tuple[str, ...]
+    factor: float
+    torque_power: float
+    of: Callable[[Mapping[str, float]], float]
+    meaning: str
+    expected: float | None = None
+    expected_std: float | None = None
+
+
+def physical_quantities(
+    identification: Identification, working_point: "WorkingPoint", vessel: "Vessel"
+) -> tuple[Quantity, ...]:
+    """Return physical values with standard deviations, beside the values of the vessel file where it has them.
+
+    The uncertainty of the fit, of the working-point torque and of the gauge's scale are added in quadrature.
+    """
+    torque = working_point.shaft_torque_nm
+    gauge = vessel.sensors.shaft_torque.scale_std_fraction or 0.0
+    torque_share = float(np.hypot(working_point.shaft_torque_std_nm / torque, gauge))
+    found = []
+    for item in _catalogue(working_point, vessel):
+        if not set(item.needs) <= set(identification.structure.names):
+            continue
+        estimate = identification.derived(item.name, item.unit, item.of)
+        value = item.factor * estimate.value
+        std = float(np.hypot(item.factor * estimate.std, value * item.torque_power * torque_share))
+        found.append(
+            Quantity(
+                name=item.name,
+                unit=item.unit,
+                value=value,
+                std=std,
+                expected=item.expected,
+                expected_std=item.expected_std,
+                meaning=item.meaning,
+            )
+        )
+    return (*found, _torque_coefficient(working_point, vessel, torque_share))
+
+
+def _catalogue(working_point: "WorkingPoint", vessel: "Vessel") -> tuple[_Physical, ...]:
+    engine_rev_s, torque = working_point.engine_speed_rev_s, working_point.shaft_torque_nm
+    shaft_rev_s = engine_rev_s / vessel.gearbox.ratio
+    inertia = torque / (2.0 * np.pi * shaft_rev_s)
+    per_rpm = torque / (engine_rev_s * SECONDS_PER_MINUTE)
+    return (
+        _Physical(
+            name="I_dn",
+            unit="kg m2",
+            needs=("tau_dn",),
+            factor=inertia,
+            torque_power=1.0,
+            of=lambda p: p["tau_dn"],
+            meaning="inertia downstream of the torque gauge, at the propeller shaft",
+            expected=vessel.inertia_downstream_kg_m2,
+            expected_std=vessel.inertia_downstream_std_kg_m2,
+        ),
+        _Physical(
+            name="I_up",
+            unit="kg m2",
+            needs=("tau_up",),
+            factor=inertia,
+            torque_power=1.0,
+            of=lambda p: p["tau_up"],
+            meaning="inertia upstream of the torque gauge, at the propeller shaft",
+            expected=vessel.inertia_upstream_kg_m2,
+            expected_std=vessel.inertia_upstream_std_kg_m2,
+        ),
+        _Physical(
+            name="I",
+            unit="kg m2",
+            needs=("tau_n",),
+            factor=inertia,
+            torque_power=1.0,
+            of=lambda p: p["tau_n"],
+            meaning="inertia that the thesis' shaft loop implies, at the propeller shaft",
+            expected=vessel.inertia_upstream_kg_m2,
+            expected_std=vessel.inertia_upstream_std_kg_m2,
+        ),
+        _Physical(
+            name="governor proportional action",
+            unit="N m/rpm",
+            needs=("K_p", "v"),
+            factor=per_rpm,
+            torque_power=1.0,
+            of=lambda p: p["v"] * p["K_p"],
+            meaning="change of torque, at the propeller shaft, for one rpm of engine-speed error",
+        ),
+        _Physical(
+            name="governor integral action",
+            unit="N m/(rpm s)",
+            needs=("K_i", "v"),
+            factor=per_rpm,
+            torque_power=1.0,
+            of=lambda p: p["v"] * p["K_i"],
+            meaning="rate of change of torque, at the propeller shaft, for one rpm of engine-speed error",
+        ),
+    )
+
+
+def _torque_coefficient(working_point: "WorkingPoint", vessel: "Vessel", torque_share: float) -> Quantity:
+    shaft_rev_s = working_point.engine_speed_rev_s / vessel.gearbox.ratio
+    speed_share = working_point.engine_speed_std_rev_s / working_point.engine_speed_rev_s
+    value = (
+        working_point.shaft_torque_nm
+        * vessel.propeller.relative_rotative_efficiency
+        / (vessel.water_density_kg_m3 * shaft_rev_s**2 * vessel.propeller.diameter_m**5)
+    )
+    return Quantity(
+        name="K_Q",
+        unit="-",
+        value=value,
+        std=float(value * np.hypot(torque_share, 2.0 * speed_share)),
+        expected=vessel.propeller.torque_coefficient,
+        meaning="torque coefficient of the propeller at the working point",
+    )

@@ -1,0 +1,153 @@
+"""The verb of the room: from an identification to the record that is kept."""
+
+from collections import Counter
+from collections.abc import Mapping
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+import shaftprint
+from shaftprint.errors import FingerprintError
+from shaftprint.fingerprint._findings import findings_of
+from shaftprint.fingerprint._fingerprint import Conditions, Fingerprint, Quality, Quantity, SourceFile
+from shaftprint.fingerprint._margins import margin_quantities
+from shaftprint.fingerprint._physical import physical_quantities
+from shaftprint.identify import Estimate, Identification
+from shaftprint.units import SECONDS_PER_MINUTE
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign
+    from shaftprint.signals import Signals, WorkingPoint
+    from shaftprint.spectra import SignalToNoise
+    from shaftprint.vessel import Vessel
+
+
+def take_fingerprint(
+    identification: Identification,
+    *,
+    signals: "Signals",
+    signal_to_noise: "SignalToNoise",
+    vessel: "Vessel",
+    campaign: "Campaign",
+    settings_files: tuple[SourceFile, ...],
+    now: datetime,
+) -> Fingerprint:
+    """Return the fingerprint of an identified line.
+
+    Parameters
+    ----------
+    identification
+        The fit whose parameters are kept.
+    signals, signal_to_noise, vessel, campaign
+        What the fit was made from.
+    settings_files
+        Vessel and campaign file with their hashes.
+    now
+        Time of making, with time zone.
+
+    Raises
+    ------
+    FingerprintError
+        If ``now`` has no time zone.
+    """
+    if now.tzinfo is None:
+        raise FingerprintError("now: expected a time with time zone, such as datetime.now(UTC), found one without.")
+    physical = physical_quantities(identification, signals.working_point, vessel)
+    left_out = _left_out(identification)
+    return Fingerprint(
+        shaftprint_version=shaftprint.__version__,
+        created=now,
+        sources=(SourceFile(name=signals.recording_name, sha256=signals.recording_sha256), *settings_files),
+        conditions=_conditions(identification, signals, vessel, campaign, left_out),
+        structure=identification.structure.name,
+        parameters=tuple(_quantity(e, _meanings(identification)) for e in identification.parameters),
+        held={p.name: p.value for p in identification.structure.parameters if p.held},
+        covariance=tuple(tuple(row) for row in identification.covariance.tolist()),
+        combinations=tuple(_quantity(e, _meanings(identification)) for e in identification.combinations),
+        physical=physical,
+        margins=margin_quantities(identification),
+        quality=_quality(identification, signals, signal_to_noise),
+        findings=findings_of(identification, physical, left_out),
+    )
+
+
+def _left_out(identification: Identification) -> dict[str, str]:
+    response = identification.response
+    return {
+        name: response.remarks.get(name, "not chosen")
+        for name, fitted in zip(response.lines, identification.fitted, strict=True)
+        if not fitted
+    }
+
+
+def _conditions(
+    identification: Identification,
+    signals: "Signals",
+    vessel: "Vessel",
+    campaign: "Campaign",
+    left_out: dict[str, str],
+) -> Conditions:
+    speed, torque = _working_point(signals.working_point)
+    return Conditions(
+        vessel=vessel.name,
+        campaign=campaign.name,
+        engine_speed=speed,
+        shaft_torque=torque,
+        speed_channel=signals.engine_speed.name,
+        mode=signals.mode,
+        lines_used=tuple(name for name in identification.response.lines if name not in left_out),
+        lines_left_out=left_out,
+    )
+
+
+def _working_point(point: "WorkingPoint") -> tuple[Quantity, Quantity]:
+    return (
+        Quantity(
+            name="n_0",
+            unit="rpm",
+            value=point.engine_speed_rev_s * SECONDS_PER_MINUTE,
+            std=point.engine_speed_std_rev_s * SECONDS_PER_MINUTE,
+            meaning="engine speed of the working point",
+        ),
+        Quantity(
+            name="M_s0",
+            unit="N m",
+            value=point.shaft_torque_nm,
+            std=point.shaft_torque_std_nm,
+            meaning="shaft torque of the working point",
+        ),
+    )
+
+
+def _meanings(identification: Identification) -> dict[str, str]:
+    structure = identification.structure
+    parameters = {item.name: item.meaning for item in structure.parameters}
+    return parameters | {item.name: item.meaning for item in structure.combinations}
+
+
+def _quantity(estimate: Estimate, meanings: Mapping[str, str]) -> Quantity:
+    return Quantity(
+        name=estimate.name,
+        unit=estimate.unit,
+        value=estimate.value,
+        std=estimate.std,
+        at_bound=estimate.at_bound,
+        meaning=meanings[estimate.name],
+    )
+
+
+def _quality(identification: Identification, signals: "Signals", signal_to_noise: "SignalToNoise") -> Quality:
+    counts = Counter(f"{repair.channel}: {repair.kind}" for repair in signals.repairs)
+    return Quality(
+        fit_percent=dict(identification.fit_percent),
+        fit_ceiling=dict(identification.fit_ceiling),
+        chi_square=2.0 * identification.cost,
+        degrees_of_freedom=identification.degrees_of_freedom,
+        starts=identification.settings.starts,
+        starts_at_optimum=identification.reached,
+        snr_overall=dict(zip(signal_to_noise.channels, signal_to_noise.overall.tolist(), strict=True)),
+        snr_local_db={
+            channel: dict(zip(signal_to_noise.lines, column, strict=True))
+            for channel, column in zip(signal_to_noise.channels, signal_to_noise.local_db.T.tolist(), strict=True)
+        },
+        repairs=dict(sorted(counts.items())),
+    )
