@@ -1,0 +1,48 @@
+import pytest
+
+from shaftprint.files import written_whole
+
+
+def test_the_file_appears_when_the_block_has_ended(tmp_path):
+    path = tmp_path / "result.txt"
+    with written_whole(path) as part:
+        part.write_text("whole")
+        assert not path.exists()
+    assert path.read_text() == "whole"
+    assert [entry.name for entry in tmp_path.iterdir()] == ["result.txt"]
+
+
+def test_an_error_leaves_nothing_behind(tmp_path):
+    with pytest.raises(RuntimeError, match="half way"), written_whole(tmp_path / "result.txt") as part:
+        part.write_text("half")
+        raise RuntimeError("half way")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_existing_file_is_kept(tmp_path):
+    path = tmp_path / "result.txt"
+    path.write_text("first")
+    with pytest.raises(FileExistsError, match="result.txt exists already"), written_whole(path):
+        pass
+    assert path.read_text() == "first"
+
+
+def test_an_existing_file_is_kept_when_an_overwriting_block_fails(tmp_path):
+    path = tmp_path / "result.txt"
+    path.write_text("first")
+    with pytest.raises(RuntimeError), written_whole(path, overwrite=True) as part:
+        part.write_text("second")
+        raise RuntimeError
+    assert path.read_text() == "first"
+    with written_whole(path, overwrite=True) as part:
+        part.write_text("second")
+    assert path.read_text() == "second"
+
+
+def test_a_file_that_appeared_meanwhile_is_kept(tmp_path):
+    path = tmp_path / "result.txt"
+    with pytest.raises(FileExistsError), written_whole(path) as part:
+        part.write_text("mine")
+        path.write_text("somebody else's")
+    assert [entry.name for entry in tmp_path.iterdir()] == ["result.txt"]
+    assert path.read_text() == "somebody else's"

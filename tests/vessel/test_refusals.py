@@ -1,0 +1,88 @@
+"""What cannot be a ship is refused with a message that says why."""
+
+import pytest
+
+from shaftprint.errors import SettingsError
+from shaftprint.settings import write_template
+from shaftprint.vessel import ShaftTorqueSensor, load_vessel
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "expected"),
+    [
+        ("ratio = 3.82 ", "ratio = 0.0 ", r"gearbox\.ratio: expected a number greater than 0, found 0\.0"),
+        (
+            "inertia_kg_m2 = 12.3",
+            "inertia_kg_m2 = -1.0",
+            r"inertia\[3\]\.inertia_kg_m2 \(Propeller, dry\).*not less than 0",
+        ),
+        ("1500.0, 1800.0]", "1800.0]", "of equal length, at least 2, found 3 and 4"),
+        ("1200.0, 1500.0", "1500.0, 1200.0", "expected ascending speeds in full_load_speed_rpm"),
+        ("strokes_per_cycle = 4", "strokes_per_cycle = 3", "expected strokes_per_cycle 2 or 4, found 3"),
+        (
+            "idle_speed_rpm = 600.0",
+            "idle_speed_rpm = 1900.0",
+            "idle_speed_rpm below rated_speed_rpm = 1800, found 1900",
+        ),
+        ('name = "n_e4"', 'name = "n_e"', "every sensor to have its own name, found n_e twice"),
+        ('channel = "PTM_4"', 'channel = "M_s"', "every sensor to have its own channel, found M_s twice"),
+        ("efficiency = 0.97", "efficiency = 1.2", r"gearbox\.efficiency: expected a number not greater than 1"),
+        ("scale_nm_per_unit = 500.0", "scale_nm_per_unit = 0.0", "scale_nm_per_unit other than 0"),
+        ("pulse_width_deg = 20.0", "pulse_width_deg = 400.0", "pulse_width_deg below 360 for 1 strips, found 400"),
+        (
+            "pulses_per_revolution = 4",
+            "pulses_per_revolution = 4\nstrip_angles_deg = [90.0, 90.0, 90.0, 80.0]",
+            "4 angles that add up to 360, found 4 that add up to 350",
+        ),
+        ('name = "Entrained water"', 'name = "Propeller, dry"', "its own name, found Propeller, dry twice"),
+        (
+            'unit = "V"                          #',
+            'unit = "mV" #',
+            r"sensors\.shaft_torque\.unit: expected 'V' or 'N m'",
+        ),
+        ("cylinders = 6", "cylinders = 6.5", "cylinders: expected a whole number"),
+    ],
+)
+def test_an_impossible_ship_is_refused(tmp_path, old, new, expected):
+    path = tmp_path / "ship.toml"
+    write_template("vessel", path)
+    text = path.read_text()
+    assert text.count(old) == 1
+    path.write_text(text.replace(old, new))
+    with pytest.raises(SettingsError, match=expected):
+        load_vessel(path)
+
+
+def test_an_engine_side_mass_cannot_lie_behind_the_gauge(tmp_path):
+    path = tmp_path / "ship.toml"
+    write_template("vessel", path)
+    path.write_text(
+        path.read_text().replace('shaft = "propeller"\ngauge = "downstream"', 'shaft = "engine"\ngauge = "downstream"')
+    )
+    with pytest.raises(SettingsError, match="engine shaft to lie upstream of the gauge"):
+        load_vessel(path)
+
+
+def test_both_sides_of_the_gauge_need_inertia(tmp_path):
+    path = tmp_path / "ship.toml"
+    write_template("vessel", path)
+    path.write_text(path.read_text().replace('gauge = "downstream"', 'gauge = "upstream"'))
+    with pytest.raises(SettingsError, match="expected some inertia downstream of the torque gauge, found none"):
+        load_vessel(path)
+
+
+def test_rows_without_standard_deviation_count_as_exact(tmp_path):
+    path = tmp_path / "ship.toml"
+    write_template("vessel", path)
+    lines = [line for line in path.read_text().splitlines() if not line.startswith("std_kg_m2")]
+    path.write_text("\n".join(lines))
+    vessel = load_vessel(path)
+    assert vessel.inertia_upstream_std_kg_m2 == 0.0
+    assert vessel.inertia_downstream_kg_m2 == pytest.approx(16.7)
+
+
+def test_the_zero_of_the_gauge_is_subtracted_and_a_reversed_gauge_turned():
+    gauge = ShaftTorqueSensor(
+        channel="M_s", unit="V", scale_nm_per_unit=-500.0, zero_nm=20.0, latency_s=0.0, full_scale_nm=5000.0
+    )
+    assert gauge.torque_nm(-2.0) == pytest.approx(980.0)
