@@ -17,6 +17,7 @@ from shaftprint.recording._recording import Channel, Recording
 from shaftprint.recording._write import write_recording
 from shaftprint.recording._writer import RecordingWriter
 from shaftprint.recording.readers import READERS, Reader
+from shaftprint.recording.writers import write_csv, write_mat_v5, write_mat_v73
 
 __all__ = [
     "READERS",
@@ -25,5 +26,8 @@ __all__ = [
     "Recording",
     "RecordingWriter",
     "read_recording",
+    "write_csv",
+    "write_mat_v5",
+    "write_mat_v73",
     "write_recording",
 ]
