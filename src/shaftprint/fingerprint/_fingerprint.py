@@ -28,7 +28,11 @@ class Quantity(_Record):
     value: float
     """Estimate."""
     std: float
-    """Standard deviation; infinite where the test says nothing about it."""
+    """Standard deviation to first order; infinite where the test says nothing about it."""
+    interval_95: tuple[float, float] | None = None
+    """95 % interval from the profile likelihood; None where there is none."""
+    interval_open: tuple[bool, bool] = (False, False)
+    """Whether an end of the interval is only a bound of the search: the data set none."""
     at_bound: bool = False
     """Whether the search stopped at a bound."""
     expected: float | None = None

@@ -11,7 +11,7 @@ from shaftprint.fingerprint._findings import findings_of
 from shaftprint.fingerprint._fingerprint import Conditions, Fingerprint, Quality, Quantity, SourceFile
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._physical import physical_quantities
-from shaftprint.identify import Estimate, Identification
+from shaftprint.identify import Estimate, Identification, Interval, profile_intervals
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
@@ -53,16 +53,18 @@ def take_fingerprint(
         raise FingerprintError("now: expected a time with time zone, such as datetime.now(UTC), found one without.")
     physical = physical_quantities(identification, signals.working_point, vessel)
     left_out = _left_out(identification)
+    meanings = _meanings(identification)
+    intervals = profile_intervals(identification) if identification.is_likelihood else {}
     return Fingerprint(
         shaftprint_version=shaftprint.__version__,
         created=now,
         sources=(SourceFile(name=signals.recording_name, sha256=signals.recording_sha256), *settings_files),
         conditions=_conditions(identification, signals, vessel, campaign, left_out),
         structure=identification.structure.name,
-        parameters=tuple(_quantity(e, _meanings(identification)) for e in identification.parameters),
+        parameters=tuple(_quantity(e, meanings, intervals) for e in identification.parameters),
         held={p.name: p.value for p in identification.structure.parameters if p.held},
         covariance=tuple(tuple(row) for row in identification.covariance.tolist()),
-        combinations=tuple(_quantity(e, _meanings(identification)) for e in identification.combinations),
+        combinations=tuple(_quantity(e, meanings, intervals) for e in identification.combinations),
         physical=physical,
         margins=margin_quantities(identification),
         quality=_quality(identification, signals, signal_to_noise),
@@ -124,12 +126,15 @@ def _meanings(identification: Identification) -> dict[str, str]:
     return parameters | {item.name: item.meaning for item in structure.combinations}
 
 
-def _quantity(estimate: Estimate, meanings: Mapping[str, str]) -> Quantity:
+def _quantity(estimate: Estimate, meanings: Mapping[str, str], intervals: Mapping[str, Interval]) -> Quantity:
+    interval = intervals.get(estimate.name)
     return Quantity(
         name=estimate.name,
         unit=estimate.unit,
         value=estimate.value,
         std=estimate.std,
+        interval_95=None if interval is None else (interval.lower, interval.upper),
+        interval_open=(False, False) if interval is None else (interval.lower_open, interval.upper_open),
         at_bound=estimate.at_bound,
         meaning=meanings[estimate.name],
     )

@@ -16,6 +16,7 @@ from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify._identification import Cluster, Estimate, Identification, Settings
 from shaftprint.identify._identify import identify
 from shaftprint.identify._objective import MaximumLikelihood, Prior, Unweighted, Weighting
+from shaftprint.identify._profile import Interval, profile_intervals
 from shaftprint.identify._starts import Draw, LatinHypercube, Uniform
 
 __all__ = [
@@ -23,6 +24,7 @@ __all__ = [
     "Draw",
     "Estimate",
     "Identification",
+    "Interval",
     "LatinHypercube",
     "MaximumLikelihood",
     "Prior",
@@ -34,4 +36,5 @@ __all__ = [
     "fit_ceiling",
     "fit_percent",
     "identify",
+    "profile_intervals",
 ]

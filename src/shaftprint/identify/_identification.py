@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.errors import IdentificationError
-from shaftprint.identify._objective import MaximumLikelihood, Prior, Weighting
+from shaftprint.identify._objective import MaximumLikelihood, Objective, Prior, Weighting
 from shaftprint.identify._starts import Draw, LatinHypercube
 from shaftprint.models import Margins, Structure, margins
 from shaftprint.spectra import FrequencyResponse
@@ -97,6 +97,8 @@ class Identification:
     """The data."""
     fitted: BoolArray
     """Which lines of the response were fitted, shape (lines,)."""
+    objective: Objective
+    """The problem that was solved."""
     settings: Settings
     """How it was searched."""
     values: FloatArray

@@ -63,7 +63,7 @@ def identify(
     )
     start = chosen.draw.starts(objective.lower, objective.upper, chosen.starts, rng)
     descent = descend(
-        objective.residuals,
+        objective.of_starts,
         start,
         objective.lower,
         objective.upper,
@@ -81,6 +81,7 @@ def identify(
         structure=sensed,
         response=response,
         fitted=frozen_bool(fitted),
+        objective=objective,
         settings=chosen,
         values=winner.values,
         covariance=frozen_float(estimate_covariance(objective, theta)),
@@ -137,7 +138,7 @@ def _judged(
             clusters.append(Cluster(values=values, cost=cost, starts=starts, stable=None))
             continue
         polished = descend(
-            objective.residuals,
+            objective.of_starts,
             theta[None, :],
             objective.lower,
             objective.upper,

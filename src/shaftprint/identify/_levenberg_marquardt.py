@@ -17,9 +17,10 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
 
-Residuals = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
+Residuals = Callable[[FloatArray, IntArray], tuple[FloatArray, FloatArray]]
 
 FIRST_DAMPING = 0.1
+FIRST_GROWTH = 2.0
 LARGEST_DAMPING = 1e12
 BOUND_PASSES = 3
 # 64 ulp of the cost: below it a gain cannot be told from rounding.
@@ -66,16 +67,16 @@ def descend(
         Limit of steps for each start.
     """
     theta = np.clip(start, lower, upper)
-    r, jacobian = residuals(theta)
+    alive = np.arange(theta.shape[0])
+    r, jacobian = residuals(theta, alive)
     cost = 0.5 * np.einsum("sr,sr->s", r, r)
     gradient = np.einsum("spr,sr->sp", jacobian, r)
     hessian = jacobian @ jacobian.swapaxes(1, 2)
     scale = np.maximum(np.einsum("spp->sp", hessian), 1e-300)
     damping = np.full(cost.size, FIRST_DAMPING)
-    growth = np.full(cost.size, 2.0)
+    growth = np.full(cost.size, FIRST_GROWTH)
     iterations = np.zeros(cost.size, dtype=np.int64)
     converged = np.zeros(cost.size, dtype=bool)
-    alive = np.arange(cost.size)
     for _ in range(max_iterations):
         step = _bounded_step(
             hessian[alive],
@@ -90,14 +91,16 @@ def descend(
             "sp,spq,sq->s", step, hessian[alive], step
         )
         iterations[alive] += 1
-        flat = predicted <= np.maximum(tolerance * cost[alive], ROUNDING * cost[alive])
+        # A step cut short after a refusal promises little without being near the optimum.
+        trusted = (growth[alive] == FIRST_GROWTH) | (damping[alive] > LARGEST_DAMPING)
+        flat = trusted & (predicted <= max(tolerance, ROUNDING) * cost[alive])
         converged[alive[flat]] = True
         moving = ~flat
         alive, step, predicted = alive[moving], step[moving], predicted[moving]
         if alive.size == 0:
             break
         trial = np.clip(theta[alive] + step, lower, upper)
-        r, jacobian = residuals(trial)
+        r, jacobian = residuals(trial, alive)
         trial_cost = 0.5 * np.einsum("sr,sr->s", r, r)
         gain = (cost[alive] - trial_cost) / predicted
         good = trial_cost < cost[alive]
@@ -107,12 +110,9 @@ def descend(
         hessian[taken] = jacobian[good] @ jacobian[good].swapaxes(1, 2)
         scale[taken] = np.maximum(scale[taken], np.einsum("spp->sp", hessian[taken]))
         damping[taken] *= np.clip(1.0 - (2.0 * gain[good] - 1.0) ** 3, 1.0 / 3.0, 2.0)
-        growth[taken] = 2.0
+        growth[taken] = FIRST_GROWTH
         damping[kept] *= growth[kept]
         growth[kept] *= 2.0
-        alive = alive[damping[alive] < LARGEST_DAMPING]
-        if alive.size == 0:
-            break
     return Descent(theta=theta, cost=cost, iterations=iterations, converged=converged)
 
 

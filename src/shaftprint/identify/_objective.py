@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
+from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from shaftprint.errors import IdentificationError
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
@@ -126,6 +126,10 @@ class Objective:
         values = np.broadcast_to(self.held, (*theta.shape[:-1], self.held.size)).copy()
         values[..., self.free] = theta
         return values
+
+    def of_starts(self, theta: FloatArray, starts: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Return the same as ``residuals``: every start has the same problem."""
+        return self.residuals(theta)
 
     def residuals(self, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return weighted residuals and their derivatives for many parameter sets.

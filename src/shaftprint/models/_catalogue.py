@@ -46,7 +46,7 @@ FIRST_V = Parameter("v", "-", 0.0, 5.0, 1.0, "slope of the engine torque with fu
 TAU_DN = Parameter("tau_dn", "s", 0.0, 2.0, 0.3, "inertia time downstream of the torque gauge")
 TAU_UP = Parameter("tau_up", "s", 0.0, 5.0, 1.0, "inertia time upstream of the torque gauge")
 K_Q = Parameter("k_q", "-", 1.0, 3.0, 2.0, "slope of the propeller torque; 2 if gauge and inflow are right")
-G = Parameter("g", "-", -3.0, 1.0, 0.0, "slope of the engine torque with speed")
+G = Parameter("g", "-", -3.0, 0.9, 0.0, "slope of the engine torque with speed")
 V_ONE = Parameter("v", "-", 0.0, 5.0, 1.0, "slope of the engine torque with fuel rack", held=True)
 GAUGE_K_P = Parameter("K_p", "-", 0.0, 20.0, 5.0, "proportional gain of the governor")
 GAUGE_K_I = Parameter("K_i", "1/s", 0.0, 20.0, 4.0, "integral gain of the governor")
