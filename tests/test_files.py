@@ -3,6 +3,16 @@ import pytest
 from shaftprint.files import written_whole
 
 
+def _write(path, text, *, overwrite=False, then=lambda: None):
+    with written_whole(path, overwrite=overwrite) as part:
+        part.write_text(text)
+        then()
+
+
+def _fail():
+    raise RuntimeError("half way")
+
+
 def test_the_file_appears_when_the_block_has_ended(tmp_path):
     path = tmp_path / "result.txt"
     with written_whole(path) as part:
@@ -13,36 +23,32 @@ def test_the_file_appears_when_the_block_has_ended(tmp_path):
 
 
 def test_an_error_leaves_nothing_behind(tmp_path):
-    with pytest.raises(RuntimeError, match="half way"), written_whole(tmp_path / "result.txt") as part:
-        part.write_text("half")
-        raise RuntimeError("half way")
+    with pytest.raises(RuntimeError, match="half way"):
+        _write(tmp_path / "result.txt", "half", then=_fail)
     assert list(tmp_path.iterdir()) == []
 
 
 def test_an_existing_file_is_kept(tmp_path):
     path = tmp_path / "result.txt"
     path.write_text("first")
-    with pytest.raises(FileExistsError, match="result.txt exists already"), written_whole(path):
-        pass
+    with pytest.raises(FileExistsError, match=r"result\.txt exists already"):
+        _write(path, "second")
     assert path.read_text() == "first"
 
 
 def test_an_existing_file_is_kept_when_an_overwriting_block_fails(tmp_path):
     path = tmp_path / "result.txt"
     path.write_text("first")
-    with pytest.raises(RuntimeError), written_whole(path, overwrite=True) as part:
-        part.write_text("second")
-        raise RuntimeError
+    with pytest.raises(RuntimeError, match="half way"):
+        _write(path, "second", overwrite=True, then=_fail)
     assert path.read_text() == "first"
-    with written_whole(path, overwrite=True) as part:
-        part.write_text("second")
+    _write(path, "second", overwrite=True)
     assert path.read_text() == "second"
 
 
 def test_a_file_that_appeared_meanwhile_is_kept(tmp_path):
     path = tmp_path / "result.txt"
-    with pytest.raises(FileExistsError), written_whole(path) as part:
-        part.write_text("mine")
-        path.write_text("somebody else's")
+    with pytest.raises(FileExistsError, match="exists already"):
+        _write(path, "mine", then=lambda: path.write_text("somebody else's"))
     assert [entry.name for entry in tmp_path.iterdir()] == ["result.txt"]
     assert path.read_text() == "somebody else's"

@@ -55,7 +55,7 @@ def test_all_errors_of_a_file_are_told_at_once(tmp_path):
         (
             "frequency_hz = 1.0",
             "frequency_rad_s = 6.28",
-            "sines[1].frequency_rad_s (S1): expected no such key; the value is wanted as frequency_hz: divide it by 2 pi.",
+            "frequency_rad_s (S1): expected no such key; the value is wanted as frequency_hz: divide it by 2 pi.",
         ),
         ("amplitude_v = 0.6", "amplitude_mv = 600", "the value is wanted as amplitude_v: convert it to that unit."),
         ("amplitude_v = 0.6", "amplitude = 0.6", "the value is wanted as amplitude_v: convert it to that unit."),
