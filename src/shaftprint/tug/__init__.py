@@ -1,0 +1,38 @@
+"""A simulated tug with known truth that writes raw logger files.
+
+It shares no physics with the models that are identified: a sign error cannot live in both.
+
+============================ ========== ==========================================================================
+quantity                     unit       meaning and sign
+============================ ========== ==========================================================================
+``n_s``, ``n_e``             rev/s      speed of propeller shaft and engine, positive ahead, ``n_e = i n_s``
+``M_s``                      N m        torque at the gauge, positive when the engine drives the propeller
+``M_b``                      N m        brake torque at the engine flange, negative when the engine is motored
+``X``                        1          fuel rack above zero-torque running; 1 gives rated torque at rated speed
+``U``                        V          set-point voltage; more negative asks for more speed
+``t_d``, ``t_sp``            s          delays inside the loop and before it
+inertias                     kg m2      referred to the propeller shaft, split at the gauge
+============================ ========== ==========================================================================
+"""
+
+from shaftprint.tug._faults import Fault
+from shaftprint.tug._ideal import IdealSignals, simulate_signals
+from shaftprint.tug._linearise import linearised_response
+from shaftprint.tug._noise import Noise
+from shaftprint.tug._sail import sail
+from shaftprint.tug._truth import StripTruth, Truth, read_truth, truth_path
+from shaftprint.tug._tug import Tug
+
+__all__ = [
+    "Fault",
+    "IdealSignals",
+    "Noise",
+    "StripTruth",
+    "Truth",
+    "Tug",
+    "linearised_response",
+    "read_truth",
+    "sail",
+    "simulate_signals",
+    "truth_path",
+]

@@ -1,0 +1,72 @@
+"""The way of the set point from the voltage at the helm to the speed demand inside the ECU."""
+
+import numpy as np
+from numba import njit
+
+from shaftprint.arrays import FloatArray
+from shaftprint.campaign import Campaign, setpoint
+from shaftprint.tug._tug import Tug
+from shaftprint.units import rev_s_from_rpm
+
+
+@njit(cache=True, nogil=True)
+def _rate_limit(demand: FloatArray, largest_change, last) -> None:  # type: ignore[no-untyped-def]
+    for j in range(demand.size):
+        change = min(max(demand[j] - last, -largest_change), largest_change)
+        last = last + change
+        demand[j] = last
+
+
+def helm_voltage(tug: Tug, campaign: Campaign, time_s: FloatArray) -> FloatArray:
+    """Return the true set-point voltage [V] behind the potentiometer, shape of ``time_s``."""
+    return setpoint(campaign, time_s) + tug.set_point_offset_v
+
+
+def demanded_speed(tug: Tug, voltage_v: FloatArray) -> FloatArray:
+    """Return the engine speed [rev/s] that a voltage asks for by the true line, shape of ``voltage_v``."""
+    return rev_s_from_rpm(tug.set_point_slope_rpm_per_v * voltage_v + tug.set_point_intercept_rpm)
+
+
+class Demand:
+    """Stream of the speed demand in the ECU on half steps: late, quantised and rate-limited if the truth says so."""
+
+    def __init__(self, tug: Tug, campaign: Campaign, *, start_s: float, step_s: float) -> None:
+        self._tug = tug
+        self._campaign = campaign
+        self._start_s = start_s
+        self._half_step_s = 0.5 * step_s
+        self._count = 0
+        self._last = self.first
+
+    @property
+    def first(self) -> float:
+        """Demand at the start [rev/s], in which the line is taken to run steadily."""
+        return float(self._late(np.array([self._start_s]))[0])
+
+    def next(self, steps: int, wander: FloatArray) -> FloatArray:
+        """Return the demand [rev/s] at the nodes and middles of the next steps, shape (2 steps + 1,).
+
+        ``wander`` is the disturbance of the demand [fraction of the working point] at the nodes, shape (steps + 1,).
+        """
+        half_steps = np.arange(self._count, self._count + 2 * steps + 1, dtype=np.float64)
+        time: FloatArray = self._start_s + self._half_step_s * half_steps
+        demand = self._late(time)
+        self._count += 2 * steps
+        if self._tug.demand_rate_limit_rpm_per_s is not None:
+            largest = rev_s_from_rpm(self._tug.demand_rate_limit_rpm_per_s) * self._half_step_s
+            # the first value is the last of the chunk before: it may not move twice
+            demand[0] = self._last
+            _rate_limit(demand[1:], largest, self._last)
+            self._last = float(demand[-1])
+        working_point = rev_s_from_rpm(self._tug.engine_speed_rpm)
+        demand[::2] += working_point * wander
+        demand[1::2] += 0.5 * working_point * (wander[:-1] + wander[1:])
+        return demand
+
+    def _late(self, time_s: FloatArray) -> FloatArray:
+        voltage = helm_voltage(self._tug, self._campaign, time_s - self._tug.set_point_latency_s)
+        demand = demanded_speed(self._tug, voltage)
+        if self._tug.demand_resolution_rpm is not None:
+            resolution = rev_s_from_rpm(self._tug.demand_resolution_rpm)
+            demand = resolution * np.round(demand / resolution)
+        return demand

@@ -1,0 +1,46 @@
+"""The logger's view of the set-point voltage."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shaftprint.campaign import Campaign
+from shaftprint.tug._demand import helm_voltage
+from shaftprint.tug._faults import Fault, draw_spikes
+from shaftprint.tug._pulses import VOLT_PER_COUNT
+from shaftprint.tug._tug import Tug
+from shaftprint.tug._voyage import Leg
+from shaftprint.vessel import Vessel
+
+_RANGE_V = 10.0
+
+
+class Helm:
+    """Stream of the raw counts of the set-point channel."""
+
+    def __init__(
+        self, tug: Tug, vessel: Vessel, campaign: Campaign, *, rate_hz: float, rng: np.random.Generator
+    ) -> None:
+        self.channel = vessel.sensors.set_point.channel
+        self._tug = tug
+        self._campaign = campaign
+        self._rate_hz = rate_hz
+        self._rng = rng
+        self._spikes = draw_spikes(tug.noise.set_point_spike_interval_s, campaign.duration_s, rate_hz, rng)
+        self._done = 0
+
+    def next(self, leg: Leg) -> NDArray[np.int16]:
+        """Return the counts of the next leg, shape (steps,)."""
+        voltage = helm_voltage(self._tug, self._campaign, leg.time_s)
+        noise = self._rng.standard_normal(voltage.size, dtype=np.float32)
+        voltage += np.float32(self._tug.noise.set_point_rms_v) * noise
+        inside = (self._spikes.sample >= self._done) & (self._spikes.sample < self._done + voltage.size)
+        voltage[self._spikes.sample[inside] - self._done] = _RANGE_V * self._spikes.size[inside]
+        self._done += voltage.size
+        return np.rint(voltage / VOLT_PER_COUNT).clip(-32768, 32767).astype(np.int16)
+
+    def faults(self) -> list[Fault]:
+        """Return the faults of the whole recording."""
+        return [
+            Fault(channel=self.channel, kind="spike", time_s=sample / self._rate_hz, duration_s=1.0 / self._rate_hz)
+            for sample in self._spikes.sample.tolist()
+        ]

@@ -1,0 +1,116 @@
+"""From the normalised truth of a tug to the physical constants of its propulsion line."""
+
+import math
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import SettingsError
+from shaftprint.tug._plant import INTEGRAL, RACK, SPEED, STATES, Plant
+from shaftprint.tug._tug import Tug
+from shaftprint.units import rev_s_from_rpm
+from shaftprint.vessel import Vessel
+
+# The delayed rack is interpolated over four steps of which the newest must already be known.
+SHORTEST_DELAY_S = 1.5e-3
+
+
+def build_plant(tug: Tug, vessel: Vessel) -> Plant:
+    """Convert the normalised truth of a tug to physical constants, so that its working point is an equilibrium.
+
+    ``A_1 = g M_b0 / n_e0``, ``A_2 X_0 = v M_b0``, ``A_3 = (1 - g - v) M_b0`` with rack 1 at rated torque and speed;
+    ``K_p = K_p* X_0 / n_e0`` and ``K_i`` alike (thesis "Fingerprinting II", equations 2.4, 2.6 and 2.13 to 2.20).
+
+    Parameters
+    ----------
+    tug
+        The truth.
+    vessel
+        Ratio, efficiency, full-load curve and, where the truth does not give them, the inertias.
+
+    Returns
+    -------
+    plant
+        Constants in SI units, speeds in rev/s.
+
+    Raises
+    ------
+    SettingsError
+        If the truth is not physical.
+    """
+    _check(tug)
+    speed = rev_s_from_rpm(tug.engine_speed_rpm)
+    ratio, efficiency = vessel.gearbox.ratio, vessel.gearbox.efficiency
+    brake = tug.shaft_torque_nm / (ratio * efficiency)
+    speed_slope = tug.g * brake / speed
+    offset = (1.0 - tug.g - tug.v) * brake
+    rated = rev_s_from_rpm(vessel.engine.rated_speed_rpm)
+    rack_slope = vessel.engine.rated_torque_nm - speed_slope * rated - offset
+    rack = tug.v * brake / rack_slope
+    upstream, downstream = tug.inertia_upstream_kg_m2, tug.inertia_downstream_kg_m2
+    return Plant(
+        inertia_upstream_kg_m2=vessel.inertia_upstream_kg_m2 if upstream is None else upstream,
+        inertia_downstream_kg_m2=vessel.inertia_downstream_kg_m2 if downstream is None else downstream,
+        gear_ratio=ratio,
+        efficiency=efficiency,
+        propeller_nm_s2=tug.shaft_torque_nm / (speed / ratio) ** 2,
+        speed_slope_nm_s=speed_slope,
+        rack_slope_nm=rack_slope,
+        rack_offset_nm=offset,
+        proportional_s=tug.proportional_gain * rack / speed,
+        integral=tug.integral_gain_per_s * rack / speed,
+        anti_windup_s=tug.anti_windup_s,
+        delay_s=tug.governor_delay_s,
+        natural_frequency_rad_s=tug.natural_frequency_rad_s,
+        damping_ratio=tug.damping_ratio,
+        limit_speed_rev_s=rev_s_from_rpm(np.array(vessel.engine.full_load_speed_rpm)),
+        limit_torque_nm=np.array(vessel.engine.full_load_torque_nm),
+        motoring_torque_nm=tug.motoring_torque_nm,
+        motoring_speed_rev_s=speed,
+    )
+
+
+def equilibrium(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
+    """Return the state in which the line runs steadily at an engine speed [rev/s], angle zero, shape (states,)."""
+    speed_s = engine_speed_rev_s / plant.gear_ratio
+    load = plant.propeller_nm_s2 * speed_s * abs(speed_s)
+    brake = load / (plant.gear_ratio * plant.efficiency)
+    rack = (brake - plant.speed_slope_nm_s * engine_speed_rev_s - plant.rack_offset_nm) / plant.rack_slope_nm
+    state = np.zeros(STATES)
+    state[SPEED], state[INTEGRAL], state[RACK] = speed_s, rack, rack
+    return state
+
+
+def shaft_time_constant_s(inertia_kg_m2: float, tug: Tug, vessel: Vessel) -> float:
+    """Return ``tau = 2 pi I n_s0 / M_s0`` [s] of an inertia referred to the propeller shaft."""
+    shaft_speed = rev_s_from_rpm(tug.engine_speed_rpm) / vessel.gearbox.ratio
+    return 2.0 * math.pi * inertia_kg_m2 * shaft_speed / tug.shaft_torque_nm
+
+
+def _check(tug: Tug) -> None:
+    positive = (
+        "engine_speed_rpm",
+        "shaft_torque_nm",
+        "inertia_upstream_kg_m2",
+        "inertia_downstream_kg_m2",
+        "v",
+        "anti_windup_s",
+        "natural_frequency_rad_s",
+        "damping_ratio",
+        "motoring_torque_nm",
+        "demand_resolution_rpm",
+        "demand_rate_limit_rpm_per_s",
+    )
+    for name in positive:
+        value = getattr(tug, name)
+        if value is not None and not value > 0.0:
+            raise SettingsError(f"tug: expected {name} above 0, found {value:g}; give a positive value.")
+    for name in ("proportional_gain", "integral_gain_per_s", "set_point_latency_s"):
+        value = getattr(tug, name)
+        if not value >= 0.0:
+            raise SettingsError(f"tug: expected {name} of at least 0, found {value:g}; give 0 or a positive value.")
+    if not (tug.governor_delay_s == 0.0 or tug.governor_delay_s >= SHORTEST_DELAY_S):
+        raise SettingsError(
+            f"tug: expected governor_delay_s of 0 or at least {SHORTEST_DELAY_S:g}, found {tug.governor_delay_s:g}; "
+            "the delayed rack is interpolated between steps that must already be known."
+        )

@@ -1,0 +1,228 @@
+"""The propulsion line as physics: constants in SI units and the kernel that steps them through time.
+
+Rigid shaft line, referred to the propeller shaft, cut at the torque gauge::
+
+    2 pi (I_up + I_dn) dn_s/dt = i eta M_b - M_p        M_s = M_p + 2 pi I_dn dn_s/dt
+    M_p = K n_s |n_s|                                   M_b = A_1 n_e + A_2 X + A_3, limited
+
+with the PI governor and its back-calculation ahead of a transport delay and a second-order actuation.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from shaftprint.arrays import BoolArray, FloatArray, IntArray
+
+SPEED, INTEGRAL, RACK, RACK_RATE, ANGLE = range(5)
+"""Places in the state vector: shaft speed [rev/s], integrator [rack], rack, rack rate [1/s], shaft angle [rev]."""
+STATES = 5
+
+
+class Plant(NamedTuple):
+    """Physical constants of the line; a named tuple because compiled code takes it as it is."""
+
+    inertia_upstream_kg_m2: float
+    inertia_downstream_kg_m2: float
+    gear_ratio: float
+    efficiency: float
+    propeller_nm_s2: float
+    """``K`` of the propeller law ``M_p = K n_s |n_s|`` [N m s2]."""
+    speed_slope_nm_s: float
+    """``A_1`` [N m per rev/s]."""
+    rack_slope_nm: float
+    """``A_2`` [N m]: torque of the full rack."""
+    rack_offset_nm: float
+    """``A_3`` [N m]."""
+    proportional_s: float
+    """``K_p`` [rack per rev/s]."""
+    integral: float
+    """``K_i`` [rack per rev]."""
+    anti_windup_s: float
+    delay_s: float
+    natural_frequency_rad_s: float
+    damping_ratio: float
+    limit_speed_rev_s: FloatArray
+    """Engine speeds of the full-load curve [rev/s], ascending."""
+    limit_torque_nm: FloatArray
+    """Full-load brake torque [N m]."""
+    motoring_torque_nm: float
+    """Brake torque without fuel at ``motoring_speed_rev_s``, as a positive number [N m]."""
+    motoring_speed_rev_s: float
+
+
+@njit(inline="always")
+def _torque_limits(speed, plant):  # type: ignore[no-untyped-def]
+    """Return the lowest and highest brake torque [N m] at an engine speed [rev/s]."""
+    speeds = plant.limit_speed_rev_s
+    torques = plant.limit_torque_nm
+    last = speeds.size - 1
+    if speed >= speeds[last]:
+        highest = torques[last]
+    elif speed <= speeds[0]:
+        highest = torques[0]
+    else:
+        j = 1
+        while speeds[j] < speed:
+            j += 1
+        part = (speed - speeds[j - 1]) / (speeds[j] - speeds[j - 1])
+        highest = torques[j - 1] + part * (torques[j] - torques[j - 1])
+    # friction of a motored engine: half of it independent of speed, half proportional
+    lowest = -plant.motoring_torque_nm * (0.5 + 0.5 * speed / plant.motoring_speed_rev_s)
+    return lowest, highest
+
+
+@njit(inline="always")
+def governor_rack(speed_s, integral, demand, plant):  # type: ignore[no-untyped-def]
+    """Return the rack that the governor asks for, before and after the limiter of the ECU."""
+    speed = plant.gear_ratio * speed_s
+    wanted = plant.proportional_s * (demand - speed) + integral
+    lowest, highest = _torque_limits(speed, plant)
+    rest = plant.speed_slope_nm_s * speed + plant.rack_offset_nm
+    given = min(max(wanted, (lowest - rest) / plant.rack_slope_nm), (highest - rest) / plant.rack_slope_nm)
+    return wanted, given
+
+
+@njit(inline="always")
+def derivatives(  # type: ignore[no-untyped-def]
+    speed_s, integral, rack, rack_rate, demand, rack_delayed, propeller_noise, engine_noise, plant
+):
+    """Return the rates of speed, integrator, rack and rack rate, then rack given, ``M_s``, ``M_b``, limited or not."""
+    speed = plant.gear_ratio * speed_s
+    wanted, given = governor_rack(speed_s, integral, demand, plant)
+    if plant.delay_s == 0.0:
+        rack_delayed = given
+    asked = plant.speed_slope_nm_s * speed + plant.rack_slope_nm * rack + plant.rack_offset_nm
+    lowest, highest = _torque_limits(speed, plant)
+    brake = min(max(asked, lowest), highest)
+    load = plant.propeller_nm_s2 * speed_s * abs(speed_s)
+    propeller = load * (1.0 + propeller_noise)
+    drive = plant.gear_ratio * plant.efficiency * brake + load * engine_noise
+    acceleration = (drive - propeller) / (2.0 * np.pi * (plant.inertia_upstream_kg_m2 + plant.inertia_downstream_kg_m2))
+    gauge = propeller + 2.0 * np.pi * plant.inertia_downstream_kg_m2 * acceleration
+    integral_rate = plant.integral * (demand - speed) + (given - wanted) / plant.anti_windup_s
+    omega = plant.natural_frequency_rad_s
+    rack_acceleration = omega * (omega * (rack_delayed - rack) - 2.0 * plant.damping_ratio * rack_rate)
+    limited = given != wanted or brake != asked
+    return acceleration, integral_rate, rack_rate, rack_acceleration, given, gauge, brake, limited
+
+
+@njit(inline="always")
+def _past(history, mask, first, weights):  # type: ignore[no-untyped-def]
+    """Return the value between the second and third of four nodes of a ring."""
+    return (
+        weights[0] * history[first & mask]
+        + weights[1] * history[(first + 1) & mask]
+        + weights[2] * history[(first + 2) & mask]
+        + weights[3] * history[(first + 3) & mask]
+    )
+
+
+def interpolation_weights(position: float) -> tuple[int, FloatArray]:
+    """Return the first of four nodes and their cubic Lagrange weights for a place between the middle two."""
+    node = int(np.floor(position))
+    part = position - node
+    weights = np.array(
+        [
+            -part * (part - 1.0) * (part - 2.0) / 6.0,
+            (part + 1.0) * (part - 1.0) * (part - 2.0) / 2.0,
+            -(part + 1.0) * part * (part - 2.0) / 2.0,
+            (part + 1.0) * part * (part - 1.0) / 6.0,
+        ]
+    )
+    return node - 1, weights
+
+
+class Carried(NamedTuple):
+    """What the kernel carries from chunk to chunk."""
+
+    state: FloatArray
+    """Shaft speed, integrator, rack, rack rate and angle, shape (5,)."""
+    history: FloatArray
+    """Ring of the racks given at the nodes; its size is a power of two."""
+    counter: IntArray
+    """Nodes passed, shape (1,)."""
+
+
+class Delay(NamedTuple):
+    """Where the delayed rack is found at the start, middle and end of a step."""
+
+    first: IntArray
+    """First of four nodes, relative to the node of the step, shape (3,)."""
+    weights: FloatArray
+    """Interpolation weights, shape (3, 4)."""
+
+
+class Traces(NamedTuple):
+    """Values at the START of each step, all of shape (steps,), filled by the kernel."""
+
+    shaft_speed_rev_s: FloatArray
+    shaft_angle_rev: FloatArray
+    shaft_torque_nm: FloatArray
+    brake_torque_nm: FloatArray
+    limited: BoolArray
+
+
+@njit(inline="always")
+def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant):  # type: ignore[no-untyped-def]
+    """Return the state after a step of the classical fourth-order method, whose first rates ``k1`` are known.
+
+    ``demand``, ``past``, ``propeller`` and ``engine`` hold the inputs at the start, middle and end of the step.
+    """
+    q = 0.5 * h
+    n2 = x[0] + q * k1[0]
+    k2 = derivatives(
+        n2, x[1] + q * k1[1], x[2] + q * k1[2], x[3] + q * k1[3], demand[1], past[1], propeller[1], engine[1], plant
+    )
+    n3 = x[0] + q * k2[0]
+    k3 = derivatives(
+        n3, x[1] + q * k2[1], x[2] + q * k2[2], x[3] + q * k2[3], demand[1], past[1], propeller[1], engine[1], plant
+    )
+    n4 = x[0] + h * k3[0]
+    k4 = derivatives(
+        n4, x[1] + h * k3[1], x[2] + h * k3[2], x[3] + h * k3[3], demand[2], past[2], propeller[2], engine[2], plant
+    )
+    part = h / 6.0
+    return (
+        x[0] + part * (k1[0] + 2.0 * k2[0] + 2.0 * k3[0] + k4[0]),
+        x[1] + part * (k1[1] + 2.0 * k2[1] + 2.0 * k3[1] + k4[1]),
+        x[2] + part * (k1[2] + 2.0 * k2[2] + 2.0 * k3[2] + k4[2]),
+        x[3] + part * (k1[3] + 2.0 * k2[3] + 2.0 * k3[3] + k4[3]),
+        x[4] + part * (x[0] + 2.0 * n2 + 2.0 * n3 + n4),
+    )
+
+
+@njit(cache=True, nogil=True)
+def advance(  # type: ignore[no-untyped-def]
+    step_s, demand, propeller_noise, engine_noise, plant, delay, carried, traces
+) -> None:
+    """Step the line and fill the traces.
+
+    ``demand`` has two values a step and one more (half steps); the disturbances one value a step and one more.
+    All that goes on is carried, so that the result does not depend on how the time is cut into calls.
+    """
+    state, history = carried.state, carried.history
+    x = (state[0], state[1], state[2], state[3], state[4])
+    k = carried.counter[0]
+    mask = history.size - 1
+    for j in range(traces.limited.size):
+        propeller = (propeller_noise[j], 0.5 * (propeller_noise[j] + propeller_noise[j + 1]), propeller_noise[j + 1])
+        engine = (engine_noise[j], 0.5 * (engine_noise[j] + engine_noise[j + 1]), engine_noise[j + 1])
+        asked = (demand[2 * j], demand[2 * j + 1], demand[2 * j + 2])
+        past = (
+            _past(history, mask, k + delay.first[0], delay.weights[0]),
+            _past(history, mask, k + delay.first[1], delay.weights[1]),
+            _past(history, mask, k + delay.first[2], delay.weights[2]),
+        )
+        rates = derivatives(x[0], x[1], x[2], x[3], asked[0], past[0], propeller[0], engine[0], plant)
+        history[k & mask] = rates[4]
+        traces.shaft_speed_rev_s[j] = x[0]
+        traces.shaft_angle_rev[j] = x[4]
+        traces.shaft_torque_nm[j] = rates[5]
+        traces.brake_torque_nm[j] = rates[6]
+        traces.limited[j] = rates[7]
+        x = _runge_kutta(step_s, x, rates, asked, past, propeller, engine, plant)
+        k += 1
+    state[0], state[1], state[2], state[3], state[4] = x
+    carried.counter[0] = k

@@ -1,0 +1,193 @@
+"""Optical pick-ups: pulse voltages of reflecting strips that pass by on a turning shaft."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from shaftprint.arrays import FloatArray, IntArray
+from shaftprint.tug._faults import Fault, draw_times
+from shaftprint.tug._tug import Tug
+from shaftprint.tug._voyage import Leg
+from shaftprint.vessel import SpeedSensor, Vessel
+
+VOLT_PER_COUNT = 10.24 / 32768.0
+"""Resolution of the voltage channels of the logger [V]."""
+
+_LOW_V, _HIGH_V = 0.35, 4.6
+# The light spot is about half as wide as a strip, which gives each edge this fraction of the pulse width.
+_RAMP = 0.6
+# A doubled pulse: a reflection of this width, this far behind the middle of the strip (in pulse widths).
+_GHOST_OFFSET, _GHOST_WIDTH, _GHOST_RAMP = 1.2, 0.6, 0.3
+_NORMAL, _MISSING, _DOUBLED = 0, 1, 2
+
+
+class _Strips(NamedTuple):
+    """Geometry of one pick-up; angles in revolutions of its own shaft."""
+
+    turns: float
+    """Revolutions of the shaft with the strips for one of the propeller shaft."""
+    phase_rev: float
+    middle_rev: FloatArray
+    """Middle of each strip within a revolution, ascending, shape (strips,)."""
+    width_rev: float
+    rate_hz: float
+
+
+@njit(inline="always")
+def _reflection(distance, width, ramp):  # type: ignore[no-untyped-def]
+    """Return the reflected light [0 to 1] at a distance from the middle of a strip: a smooth trapezoid."""
+    part = (0.5 * width - abs(distance)) / ramp + 0.5
+    part = min(max(part, 0.0), 1.0)
+    return part * part * (3.0 - 2.0 * part)
+
+
+class _View(NamedTuple):
+    """What the pick-up carries from chunk to chunk, and the faults that wait for it."""
+
+    place: IntArray
+    """Strip in view, its kind, next missing and next doubled pulse, samples done, shape (5,)."""
+    shift_rev: FloatArray
+    """Angle by which jitter moves the strip in view, shape (1,)."""
+    jitter_s: FloatArray
+    """Jitter of each pulse [s], shape (pulses,)."""
+    missing_s: FloatArray
+    """Times after which the next pulse is missing; the time of its edge once it has passed."""
+    doubled_s: FloatArray
+    """Times after which the next pulse is doubled; the time of its edge once it has passed."""
+
+
+@njit(inline="always")
+def _middle(strip, strips):  # type: ignore[no-untyped-def]
+    """Return the angle of the middle of a strip, counted on from strip 0 of the first revolution [rev]."""
+    per_turn = strips.middle_rev.size
+    return strip // per_turn + strips.middle_rev[strip % per_turn]
+
+
+@njit(inline="always")
+def _fault_of(time, edge_s, view):  # type: ignore[no-untyped-def]
+    """Return the kind of the pulse that comes into view, and note the time of its edge where it is a fault."""
+    place = view.place
+    if place[2] < view.missing_s.size and time >= view.missing_s[place[2]]:
+        view.missing_s[place[2]] = edge_s
+        place[2] += 1
+        return _MISSING
+    if place[3] < view.doubled_s.size and time >= view.doubled_s[place[3]]:
+        view.doubled_s[place[3]] = edge_s
+        place[3] += 1
+        return _DOUBLED
+    return _NORMAL
+
+
+@njit(cache=True, nogil=True)
+def _pulse_train(angle, speed, noise_v, strips, view, counts) -> None:  # type: ignore[no-untyped-def]
+    """Fill the counts of one chunk from the angle and speed of the propeller shaft."""
+    place = view.place
+    width = strips.width_rev
+    strip, kind, shift = place[0], place[1], view.shift_rev[0]
+    middle, following = _middle(strip, strips), _middle(strip + 1, strips)
+    for j in range(angle.size):
+        now = strips.phase_rev + strips.turns * angle[j]
+        while now > 0.5 * (middle + following):
+            strip += 1
+            middle, following = following, _middle(strip + 1, strips)
+            turning = strips.turns * speed[j]
+            shift = turning * view.jitter_s[strip % view.jitter_s.size]
+            time = (place[4] + j) / strips.rate_hz
+            kind = _fault_of(time, time + (middle - 0.5 * width + shift - now) / turning, view)
+        light = 0.0
+        if kind != _MISSING:
+            distance = now - middle - shift
+            light = _reflection(distance, width, _RAMP * width)
+            if kind == _DOUBLED:
+                behind = distance - _GHOST_OFFSET * width
+                light = max(light, _reflection(behind, _GHOST_WIDTH * width, _GHOST_RAMP * width))
+        volt = _LOW_V + (_HIGH_V - _LOW_V) * light + noise_v[j]
+        counts[j] = np.int16(np.rint(volt / VOLT_PER_COUNT))
+    place[0], place[1] = strip, kind
+    place[4] += angle.size
+    view.shift_rev[0] = shift
+
+
+class PickUp:
+    """Stream of the raw counts of one speed pick-up."""
+
+    def __init__(
+        self,
+        sensor: SpeedSensor,
+        tug: Tug,
+        vessel: Vessel,
+        *,
+        duration_s: float,
+        rate_hz: float,
+        rng: np.random.Generator,
+    ) -> None:
+        noise = tug.noise
+        self._rng = rng
+        self._noise_v = noise.pulse_rms_v
+        self.channel = sensor.channel
+        self.angle_rev = _strip_angles(sensor, tug)
+        turns = vessel.gearbox.ratio if sensor.shaft == "engine" else 1.0
+        width = _pulse_width(sensor)
+        marked_edge = np.concatenate(([0.0], np.cumsum(self.angle_rev)[:-1]))
+        middle = marked_edge + (0.5 * width if sensor.edge == "rising" else -0.5 * width)
+        # at the start every strip is ahead: the first that passes is strip 1, 2, ... at random
+        self._strips = _Strips(
+            turns=turns,
+            phase_rev=float(rng.uniform(0.0, 1.0)),
+            middle_rev=middle,
+            width_rev=width,
+            rate_hz=rate_hz,
+        )
+        self._view = _View(
+            place=np.zeros(5, dtype=np.int64),
+            shift_rev=np.zeros(1),
+            jitter_s=noise.pulse_jitter_s * rng.standard_normal(_most_pulses(sensor, vessel, duration_s)),
+            missing_s=draw_times(noise.missing_pulse_interval_s, duration_s, rng),
+            doubled_s=draw_times(noise.doubled_pulse_interval_s, duration_s, rng),
+        )
+
+    @property
+    def phase_rev(self) -> float:
+        """Angle of the shaft at the start, from the marked edge of strip 1 [rev]."""
+        return self._strips.phase_rev
+
+    def next(self, leg: Leg) -> NDArray[np.int16]:
+        """Return the counts of the next leg, shape (steps,)."""
+        counts = np.empty(leg.time_s.size, dtype=np.int16)
+        noise_v = self._rng.standard_normal(counts.size, dtype=np.float32) * np.float32(self._noise_v)
+        _pulse_train(leg.shaft_angle_rev, leg.shaft_speed_rev_s, noise_v, self._strips, self._view, counts)
+        return counts
+
+    def faults(self) -> list[Fault]:
+        """Return the faults of the pulses that have passed so far."""
+        kinds = (("missing pulse", self._view.missing_s, 2), ("doubled pulse", self._view.doubled_s, 3))
+        return [
+            Fault(channel=self.channel, kind=kind, time_s=float(time))
+            for kind, times, place in kinds
+            for time in times[: self._view.place[place]]
+        ]
+
+
+def _strip_angles(sensor: SpeedSensor, tug: Tug) -> FloatArray:
+    """Return the angles between the strips [rev], which sum to 1: the truth's where it has as many, else equal ones."""
+    strips = sensor.pulses_per_revolution
+    angles = np.array(tug.strip_angles_deg) if len(tug.strip_angles_deg) == strips else np.ones(strips)
+    turn: FloatArray = angles / angles.sum()
+    return turn
+
+
+def _pulse_width(sensor: SpeedSensor) -> float:
+    """Return the width of a pulse at half height [rev]; 7 % of a turn or a third of the pitch where it is not given."""
+    if sensor.pulse_width_deg is not None:
+        return sensor.pulse_width_deg / 360.0
+    return min(0.07, 1.0 / (3.0 * sensor.pulses_per_revolution))
+
+
+def _most_pulses(sensor: SpeedSensor, vessel: Vessel, duration_s: float) -> int:
+    """Return more pulses than can pass: the engine does not run 30 % above its rated speed."""
+    turns = 1.3 * vessel.engine.rated_speed_rpm / 60.0 * duration_s
+    if sensor.shaft == "propeller":
+        turns /= vessel.gearbox.ratio
+    return int(turns * sensor.pulses_per_revolution) + 16

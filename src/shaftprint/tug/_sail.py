@@ -1,0 +1,221 @@
+"""Sailing: a voyage through the measurement chain into a raw logger file."""
+
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shaftprint.campaign import Campaign
+from shaftprint.errors import RecordingError, SettingsError
+from shaftprint.files import written_whole
+from shaftprint.recording import RecordingWriter
+from shaftprint.tug._demand import Demand
+from shaftprint.tug._disturbance import Disturbance
+from shaftprint.tug._faults import Fault
+from shaftprint.tug._gauge import TorqueGauge
+from shaftprint.tug._helm import Helm
+from shaftprint.tug._physics import build_plant, equilibrium
+from shaftprint.tug._plant import SPEED
+from shaftprint.tug._pulses import VOLT_PER_COUNT, PickUp
+from shaftprint.tug._truth import StripTruth, Truth, tell_truth, truth_path, truth_text
+from shaftprint.tug._tug import Tug
+from shaftprint.tug._voyage import Leg, voyage
+from shaftprint.vessel import Vessel
+
+RATE_HZ = 2000.0
+"""Sample rate where the vessel file names no logger [Hz]."""
+
+# As many samples as one compressed block of the container holds: no block is copied.
+_CHUNK = 262_144
+
+
+def sail(
+    vessel: Vessel,
+    campaign: Campaign,
+    path: str | Path,
+    *,
+    tug: Tug | None = None,
+    seed: int,
+    overwrite: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> Truth:
+    """Simulate a campaign and write the raw recording as a logger would, with its truth in a file beside it.
+
+    Memory does not grow with the length of the campaign. The same seed gives the same bytes.
+
+    Parameters
+    ----------
+    vessel, campaign
+        The installation and what is asked of it.
+    path
+        Recording to write, in the native container; the truth goes to ``NAME.truth.json`` beside it. Both are written
+        whole or not at all.
+    tug
+        The truth with the sizes of its noise; the reference truth when not given.
+    seed
+        Seed of all randomness.
+    overwrite
+        Whether existing files may be replaced.
+    progress
+        Called with the share of the campaign that is done, 0 to 1.
+
+    Returns
+    -------
+    truth
+        What was put into the recording.
+
+    Raises
+    ------
+    SettingsError
+        If the truth is not physical.
+    RecordingError
+        If a file exists and may not be replaced, or cannot be written.
+    """
+    tug = Tug.stan_tug_1205() if tug is None else tug
+    crew = _Crew(tug, vessel, campaign, seed=seed)
+    try:
+        with (
+            written_whole(truth_path(path), overwrite=overwrite) as part,
+            RecordingWriter(path, attributes={"vessel": vessel.name}, overwrite=overwrite) as writer,
+        ):
+            crew.record(writer, progress or _ignore)
+            truth = crew.truth()
+            part.write_text(truth_text(truth), encoding="utf-8")
+    except OSError as error:
+        raise RecordingError(f"{path}: the recording cannot be written: {error}") from None
+    return truth
+
+
+class _Sensor(Protocol):
+    """One channel of the logger."""
+
+    channel: str
+
+    def next(self, leg: Leg) -> NDArray[np.int16]: ...
+
+    def faults(self) -> list[Fault]: ...
+
+
+class _Crew:
+    """The sensors of one voyage and the log that they fill."""
+
+    def __init__(self, tug: Tug, vessel: Vessel, campaign: Campaign, *, seed: int) -> None:
+        self._tug, self._vessel, self._campaign, self._seed = tug, vessel, campaign, seed
+        self._rate_hz = RATE_HZ if vessel.logger is None else vessel.logger.sample_rate_hz
+        self._samples = round(campaign.duration_s * self._rate_hz)
+        if self._samples < 1:
+            raise SettingsError(
+                f"campaign {campaign.name}: expected at least one sample at {self._rate_hz:g} Hz, "
+                f"found a duration of {campaign.duration_s:g} s."
+            )
+        process, torque, set_point, *speeds = (
+            np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(3 + len(vessel.sensors.speed))
+        )
+        duration_s = campaign.duration_s
+        plant = build_plant(tug, vessel)
+        first_demand = Demand(tug, campaign, start_s=0.0, step_s=1.0 / self._rate_hz).first
+        load = plant.propeller_nm_s2
+        self._disturbance = Disturbance(tug.noise, 1.0 / self._rate_hz, process)
+        self._gauge = TorqueGauge(
+            tug.noise,
+            vessel,
+            load_nm_s2=load,
+            first_torque_nm=load * equilibrium(plant, first_demand)[SPEED] ** 2,
+            duration_s=duration_s,
+            rate_hz=self._rate_hz,
+            rng=torque,
+        )
+        self._helm = Helm(tug, vessel, campaign, rate_hz=self._rate_hz, rng=set_point)
+        self._pick_ups = [
+            PickUp(sensor, tug, vessel, duration_s=duration_s, rate_hz=self._rate_hz, rng=rng)
+            for sensor, rng in zip(vessel.sensors.speed, speeds, strict=True)
+        ]
+        self._sensors: tuple[_Sensor, ...] = (self._helm, *self._pick_ups, self._gauge)
+        self._limited = {excitation.name: 0 for excitation in campaign.excitations}
+
+    def record(self, writer: RecordingWriter, progress: Callable[[float], None]) -> None:
+        """Sail and write; the sensors and the file work in a second thread while the ship sails on."""
+        self._declare(writer)
+        legs = voyage(
+            self._tug,
+            self._vessel,
+            self._campaign,
+            step_s=1.0 / self._rate_hz,
+            steps=self._samples,
+            chunk=_CHUNK,
+            disturbance=self._disturbance,
+        )
+        done = 0
+        waiting: Future[None] | None = None
+        with ThreadPoolExecutor(max_workers=1) as second_thread:
+            for leg in legs:
+                if waiting is not None:
+                    waiting.result()
+                waiting = second_thread.submit(self._log, writer, leg)
+                done += leg.time_s.size
+                progress(done / self._samples)
+        if waiting is not None:
+            waiting.result()
+
+    def truth(self) -> Truth:
+        """Return the truth once all is recorded."""
+        faults = [fault for sensor in self._sensors for fault in sensor.faults()]
+        strips = tuple(
+            StripTruth(
+                channel=pick_up.channel,
+                angle_deg=tuple((360.0 * pick_up.angle_rev).tolist()),
+                start_deg=360.0 * pick_up.phase_rev,
+            )
+            for pick_up in self._pick_ups
+        )
+        lengths = {e.name: (e.stop_s - e.start_s) * self._rate_hz for e in self._campaign.excitations}
+        return tell_truth(
+            self._tug,
+            self._vessel,
+            self._campaign,
+            seed=self._seed,
+            rate_hz=self._rate_hz,
+            strips=strips,
+            faults=tuple(faults),
+            limited={name: count / lengths[name] for name, count in self._limited.items()},
+        )
+
+    def _declare(self, writer: RecordingWriter) -> None:
+        sensors = self._vessel.sensors
+        writer.declare(
+            sensors.set_point.channel,
+            unit=sensors.set_point.unit,
+            rate_hz=self._rate_hz,
+            scale=VOLT_PER_COUNT,
+            long_name="speed set point behind the potentiometer",
+        )
+        for sensor in sensors.speed:
+            writer.declare(
+                sensor.channel,
+                unit=sensor.unit,
+                rate_hz=self._rate_hz,
+                scale=VOLT_PER_COUNT,
+                long_name=f"pick-up on the {sensor.shaft} shaft, {sensor.pulses_per_revolution} per revolution",
+            )
+        writer.declare(
+            sensors.shaft_torque.channel,
+            unit=sensors.shaft_torque.unit,
+            rate_hz=self._rate_hz,
+            scale=self._gauge.scale,
+            long_name="torque telemetry of the propeller shaft",
+        )
+
+    def _log(self, writer: RecordingWriter, leg: Leg) -> None:
+        for sensor in self._sensors:
+            writer.append(sensor.channel, sensor.next(leg))
+        times = leg.time_s[leg.limited]
+        for excitation in self._campaign.excitations:
+            inside = (times >= excitation.start_s) & (times < excitation.stop_s)
+            self._limited[excitation.name] += int(np.count_nonzero(inside))
+
+
+def _ignore(share: float) -> None:
+    """Show no progress."""

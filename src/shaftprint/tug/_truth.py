@@ -1,0 +1,176 @@
+"""The truth behind a simulated recording, in a file of its own that no reader opens."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from shaftprint.campaign import Campaign
+from shaftprint.errors import RecordingError
+from shaftprint.tug._faults import Fault
+from shaftprint.tug._physics import build_plant, shaft_time_constant_s
+from shaftprint.tug._tug import Tug
+from shaftprint.vessel import Vessel
+
+SCHEMA = 1
+"""Version of the truth file."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class StripTruth:
+    """True strips of one pick-up."""
+
+    channel: str
+    """Name of the channel."""
+    angle_deg: tuple[float, ...]
+    """Angle from each strip to the next [degree], from strip 1 on; they sum to 360."""
+    start_deg: float
+    """Angle of the shaft at the start, from the marked edge of strip 1 [degree]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Truth:
+    """Everything that was put into a simulated recording."""
+
+    vessel: str
+    """Name of the vessel."""
+    campaign: str
+    """Name of the campaign."""
+    seed: int
+    """Seed of all randomness."""
+    duration_s: float
+    """Length of the recording [s]."""
+    rate_hz: float
+    """Sample rate of every channel [Hz]."""
+    normalised: Mapping[str, float]
+    """Parameters normalised at the working point: ``tau_up``, ``tau_dn``, ``tau_t`` [s], ``k_q``, ``g``, ``v``,
+    ``K_p``, ``K_i`` [1/s], ``t_d`` [s], ``omega_n`` [rad/s], ``zeta``, ``t_sp`` [s]."""
+    physical: Mapping[str, float]
+    """The same in physical units, which the names carry; rack as a fraction, speeds of the engine in rev/s."""
+    engine_speed_rpm: float
+    """Engine speed of the working point [rpm]."""
+    shaft_torque_nm: float
+    """Shaft torque of the working point [N m]."""
+    set_point_slope_rpm_per_v: float
+    """Slope of the true set-point line [rpm/V]."""
+    set_point_intercept_rpm: float
+    """Intercept of the true set-point line [rpm]."""
+    set_point_offset_v: float
+    """What the potentiometer adds to the voltage of the campaign [V]."""
+    strips: tuple[StripTruth, ...]
+    """Strips of every pick-up."""
+    faults: tuple[Fault, ...]
+    """Faults of the recording in the order of time."""
+    limited: Mapping[str, float]
+    """Share of the time for which a limit of torque or rack acted, by excitation."""
+    noise: Mapping[str, float]
+    """Sizes of the noise."""
+
+
+def normalised_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
+    """Return the parameters normalised at the working point, by the names of the thesis' symbols."""
+    plant = build_plant(tug, vessel)
+    upstream = shaft_time_constant_s(plant.inertia_upstream_kg_m2, tug, vessel)
+    downstream = shaft_time_constant_s(plant.inertia_downstream_kg_m2, tug, vessel)
+    return {
+        "tau_up": upstream,
+        "tau_dn": downstream,
+        "tau_t": upstream + downstream,
+        "k_q": 2.0,
+        "g": tug.g,
+        "v": tug.v,
+        "K_p": tug.proportional_gain,
+        "K_i": tug.integral_gain_per_s,
+        "t_d": tug.governor_delay_s,
+        "omega_n": tug.natural_frequency_rad_s,
+        "zeta": tug.damping_ratio,
+        "t_sp": tug.set_point_latency_s,
+    }
+
+
+def physical_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
+    """Return the physical constants with their units in the names."""
+    plant = build_plant(tug, vessel)
+    return {
+        "inertia_upstream_kg_m2": plant.inertia_upstream_kg_m2,
+        "inertia_downstream_kg_m2": plant.inertia_downstream_kg_m2,
+        "propeller_nm_per_rev_s_squared": plant.propeller_nm_s2,
+        "map_speed_slope_nm_per_rev_s": plant.speed_slope_nm_s,
+        "map_rack_slope_nm": plant.rack_slope_nm,
+        "map_offset_nm": plant.rack_offset_nm,
+        "governor_proportional_per_rev_s": plant.proportional_s,
+        "governor_integral_per_rev": plant.integral,
+        "anti_windup_s": plant.anti_windup_s,
+        "motoring_torque_nm": plant.motoring_torque_nm,
+        "gear_ratio": plant.gear_ratio,
+        "transmission_efficiency": plant.efficiency,
+    }
+
+
+def tell_truth(
+    tug: Tug,
+    vessel: Vessel,
+    campaign: Campaign,
+    *,
+    seed: int,
+    rate_hz: float,
+    strips: tuple[StripTruth, ...],
+    faults: tuple[Fault, ...],
+    limited: Mapping[str, float],
+) -> Truth:
+    """Gather the truth of one voyage."""
+    return Truth(
+        vessel=vessel.name,
+        campaign=campaign.name,
+        seed=seed,
+        duration_s=campaign.duration_s,
+        rate_hz=rate_hz,
+        normalised=normalised_truth(tug, vessel),
+        physical=physical_truth(tug, vessel),
+        engine_speed_rpm=tug.engine_speed_rpm,
+        shaft_torque_nm=tug.shaft_torque_nm,
+        set_point_slope_rpm_per_v=tug.set_point_slope_rpm_per_v,
+        set_point_intercept_rpm=tug.set_point_intercept_rpm,
+        set_point_offset_v=tug.set_point_offset_v,
+        strips=strips,
+        faults=tuple(sorted(faults, key=lambda fault: (fault.time_s, fault.channel))),
+        limited=limited,
+        noise=asdict(tug.noise),
+    )
+
+
+def truth_path(recording: str | Path) -> Path:
+    """Return where the truth of a recording lies: ``NAME.truth.json`` beside it."""
+    return Path(recording).with_suffix(".truth.json")
+
+
+def truth_text(truth: Truth) -> str:
+    """Return a truth as the text of its file."""
+    return json.dumps({"schema": SCHEMA} | asdict(truth), indent=1, allow_nan=False) + "\n"
+
+
+def read_truth(path: str | Path) -> Truth:
+    """Read a truth file, for comparisons with an estimate; nothing that estimates may do so.
+
+    Parameters
+    ----------
+    path
+        The truth file.
+
+    Raises
+    ------
+    RecordingError
+        If there is no such file or it is not a truth file of this version.
+    """
+    try:
+        content = json.loads(Path(path).read_text(encoding="utf-8"))
+        schema = content.pop("schema")
+        if schema != SCHEMA:
+            raise RecordingError(f"{path}: expected truth of schema {SCHEMA}, found {schema}; simulate it again.")
+        content["strips"] = tuple(
+            StripTruth(**strip | {"angle_deg": tuple(strip["angle_deg"])}) for strip in content["strips"]
+        )
+        content["faults"] = tuple(Fault(**fault) for fault in content["faults"])
+        return Truth(**content)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise RecordingError(f"{path}: expected a truth file written beside a recording, found {error!r}.") from None

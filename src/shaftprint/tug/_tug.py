@@ -1,0 +1,77 @@
+"""The truth that a simulated tug is built from."""
+
+from dataclasses import dataclass, field
+from typing import Self
+
+from shaftprint.tug._noise import Noise
+
+# Table 3.4 of the thesis, "Fingerprinting II": angles between the reflection strips [degree]; printed sum 360.02.
+STRIP_ANGLES_DEG = (90.40, 87.24, 90.74, 91.64)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Tug:
+    """Truth of a simulated propulsion line: governor, engine, shaft, set-point chain and noise.
+
+    Gains are given as in the thesis, normalised at the working point; ``build_plant`` converts them to physical
+    ones. The defaults are the reference truth of the shipped Stan Tug 1205. No delay is a multiple of the
+    logger's 0.5 ms, so that a method which rounds delays to samples is found out.
+    """
+
+    engine_speed_rpm: float = 1183.8
+    """Engine speed of the working point ``n_0`` [rpm]."""
+    shaft_torque_nm: float = 1725.0
+    """Shaft torque of the working point ``M_s0`` [N m]: the propeller law goes through it exactly."""
+    inertia_upstream_kg_m2: float | None = None
+    """Inertia upstream of the torque gauge, referred to the propeller shaft [kg m2]; ``None``: the vessel's."""
+    inertia_downstream_kg_m2: float | None = None
+    """Inertia downstream of the torque gauge, with entrained water [kg m2]; ``None``: the vessel's."""
+    g: float = 0.0
+    """Slope of brake torque over engine speed at constant rack, normalised at the working point."""
+    v: float = 1.0
+    """Slope of brake torque over fuel rack at constant speed, normalised at the working point."""
+    proportional_gain: float = 5.7
+    """``K_p`` of the governor, normalised at the working point."""
+    integral_gain_per_s: float = 4.27
+    """``K_i`` of the governor, normalised at the working point [1/s]."""
+    anti_windup_s: float = 0.5
+    """Time constant of the back-calculation that empties the integrator at the limits [s]."""
+    governor_delay_s: float = 0.0703
+    """Transport delay ``t_d`` between governor output and fuel rack, inside the loop [s]; 0 or at least 1.5 ms."""
+    natural_frequency_rad_s: float = 10.3
+    """Natural frequency ``omega_n`` of the fuel actuation [rad/s]."""
+    damping_ratio: float = 0.47
+    """Damping ratio ``zeta`` of the fuel actuation."""
+    set_point_latency_s: float = 0.0518
+    """Time ``t_sp`` from the set-point voltage to the demand in the ECU, outside the loop [s]."""
+    set_point_slope_rpm_per_v: float = -250.97
+    """Slope of the line from voltage to speed demand [rpm/V]."""
+    set_point_intercept_rpm: float = -83.467
+    """Intercept of that line [rpm]."""
+    set_point_offset_v: float = -0.04947603299199
+    """What the potentiometer adds to the voltage of the campaign [V]: at -5 V the default line gives ``n_0``."""
+    demand_resolution_rpm: float | None = None
+    """Step of the demand on its way to the ECU [rpm]; ``None``: not quantised."""
+    demand_rate_limit_rpm_per_s: float | None = None
+    """Fastest change of the demand that the ECU follows [rpm/s]; ``None``: no limit.
+
+    None by default: a limit that high-speed engines have (100 to 600 rpm/s) would already bend the sine S10, and the
+    thesis sees no sign of that.
+    """
+    motoring_torque_nm: float = 260.0
+    """Torque that the engine takes at the working point when no fuel is burnt [N m]: the lower torque limit.
+
+    The rack may go below zero-torque running by as much, where no fuel is left. The default is on the high side for
+    friction alone (22 % of rated torque, with compression and driven pumps): the sine S12 swings the brake torque
+    down to -197 N m, and no sine may be clipped. The chirps C11 and C23 still touch both limits where they pass the
+    closed-loop peak near 1.2 Hz, and the steps do.
+    """
+    strip_angles_deg: tuple[float, ...] = STRIP_ANGLES_DEG
+    """Angles between the reflection strips of a pick-up with as many pulses a revolution [degree], scaled to 360."""
+    noise: Noise = field(default_factory=Noise)
+    """Disturbances, measurement noise and faults."""
+
+    @classmethod
+    def stan_tug_1205(cls) -> Self:
+        """Return the reference truth of the shipped Stan Tug 1205."""
+        return cls()

@@ -1,0 +1,96 @@
+"""A voyage: the propulsion line stepped through a campaign, chunk by chunk."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.campaign import Campaign
+from shaftprint.tug._demand import Demand
+from shaftprint.tug._disturbance import Disturbance
+from shaftprint.tug._physics import build_plant, equilibrium
+from shaftprint.tug._plant import RACK, Carried, Delay, Traces, advance, interpolation_weights
+from shaftprint.tug._tug import Tug
+from shaftprint.vessel import Vessel
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Leg:
+    """What really happens in one chunk of a voyage, one value at the start of each step."""
+
+    time_s: FloatArray
+    """Time [s], shape (steps,)."""
+    shaft_speed_rev_s: FloatArray
+    """Speed of the propeller shaft [rev/s], shape (steps,)."""
+    shaft_angle_rev: FloatArray
+    """Angle of the propeller shaft since the start [rev], shape (steps,)."""
+    shaft_torque_nm: FloatArray
+    """Torque at the gauge [N m], shape (steps,)."""
+    brake_torque_nm: FloatArray
+    """Brake torque of the engine [N m], engine side, shape (steps,)."""
+    limited: BoolArray
+    """Whether a limit of torque or rack acts, shape (steps,)."""
+
+
+def voyage(
+    tug: Tug,
+    vessel: Vessel,
+    campaign: Campaign,
+    *,
+    step_s: float,
+    steps: int,
+    chunk: int,
+    start_s: float = 0.0,
+    disturbance: Disturbance,
+) -> Iterator[Leg]:
+    """Step the line from the equilibrium of the set point at ``start_s``, in chunks of steps.
+
+    Parameters
+    ----------
+    tug, vessel, campaign
+        The truth, the installation and what is asked of it.
+    step_s
+        Length of a step [s].
+    steps
+        Number of steps.
+    chunk
+        Largest number of steps in one leg; the values do not depend on it.
+    start_s
+        Time of the first step [s].
+    disturbance
+        Stream of the process disturbances, made for the same step.
+
+    Yields
+    ------
+    leg
+        The next chunk.
+    """
+    plant = build_plant(tug, vessel)
+    demand = Demand(tug, campaign, start_s=start_s, step_s=step_s)
+    delay_steps = plant.delay_s / step_s
+    parts = [interpolation_weights(stage - delay_steps) for stage in (0.0, 0.5, 1.0)]
+    delay = Delay(
+        first=np.array([node for node, _ in parts], dtype=np.int64), weights=np.array([weight for _, weight in parts])
+    )
+    state = equilibrium(plant, demand.first)
+    size = 1 << int(np.ceil(np.log2(delay_steps + 8.0)))
+    carried = Carried(state=state, history=np.full(size, state[RACK]), counter=np.zeros(1, dtype=np.int64))
+    done = 0
+    while done < steps:
+        count = min(chunk, steps - done)
+        propeller, engine, wander = disturbance.next(count)
+        speed, angle, torque, brake = np.empty((4, count))
+        limited = np.empty(count, dtype=np.bool_)
+        traces = Traces(speed, angle, torque, brake, limited)
+        advance(step_s, demand.next(count, wander), propeller, engine, plant, delay, carried, traces)
+        time: FloatArray = start_s + step_s * np.arange(done, done + count, dtype=np.float64)
+        yield Leg(
+            time_s=time,
+            shaft_speed_rev_s=speed,
+            shaft_angle_rev=angle,
+            shaft_torque_nm=torque,
+            brake_torque_nm=brake,
+            limited=limited,
+        )
+        done += count
