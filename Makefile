@@ -1,0 +1,57 @@
+# Needs Python >= 3.11, git and make; everything else goes into the folder .venv.
+# Each target installs what it needs from the pinned versions in requirements/, with their hashes.
+
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check
+# the newest Python that is tested, then any other that is new enough
+PYTHONS := python3.13 python3.12 python3.11 python3.14 python3 python
+PYTHON ?= $(shell for p in $(PYTHONS); do \
+	$$p -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
+ROOMS := signals spectra models identify
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint bench wheel lock clean
+
+help: ## Say what can be made
+	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-6s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
+
+demo: $(VENV)/run ## Sail the simulated tug and identify it; results in demo/
+	$(BIN)/shaftprint demo -o demo
+
+test: $(VENV)/test ## Run all tests, with the coverage of the calculating rooms
+	$(BIN)/python -m pytest -n auto --dist loadfile --cov-branch $(ROOMS:%=--cov=shaftprint.%) \
+		--cov-report=term:skip-covered --cov-fail-under=95
+
+lint: $(VENV)/lint ## Check style, types and the direction of imports
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(VENV)/benchmark ## Run shaftprint beside its peers and print the ratios
+	$(BIN)/python -m benchmarks
+
+wheel: $(VENV)/run ## Build the wheel into dist/
+	rm -rf dist
+	$(BIN)/python -m hatchling build -t wheel
+
+lock: $(VENV)/bin/python ## Choose new versions for requirements/ (needs the network)
+	$(PIP) install --quiet uv
+	PATH="$(CURDIR)/$(BIN):$$PATH" requirements/lock
+
+clean: ## Delete the environment and everything that was made
+	rm -rf $(VENV) dist build demo .coverage* .pytest_cache .mypy_cache .ruff_cache .hypothesis .import_linter_cache
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+$(VENV)/bin/python:
+	@test -n "$(PYTHON)" || { echo "Python 3.11 or newer with the modules venv and ensurepip is needed; found none" \
+		"among $(PYTHONS). On Debian and Ubuntu: apt install python3-venv."; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+
+# One stamp a set of requirements; the project itself is installed so that changes to src/ take effect at once.
+$(VENV)/run $(VENV)/test $(VENV)/lint $(VENV)/benchmark: $(VENV)/%: requirements/%.txt pyproject.toml | $(VENV)/bin/python
+	@echo "Installing requirements/$*.txt into $(VENV) (a minute or two) ..."
+	@$(PIP) install --quiet --require-hashes --requirement requirements/$*.txt
+	@$(PIP) install --quiet --no-deps --no-build-isolation --editable .
+	@touch $@
