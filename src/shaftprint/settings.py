@@ -164,9 +164,12 @@ def _describe(details: ErrorDetails, model_class: type[Settings], content: Any) 
         case "too_short":
             limits = details["ctx"]
             return f"{where}: expected at least {limits['min_length']} entries, found {limits['actual_length']}."
-        case kind:
-            expected = _EXPECTED.get(kind, details["msg"].removeprefix("Input should be "))
-            return f"{where}: expected {expected.format_map(details.get('ctx', {}))}, found {details['input']!r}."
+        case kind if kind in _EXPECTED:
+            expected = _EXPECTED[kind].format_map(details.get("ctx", {}))
+            return f"{where}: expected {expected}, found {details['input']!r}."
+        case _:
+            expected = details["msg"].removeprefix("Input should be ")
+            return f"{where}: expected {expected}, found {details['input']!r}."
 
 
 def _dotted_path(location: Sequence[int | str], content: Any) -> str:

@@ -49,8 +49,10 @@ def uniform_clock(path: Path, name: str, count: int, read: Callable[[int, int], 
     if count < 2:
         raise RecordingError(f"{path}, {name}: expected at least 2 rows of times, found {count}.")
     first, last = float(read(0, 1)[0]), float(read(count - 1, count)[0])
-    step = float(np.median(np.diff(read(0, min(count, 1001)))))
-    if not (np.isfinite(step) and step > 0.0):
+    steps = np.diff(read(0, min(count, 1001)))
+    steps = steps[np.isfinite(steps)]
+    step = float(np.median(steps)) if steps.size else np.nan
+    if not step > 0.0:
         raise RecordingError(f"{path}, {name}: expected ascending times, found a step of {step:g} s.")
     _expect_equal_steps(path, name, count, read, step)
     mean_step = (last - first) / (count - 1)

@@ -88,7 +88,7 @@ def _numbers(path: Path, lines: Sequence[str], header: Header, before: int) -> F
         for number, line in enumerate(lines):
             fields = [field.strip() or "nan" for field in line.rstrip("\n").split(header.delimiter)]
             try:
-                block[number] = np.array(fields, dtype=np.float64)
+                block[number] = _exactly(width, fields)
             except ValueError:
                 raise RecordingError(
                     f"{path}, row {before + number + 1}: expected {width} numbers, "
@@ -104,6 +104,12 @@ def _numbers(path: Path, lines: Sequence[str], header: Header, before: int) -> F
 
 def _parse(lines: Sequence[str], delimiter: str) -> FloatArray:
     return np.loadtxt(lines, dtype=np.float64, delimiter=delimiter, comments=None, ndmin=2)
+
+
+def _exactly(width: int, fields: Sequence[str]) -> list[float]:
+    if len(fields) != width:
+        raise ValueError(f"{len(fields)} fields")
+    return [float(field) for field in fields]
 
 
 def _recording(path: Path, header: Header, spool: Spool, count: int) -> Recording:

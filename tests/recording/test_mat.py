@@ -1,0 +1,233 @@
+"""MATLAB files of both kinds."""
+
+import hashlib
+
+import h5py
+import numpy as np
+import pytest
+import scipy.io
+
+from shaftprint.errors import RecordingError
+from shaftprint.recording import read_recording, write_mat_v5, write_mat_v73
+
+TIME = 2.0 + np.arange(1000) / 500.0
+TORQUE = np.sin(TIME)
+COUNTS = np.arange(1000, dtype=np.int16)
+
+
+def _save_v73(path, variables):
+    """Write variables as MATLAB does: dimensions turned round, class in an attribute, header in front."""
+    with h5py.File(path, "w", userblock_size=512) as file:
+        for name, value in variables.items():
+            if isinstance(value, dict):
+                file.create_group(name).attrs["MATLAB_class"] = np.bytes_("struct")
+                continue
+            if isinstance(value, str):
+                codes = np.array([[ord(letter)] for letter in value], dtype=np.uint16)
+                dataset = file.create_dataset(name, data=codes)
+                dataset.attrs["MATLAB_class"] = np.bytes_("char")
+                continue
+            array = np.atleast_2d(np.asarray(value))
+            if np.iscomplexobj(array):
+                array = array.view([("real", "f8"), ("imag", "f8")])
+            dataset = file.create_dataset(name, data=array)
+            dataset.attrs["MATLAB_class"] = np.bytes_("int16" if array.dtype == np.int16 else "double")
+    content = bytearray(path.read_bytes())
+    content[:128] = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(116) + bytes(8) + b"\x00\x02IM"
+    path.write_bytes(content)
+
+
+@pytest.fixture(params=["v5", "v73"])
+def save(request, tmp_path):
+    """Return a function that saves variables and returns the path, once for each kind of file."""
+
+    def save(variables, *, name="log.mat"):
+        path = tmp_path / name
+        if request.param == "v5":
+            scipy.io.savemat(path, variables)
+        else:
+            _save_v73(path, variables)
+        return path
+
+    return save
+
+
+def test_vectors_are_channels_on_the_clock_of_the_time(save):
+    path = save(
+        {"t": TIME, "M_s": TORQUE, "PTM_e": COUNTS, "M_s_unit": "N m", "ship": "tug", "gain": 3.0, "s": {"a": 1}}
+    )
+    with read_recording(path) as recording:
+        assert set(recording.channels) == {"M_s", "PTM_e"}
+        assert recording.sha256 == hashlib.sha256(path.read_bytes()).hexdigest()
+        torque, pulses = recording.channel("M_s"), recording.channel("PTM_e")
+        assert (torque.rate_hz, torque.start_s, torque.count, torque.unit) == (500.0, 2.0, 1000, "N m")
+        assert pulses.unit == ""
+        assert np.array_equal(torque.values(10, 20), TORQUE[10:20])
+        assert np.array_equal(pulses.values(0, 1000), COUNTS.astype(float))
+
+
+@pytest.mark.parametrize(
+    ("clock", "hints"),
+    [
+        ({"sample_rate_hz": 500.0, "start_s": 2.0}, {}),
+        ({"fs": 500.0, "start_s": 2.0}, {}),
+        ({"start_s": 2.0}, {"sample_rate_hz": 500}),
+        ({"time": TIME, "fs": 500.0}, {"sample_rate_hz": 500.0}),
+    ],
+)
+def test_ways_of_giving_the_clock(save, clock, hints):
+    with read_recording(save({"M_s": TORQUE} | clock), **hints) as recording:
+        channel = recording.channel("M_s")
+        assert (channel.rate_hz, channel.start_s) == (500.0, 2.0)
+
+
+def test_column_vectors_and_row_vectors_are_the_same(save):
+    with read_recording(save({"a": TORQUE[:, np.newaxis], "b": TORQUE[np.newaxis, :], "fs": 1.0})) as recording:
+        assert np.array_equal(recording.channel("a").values(0, 1000), TORQUE)
+        assert np.array_equal(recording.channel("b").values(0, 1000), TORQUE)
+
+
+@pytest.mark.parametrize(
+    ("variables", "hints", "expected"),
+    [
+        ({"M_s": TORQUE}, {}, "expected a clock, .* found none; pass sample_rate_hz="),
+        ({"fs": 500.0}, {}, "expected vectors of numbers as channels, found none"),
+        ({"t": TIME}, {}, "expected vectors of numbers as channels, found none"),
+        ({"t": TIME, "time": TIME, "M_s": TORQUE}, {}, "expected one of time or t, found both"),
+        ({"fs": 1.0, "sample_rate_hz": 1.0, "M_s": TORQUE}, {}, "expected one of sample_rate_hz or fs, found both"),
+        ({"t": TIME, "M_s": TORQUE[:-1]}, {}, "vectors of equal length, found .*M_s 999"),
+        ({"t": TIME, "M_s": TORQUE}, {"sample_rate_hz": 200.0}, "one sample rate, found t 500 Hz, the hint .* 200 Hz"),
+        ({"t": TIME, "fs": 501.0, "M_s": TORQUE}, {}, "one sample rate, found t 500 Hz, fs 501 Hz"),
+        ({"t": np.delete(np.append(TIME, 9.0), 500), "M_s": TORQUE}, {}, "variable t: .* 0.004 s before row 501"),
+        ({"fs": 0.0, "M_s": TORQUE}, {}, "channel M_s: expected a positive rate"),
+        ({"fs": 1.0, "M_s": TORQUE}, {"sample_rate_hz": -1}, "the hint sample_rate_hz cannot be -1"),
+        ({"fs": 1.0, "M_s": TORQUE}, {"sample_rate_hz": True}, "the hint sample_rate_hz cannot be True"),
+        ({"fs": 1.0, "M_s": TORQUE}, {"decimal": ","}, "only the hints sample_rate_hz for this format"),
+        ({"fs": 1.0, "M_s": TORQUE + 1j}, {}, "variable M_s: expected real numbers, found complex ones"),
+    ],
+)
+def test_a_file_that_cannot_be_used_is_explained(save, variables, hints, expected):
+    path = save(variables)
+    with pytest.raises(RecordingError, match=expected) as found:
+        read_recording(path, **hints)
+    assert str(path) in str(found.value) or "channel M_s" in str(found.value)
+
+
+def test_a_truncated_file_is_told(save):
+    path = save({"t": TIME, "M_s": TORQUE})
+    path.write_bytes(path.read_bytes()[:1500])
+    with pytest.raises(RecordingError, match="expected a whole MATLAB file, found a damaged or truncated one"):
+        read_recording(path)
+
+
+def test_a_file_with_nothing_but_a_header_is_told(tmp_path):
+    path = tmp_path / "log.mat"
+    scipy.io.savemat(path, {"M_s": TORQUE})
+    path.write_bytes(path.read_bytes()[:128] + bytes(range(1, 100)))
+    with pytest.raises(RecordingError, match="expected a whole MATLAB file, found a damaged or truncated one"):
+        read_recording(path)
+
+
+def test_a_closed_recording_says_so(save):
+    with read_recording(save({"t": TIME, "M_s": TORQUE})) as recording:
+        channel = recording.channel("M_s")
+    with pytest.raises(RecordingError, match="channel M_s: the recording has been closed already"):
+        channel.read(0, 1)
+
+
+def test_a_damaged_block_is_told(native, tmp_path):
+    path = tmp_path / "out.mat"
+    with read_recording(native) as recording:
+        write_mat_v73(path, [recording.channel("M_s")])
+    with h5py.File(path, "r") as file:
+        block = file["M_s"].id.get_chunk_info(0)
+    content = bytearray(path.read_bytes())
+    start = 512 + block.byte_offset
+    content[start : start + 200] = bytes(200)
+    path.write_bytes(content)
+    with read_recording(path) as recording, pytest.raises(RecordingError, match=r"samples \[0, 10\) are damaged"):
+        recording.channel("M_s").read(0, 10)
+
+
+@pytest.mark.parametrize("write", [write_mat_v5, write_mat_v73])
+def test_what_is_written_is_read_again(native, tmp_path, write):
+    path = tmp_path / "out.mat"
+    with read_recording(native) as recording:
+        torque = recording.channel("M_s")
+        write(path, [torque])
+        expected = torque.values(0, torque.count)
+    with read_recording(path) as again:
+        channel = again.channel("M_s")
+        assert (channel.rate_hz, channel.start_s, channel.unit) == (1000.0, 0.25, "N m")
+        assert np.array_equal(channel.values(0, channel.count), expected)
+
+
+def test_scipy_reads_what_is_written_for_version_5(native, tmp_path, counts):
+    path = tmp_path / "out.mat"
+    with read_recording(native) as recording:
+        write_mat_v5(path, [recording.channel("PTM_e")])
+    found = scipy.io.loadmat(path)
+    assert found["PTM_e"].shape == (300_000, 1)
+    assert found["PTM_e"][:, 0] == pytest.approx(counts["PTM_e"] * 10.0 / 32_768.0)
+    assert found["PTM_e_unit"].tolist() == ["V"]
+    assert found["sample_rate_hz"].item() == 2000.0
+
+
+def test_version_7_3_is_laid_out_as_matlab_does(native, tmp_path):
+    path = tmp_path / "out.mat"
+    with read_recording(native) as recording:
+        write_mat_v73(path, [recording.channel("PTM_e")])
+    content = path.read_bytes()
+    assert content[:19] == b"MATLAB 7.3 MAT-file"
+    # version 0x0200 and the byte-order mark, at bytes 124 to 127
+    assert content[124:128] == b"\x00\x02IM"
+    assert content[512:520] == b"\x89HDF\r\n\x1a\n"
+    with h5py.File(path, "r") as file:
+        assert file["PTM_e"].shape == (1, 300_000)
+        assert file["PTM_e"].attrs["MATLAB_class"] == b"double"
+        assert file["PTM_e_unit"].attrs["MATLAB_class"] == b"char"
+        assert file["PTM_e_unit"][()].tolist() == [[ord("V")]]
+
+
+@pytest.mark.parametrize("write", [write_mat_v5, write_mat_v73])
+def test_a_channel_without_unit_has_none_after_a_round_trip(save, tmp_path, write):
+    path = tmp_path / "out.mat"
+    with read_recording(save({"t": TIME, "M_s": TORQUE})) as recording:
+        write(path, recording.channels.values())
+    with read_recording(path) as again:
+        assert again.channel("M_s").unit == ""
+
+
+@pytest.mark.parametrize("write", [write_mat_v5, write_mat_v73])
+def test_what_matlab_would_not_take_is_not_written(tmp_path, native, write):
+    csv = tmp_path / "log.csv"
+    csv.write_text("time [s],shaft torque [V],t [V]\n0,1,2\n1,2,3\n")
+    with read_recording(csv) as recording:
+        for name in ("shaft torque", "t"):
+            with pytest.raises(RecordingError, match=f'a channel name that MATLAB takes .* found "{name}"'):
+                write(tmp_path / "out.mat", [recording.channel(name)])
+    with read_recording(native) as recording, pytest.raises(RecordingError, match="exists already"):
+        write(native, [recording.channel("M_s")])
+    assert not (tmp_path / "out.mat").exists()
+
+
+def test_vectors_beyond_2_gib_need_version_7_3(tmp_path, native):
+    with read_recording(native) as recording:
+        channel = recording.channel("M_s")
+        object.__setattr__(channel, "count", 2**28)
+        with pytest.raises(RecordingError, match=r"below 2 GiB for this version, found 268435456 samples; use v7\.3"):
+            write_mat_v5(tmp_path / "out.mat", [channel])
+
+
+def test_a_variable_of_another_size_is_no_channel(save):
+    with read_recording(save({"fs": 1.0, "M_s": TORQUE, "matrix": np.ones((3, 4))})) as recording:
+        assert list(recording.channels) == ["M_s"]
+
+
+def test_an_empty_variable_of_version_7_3_is_no_channel(tmp_path):
+    path = tmp_path / "log.mat"
+    _save_v73(path, {"M_s": TORQUE, "fs": 1.0, "empty": np.array([0.0, 0.0])})
+    with h5py.File(path, "r+") as file:
+        file["empty"].attrs["MATLAB_empty"] = np.int32(1)
+    with read_recording(path) as recording:
+        assert list(recording.channels) == ["M_s"]

@@ -1,0 +1,65 @@
+"""Choosing the reader of a file."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from shaftprint.errors import RecordingError
+from shaftprint.recording import READERS, Reader, Recording, read_recording
+
+
+def _reader(name, *, mine):
+    def read(path, **hints):
+        return Recording(path=path, sha256="", format=f"{name} {sorted(hints)}", channels={})
+
+    return SimpleNamespace(NAME=name, is_mine=lambda path: mine, read=read)
+
+
+@pytest.fixture
+def path(tmp_path):
+    path = tmp_path / "logger.dat"
+    path.write_bytes(b"something")
+    return path
+
+
+def test_the_one_that_claims_the_file_reads_it(path):
+    readers: list[Reader] = [_reader("A", mine=False), _reader("B", mine=True)]
+    assert read_recording(path, readers=readers, gain=2).format == "B ['gain']"
+
+
+def test_a_file_that_nobody_claims_is_refused_with_the_known_formats(path):
+    with pytest.raises(RecordingError) as found:
+        read_recording(path)
+    for reader in READERS:
+        assert reader.NAME in str(found.value)
+    assert str(path) in str(found.value)
+
+
+def test_a_file_that_two_claim_is_refused_with_both(path):
+    with pytest.raises(RecordingError, match="it may be A and B; pass the right one as readers"):
+        read_recording(path, readers=[_reader("A", mine=True), _reader("B", mine=True)])
+
+
+def test_a_missing_file_a_folder_and_an_empty_file_are_told(tmp_path):
+    with pytest.raises(RecordingError, match=r"none\.nc: expected a logger file, found none there"):
+        read_recording(tmp_path / "none.nc")
+    with pytest.raises(RecordingError, match="expected a logger file, found none there"):
+        read_recording(tmp_path)
+    (tmp_path / "empty.csv").touch()
+    with pytest.raises(RecordingError, match=r"empty\.csv: expected a logger file, found an empty one"):
+        read_recording(tmp_path / "empty.csv")
+
+
+def test_a_file_that_cannot_be_opened_is_told(path):
+    def fail(path):
+        raise PermissionError("Permission denied")
+
+    reader = SimpleNamespace(NAME="A", is_mine=fail, read=None)
+    with pytest.raises(RecordingError, match=r"logger\.dat: the file cannot be read \(Permission denied\)"):
+        read_recording(path, readers=[reader])
+
+
+def test_a_recording_without_channels_says_so(path):
+    recording = read_recording(path, readers=[_reader("A", mine=True)])
+    with recording, pytest.raises(RecordingError, match='expected a channel "U", found none'):
+        recording.channel("U")
