@@ -5,8 +5,11 @@ from numba import njit
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign, setpoint
+from shaftprint.errors import SettingsError
+from shaftprint.tug._physics import working_point
 from shaftprint.tug._tug import Tug
-from shaftprint.units import rev_s_from_rpm
+from shaftprint.units import rev_s_from_rpm, rpm_from_rev_s
+from shaftprint.vessel import Vessel
 
 
 @njit(cache=True, nogil=True)
@@ -30,18 +33,21 @@ def demanded_speed(tug: Tug, voltage_v: FloatArray) -> FloatArray:
 class Demand:
     """Stream of the speed demand in the ECU on half steps: late, quantised and rate-limited if the truth says so."""
 
-    def __init__(self, tug: Tug, campaign: Campaign, *, start_s: float, step_s: float) -> None:
+    def __init__(self, tug: Tug, vessel: Vessel, campaign: Campaign, *, start_s: float, step_s: float) -> None:
         self._tug = tug
         self._campaign = campaign
+        self._working_point_rev_s, _ = working_point(tug, vessel)
         self._start_s = start_s
         self._half_step_s = 0.5 * step_s
         self._count = 0
+        self.first = float(self._late(np.array([start_s]))[0])
+        """Demand at the start [rev/s], at which the line is taken to run steadily."""
+        if not self.first > 0.0:
+            raise SettingsError(
+                f"campaign {campaign.name}: expected a set point that asks for a positive speed at {start_s:g} s, "
+                f"found {rpm_from_rev_s(self.first):g} rpm by the line of the tug; change its slope, intercept or offset."
+            )
         self._last = self.first
-
-    @property
-    def first(self) -> float:
-        """Demand at the start [rev/s], in which the line is taken to run steadily."""
-        return float(self._late(np.array([self._start_s]))[0])
 
     def next(self, steps: int, wander: FloatArray) -> FloatArray:
         """Return the demand [rev/s] at the nodes and middles of the next steps, shape (2 steps + 1,).
@@ -58,9 +64,8 @@ class Demand:
             demand[0] = self._last
             _rate_limit(demand[1:], largest, self._last)
             self._last = float(demand[-1])
-        working_point = rev_s_from_rpm(self._tug.engine_speed_rpm)
-        demand[::2] += working_point * wander
-        demand[1::2] += 0.5 * working_point * (wander[:-1] + wander[1:])
+        demand[::2] += self._working_point_rev_s * wander
+        demand[1::2] += 0.5 * self._working_point_rev_s * (wander[:-1] + wander[1:])
         return demand
 
     def _late(self, time_s: FloatArray) -> FloatArray:

@@ -31,7 +31,7 @@ class _Colour(NamedTuple):
     hunting: _Resonance
 
 
-@njit(inline="always")
+@njit(inline="always", cache=True)
 def _swing(step_s, resonance, white, state, place):  # type: ignore[no-untyped-def]
     """Step one resonance, whose value and rate stand at ``place`` and the place after it."""
     # semi-implicit Euler: stable and, at a hundredth of a period a step, exact enough for noise

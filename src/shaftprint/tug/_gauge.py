@@ -42,7 +42,7 @@ class _Telemetry(NamedTuple):
     """Load over the square of the shaft speed [N m s2]."""
 
 
-@njit(inline="always")
+@njit(inline="always", cache=True)
 def _to_count(torque_nm, telemetry):  # type: ignore[no-untyped-def]
     """Return what the logger stores for a torque after the telemetry's steps and limits."""
     if telemetry.resolution_nm > 0.0:
@@ -63,7 +63,7 @@ class _Memory(NamedTuple):
     """Samples done, next spike, next dropout and last count, shape (4,)."""
 
 
-@njit(inline="always")
+@njit(inline="always", cache=True)
 def _ripple(angle, telemetry):  # type: ignore[no-untyped-def]
     """Return the sum of the orders at a shaft angle as a fraction of the load."""
     ripple = 0.0

@@ -6,10 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.tug._physics import build_plant, equilibrium
+from shaftprint.tug._physics import build_plant, equilibrium, working_point
 from shaftprint.tug._plant import INTEGRAL, RACK, RACK_RATE, SPEED, Plant, derivatives
 from shaftprint.tug._tug import Tug
-from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel
 
 # Places in the vector that is perturbed: four states, the demand in the ECU and the rack given a delay ago.
@@ -40,7 +39,7 @@ def linearised_response(tug: Tug, vessel: Vessel, frequency_hz: ArrayLike) -> Co
         If the truth is not physical.
     """
     plant = build_plant(tug, vessel)
-    speed = rev_s_from_rpm(tug.engine_speed_rpm)
+    speed, torque = working_point(tug, vessel)
     slope = _slopes(plant, speed)
     s = 2j * np.pi * np.asarray(frequency_hz, dtype=np.float64)
     states, rates = slice(0, 4), slice(0, 4)
@@ -54,7 +53,7 @@ def linearised_response(tug: Tug, vessel: Vessel, frequency_hz: ArrayLike) -> Co
         right = slope[rates, _DEMAND] + inner * given[_DEMAND]
         x = np.linalg.solve(left, right) * np.exp(-value * tug.set_point_latency_s)
         response[0, 0, line] = plant.gear_ratio * x[SPEED]
-        response[1, 0, line] = (gauge[states] @ x) * speed / tug.shaft_torque_nm
+        response[1, 0, line] = (gauge[states] @ x) * speed / torque
     return response
 
 

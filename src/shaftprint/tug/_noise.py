@@ -18,17 +18,17 @@ class Noise:
     """Recirculating inflow: rms of the propeller torque, as a fraction of it."""
     inflow_corner_hz: float = 0.0025
     """Below this frequency [Hz] the inflow disturbance is flat, above it falls with ``1/f^2``."""
-    surge_rms: float = 0.003
+    surge_rms: float = 0.0025
     """Surge against the mooring: rms of the propeller torque, as a fraction of it."""
     surge_hz: float = 0.09
     """Natural frequency of the surge [Hz]."""
     surge_damping: float = 0.15
     """Damping ratio of the surge."""
-    combustion_rms: float = 0.058
+    combustion_rms: float = 0.055
     """Cycle-to-cycle variation of the engine torque: rms as a fraction of the load."""
     combustion_hz: float = 3.0
     """Up to this frequency [Hz] the variation is white, above it falls with ``1/f^4``."""
-    combustion_damping: float = 0.25
+    combustion_damping: float = 0.18
     """Damping ratio of the hump at that frequency."""
     hunting_rms: float = 0.045
     """Hunting of the injection near the governor's crossover: rms of the engine torque as a fraction of the load."""
@@ -54,7 +54,7 @@ class Noise:
     """Amplitude of the firing order of the engine, as a fraction of the load."""
     torque_broadband_rms: float = 0.06
     """Broadband torque noise before the low-pass filter of the telemetry: rms as a fraction of the load."""
-    set_point_rms_v: float = 0.0005
+    set_point_rms_v: float = 0.0008
     """Noise of the set-point voltage at the logger [V]."""
     pulse_rms_v: float = 0.02
     """Noise of the pulse voltages at the logger [V]."""

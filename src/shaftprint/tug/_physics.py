@@ -39,9 +39,9 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
         If the truth is not physical.
     """
     _check(tug)
-    speed = rev_s_from_rpm(tug.engine_speed_rpm)
+    speed, torque = working_point(tug, vessel)
     ratio, efficiency = vessel.gearbox.ratio, vessel.gearbox.efficiency
-    brake = tug.shaft_torque_nm / (ratio * efficiency)
+    brake = torque / (ratio * efficiency)
     speed_slope = tug.g * brake / speed
     offset = (1.0 - tug.g - tug.v) * brake
     rated = rev_s_from_rpm(vessel.engine.rated_speed_rpm)
@@ -53,7 +53,7 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
         inertia_downstream_kg_m2=vessel.inertia_downstream_kg_m2 if downstream is None else downstream,
         gear_ratio=ratio,
         efficiency=efficiency,
-        propeller_nm_s2=tug.shaft_torque_nm / (speed / ratio) ** 2,
+        propeller_nm_s2=torque / (speed / ratio) ** 2,
         speed_slope_nm_s=speed_slope,
         rack_slope_nm=rack_slope,
         rack_offset_nm=offset,
@@ -70,6 +70,14 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
     )
 
 
+def working_point(tug: Tug, vessel: Vessel) -> tuple[float, float]:
+    """Return the engine speed [rev/s] and shaft torque [N m] at which the truth is normalised."""
+    point = vessel.working_point
+    speed_rpm = point.engine_speed_rpm if tug.engine_speed_rpm is None else tug.engine_speed_rpm
+    torque_nm = point.shaft_torque_nm if tug.shaft_torque_nm is None else tug.shaft_torque_nm
+    return rev_s_from_rpm(speed_rpm), torque_nm
+
+
 def equilibrium(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
     """Return the state in which the line runs steadily at an engine speed [rev/s], angle zero, shape (states,)."""
     speed_s = engine_speed_rev_s / plant.gear_ratio
@@ -83,8 +91,8 @@ def equilibrium(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
 
 def shaft_time_constant_s(inertia_kg_m2: float, tug: Tug, vessel: Vessel) -> float:
     """Return ``tau = 2 pi I n_s0 / M_s0`` [s] of an inertia referred to the propeller shaft."""
-    shaft_speed = rev_s_from_rpm(tug.engine_speed_rpm) / vessel.gearbox.ratio
-    return 2.0 * math.pi * inertia_kg_m2 * shaft_speed / tug.shaft_torque_nm
+    speed, torque = working_point(tug, vessel)
+    return 2.0 * math.pi * inertia_kg_m2 * speed / (vessel.gearbox.ratio * torque)
 
 
 def _check(tug: Tug) -> None:

@@ -52,7 +52,7 @@ class Plant(NamedTuple):
     motoring_speed_rev_s: float
 
 
-@njit(inline="always")
+@njit(inline="always", cache=True)
 def _torque_limits(speed, plant):  # type: ignore[no-untyped-def]
     """Return the lowest and highest brake torque [N m] at an engine speed [rev/s]."""
     speeds = plant.limit_speed_rev_s
@@ -73,7 +73,7 @@ def _torque_limits(speed, plant):  # type: ignore[no-untyped-def]
     return lowest, highest
 
 
-@njit(inline="always")
+@njit(inline="always", cache=True)
 def governor_rack(speed_s, integral, demand, plant):  # type: ignore[no-untyped-def]
     """Return the rack that the governor asks for, before and after the limiter of the ECU."""
     speed = plant.gear_ratio * speed_s
@@ -84,7 +84,7 @@ def governor_rack(speed_s, integral, demand, plant):  # type: ignore[no-untyped-
     return wanted, given
 
 
-@njit(inline="always")
+@njit(inline="always", cache=True)
 def derivatives(  # type: ignore[no-untyped-def]
     speed_s, integral, rack, rack_rate, demand, rack_delayed, propeller_noise, engine_noise, plant
 ):
@@ -108,7 +108,7 @@ def derivatives(  # type: ignore[no-untyped-def]
     return acceleration, integral_rate, rack_rate, rack_acceleration, given, gauge, brake, limited
 
 
-@njit(inline="always")
+@njit(inline="always", cache=True)
 def _past(history, mask, first, weights):  # type: ignore[no-untyped-def]
     """Return the value between the second and third of four nodes of a ring."""
     return (
@@ -164,7 +164,7 @@ class Traces(NamedTuple):
     limited: BoolArray
 
 
-@njit(inline="always")
+@njit(inline="always", cache=True)
 def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant):  # type: ignore[no-untyped-def]
     """Return the state after a step of the classical fourth-order method, whose first rates ``k1`` are known.
 

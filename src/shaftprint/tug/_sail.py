@@ -116,7 +116,7 @@ class _Crew:
         )
         duration_s = campaign.duration_s
         plant = build_plant(tug, vessel)
-        first_demand = Demand(tug, campaign, start_s=0.0, step_s=1.0 / self._rate_hz).first
+        first_demand = Demand(tug, vessel, campaign, start_s=0.0, step_s=1.0 / self._rate_hz).first
         load = plant.propeller_nm_s2
         self._disturbance = Disturbance(tug.noise, 1.0 / self._rate_hz, process)
         self._gauge = TorqueGauge(

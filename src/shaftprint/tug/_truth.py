@@ -8,8 +8,9 @@ from pathlib import Path
 from shaftprint.campaign import Campaign
 from shaftprint.errors import RecordingError
 from shaftprint.tug._faults import Fault
-from shaftprint.tug._physics import build_plant, shaft_time_constant_s
+from shaftprint.tug._physics import build_plant, shaft_time_constant_s, working_point
 from shaftprint.tug._tug import Tug
+from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import Vessel
 
 SCHEMA = 1
@@ -119,6 +120,7 @@ def tell_truth(
     limited: Mapping[str, float],
 ) -> Truth:
     """Gather the truth of one voyage."""
+    speed, torque = working_point(tug, vessel)
     return Truth(
         vessel=vessel.name,
         campaign=campaign.name,
@@ -127,8 +129,8 @@ def tell_truth(
         rate_hz=rate_hz,
         normalised=normalised_truth(tug, vessel),
         physical=physical_truth(tug, vessel),
-        engine_speed_rpm=tug.engine_speed_rpm,
-        shaft_torque_nm=tug.shaft_torque_nm,
+        engine_speed_rpm=rpm_from_rev_s(speed),
+        shaft_torque_nm=torque,
         set_point_slope_rpm_per_v=tug.set_point_slope_rpm_per_v,
         set_point_intercept_rpm=tug.set_point_intercept_rpm,
         set_point_offset_v=tug.set_point_offset_v,

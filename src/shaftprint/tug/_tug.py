@@ -18,10 +18,10 @@ class Tug:
     logger's 0.5 ms, so that a method which rounds delays to samples is found out.
     """
 
-    engine_speed_rpm: float = 1183.8
-    """Engine speed of the working point ``n_0`` [rpm]."""
-    shaft_torque_nm: float = 1725.0
-    """Shaft torque of the working point ``M_s0`` [N m]: the propeller law goes through it exactly."""
+    engine_speed_rpm: float | None = None
+    """Engine speed of the working point ``n_0`` [rpm]; ``None``: the vessel's."""
+    shaft_torque_nm: float | None = None
+    """Shaft torque of the working point ``M_s0`` [N m], a point of the propeller law; ``None``: the vessel's."""
     inertia_upstream_kg_m2: float | None = None
     """Inertia upstream of the torque gauge, referred to the propeller shaft [kg m2]; ``None``: the vessel's."""
     inertia_downstream_kg_m2: float | None = None
@@ -58,13 +58,13 @@ class Tug:
     None by default: a limit that high-speed engines have (100 to 600 rpm/s) would already bend the sine S10, and the
     thesis sees no sign of that.
     """
-    motoring_torque_nm: float = 260.0
+    motoring_torque_nm: float = 300.0
     """Torque that the engine takes at the working point when no fuel is burnt [N m]: the lower torque limit.
 
-    The rack may go below zero-torque running by as much, where no fuel is left. The default is on the high side for
-    friction alone (22 % of rated torque, with compression and driven pumps): the sine S12 swings the brake torque
-    down to -197 N m, and no sine may be clipped. The chirps C11 and C23 still touch both limits where they pass the
-    closed-loop peak near 1.2 Hz, and the steps do.
+    The rack may go as far below zero-torque running, where no fuel is left. The default, 26 % of rated torque, is on
+    the high side for friction, compression and driven pumps: the sine S12 alone swings the brake torque down to
+    -197 N m, with noise to -253 N m, and the sines shall stay unclipped so that they show a linear line. The chirps
+    C11 and C23 still touch both limits where they pass the closed-loop peak near 1.2 Hz, and the staircases do.
     """
     strip_angles_deg: tuple[float, ...] = STRIP_ANGLES_DEG
     """Angles between the reflection strips of a pick-up with as many pulses a revolution [degree], scaled to 360."""

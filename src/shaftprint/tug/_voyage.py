@@ -67,7 +67,7 @@ def voyage(
         The next chunk.
     """
     plant = build_plant(tug, vessel)
-    demand = Demand(tug, campaign, start_s=start_s, step_s=step_s)
+    demand = Demand(tug, vessel, campaign, start_s=start_s, step_s=step_s)
     delay_steps = plant.delay_s / step_s
     parts = [interpolation_weights(stage - delay_steps) for stage in (0.0, 0.5, 1.0)]
     delay = Delay(
