@@ -1,5 +1,48 @@
-"""Frequency responses from sine tests, with covariance."""
+"""From signals to measured frequency responses with their covariance.
 
+=========================== ======= ==================================================================
+quantity                    unit    meaning and sign convention
+=========================== ======= ==================================================================
+frequency of a line ``f``   Hz      of the campaign; ``omega_rad_s`` in rad/s
+amplitude                   -       complex, ``x = Re(a exp(j w t))``, over the working point; set point
+                                    and speed over ``n_0``, torque over ``M_s0``
+response                    -       output amplitude over input amplitude; a lag has negative phase
+covariance                  -       of the real vector [Re, Im], outputs first
+degrees of freedom          -       real degrees of freedom behind a covariance
+signal-to-noise ratio       dB      local, 20 DFT bins on each side; overall ratio without unit
+load drift ``delta``        -       propeller load of a window over that at the working point, minus 1
+=========================== ======= ==================================================================
+
+`estimate_spectra` gives all of it, `estimate_response` the response alone, `open_loop` its open-loop form.
+"""
+
+from shaftprint.spectra._bin_selection import ExactBin, HighestPeak
 from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._harmonics import Harmonics
+from shaftprint.spectra._line_fit import LineFit, SineMethod, WindowSamples
+from shaftprint.spectra._load_drift import LoadDrift
+from shaftprint.spectra._open_loop import open_loop
+from shaftprint.spectra._signal_to_noise import SignalToNoise
+from shaftprint.spectra._sine_fit import WholePeriodSine
+from shaftprint.spectra._spectra import Spectra, estimate_response, estimate_spectra
+from shaftprint.spectra._windows import Window, plan_windows, whole_period_window
 
-__all__ = ["FrequencyResponse"]
+__all__ = [
+    "ExactBin",
+    "FrequencyResponse",
+    "Harmonics",
+    "HighestPeak",
+    "LineFit",
+    "LoadDrift",
+    "SignalToNoise",
+    "SineMethod",
+    "Spectra",
+    "WholePeriodSine",
+    "Window",
+    "WindowSamples",
+    "estimate_response",
+    "estimate_spectra",
+    "open_loop",
+    "plan_windows",
+    "whole_period_window",
+]

@@ -43,6 +43,8 @@ class FrequencyResponse:
     """Which lines a fit should use by default, shape (lines,); all when not given."""
     remarks: Mapping[str, str] = field(default_factory=dict)
     """Why a line is not used, by line name."""
+    load: FloatArray = field(default_factory=lambda: np.empty(0))
+    """Propeller load of each line's window over that at the working point [-], shape (lines,); 1 when not given."""
     averaging_s: float = 0.0
     """Window over which the speed output is a mean [s]; see ``SpeedSignal``."""
     hold_s: float = 0.0
@@ -67,13 +69,11 @@ class FrequencyResponse:
         _expect_shape("covariance", self.covariance, (count, size, size))
         names = self.lines or tuple(f"line {number}" for number in range(1, count + 1))
         if len(names) != count:
-            raise ResponseError(
-                f"lines: expected {count} names, one a frequency, found {len(names)}."
-            )
-        dof = (
-            self.degrees_of_freedom if np.size(self.degrees_of_freedom) else np.full(count, np.inf)
-        )
+            raise ResponseError(f"lines: expected {count} names, one a frequency, found {len(names)}.")
+        dof = self.degrees_of_freedom if np.size(self.degrees_of_freedom) else np.full(count, np.inf)
         used = self.used if np.size(self.used) else np.ones(count, dtype=np.bool_)
+        load = self.load if np.size(self.load) else np.ones(count)
+        _expect_shape("load", load, (count,))
         _expect_shape("degrees_of_freedom", dof, (count,))
         _expect_shape("used", used, (count,))
         frequency = frozen_float(self.frequency_hz)
@@ -95,6 +95,7 @@ class FrequencyResponse:
         object.__setattr__(self, "lines", names)
         object.__setattr__(self, "degrees_of_freedom", frozen_float(dof))
         object.__setattr__(self, "used", frozen_bool(used))
+        object.__setattr__(self, "load", frozen_float(load))
 
     @property
     def omega_rad_s(self) -> FloatArray:

@@ -1,0 +1,120 @@
+"""Everything that one window tells, in values normalised with the working point."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.spectra._noise import (
+    LineNoise,
+    line_noise,
+    residual_spectrum,
+    stretch_amplitudes,
+)
+from shaftprint.spectra._signal_to_noise import LineVariances, line_variances
+
+if TYPE_CHECKING:
+    from shaftprint.spectra._line_fit import SineMethod, WindowSamples
+    from shaftprint.spectra._windows import Window
+
+HARMONIC_ORDERS = (2, 3)
+"""Harmonics that are reported."""
+
+_DOMINANT_SHARE = 1.0 / 3.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class LineMeasurement:
+    """What one window tells; channels are ``n_set``, every speed, ``M_s``, each over its working point."""
+
+    window: "Window"
+    """The window."""
+    amplitude: ComplexArray
+    """Complex amplitude of the line, shape (channels,)."""
+    harmonic: ComplexArray
+    """Complex amplitude of harmonics 2 and 3, not a number where not fitted, shape (2, channels)."""
+    harmonic_variance: FloatArray
+    """Noise variance ``E|a|^2`` of each harmonic, shape (2, channels)."""
+    mean: FloatArray
+    """Mean over the window, shape (channels,)."""
+    noise: LineNoise
+    """Covariance of the amplitudes."""
+    variances: LineVariances
+    """Variances for the signal-to-noise ratios."""
+    stretches: ComplexArray
+    """Amplitude in each stretch of whole periods, shape (channels, stretches)."""
+    set_point_frequency_hz: float
+    """Frequency of the sine that dominates the set point [Hz]: exactly the window's own where that one does, not a
+    number where none does."""
+
+
+def measure_line(samples: "WindowSamples", method: "SineMethod") -> LineMeasurement:
+    """Measure one line in all channels.
+
+    Parameters
+    ----------
+    samples
+        Channels of the window, normalised; the first is the set point.
+    method
+        The way to measure the sine.
+
+    Returns
+    -------
+    Amplitudes, their noise, harmonics and variances.
+    """
+    window = samples.window
+    fit = method.fit(samples)
+    spectrum = residual_spectrum(fit)
+    residual_stretches = stretch_amplitudes(fit)
+    variances = line_variances(fit.amplitude[0], samples.values, spectrum, periods=window.periods)
+    channels = len(samples.values)
+    harmonic = np.full((len(HARMONIC_ORDERS), channels), np.nan + 0j)
+    harmonic_variance = np.full((len(HARMONIC_ORDERS), channels), np.nan)
+    for row, order in enumerate(HARMONIC_ORDERS):
+        if order <= len(fit.amplitude):
+            noise = line_noise(spectrum, residual_stretches, periods=window.periods, order=order)
+            harmonic[row] = fit.amplitude[order - 1]
+            harmonic_variance[row] = noise.covariance.diagonal().real
+    dominant = variances.signal[0] > 0.5 * variances.overall[0]
+    return LineMeasurement(
+        window=window,
+        amplitude=fit.amplitude[0],
+        harmonic=harmonic,
+        harmonic_variance=harmonic_variance,
+        mean=fit.mean,
+        noise=line_noise(spectrum, residual_stretches, periods=window.periods),
+        variances=variances,
+        stretches=fit.amplitude[0][:, np.newaxis] + residual_stretches,
+        set_point_frequency_hz=(
+            window.frequency_hz if dominant else strongest_frequency_hz(samples.values[0], samples.rate_hz)
+        ),
+    )
+
+
+def strongest_frequency_hz(values: FloatArray, rate_hz: float) -> float:
+    """Return the frequency of the sine that dominates a record.
+
+    Highest bin of the Hann-windowed transform, placed between bins by a parabola through the logarithm of the
+    magnitude at the bin and beside it; good to a few hundredths of a bin.
+
+    Parameters
+    ----------
+    values
+        The record, shape (samples,).
+    rate_hz
+        Its sample rate [Hz].
+
+    Returns
+    -------
+    The frequency [Hz]; not a number where no sine holds a third of the variance.
+    """
+    deviation = values - values.mean()
+    # a Hann window has mean 1/2, so that a sine of amplitude a on a bin gives a / 2
+    magnitude = np.abs(np.fft.rfft(deviation * np.hanning(values.size))) * (2.0 / values.size)
+    peak = 1 + int(np.argmax(magnitude[1:-1]))
+    if not 2.0 * magnitude[peak] ** 2 > _DOMINANT_SHARE * deviation.var():
+        return float("nan")
+    left, top, right = np.log(magnitude[peak - 1 : peak + 2] + np.finfo(np.float64).tiny)
+    offset = 0.5 * (left - right) / (left - 2.0 * top + right)
+    return float((peak + offset) * rate_hz / values.size)

@@ -1,0 +1,121 @@
+"""From complex amplitudes with their noise to a response with the covariance of its real and imaginary parts."""
+
+import numpy as np
+
+from shaftprint.arrays import ComplexArray, FloatArray
+
+# An amplitude is never taken as better known than this part of itself: noise-free data keep a covariance.
+_ROUNDING = 1e-10
+_LEAST_EXCESS = 0.5
+
+
+def real_covariance(covariance: ComplexArray) -> FloatArray:
+    """Return the covariance of [Re, Im] of circular complex noise.
+
+    Parameters
+    ----------
+    covariance
+        ``E[z z^H]``, Hermitian, shape (..., n, n).
+
+    Returns
+    -------
+    ``1/2 [[Re C, -Im C], [Im C, Re C]]``, shape (..., 2n, 2n).
+    """
+    upper = np.concatenate([covariance.real, -covariance.imag], axis=-1)
+    lower = np.concatenate([covariance.imag, covariance.real], axis=-1)
+    result: FloatArray = 0.5 * np.concatenate([upper, lower], axis=-2)
+    return result
+
+
+def real_jacobian(jacobian: ComplexArray) -> FloatArray:
+    """Return the Jacobian of [Re, Im] that belongs to a complex derivative.
+
+    Parameters
+    ----------
+    jacobian
+        Derivatives of complex-differentiable values, shape (..., outputs, inputs).
+
+    Returns
+    -------
+    ``[[Re J, -Im J], [Im J, Re J]]``, shape (..., 2 outputs, 2 inputs).
+    """
+    upper = np.concatenate([jacobian.real, -jacobian.imag], axis=-1)
+    lower = np.concatenate([jacobian.imag, jacobian.real], axis=-1)
+    result: FloatArray = np.concatenate([upper, lower], axis=-2)
+    return result
+
+
+def weight_factor(complex_samples: float, outputs: int) -> float:
+    """Return the factor that makes an estimated covariance right as a weight.
+
+    A covariance estimated from ``n`` complex samples follows a complex Wishart distribution, whose inverse is too
+    large by ``n / (n - outputs)`` on average (Brillinger, "Time Series: Data Analysis and Theory", section 4.2):
+    without the factor weighted residuals look larger than they are. Limited where ``n`` hardly exceeds ``outputs``.
+
+    Parameters
+    ----------
+    complex_samples
+        Number of complex samples behind the covariance.
+    outputs
+        Number of complex values that are weighted together.
+
+    Returns
+    -------
+    The factor, at least 1.
+    """
+    return complex_samples / max(complex_samples - outputs, _LEAST_EXCESS)
+
+
+def response_of_line(
+    amplitude: ComplexArray,
+    noise: ComplexArray,
+    *,
+    complex_samples: float,
+) -> tuple[ComplexArray, FloatArray]:
+    """Return the response of one line with the covariance of [Re n, Re M_s, Im n, Im M_s] that noise gives it.
+
+    The noise of all three amplitudes is carried through ``H = [N, M] / U`` to first order, that of the input and its
+    correlation with the outputs included.
+
+    Parameters
+    ----------
+    amplitude
+        Amplitudes ``U, N, M`` over the working point, shape (3,).
+    noise
+        Covariance ``E[a a^H]`` of their noise, shape (3, 3).
+    complex_samples
+        Number of complex samples behind it.
+
+    Returns
+    -------
+    The response, shape (2,), and its covariance, shape (4, 4).
+    """
+    response = amplitude[1:] / amplitude[0]
+    jacobian = np.column_stack([-response, np.eye(2)]) / amplitude[0]
+    floor = np.diag((_ROUNDING * np.abs(amplitude)) ** 2 + np.finfo(np.float64).tiny)
+    spread = jacobian @ (noise * weight_factor(complex_samples, 2) + floor) @ jacobian.conj().T
+    return response, _symmetric(real_covariance(spread))
+
+
+def with_common_error(covariance: FloatArray, direction: ComplexArray, standard_deviation: float) -> FloatArray:
+    """Add a real random factor that moves all outputs of a line together.
+
+    Parameters
+    ----------
+    covariance
+        Covariance of [Re, Im], shape (2 outputs, 2 outputs).
+    direction
+        Change of the response for a factor of 1, shape (outputs,).
+    standard_deviation
+        Standard deviation of the factor.
+
+    Returns
+    -------
+    The covariance with both.
+    """
+    real_direction = standard_deviation * np.concatenate([direction.real, direction.imag])
+    return covariance + np.outer(real_direction, real_direction)
+
+
+def _symmetric(matrix: FloatArray) -> FloatArray:
+    return 0.5 * (matrix + matrix.T)

@@ -1,0 +1,172 @@
+"""Whether the set point of a line is what the campaign says, and a clean sine."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import ResponseError
+
+if TYPE_CHECKING:
+    from shaftprint.spectra._line_measurement import LineMeasurement
+
+_UNEXCITED_SHARE = 0.1
+_AMPLITUDE_TOLERANCE = 0.1
+_FREQUENCY_TOLERANCE_BINS = 0.05
+_FREQUENCY_LIMIT_BINS = 0.5
+_STRETCH_TOLERANCE = 0.25
+_STRETCH_LIMIT = 0.5
+_CLEAN_DB = 40.0
+_NEIGHBOUR_GAP_DB = 20.0
+_SHARE_OF_VARIANCE = 0.5
+_HZ_PER_RAD_S = 1.0 / (2.0 * np.pi)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SetPointFinding:
+    """What is wrong with the set point of one line."""
+
+    remarks: tuple[str, ...]
+    """What was found; empty where all is well."""
+    usable: bool
+    """Whether a response can still be measured with it."""
+
+
+def check_frequency_unit(measurements: Sequence["LineMeasurement"]) -> None:
+    """Refuse a campaign whose frequencies are not those of the recording.
+
+    Parameters
+    ----------
+    measurements
+        One entry a line; the first channel is the set point.
+
+    Raises
+    ------
+    ResponseError
+        If the set point moves at ``1 / (2 pi)`` of the stated frequency in more than half of the windows, or at
+        none of the stated frequencies.
+    """
+    ratio = np.array([line.set_point_frequency_hz / line.window.frequency_hz for line in measurements])
+    angular = np.abs(ratio / _HZ_PER_RAD_S - 1.0) < 0.05
+    if 2 * np.count_nonzero(angular) > ratio.size:
+        worst = measurements[int(np.argmax(angular))]
+        raise ResponseError(
+            f"{worst.window.line}: expected the set point to move at "
+            f"{worst.window.frequency_hz:g} Hz, found {worst.set_point_frequency_hz:.4g} Hz, "
+            f"1/(2 pi) of it, likewise in {np.count_nonzero(angular)} of {ratio.size} sines: the "
+            "campaign's frequency_hz seems to be in rad/s; divide it by 2 pi."
+        )
+    if not np.any(ratio == 1.0):
+        first = measurements[0]
+        found = (
+            "a set point that does not move" if np.all(np.isnan(ratio)) else f"{first.set_point_frequency_hz:.4g} Hz"
+        )
+        raise ResponseError(
+            f"{first.window.line}: expected the set point to move at {first.window.frequency_hz:g} "
+            f"Hz between {first.window.start_s:g} and {first.window.stop_s:g} s, found {found}, and "
+            "no other sine of the campaign is in the recording either: check that campaign and "
+            "recording belong together and that the set-point channel is the right one."
+        )
+
+
+def check_set_point(
+    line: "LineMeasurement", *, expected: float, local_db: FloatArray, place: int, rpm: float
+) -> SetPointFinding:
+    """Compare the set point of one line with the campaign and with its neighbours.
+
+    Parameters
+    ----------
+    line
+        The line; its first channel is the set point.
+    expected
+        Amplitude that the campaign asks for, over the working point.
+    local_db
+        Local signal-to-noise ratio of the set point of all lines [dB], shape (lines,).
+    place
+        Place of this line among them.
+    rpm
+        Engine speed of the working point [rpm], for messages.
+
+    Returns
+    -------
+    Remarks, and whether the line can be used.
+    """
+    found = float(np.abs(line.amplitude[0]))
+    if line.set_point_frequency_hz != line.window.frequency_hz:
+        return SetPointFinding(remarks=(_wrong_sine(line, found, expected, rpm),), usable=False)
+    if found < _UNEXCITED_SHARE * expected:
+        return SetPointFinding(remarks=(_amplitude_remark(found, expected, rpm),), usable=False)
+    remarks = []
+    if abs(found - expected) > _AMPLITUDE_TOLERANCE * expected:
+        remarks.append(_amplitude_remark(found, expected, rpm))
+    offset_bins = _frequency_offset_bins(line)
+    if abs(offset_bins) > _FREQUENCY_TOLERANCE_BINS:
+        hz = line.window.frequency_hz + offset_bins / line.window.duration_s
+        remarks.append(f"set point runs at {hz:.6g} Hz where the campaign says {line.window.frequency_hz:g} Hz")
+    disturbed = _disturbed_stretches(line)
+    if np.any(disturbed):
+        remarks.append(_stretch_remark(line, disturbed))
+    typical_db = _typical_db(local_db, place)
+    if local_db[place] < min(_CLEAN_DB, typical_db - _NEIGHBOUR_GAP_DB):
+        remarks.append(
+            f"set point is not a clean sine: signal-to-noise {local_db[place]:.1f} dB where the "
+            f"lines beside it have {typical_db:.1f} dB"
+        )
+    usable = abs(offset_bins) < _FREQUENCY_LIMIT_BINS and disturbed.mean() < _STRETCH_LIMIT
+    return SetPointFinding(remarks=tuple(remarks), usable=bool(usable))
+
+
+def _wrong_sine(line: "LineMeasurement", found: float, expected: float, rpm: float) -> str:
+    hz = line.set_point_frequency_hz
+    if not _moves(line, expected):
+        return _amplitude_remark(found, expected, rpm)
+    if not abs(hz / line.window.frequency_hz - 1.0) * line.window.periods >= 1.0:
+        share = line.variances.signal[0] / line.variances.overall[0]
+        return f"set point is not a clean sine: the line is {100.0 * share:.0f} % of its variance"
+    return f"set point moves at {hz:.4g} Hz where the campaign says {line.window.frequency_hz:g} Hz"
+
+
+def _moves(line: "LineMeasurement", expected: float) -> bool:
+    """Whether the set point moves at all as much as a sine of the expected amplitude would make it."""
+    return bool(line.variances.overall[0] > (_UNEXCITED_SHARE * expected) ** 2 / 2.0)
+
+
+def _amplitude_remark(found: float, expected: float, rpm: float) -> str:
+    return f"set point has an amplitude of {found * rpm:.3g} rpm where the campaign asks for {expected * rpm:.3g} rpm"
+
+
+def _frequency_offset_bins(line: "LineMeasurement") -> float:
+    """Difference between true and stated frequency in bins, from the turning of the phase over the window."""
+    amplitude = line.stretches[0]
+    turn = np.unwrap(np.angle(amplitude / line.amplitude[0]))
+    place = np.arange(turn.size) - 0.5 * (turn.size - 1)
+    slope_rad = (place @ turn) / (place @ place)
+    return float(slope_rad * turn.size / (2.0 * np.pi))
+
+
+def _disturbed_stretches(line: "LineMeasurement") -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
+    amplitude = np.abs(line.stretches[0])
+    typical = np.median(amplitude)
+    disturbed: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] = (
+        np.abs(amplitude - typical) > _STRETCH_TOLERANCE * typical
+    )
+    return disturbed
+
+
+def _stretch_remark(line: "LineMeasurement", disturbed: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> str:
+    length_s = line.window.duration_s / disturbed.size
+    place = np.flatnonzero(disturbed)
+    first_s = line.window.start_s + length_s * place[0]
+    last_s = line.window.start_s + length_s * (place[-1] + 1)
+    return (
+        f"set-point sine is disturbed in {place.size} of {disturbed.size} parts of the window, "
+        f"between {first_s:.1f} and {last_s:.1f} s"
+    )
+
+
+def _typical_db(local_db: FloatArray, place: int) -> float:
+    """Median of up to two lines on each side; the line's own where it has no neighbour."""
+    beside = np.delete(local_db, place)[max(place - 2, 0) : place + 2]
+    return float(np.median(beside)) if beside.size else float(local_db[place])

@@ -1,0 +1,254 @@
+"""The verb of the room: from signals and campaign to responses, signal-to-noise ratios and harmonics."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.errors import ResponseError
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._harmonics import Harmonics, collect_harmonics
+from shaftprint.spectra._line_fit import SineMethod, WindowSamples, cut_window
+from shaftprint.spectra._line_measurement import LineMeasurement, measure_line
+from shaftprint.spectra._load_drift import LoadDrift, drift_direction, load_drift
+from shaftprint.spectra._response_covariance import response_of_line, with_common_error
+from shaftprint.spectra._set_point_check import check_frequency_unit, check_set_point
+from shaftprint.spectra._signal_to_noise import SignalToNoise, signal_to_noise
+from shaftprint.spectra._sine_fit import WholePeriodSine
+from shaftprint.spectra._windows import Window, plan_windows
+from shaftprint.units import rpm_from_rev_s
+
+if TYPE_CHECKING:
+    from shaftprint.arrays import BoolArray, FloatArray
+    from shaftprint.campaign import Campaign
+    from shaftprint.signals import Signals, SpeedSignal
+
+_WHOLE_PERIOD_SINE = WholePeriodSine()
+
+# A line this close to half the rate of the grid has no neighbours above it and is bent by the anti-alias filter.
+_HIGHEST_SHARE_OF_RATE = 0.45
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Spectra:
+    """All that the sines of a campaign tell about one shaft line."""
+
+    response: FrequencyResponse
+    """Response from ``n_set`` to ``n`` and ``M_s``."""
+    windows: tuple[Window, ...]
+    """Window of each line (thesis table 3.5)."""
+    signal_to_noise: SignalToNoise
+    """Signal-to-noise ratios of every channel."""
+    harmonics: Harmonics
+    """Harmonics 2 and 3 of the outputs."""
+    load_drift: LoadDrift
+    """Propeller load of each window."""
+    speed: str
+    """Name of the speed sensor in the response."""
+    remarks: Mapping[str, str] = field(default_factory=dict)
+    """What was found, by name of the line: also lines that the recording does not hold."""
+
+
+def estimate_response(
+    signals: "Signals",
+    campaign: "Campaign",
+    *,
+    method: SineMethod = _WHOLE_PERIOD_SINE,
+    speed: str | None = None,
+) -> FrequencyResponse:
+    """Estimate the response from set point to speed and torque with full covariance.
+
+    Parameters, result and errors are those of `estimate_spectra`, of which this is the response.
+    """
+    return estimate_spectra(signals, campaign, method=method, speed=speed).response
+
+
+def estimate_spectra(
+    signals: "Signals",
+    campaign: "Campaign",
+    *,
+    method: SineMethod = _WHOLE_PERIOD_SINE,
+    speed: str | None = None,
+) -> Spectra:
+    """Measure every sine of a campaign in every channel.
+
+    All values are divided by the working point of the whole recording: set point and speed by ``n_0``, torque by
+    ``M_s0``. Lines above half the pulse rate of the speed sensor are aliased and not used by default; neither are
+    lines whose set point is not a sine of the stated frequency. In thesis mode all lines are used, as the thesis did,
+    and the remarks say what speaks against them.
+
+    Parameters
+    ----------
+    signals
+        The prepared recording.
+    campaign
+        What was asked of the ship; only its sines are used.
+    method
+        The way to measure a sine: `WholePeriodSine`, or for comparison `ExactBin` or `HighestPeak`.
+    speed
+        Name of the speed sensor to use, by default the first of the vessel.
+
+    Returns
+    -------
+    Response, signal-to-noise ratios, harmonics and load drift.
+
+    Raises
+    ------
+    ResponseError
+        If the speed sensor is unknown, a channel holds values that are not numbers or a torque or speed that does
+        not move, no sine of the campaign is in the recording, or frequencies are in rad/s.
+    """
+    sensor = _speed_signal(signals, speed)
+    names = ("n_set", *signals.speeds, "M_s")
+    used_channels = [0, names.index(sensor.name), len(names) - 1]
+    cuts, left_out = _cut_windows(signals, campaign)
+    measurements = [_measure(cut, names, method) for cut in cuts]
+    check_frequency_unit(measurements)
+    ratios = signal_to_noise(
+        [line.variances for line in measurements],
+        lines=tuple(line.window.line for line in measurements),
+        channels=names,
+    )
+    remarks, usable = _judge(signals, campaign, measurements, sensor, ratios.local_db[:, 0])
+    drift = load_drift(measurements, speed=used_channels[1], torque=used_channels[2], usable=usable.tolist())
+    used = np.ones_like(usable) if signals.mode == "thesis" else usable
+    return Spectra(
+        response=_response(signals, measurements, used_channels, sensor, drift, remarks, used),
+        windows=tuple(line.window for line in measurements),
+        signal_to_noise=ratios,
+        harmonics=collect_harmonics(measurements, speed=used_channels[1], torque=used_channels[2]),
+        load_drift=drift,
+        speed=sensor.name,
+        remarks=remarks | left_out,
+    )
+
+
+def _speed_signal(signals: "Signals", speed: str | None) -> "SpeedSignal":
+    if speed is None:
+        return signals.engine_speed
+    if speed not in signals.speeds:
+        raise ResponseError(
+            f"Speed sensor {speed}: expected one of {', '.join(signals.speeds)}, found no such sensor in the signals."
+        )
+    return signals.speeds[speed]
+
+
+def _cut_windows(signals: "Signals", campaign: "Campaign") -> tuple[list[WindowSamples], dict[str, str]]:
+    """Cut every line out of the normalised channels; say which lines the recording does not hold."""
+    point = signals.working_point
+    speeds = [speed.speed_rev_s for speed in signals.speeds.values()]
+    channels = (signals.set_point_rev_s, *speeds, signals.shaft_torque_nm)
+    scale = np.full((len(channels), 1), 1.0 / point.engine_speed_rev_s)
+    scale[-1] = 1.0 / point.shaft_torque_nm
+    cuts, left_out = [], {}
+    for window in plan_windows(campaign):
+        if window.frequency_hz > _HIGHEST_SHARE_OF_RATE * signals.rate_hz:
+            left_out[window.line] = (
+                f"left out: {window.frequency_hz:g} Hz is above "
+                f"{_HIGHEST_SHARE_OF_RATE * signals.rate_hz:g} Hz, what signals of "
+                f"{signals.rate_hz:g} Hz show"
+            )
+            continue
+        cut = cut_window(window, channels, rate_hz=signals.rate_hz, start_s=signals.start_s)
+        if cut is None:
+            left_out[window.line] = (
+                f"left out: its window from {window.start_s:g} to {window.stop_s:g} s is not inside the recording"
+            )
+            continue
+        np.multiply(cut.values, scale, out=cut.values)
+        cuts.append(cut)
+    if not cuts:
+        line, remark = next(iter(left_out.items()))
+        raise ResponseError(
+            f"{signals.recording_name}: expected at least one sine of campaign {campaign.name}, "
+            f"found none ({line} {remark}): check that campaign and recording belong together."
+        )
+    return cuts, left_out
+
+
+def _measure(cut: WindowSamples, names: Sequence[str], method: SineMethod) -> LineMeasurement:
+    window = cut.window
+    finite = np.isfinite(cut.values)
+    if not finite.all():
+        channel, place = np.argwhere(~finite)[0]
+        raise ResponseError(
+            f"{window.line}: expected numbers in {names[channel]}, found one that is not finite at "
+            f"{window.start_s + cut.time_s[place]:.3f} s: repair the signal before."
+        )
+    still = np.ptp(cut.values[1:], axis=1) == 0.0
+    if still.any():
+        raise ResponseError(
+            f"{window.line}: expected {names[1 + int(np.argmax(still))]} to move, found a constant "
+            f"between {window.start_s:g} and {window.stop_s:g} s: the sensor or its channel is dead."
+        )
+    return measure_line(cut, method)
+
+
+def _judge(
+    signals: "Signals",
+    campaign: "Campaign",
+    measurements: Sequence[LineMeasurement],
+    sensor: "SpeedSignal",
+    local_db: "FloatArray",
+) -> tuple[dict[str, str], "BoolArray"]:
+    """Collect remarks on each line and say which lines have a clean set point and a speed without aliasing."""
+    speed_rev_s = signals.working_point.engine_speed_rev_s
+    rev_s_per_v = abs(signals.calibration.slope_rev_s_per_v)
+    amplitude_v = {sine.name: sine.amplitude_v for sine in campaign.sines}
+    remarks = {}
+    usable = np.ones(len(measurements), dtype=bool)
+    for place, line in enumerate(measurements):
+        name = line.window.line
+        finding = check_set_point(
+            line,
+            expected=amplitude_v[name] * rev_s_per_v / speed_rev_s,
+            local_db=local_db,
+            place=place,
+            rpm=rpm_from_rev_s(speed_rev_s),
+        )
+        found = list(finding.remarks)
+        aliased = line.window.frequency_hz > sensor.nyquist_hz
+        if aliased:
+            found.append(f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased")
+        if found:
+            remarks[name] = "; ".join(found)
+        usable[place] = finding.usable and not aliased
+    return remarks, usable
+
+
+def _response(
+    signals: "Signals",
+    measurements: Sequence[LineMeasurement],
+    channels: list[int],
+    sensor: "SpeedSignal",
+    drift: LoadDrift,
+    remarks: Mapping[str, str],
+    used: "BoolArray",
+) -> FrequencyResponse:
+    response = np.empty((2, 1, len(measurements)), dtype=np.complex128)
+    covariance = np.empty((len(measurements), 4, 4))
+    for place, line in enumerate(measurements):
+        values, spread = response_of_line(
+            line.amplitude[channels],
+            line.noise.covariance[np.ix_(channels, channels)],
+            complex_samples=line.noise.complex_samples,
+        )
+        load = drift_direction(values, line.window.frequency_hz, drift.time_constant_s)
+        spread = with_common_error(spread, load, drift.standard_deviation)
+        covariance[place] = with_common_error(spread, values, signals.dc_scale_std / signals.dc_scale)
+        response[:, 0, place] = values
+    return FrequencyResponse(
+        frequency_hz=np.array([line.window.frequency_hz for line in measurements]),
+        response=response,
+        covariance=covariance,
+        inputs=("n_set",),
+        outputs=("n", "M_s"),
+        lines=tuple(line.window.line for line in measurements),
+        degrees_of_freedom=np.array([2.0 * line.noise.complex_samples for line in measurements]),
+        used=used,
+        remarks=remarks,
+        averaging_s=sensor.averaging_s,
+        hold_s=sensor.hold_s,
+        pick_up_delay_s=sensor.delay_s,
+    )
