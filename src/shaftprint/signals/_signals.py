@@ -141,6 +141,8 @@ class Signals:
     """What was repaired, in order of time."""
     mode: Literal["shaftprint", "thesis"]
     """Whether each step was done shaftprint's way or the thesis' way."""
+    findings: tuple[str, ...] = ()
+    """What the reader should know before trusting the signals, one sentence each."""
     recording_sha256: str
     """SHA-256 of the raw file."""
     recording_name: str

@@ -1,0 +1,44 @@
+"""From raw channels to speed, torque and set point in physical units on one grid, every repair listed.
+
+===================== ======== ====================================================================
+quantity              unit     meaning
+===================== ======== ====================================================================
+time                  s        of the recording; sample ``k`` of a signal is at
+                               ``start_s + k / rate_hz``
+speed ``n``           rev/s    of the engine; shaft speeds are multiplied by the gear ratio
+set point ``n_set``   rev/s    engine speed that is asked for
+shaft torque ``M_s``  N m      at the gauge, positive when the engine drives the propeller
+strip angle           rev      from one reflection strip to the next, of the shaft that carries them
+deviation             1        ``(x - x_0) / x_0`` from the working point
+===================== ======== ====================================================================
+"""
+
+from shaftprint.signals._inspect import ChannelReport, PulseReport, inspect_channels
+from shaftprint.signals._prepare import prepare_signals
+from shaftprint.signals._signals import (
+    Repair,
+    SetPointCalibration,
+    Signals,
+    SpeedSignal,
+    StepDelay,
+    StripAngles,
+    WorkingPoint,
+)
+from shaftprint.signals._sources import Mode
+from shaftprint.signals._working_point import deviation
+
+__all__ = [
+    "ChannelReport",
+    "Mode",
+    "PulseReport",
+    "Repair",
+    "SetPointCalibration",
+    "Signals",
+    "SpeedSignal",
+    "StepDelay",
+    "StripAngles",
+    "WorkingPoint",
+    "deviation",
+    "inspect_channels",
+    "prepare_signals",
+]

@@ -1,0 +1,113 @@
+"""Finding the channels that the vessel file names, and reading them block by block."""
+
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shaftprint.errors import SignalError
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel, Recording
+
+Counts: TypeAlias = NDArray[np.int16] | NDArray[np.float64]
+Advance: TypeAlias = Callable[[int], None]
+
+# One compressed block of the native container: every block is then unpacked once.
+DEFAULT_BLOCK_SAMPLES = 262_144
+
+_SPOTS = 4
+_SPOT_SAMPLES = 65_536
+
+
+def find_channel(recording: "Recording", name: str, *, unit: str, use: str) -> "Channel":
+    """Return a channel that holds samples in the expected unit.
+
+    Parameters
+    ----------
+    recording
+        Where to look.
+    name
+        Name of the channel, from the vessel file.
+    unit
+        Unit that the vessel file gives for it; spaces and multiplication dots do not count.
+    use
+        What the channel is needed for, in words.
+
+    Raises
+    ------
+    SignalError
+        If the channel is missing, empty, or in another unit.
+    """
+    if name not in recording.channels:
+        raise SignalError(
+            f'{recording.path}: expected a channel "{name}" for the {use}, as the vessel file says, '
+            f"found {', '.join(recording.channels) or 'no channel at all'}; correct the name there."
+        )
+    channel = recording.channels[name]
+    if _plain(channel.unit) != _plain(unit):
+        raise SignalError(
+            f'{recording.path}, channel {name}: expected the unit "{unit}" for the {use}, '
+            f'found "{channel.unit}"; correct the unit and scale in the vessel file.'
+        )
+    if channel.count == 0:
+        raise SignalError(f"{recording.path}, channel {name}: expected samples, found none.")
+    return channel
+
+
+def blocks(channel: "Channel", block_samples: int, advance: Advance | None = None) -> Iterator[Counts]:
+    """Yield the raw counts of a channel, in order, as int16 or float64.
+
+    Parameters
+    ----------
+    channel
+        What to read.
+    block_samples
+        Samples of one block; results do not depend on it.
+    advance
+        Is told the number of samples after each block.
+
+    Raises
+    ------
+    SignalError
+        If a value is not a number; the message says when.
+    """
+    for first in range(0, channel.count, block_samples):
+        last = min(first + block_samples, channel.count)
+        yield _checked(channel, first, last)
+        if advance is not None:
+            advance(last - first)
+
+
+def spots(channel: "Channel") -> list[Counts]:
+    """Return a few stretches of raw counts from all over a channel, the same for any block size."""
+    length = min(_SPOT_SAMPLES, channel.count)
+    starts = np.linspace(0, channel.count - length, _SPOTS).astype(int)
+    # on block borders where the channel is long enough, so that no block is unpacked twice
+    starts -= starts % length
+    return [_checked(channel, int(start), int(start) + length) for start in np.unique(starts)]
+
+
+def time_of(channel: "Channel", sample: float) -> float:
+    """Return the time of a sample, which may be a fraction, in seconds of the recording."""
+    return channel.start_s + sample / channel.rate_hz
+
+
+def _checked(channel: "Channel", first: int, last: int) -> Counts:
+    counts: NDArray[Any] = channel.read(first, last)
+    if counts.dtype == np.int16:
+        return counts
+    values: NDArray[np.float64] = np.ascontiguousarray(counts, dtype=np.float64)
+    bad = np.flatnonzero(~np.isfinite(values))
+    if bad.size:
+        raise SignalError(
+            f"channel {channel.name}: expected numbers, found {values[bad[0]]} "
+            f"at {time_of(channel, first + int(bad[0])):.3f} s; "
+            "export the recording again without gaps."
+        )
+    return values
+
+
+def _plain(unit: str) -> str:
+    return unit.replace(" ", "").replace("·", "").replace("*", "")

@@ -1,0 +1,169 @@
+"""What is in a recording, channel by channel, before anything is made of it."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+import numpy as np
+
+from shaftprint.errors import SignalError
+from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, Counts, blocks
+from shaftprint.signals._edges import find_edges, pulse_levels
+from shaftprint.signals._outliers import FaultLimits, fault_limits, flagged
+from shaftprint.signals._patch import Patcher
+from shaftprint.signals._pick_up import expect_no_gap, numbered_strips, pulse_repairs
+from shaftprint.signals._signals import Repair
+from shaftprint.signals._sources import find_sources
+from shaftprint.signals._torque import judge_saturation, torque_limits
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel, Recording
+    from shaftprint.vessel import SpeedSensor, Vessel
+
+Use: TypeAlias = Literal["speed", "shaft torque", "set point"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ChannelReport:
+    """What one raw channel holds."""
+
+    channel: str
+    """Name of the channel in the recording."""
+    use: Use
+    """What the vessel file uses it for."""
+    unit: str
+    """Unit of the values below."""
+    rate_hz: float
+    """Sample rate [Hz]."""
+    start_s: float
+    """Time of the first sample [s]."""
+    duration_s: float
+    """Length [s]."""
+    lowest: float
+    """Smallest value [unit]."""
+    highest: float
+    """Largest value [unit]."""
+    pulses: "PulseReport | None"
+    """What the pulses say; nothing for other channels and for pulses that cannot be used."""
+    faults: tuple[Repair, ...]
+    """Missing and doubled pulses, outliers and dropouts, in order of time."""
+    problem: str | None
+    """Why the channel cannot be used, in one sentence; nothing if it can."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class PulseReport:
+    """What the pulses of a channel say."""
+
+    low: float
+    """Level between pulses [unit of the channel]."""
+    high: float
+    """Level during a pulse [unit of the channel]."""
+    per_second: float
+    """Mean number of pulses a second [Hz]; half of it is the highest frequency without aliasing."""
+    strip_angles_deg: tuple[float, ...]
+    """Angle from each strip to the next [deg]."""
+
+
+def inspect_channels(recording: "Recording", vessel: "Vessel") -> tuple[ChannelReport, ...]:
+    """Look at every channel that the vessel file names, without a campaign.
+
+    A channel that cannot be used gets a report that says why; only one that cannot be found or read
+    raises.
+
+    Parameters
+    ----------
+    recording
+        The raw recording, open.
+    vessel
+        Says which channel carries what.
+
+    Raises
+    ------
+    SignalError
+        If a channel is missing, empty, in another unit, or holds something that is not a number.
+    """
+    sources = find_sources(recording, vessel)
+    sensors = vessel.sensors
+    return (
+        *(_inspect_pulses(channel, sensor) for channel, sensor in zip(sources.speed, sensors.speed, strict=True)),
+        _inspect_values(sources.torque, "shaft torque", torque_limits(sources.torque, sensors.shaft_torque)),
+        _inspect_values(sources.set_point, "set point", fault_limits(sources.set_point, holds=False)),
+    )
+
+
+class _Extremes:
+    """Smallest and largest count of the blocks that pass by."""
+
+    def __init__(self) -> None:
+        self.lowest, self.highest = np.inf, -np.inf
+
+    def watched(self, channel: "Channel") -> Iterator[Counts]:
+        for block in blocks(channel, DEFAULT_BLOCK_SAMPLES):
+            self.lowest = min(self.lowest, float(block.min()))
+            self.highest = max(self.highest, float(block.max()))
+            yield block
+
+
+def _inspect_pulses(channel: "Channel", sensor: "SpeedSensor") -> ChannelReport:
+    extremes = _Extremes()
+    pulses, faults, problem = None, None, None
+    try:
+        levels = pulse_levels(channel, edge=sensor.edge)
+        train, strips = numbered_strips(find_edges(extremes.watched(channel), levels), sensor)
+        faults = pulse_repairs(channel, train)
+        rate = train.number[-1] / (train.position[-1] - train.position[0]) * channel.rate_hz
+        pulses = PulseReport(
+            low=levels.low * channel.scale + channel.offset,
+            high=levels.high * channel.scale + channel.offset,
+            per_second=float(rate),
+            strip_angles_deg=((360.0,) if strips is None else tuple((strips.angle_rev * 360.0).tolist())),
+        )
+        expect_no_gap(channel, train)
+    except SignalError as error:
+        problem = str(error)
+        _exhaust(extremes.watched(channel))
+    return _report(channel, "speed", extremes, pulses, faults or (), problem)
+
+
+def _inspect_values(channel: "Channel", use: Use, limits: FaultLimits) -> ChannelReport:
+    extremes = _Extremes()
+    repairs: list[Repair] = []
+    problem = None
+    try:
+        patcher = Patcher(channel=channel, limits=limits, repairs=repairs)
+        _exhaust(patcher.patched(flagged(extremes.watched(channel), limits)))
+        judge_saturation(channel, repairs)
+    except SignalError as error:
+        problem = str(error)
+        _exhaust(extremes.watched(channel))
+    return _report(channel, use, extremes, None, tuple(repairs), problem)
+
+
+def _exhaust(passing: Iterable[object]) -> None:
+    for _ in passing:
+        pass
+
+
+def _report(
+    channel: "Channel",
+    use: Use,
+    extremes: _Extremes,
+    pulses: PulseReport | None,
+    faults: tuple[Repair, ...],
+    problem: str | None,
+) -> ChannelReport:
+    ends = [count * channel.scale + channel.offset for count in (extremes.lowest, extremes.highest)]
+    return ChannelReport(
+        channel=channel.name,
+        use=use,
+        unit=channel.unit,
+        rate_hz=channel.rate_hz,
+        start_s=channel.start_s,
+        duration_s=channel.duration_s,
+        lowest=min(ends),
+        highest=max(ends),
+        pulses=pulses,
+        faults=faults,
+        problem=problem,
+    )

@@ -1,0 +1,200 @@
+"""The verb of the room: from a raw recording to signals in physical units."""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.campaign import Campaign
+from shaftprint.errors import SignalError
+from shaftprint.signals._calibrate import calibrate
+from shaftprint.signals._compare import compare_speeds
+from shaftprint.signals._condition import conditioned
+from shaftprint.signals._dc_scale import DcScale, dc_scale
+from shaftprint.signals._match import expect_campaign, expect_length
+from shaftprint.signals._outliers import fault_limits
+from shaftprint.signals._pick_up import PickUp, read_pick_up
+from shaftprint.signals._signals import Repair, Signals
+from shaftprint.signals._sources import Clock, Mode, Sources, common_clock, find_sources
+from shaftprint.signals._steady import steady_stretches
+from shaftprint.signals._steps import find_step_delays
+from shaftprint.signals._torque import expect_moving_torque, judge_saturation, torque_limits
+from shaftprint.signals._working_point import find_working_point
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel, Recording
+    from shaftprint.vessel import SpeedSensor, Vessel
+
+# One thread computes while the other waits for the file; more would only queue for the file.
+_THREADS = 2
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Read:
+    """Everything that was read, on the grid, before it is put together."""
+
+    volts: FloatArray
+    torque_nm: FloatArray
+    pick_ups: tuple[PickUp, ...]
+    repairs: tuple[Repair, ...]
+    findings: tuple[str, ...]
+
+
+def prepare_signals(
+    recording: "Recording",
+    vessel: "Vessel",
+    campaign: Campaign,
+    *,
+    mode: Mode = "shaftprint",
+    rate_hz: float = 200.0,
+    chunk_s: float | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> Signals:
+    """Turn a raw recording into speeds, torque and set point in physical units on one grid.
+
+    Parameters
+    ----------
+    recording
+        The raw recording, open.
+    vessel
+        Says which channel carries what.
+    campaign
+        Says what was asked of the ship and when.
+    mode
+        ``"shaftprint"``, or ``"thesis"`` to do each step as the thesis did.
+    rate_hz
+        Rate of the grid [Hz], at most that of the channels.
+    chunk_s
+        How much of a channel is read at a time [s]; by default one block of the native container.
+        The result is the same, bit for bit, for any value.
+    progress
+        Is told the finished share of the reading, from 0 to 1; it may be called from other threads.
+
+    Raises
+    ------
+    SignalError
+        If a channel is missing, dead, saturated, in another unit or too short, or if the recording
+        does not show what the campaign asked.
+    """
+    if mode not in ("shaftprint", "thesis"):
+        raise SignalError(f'mode: expected "shaftprint" or "thesis", found "{mode}".')
+    sources = find_sources(recording, vessel)
+    clock = common_clock(sources, mode=mode, rate_hz=rate_hz, chunk_s=chunk_s, progress=progress)
+    expect_length(clock.start_s + clock.count / rate_hz, campaign, name=str(recording.path))
+    return _put_together(recording, vessel, campaign, clock, _read_all(vessel, sources, clock))
+
+
+def _read_all(vessel: "Vessel", sources: Sources, clock: Clock) -> _Read:
+    """Read every channel, two at a time; a pick-up that fails is left out unless it is the first."""
+    sensors = vessel.sensors.speed
+    pool = ThreadPoolExecutor(max_workers=_THREADS)
+    try:
+        torque_job = pool.submit(_read_torque, sources.torque, vessel, clock)
+        volts_job = pool.submit(_read_set_point, sources.set_point, clock)
+        speed_jobs = [
+            pool.submit(_read_speed, channel, sensor, vessel, clock)
+            for channel, sensor in zip(sources.speed, sensors, strict=True)
+        ]
+        torque, torque_repairs = torque_job.result()
+        volts, volts_repairs = volts_job.result()
+        pick_ups = [speed_jobs[0].result()]
+        findings = list(judge_saturation(sources.torque, torque_repairs))
+        for sensor, job in zip(sensors[1:], speed_jobs[1:], strict=True):
+            try:
+                pick_ups.append(job.result())
+            except SignalError as error:
+                findings.append(f"{sensor.name} was left out: {error}")
+    finally:
+        pool.shutdown(cancel_futures=True)
+    repairs = [*torque_repairs, *volts_repairs]
+    repairs += [repair for pick_up in pick_ups for repair in pick_up.repairs]
+    return _Read(
+        volts=volts,
+        torque_nm=torque,
+        pick_ups=tuple(pick_ups),
+        repairs=tuple(sorted(repairs, key=lambda repair: repair.time_s)),
+        findings=(*findings, *(finding for pick_up in pick_ups for finding in pick_up.findings)),
+    )
+
+
+def _read_torque(channel: "Channel", vessel: "Vessel", clock: Clock) -> tuple[FloatArray, list[Repair]]:
+    sensor = vessel.sensors.shaft_torque
+    latency_s = 0.0 if clock.mode == "thesis" else sensor.latency_s
+    reading, repairs = conditioned(
+        channel,
+        torque_limits(channel, sensor),
+        clock.grid(channel, latency_s),
+        mode=clock.mode,
+        block_samples=clock.block_samples(channel),
+        advance=clock.advance,
+    )
+    return sensor.torque_nm(reading), repairs
+
+
+def _read_set_point(channel: "Channel", clock: Clock) -> tuple[FloatArray, list[Repair]]:
+    return conditioned(
+        channel,
+        fault_limits(channel, holds=False),
+        clock.grid(channel),
+        mode=clock.mode,
+        block_samples=clock.block_samples(channel),
+        advance=clock.advance,
+    )
+
+
+def _read_speed(channel: "Channel", sensor: "SpeedSensor", vessel: "Vessel", clock: Clock) -> PickUp:
+    return read_pick_up(
+        channel,
+        sensor,
+        gear_ratio=vessel.gearbox.ratio,
+        mode=clock.mode,
+        start_s=clock.start_s,
+        rate_hz=clock.rate_hz,
+        count=clock.count,
+        block_samples=clock.block_samples(channel),
+        advance=clock.advance,
+    )
+
+
+def _put_together(recording: "Recording", vessel: "Vessel", campaign: Campaign, clock: Clock, read: _Read) -> Signals:
+    """Calibrate the set point, find the working point and the steps, and say what was found."""
+    channel = vessel.sensors.set_point.channel
+    rate_hz, start_s = clock.rate_hz, clock.start_s
+    speeds = tuple(pick_up.speed for pick_up in read.pick_ups)
+    speed, torque, n_set = speeds[0].speed_rev_s, read.torque_nm, read.volts
+    mismatches = expect_campaign(n_set, campaign, rate_hz=rate_hz, start_s=start_s, channel=channel)
+    expect_moving_torque(torque, campaign, vessel.sensors.shaft_torque, rate_hz=rate_hz, start_s=start_s)
+    differences = compare_speeds(speeds, vessel)
+    stretches = steady_stretches(n_set, speed, torque, campaign, rate_hz=rate_hz, start_s=start_s)
+    thesis = clock.mode == "thesis"
+    calibration = calibrate(stretches, weighted=not thesis, channel=channel)
+    working_point = find_working_point(stretches, campaign, channel=channel)
+    n_set *= calibration.slope_rev_s_per_v
+    n_set += calibration.intercept_rev_s
+    scale = DcScale(value=1.0, std=0.0, findings=())
+    if not thesis:
+        slope_std = float(calibration.covariance[0, 0]) ** 0.5 / abs(calibration.slope_rev_s_per_v)
+        scale = dc_scale(n_set, speed, campaign, rate_hz=rate_hz, start_s=start_s, slope_std=slope_std)
+        n_set -= working_point.engine_speed_rev_s
+        n_set *= scale.value
+        n_set += working_point.engine_speed_rev_s
+    delays, missed = find_step_delays(n_set, speed, campaign, rate_hz=rate_hz, start_s=start_s)
+    return Signals(
+        rate_hz=rate_hz,
+        start_s=start_s,
+        set_point_rev_s=frozen_float(n_set),
+        shaft_torque_nm=frozen_float(torque),
+        speeds={speed.name: speed for speed in speeds},
+        working_point=working_point,
+        calibration=calibration,
+        dc_scale=scale.value,
+        dc_scale_std=scale.std,
+        strips=tuple(pick_up.strips for pick_up in read.pick_ups if pick_up.strips is not None),
+        step_delays=delays,
+        repairs=read.repairs,
+        mode=clock.mode,
+        findings=(*read.findings, *mismatches, *differences, *scale.findings, *missed),
+        recording_sha256=recording.sha256,
+        recording_name=recording.path.name,
+    )

@@ -1,0 +1,147 @@
+"""Stretches in which set point, speed and torque stand still, found from the signals themselves."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.campaign import Campaign, Chirp, Sine
+
+_BLOCK_S = 1.0
+_SHORTEST_S = 15
+_SHORTEST_SETTLED_S = 8
+_BATCH_BLOCKS = 4
+
+# The set point stands still when it stays within this share of its whole range.
+_TOLERANCE = 0.005
+# The speed has settled when it is this near to where it ends, or within its own scatter.
+_SETTLED, _SCATTERS = 5e-4, 4.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SteadyStretch:
+    """One stretch of standing still, after everything has settled."""
+
+    start_s: float
+    """When it begins, in seconds of the recording."""
+    stop_s: float
+    """When it ends, in seconds of the recording."""
+    set_point_v: float
+    """Mean set point [V]."""
+    speed_rev_s: float
+    """Mean engine speed [rev/s]."""
+    speed_std_rev_s: float
+    """Standard deviation of that mean [rev/s]."""
+    torque_nm: float
+    """Mean shaft torque [N m]."""
+    torque_std_nm: float
+    """Standard deviation of that mean [N m]."""
+
+    @property
+    def duration_s(self) -> float:
+        """Its length [s]."""
+        return self.stop_s - self.start_s
+
+
+def steady_stretches(
+    set_point_v: FloatArray,
+    speed_rev_s: FloatArray,
+    torque_nm: FloatArray,
+    campaign: Campaign,
+    *,
+    rate_hz: float,
+    start_s: float,
+) -> tuple[SteadyStretch, ...]:
+    """Return every stretch of at least 15 s in which the set point stands still, in order of time.
+
+    The crest of a slow sine stands nearly still too; therefore sines and chirps of the campaign are
+    left out.
+
+    Parameters
+    ----------
+    set_point_v, speed_rev_s, torque_nm
+        Signals on the grid, shape (samples,).
+    campaign
+        Says where the sines and chirps are.
+    rate_hz, start_s
+        The grid.
+    """
+    length = round(_BLOCK_S * rate_hz)
+    means = [_block_means(values, length) for values in (set_point_v, speed_rev_s, torque_nm)]
+    starts = start_s + np.arange(means[0].size) * length / rate_hz
+    tolerance = _TOLERANCE * float(np.ptp(means[0]))
+    still = _block_spread(set_point_v, length) <= tolerance
+    still &= _outside_waves(starts, length / rate_hz, campaign)
+    moved = np.abs(np.diff(means[0], prepend=means[0][:1])) > tolerance
+    found = []
+    for first, stop in _runs(still, moved):
+        if stop - first < _SHORTEST_S:
+            continue
+        first += _settling(means[1][first:stop])
+        if stop - first < _SHORTEST_SETTLED_S:
+            continue
+        (volts, _), (speed, speed_std), (torque, torque_std) = (_mean_and_std(values[first:stop]) for values in means)
+        found.append(
+            SteadyStretch(
+                start_s=float(starts[first]),
+                stop_s=float(starts[stop - 1]) + length / rate_hz,
+                set_point_v=volts,
+                speed_rev_s=speed,
+                speed_std_rev_s=speed_std,
+                torque_nm=torque,
+                torque_std_nm=torque_std,
+            )
+        )
+    return tuple(found)
+
+
+def _block_means(values: FloatArray, length: int) -> FloatArray:
+    whole = values.size - values.size % length
+    means: FloatArray = values[:whole].reshape(-1, length).mean(axis=1)
+    return means
+
+
+def _block_spread(values: FloatArray, length: int) -> FloatArray:
+    whole = values.size - values.size % length
+    spread: FloatArray = values[:whole].reshape(-1, length).std(axis=1)
+    return spread
+
+
+def _outside_waves(starts: FloatArray, length_s: float, campaign: Campaign) -> BoolArray:
+    outside = np.ones(starts.size, dtype=np.bool_)
+    for wave in campaign.excitations:
+        if isinstance(wave, Sine | Chirp):
+            outside &= (starts + length_s <= wave.start_s) | (starts >= wave.stop_s)
+    return outside
+
+
+def _runs(still: BoolArray, moved: BoolArray) -> list[tuple[int, int]]:
+    """Return [first, stop) of every run of blocks that are still and did not move since the last."""
+    runs = []
+    first: int | None = None
+    for k in range(still.size):
+        if first is not None and (moved[k] or not still[k]):
+            runs.append((first, k))
+            first = None
+        if first is None and still[k]:
+            first = k
+    if first is not None:
+        runs.append((first, still.size))
+    return runs
+
+
+def _settling(speed: FloatArray) -> int:
+    """Return how many blocks to leave out: twice as long as the speed needs to come near its end."""
+    rest = speed[speed.size // 2 :]
+    final = float(np.median(rest))
+    scatter = 1.4826 * float(np.median(np.abs(rest - final)))
+    near = np.abs(speed - final) <= max(_SCATTERS * scatter, _SETTLED * abs(final))
+    away = np.flatnonzero(~near[: speed.size // 2])
+    return 2 * (int(away[-1]) + 1) + 1 if away.size else 1
+
+
+def _mean_and_std(blocks: FloatArray) -> tuple[float, float]:
+    """Return the mean and its standard deviation, from batches because neighbours are correlated."""
+    batches = blocks[: blocks.size - blocks.size % _BATCH_BLOCKS].reshape(-1, _BATCH_BLOCKS)
+    scatter = float(np.std(batches.mean(axis=1), ddof=1))
+    return float(blocks.mean()), scatter / np.sqrt(batches.shape[0])

@@ -1,0 +1,94 @@
+"""The delay of each step of the staircases: set point to speed, at the middle of the step (table 3.3).
+
+It is a difference of level crossings: transport delay, rise of the loop and delay of the sensor
+together.
+"""
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.campaign import Campaign, Staircase
+from shaftprint.signals._signals import StepDelay
+
+# The levels before and after are taken from the last third of their dwell.
+_REST_SHARE = 1.0 / 3.0
+_LEAST_STEP_V = 1e-6
+
+
+def find_step_delays(
+    set_point_rev_s: FloatArray,
+    speed_rev_s: FloatArray,
+    campaign: Campaign,
+    *,
+    rate_hz: float,
+    start_s: float,
+) -> tuple[tuple[StepDelay, ...], tuple[str, ...]]:
+    """Return the delay of each step inside the staircases, and which steps were not found.
+
+    Parameters
+    ----------
+    set_point_rev_s, speed_rev_s
+        Set point and speed [rev/s] on the grid, shape (samples,).
+    campaign
+        Says where the staircases are.
+    rate_hz, start_s
+        The grid.
+
+    Returns
+    -------
+    delays
+        In order of time.
+    findings
+        One sentence for each step that could not be found.
+    """
+    delays, findings = [], []
+    for staircase in campaign.staircases:
+        levels = staircase.levels_v
+        for k in range(1, len(levels)):
+            if abs(levels[k] - levels[k - 1]) < _LEAST_STEP_V:
+                continue
+            crossings = [_crossing(values, staircase, k, rate_hz, start_s) for values in (set_point_rev_s, speed_rev_s)]
+            asked, followed = crossings
+            if asked is None or followed is None:
+                findings.append(
+                    f"step {k} of {staircase.name} near {staircase.start_s + k * staircase.dwell_s:.0f}"
+                    f" s: expected the {'set point' if asked is None else 'speed'} to cross the middle "
+                    "between its levels, found no crossing"
+                )
+                continue
+            delays.append(
+                StepDelay(
+                    staircase=staircase.name,
+                    set_point_time_s=asked[0],
+                    speed_time_s=followed[0],
+                    rising=asked[1],
+                )
+            )
+    delays.sort(key=lambda delay: delay.set_point_time_s)
+    return tuple(delays), tuple(findings)
+
+
+def _crossing(
+    values: FloatArray, staircase: Staircase, step: int, rate_hz: float, start_s: float
+) -> tuple[float, bool] | None:
+    """Return when the values cross the middle between their levels before and after a step."""
+    dwell = staircase.dwell_s
+    instant = staircase.start_s + step * dwell
+    places = [
+        round((instant + share * dwell - start_s) * rate_hz) for share in (-_REST_SHARE, 0.0, 1.0 - _REST_SHARE, 1.0)
+    ]
+    rest, jump, settled, end = (min(max(place, 0), values.size) for place in places)
+    # a little before the next step: the filter makes it visible ahead of time
+    ahead = round(0.02 * dwell * rate_hz)
+    before = float(np.median(values[rest : jump - ahead]))
+    after = float(np.median(values[settled : end - ahead]))
+    rising = after > before
+    middle = 0.5 * (before + after)
+    part = values[rest:settled]
+    above = part >= middle if rising else part <= middle
+    found = np.flatnonzero(above[1:] & ~above[:-1])
+    if found.size == 0:
+        return None
+    k = int(found[0])
+    fraction = (middle - part[k]) / (part[k + 1] - part[k])
+    return start_s + (rest + k + float(fraction)) / rate_hz, rising

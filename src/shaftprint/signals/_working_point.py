@@ -1,0 +1,92 @@
+"""The steady state about which everything is normalised (thesis table 3.2)."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import SignalError
+from shaftprint.signals._signals import WorkingPoint
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign
+    from shaftprint.signals._steady import SteadyStretch
+
+# Voltages this near to the offset of the campaign are the working voltage.
+_NEAR_V = 0.25
+
+
+def deviation(values: FloatArray, reference: float) -> FloatArray:
+    """Return the normalised deviation ``(x - x_0) / x_0`` [-], shape of ``values``."""
+    return (values - reference) / reference
+
+
+def find_working_point(stretches: "tuple[SteadyStretch, ...]", campaign: "Campaign", *, channel: str) -> WorkingPoint:
+    """Return the mean of the quiet stretches between the tests at the working voltage.
+
+    Where there is no quiet stretch between tests, levels of staircases at the working voltage serve.
+    The standard deviations are those of the means, from the scatter between stretches; with a single
+    stretch from the scatter within it.
+
+    Parameters
+    ----------
+    stretches
+        Where set point, speed and torque stand still.
+    campaign
+        Says which voltage is the working voltage and when tests are made.
+    channel
+        Name of the set-point channel, for messages.
+
+    Raises
+    ------
+    SignalError
+        If nothing stands still within 0.25 V of the working voltage.
+    """
+    near = [stretch for stretch in stretches if abs(stretch.set_point_v - campaign.offset_v) < _NEAR_V]
+    if not near:
+        found = ", ".join(f"{stretch.set_point_v:.2f} V" for stretch in stretches) or "none"
+        raise SignalError(
+            f"channel {channel}: expected a quiet stretch of at least 15 s near the working voltage "
+            f"of {campaign.offset_v:g} V, found steady levels at {found}; check offset_v in the "
+            "campaign file."
+        )
+    used = [stretch for stretch in near if _between_tests(stretch, campaign)] or near
+    weight = np.array([stretch.duration_s for stretch in used])
+    speed, speed_std = _mean(
+        [stretch.speed_rev_s for stretch in used],
+        [stretch.speed_std_rev_s for stretch in used],
+        weight,
+    )
+    torque, torque_std = _mean(
+        [stretch.torque_nm for stretch in used],
+        [stretch.torque_std_nm for stretch in used],
+        weight,
+    )
+    volts, _ = _mean([stretch.set_point_v for stretch in used], [0.0] * len(used), weight)
+    return WorkingPoint(
+        engine_speed_rev_s=speed,
+        shaft_torque_nm=torque,
+        engine_speed_std_rev_s=speed_std,
+        shaft_torque_std_nm=torque_std,
+        set_point_v=volts,
+    )
+
+
+def _between_tests(stretch: "SteadyStretch", campaign: "Campaign") -> bool:
+    return all(
+        stretch.stop_s <= excitation.start_s or stretch.start_s >= excitation.stop_s
+        for excitation in campaign.excitations
+    )
+
+
+def _mean(values: list[float], deviations: list[float], weight: FloatArray) -> tuple[float, float]:
+    """Return the weighted mean and its standard deviation."""
+    share = weight / weight.sum()
+    found = np.array(values)
+    mean = float(share @ found)
+    if found.size == 1:
+        return mean, deviations[0]
+    # effective number of stretches: long ones count more
+    effective = 1.0 / float(np.sum(share**2))
+    variance = float(share @ (found - mean) ** 2) / max(effective - 1.0, 1e-9)
+    return mean, float(np.sqrt(variance))
