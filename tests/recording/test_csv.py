@@ -173,12 +173,25 @@ def test_text_may_become_a_native_recording(tmp_path):
         assert {name: c.values(0, 3).tolist() for name, c in again.channels.items()} == EXPECTED
 
 
-@pytest.mark.parametrize("changed", [{"delimiter": ".", "decimal": "."}, {"delimiter": " "}])
-def test_text_that_could_not_be_read_again_is_not_written(tmp_path, changed):
-    message = "expected a delimiter found in no number or title"
-    with read_recording(_file(tmp_path, POINT)) as recording, pytest.raises(RecordingError, match=message):
+@pytest.mark.parametrize(
+    ("changed", "expected"),
+    [
+        ({"delimiter": ",", "decimal": ","}, 'not the same, found "," and ","'),
+        ({"delimiter": "%"}, "expected comma, semicolon or tab as delimiter"),
+        ({"decimal": "'"}, "point or comma as decimal sign"),
+    ],
+)
+def test_text_that_could_not_be_read_again_is_not_written(tmp_path, changed, expected):
+    with read_recording(_file(tmp_path, POINT)) as recording, pytest.raises(RecordingError, match=expected):
         write_csv(tmp_path / "out.csv", recording.channels.values(), **changed)
     assert not (tmp_path / "out.csv").exists()
+
+
+def test_a_title_must_not_hold_the_delimiter(tmp_path):
+    path = _file(tmp_path, "time [s];torque, shaft [N m]\n0;1\n1;2\n")
+    expected = 'titles without the delimiter ",", found "torque, shaft'
+    with read_recording(path, delimiter=";") as recording, pytest.raises(RecordingError, match=expected):
+        write_csv(tmp_path / "out.csv", recording.channels.values())
 
 
 def test_text_is_not_replaced_unless_asked(tmp_path):
