@@ -10,7 +10,7 @@ from shaftprint.identify._covariance import estimate_covariance
 from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify._identification import Cluster, Identification, Settings
 from shaftprint.identify._levenberg_marquardt import Descent, descend
-from shaftprint.identify._objective import Objective, build_objective
+from shaftprint.identify._objective import Objective, build_objective, load_factors
 from shaftprint.models import Structure, is_stable
 from shaftprint.spectra import FrequencyResponse
 
@@ -73,7 +73,7 @@ def identify(
     clusters, winner = _judged(objective, _clustered(objective, descent), chosen)
     theta = winner.values[list(objective.free)]
     fitted = np.isin(response.omega_rad_s, objective.s.imag)
-    model = sensed.response(winner.values, 1j * response.omega_rad_s)
+    model = sensed.response(winner.values, 1j * response.omega_rad_s, factors=load_factors(response))
     outputs = {name: i for i, name in enumerate(response.outputs)}
     measured = response.response[:, 0]
     variance = np.diagonal(response.covariance, axis1=1, axis2=2).T

@@ -94,6 +94,8 @@ class Objective:
     """The structure with its held and free parameters."""
     s: ComplexArray
     """Laplace variable of the used lines [rad/s], shape (lines,), complex."""
+    factors: Mapping[str, FloatArray]
+    """Factor on a parameter at each used line: the propeller load of its window acts on ``k_q``."""
     data: FloatArray
     """[Re, Im] of the used lines, shape (lines, size)."""
     covariance: FloatArray
@@ -143,7 +145,7 @@ class Objective:
         -------
             Residuals, shape (starts, rows), and Jacobian, shape (starts, free, rows).
         """
-        response, slopes = self.structure.gradient(self.complete(theta), self.s)
+        response, slopes = self.structure.gradient(self.complete(theta), self.s, factors=self.factors)
         starts, count, outputs, lines = slopes.shape
         stacked = np.empty((starts, count + 1, 2 * outputs, lines))
         stacked[:, 0, :outputs] = self.data.T[:outputs] - response.real
@@ -203,6 +205,7 @@ def build_objective(
     places = {p.name: i for i, p in enumerate(names)}
     return Objective(
         structure=structure,
+        factors=load_factors(response, chosen),
         s=np.asarray(1j * response.omega_rad_s[chosen], dtype=np.complex128),
         data=data,
         covariance=covariance,
@@ -213,6 +216,17 @@ def build_objective(
         held=structure.vector({}),
         free=tuple(i for i, p in enumerate(structure.parameters) if not p.held),
     )
+
+
+def load_factors(response: FrequencyResponse, chosen: BoolArray | None = None) -> dict[str, FloatArray]:
+    """Return what the propeller load of each line's window does to the parameters of a structure.
+
+    A propeller whose torque is ``M_s0 (1 + delta) (n / n_0)^2`` has the slope ``k_q (1 + delta)`` in values
+    normalised with one
+    working point, and nothing else changes.
+    """
+    load = response.load if chosen is None else response.load[chosen]
+    return {} if np.all(load == 1.0) else {"k_q": load}
 
 
 def _chosen_lines(response: FrequencyResponse, lines: Sequence[str] | None) -> BoolArray:

@@ -126,7 +126,9 @@ class Structure:
         self._expect_names(values)
         return np.array([values.get(p.name, p.value) for p in self.parameters])
 
-    def response(self, values: ArrayLike, s: ArrayLike) -> ComplexArray:
+    def response(
+        self, values: ArrayLike, s: ArrayLike, *, factors: Mapping[str, FloatArray] | None = None
+    ) -> ComplexArray:
         """Return the response of every output.
 
         Parameters
@@ -135,16 +137,24 @@ class Structure:
             Parameter values, shape (..., parameters).
         s
             Laplace variable [rad/s], shape (frequencies,); ``1j * omega`` on the frequency axis.
+        factors
+            Factor on a parameter at each frequency, by name, shape (frequencies,): for lines that were measured under
+            different conditions. A name that the structure does not have is passed over.
 
         Returns
         -------
             Response, shape (..., outputs, frequencies).
         """
-        response, _ = self._evaluate(values, s, ())
+        response, _ = self._evaluate(values, s, (), factors or {})
         return response
 
     def gradient(
-        self, values: ArrayLike, s: ArrayLike, wanted: Sequence[str] | None = None
+        self,
+        values: ArrayLike,
+        s: ArrayLike,
+        wanted: Sequence[str] | None = None,
+        *,
+        factors: Mapping[str, FloatArray] | None = None,
     ) -> tuple[ComplexArray, ComplexArray]:
         """Return the response and its exact derivatives to the named parameters, the free ones by default.
 
@@ -154,9 +164,11 @@ class Structure:
         """
         names = tuple(p.name for p in self.free) if wanted is None else tuple(wanted)
         self._expect_names(names)
-        return self._evaluate(values, s, names)
+        return self._evaluate(values, s, names, factors or {})
 
-    def _evaluate(self, values: ArrayLike, s: ArrayLike, wanted: tuple[str, ...]) -> tuple[ComplexArray, ComplexArray]:
+    def _evaluate(
+        self, values: ArrayLike, s: ArrayLike, wanted: tuple[str, ...], factors: Mapping[str, FloatArray]
+    ) -> tuple[ComplexArray, ComplexArray]:
         table = np.asarray(values, dtype=np.float64)
         if table.shape[-1:] != (len(self.parameters),):
             raise StructureError(
@@ -164,7 +176,7 @@ class Structure:
                 f"({', '.join(self.names)}), found an array of shape {table.shape}."
             )
         laplace = np.atleast_1d(np.asarray(s, dtype=np.complex128))
-        columns = {name: table[..., i : i + 1] for i, name in enumerate(self.names)}
+        columns = {p.name: table[..., i : i + 1] * factors.get(p.name, 1.0) for i, p in enumerate(self.parameters)}
         walk = Walk(laplace, columns, frozenset(wanted))
         lead = table.shape[:-1]
         response = np.empty((*lead, len(self.outputs), laplace.size), dtype=np.complex128)
@@ -174,7 +186,7 @@ class Structure:
             response[..., i, :] = value
             for j, name in enumerate(wanted):
                 if name in slopes:
-                    gradient[..., j, i, :] = slopes[name]
+                    gradient[..., j, i, :] = slopes[name] * factors.get(name, 1.0)
         return response, gradient
 
     def _expect_names(self, names: Mapping[str, object] | Sequence[str]) -> None:

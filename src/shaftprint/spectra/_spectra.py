@@ -1,7 +1,7 @@
 """The verb of the room: from signals and campaign to responses, signal-to-noise ratios and harmonics."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +11,7 @@ from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._harmonics import Harmonics, collect_harmonics
 from shaftprint.spectra._line_fit import SineMethod, WindowSamples, cut_window
 from shaftprint.spectra._line_measurement import LineMeasurement, measure_line
-from shaftprint.spectra._load_drift import LoadDrift, drift_direction, load_drift
+from shaftprint.spectra._load_drift import LoadDrift, load_drift
 from shaftprint.spectra._response_covariance import response_of_line, with_common_error
 from shaftprint.spectra._set_point_check import check_frequency_unit, check_set_point
 from shaftprint.spectra._signal_to_noise import SignalToNoise, signal_to_noise
@@ -56,12 +56,13 @@ def estimate_response(
     *,
     method: SineMethod = _WHOLE_PERIOD_SINE,
     speed: str | None = None,
+    follow_load: bool = True,
 ) -> FrequencyResponse:
     """Estimate the response from set point to speed and torque with full covariance.
 
     Parameters, result and errors are those of `estimate_spectra`, of which this is the response.
     """
-    return estimate_spectra(signals, campaign, method=method, speed=speed).response
+    return estimate_spectra(signals, campaign, method=method, speed=speed, follow_load=follow_load).response
 
 
 def estimate_spectra(
@@ -70,6 +71,7 @@ def estimate_spectra(
     *,
     method: SineMethod = _WHOLE_PERIOD_SINE,
     speed: str | None = None,
+    follow_load: bool = True,
 ) -> Spectra:
     """Measure every sine of a campaign in every channel.
 
@@ -88,6 +90,9 @@ def estimate_spectra(
         The way to measure a sine: `WholePeriodSine`, or for comparison `ExactBin` or `HighestPeak`.
     speed
         Name of the speed sensor to use, by default the first of the vessel.
+    follow_load
+        Whether the response carries the propeller load of each window, for a fit whose ``k_q`` follows it. Otherwise
+        the load is given as 1 and its scatter between the windows is part of the covariance.
 
     Returns
     -------
@@ -111,10 +116,18 @@ def estimate_spectra(
         channels=names,
     )
     remarks, usable = _judge(signals, campaign, measurements, sensor, ratios.local_db[:, 0])
-    drift = load_drift(measurements, speed=used_channels[1], torque=used_channels[2], usable=usable.tolist())
+    drift = load_drift(measurements, speed=used_channels[1], torque=used_channels[2])
     used = np.ones_like(usable) if signals.mode == "thesis" else usable
     return Spectra(
-        response=_response(signals, measurements, used_channels, sensor, drift, remarks, used),
+        response=replace(
+            _response(signals, measurements, used_channels, drift if not follow_load else None),
+            used=used,
+            remarks=remarks,
+            load=1.0 + drift.delta if follow_load else np.ones_like(drift.delta),
+            averaging_s=sensor.averaging_s,
+            hold_s=sensor.hold_s,
+            pick_up_delay_s=sensor.delay_s,
+        ),
         windows=tuple(line.window for line in measurements),
         signal_to_noise=ratios,
         harmonics=collect_harmonics(measurements, speed=used_channels[1], torque=used_channels[2]),
@@ -218,14 +231,9 @@ def _judge(
 
 
 def _response(
-    signals: "Signals",
-    measurements: Sequence[LineMeasurement],
-    channels: list[int],
-    sensor: "SpeedSignal",
-    drift: LoadDrift,
-    remarks: Mapping[str, str],
-    used: "BoolArray",
+    signals: "Signals", measurements: Sequence[LineMeasurement], channels: list[int], drift: LoadDrift | None
 ) -> FrequencyResponse:
+    """Put the lines together; with a drift, its scatter becomes part of the covariance."""
     response = np.empty((2, 1, len(measurements)), dtype=np.complex128)
     covariance = np.empty((len(measurements), 4, 4))
     for place, line in enumerate(measurements):
@@ -234,10 +242,11 @@ def _response(
             line.noise.covariance[np.ix_(channels, channels)],
             complex_samples=line.noise.complex_samples,
         )
-        load = drift_direction(values, line.window.frequency_hz, drift.time_constant_s)
-        spread = with_common_error(spread, load, drift.standard_deviation)
-        covariance[place] = with_common_error(spread, values, signals.dc_scale_std / signals.dc_scale)
+        if drift is not None:
+            direction = drift_direction(values, line.window.frequency_hz, drift.time_constant_s)
+            spread = with_common_error(spread, direction, drift.standard_deviation)
         response[:, 0, place] = values
+        covariance[place] = with_common_error(spread, values, signals.dc_scale_std / signals.dc_scale)
     return FrequencyResponse(
         frequency_hz=np.array([line.window.frequency_hz for line in measurements]),
         response=response,
@@ -246,9 +255,4 @@ def _response(
         outputs=("n", "M_s"),
         lines=tuple(line.window.line for line in measurements),
         degrees_of_freedom=np.array([2.0 * line.noise.complex_samples for line in measurements]),
-        used=used,
-        remarks=remarks,
-        averaging_s=sensor.averaging_s,
-        hold_s=sensor.hold_s,
-        pick_up_delay_s=sensor.delay_s,
     )
