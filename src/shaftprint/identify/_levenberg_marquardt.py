@@ -1,11 +1,10 @@
 """Levenberg-Marquardt with bounds, for many starts at once.
 
 Each step solves ``(A + lambda D) delta = -J^T r`` with ``A = J^T J`` and ``D`` its largest diagonal so far (Marquardt's
-scaling). Bounds are an active set: a parameter at a bound whose gradient points outside is held; if a step leaves
-the box, the
-parameters that leave are put on their bound and the others are solved again with them there; one whose slope then
-points back
-inside is let go. Clipping the step instead stops early, and so does a set that only grows. The damping follows Nielsen (Damping parameter in Marquardt's method, 1999).
+scaling). Bounds are an active set: a parameter at a bound whose gradient points outside is held; if a step leaves the
+box, the parameters that leave are put on their bound and the others are solved again with them there; one whose slope
+then points back inside is let go. Clipping the step instead stops early, and so does a set that can only grow. The
+damping follows Nielsen (Damping parameter in Marquardt's method, 1999).
 
 All starts go through the same array operations; those that have converged are left out of the next step.
 """
