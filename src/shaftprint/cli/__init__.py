@@ -1,0 +1,18 @@
+"""The command line: each command opens files, calls the verbs of the library, prints, and says how it ended.
+
+========= ==========================================================================================
+exit code meaning
+========= ==========================================================================================
+0         done
+1         an input or a file that the user can mend, said in one sentence on the error output
+2         an option or a command that does not exist
+130       interrupted with Ctrl-C; nothing is left half-written
+========= ==========================================================================================
+
+Tables go to the output, progress bars and errors to the error output. A command's file is imported when
+the command is called, not before: ``shaftprint --help`` loads neither NumPy nor anything heavier.
+"""
+
+from shaftprint.cli._main import main, shaftprint
+
+__all__ = ["main", "shaftprint"]

@@ -1,0 +1,125 @@
+"""The way from a raw recording to fitted structures, which ``identify`` and ``demo`` share."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+
+from shaftprint.cli._inputs import Trial
+from shaftprint.cli._progress import Steps
+from shaftprint.fingerprint import Fingerprint, take_fingerprint
+from shaftprint.identify import Identification, Prior, Settings, identify
+from shaftprint.models import Structure
+from shaftprint.recording import read_recording
+from shaftprint.signals import Mode, Signals, prepare_signals
+from shaftprint.spectra import ExactBin, FrequencyResponse, Spectra, WholePeriodSine, estimate_spectra, open_loop
+
+# What is known of an engine's torque slope before any test: brake torque over speed at constant rack is nearly flat
+# in the middle of the range, and no test of set point, speed and shaft torque can tell it from the inertia.
+PRIOR_OF_G = Prior(mean=0.0, std=0.1)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Measurement:
+    """What a recording tells before any model is fitted."""
+
+    signals: Signals
+    """The prepared recording."""
+    spectra: Spectra
+    """Responses and signal-to-noise ratios."""
+    responses: Mapping[str, FrequencyResponse]
+    """Responses by the name of their input: ``n_set``, ``e`` and ``M_s``."""
+
+
+def measure(recording: Path, trial: Trial, *, mode: Mode, steps: Steps) -> Measurement:
+    """Return signals and responses of a recording.
+
+    Raises
+    ------
+    ShaftprintError
+        If the recording cannot be read or does not give usable signals and responses.
+    """
+    steps.begin(f"Reading the recording ({mode} mode)", total=1.0)
+    with read_recording(recording) as opened:
+        signals = prepare_signals(opened, trial.vessel, trial.campaign, mode=mode, progress=steps.reach)
+    steps.begin("Measuring the test lines")
+    method = ExactBin() if mode == "thesis" else WholePeriodSine()
+    spectra = estimate_spectra(signals, trial.campaign, method=method)
+    governor, core = open_loop(spectra.response)
+    responses = {"n_set": spectra.response, "e": governor, "M_s": core}
+    return Measurement(signals=signals, spectra=spectra, responses=responses)
+
+
+def known_beforehand(structure: Structure, signals: Signals, given: Mapping[str, Prior]) -> dict[str, Prior]:
+    """Return the priors of a gauge-aware structure: of ``g``, and of ``c_set`` from the calibration.
+
+    Parameters
+    ----------
+    structure
+        The structure; one without ``c_set`` gets no priors but those given.
+    signals
+        They know how well the set point is calibrated.
+    given
+        Priors that the user states; they replace those of the same name.
+    """
+    free = {parameter.name for parameter in structure.free}
+    found: dict[str, Prior] = {}
+    if "c_set" in free:
+        found["g"] = PRIOR_OF_G
+        if signals.dc_scale_std > 0.0:
+            found["c_set"] = Prior(mean=1.0, std=signals.dc_scale_std / signals.dc_scale)
+    found |= given
+    return {name: prior for name, prior in found.items() if name in free or name in given}
+
+
+def fit(
+    structures: Sequence[Structure],
+    measurement: Measurement,
+    *,
+    settings: Mapping[str, Settings],
+    seed: int,
+    steps: Steps,
+) -> tuple[Identification, ...]:
+    """Fit every structure to the response of its input.
+
+    Parameters
+    ----------
+    structures
+        What to fit.
+    measurement
+        What to fit it to.
+    settings
+        How to search, by name of the structure.
+    seed
+        Seed of the start values; each structure begins with it anew, so that its result does not depend on the others.
+    steps
+        Progress of the command.
+
+    Raises
+    ------
+    IdentificationError
+        If a structure cannot be fitted.
+    """
+    steps.begin("Fitting the structures", total=float(len(structures)))
+    found = []
+    for structure in structures:
+        rng = np.random.default_rng(seed)
+        response = measurement.responses[structure.input]
+        found.append(identify(structure, response, rng=rng, settings=settings[structure.name]))
+        steps.advance(1.0)
+    return tuple(found)
+
+
+def fingerprint_of(identification: Identification, measurement: Measurement, trial: Trial) -> Fingerprint:
+    """Return the fingerprint of one fit, made now."""
+    return take_fingerprint(
+        identification,
+        signals=measurement.signals,
+        signal_to_noise=measurement.spectra.signal_to_noise,
+        vessel=trial.vessel,
+        campaign=trial.campaign,
+        settings_files=trial.sources,
+        now=datetime.now(UTC),
+    )

@@ -1,0 +1,124 @@
+"""``shaftprint demo``: the whole way, from a ship whose truth is known to its fingerprint."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._chain import Measurement, fingerprint_of, fit, known_beforehand, measure
+from shaftprint.cli._demo_summary import print_summary
+from shaftprint.cli._demo_truth import fingerprint_truth, print_measurement_truth
+from shaftprint.cli._fingerprint_tables import print_findings, print_fingerprint
+from shaftprint.cli._fit_tables import print_fits
+from shaftprint.cli._inputs import Trial, load_trial, settings_text
+from shaftprint.cli._output_folder import force_option, output_folder
+from shaftprint.cli._progress import Steps, no_progress_option, progress
+from shaftprint.cli._results import write_results
+from shaftprint.cli._signal_tables import print_lines
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.identify import Identification, Settings, Uniform, Unweighted
+from shaftprint.models import structure
+from shaftprint.tug import Truth, sail
+
+VESSEL = "stan-tug-1205"
+FULL, SHORT = "thesis", "short"
+IDENTIFIED = "GAUGE-CLOSED"
+OF_THE_THESIS = ("OL1", "OL2", "OL3", "OL4", "OL5", "CL1", "CL3", "CL4")
+RECORDING = "recording.nc"
+
+
+@click.command("demo")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), default=Path("demo"), show_default=True,
+    help="Folder for the recording and the results.",
+)  # fmt: skip
+@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of noise and starts.")
+@click.option("--short", is_flag=True, help="Sail a test of 14 minutes instead of the thesis' one of three hours.")
+@force_option
+@no_progress_option
+def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool) -> None:
+    """Sail the simulated Stan Tug 1205 and identify it from its recording.
+
+    The raw recording is written as a logger would write it, and the fingerprint is identified from that
+    file alone. The truth is opened at the end, to be printed beside what was found.
+    """
+    campaign = SHORT if short else FULL
+    trial = load_trial(VESSEL, campaign)
+    with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
+        truth = _sail(folder, trial, campaign, seed=seed, steps=steps)
+        found = _identify(folder / RECORDING, trial, seed=seed, steps=steps)
+        steps.begin("Drawing the figures and writing the report")
+        write_results(
+            folder,
+            folder / RECORDING,
+            trial,
+            found.measurement,
+            found.fits,
+            found.fingerprint,
+            thesis=found.thesis_fits,
+        )
+    true = fingerprint_truth(truth, found.fits[0].structure, found.measurement.signals.working_point)
+    print_measurement_truth(found.measurement.signals, truth)
+    _print(found, true)
+    print_summary(found.fingerprint, true, found.thesis_fits)
+    click.echo(_where(output))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Found:
+    """What was identified from the recording alone."""
+
+    measurement: Measurement
+    fits: tuple[Identification, ...]
+    thesis_fits: tuple[Identification, ...]
+    fingerprint: Fingerprint
+
+
+def _sail(folder: Path, trial: Trial, campaign: str, *, seed: int, steps: Steps) -> Truth:
+    """Write the recording, its truth and both settings files into the folder."""
+    steps.begin(f"Sailing {trial.campaign.duration_s:g} s", total=1.0)
+    truth = sail(trial.vessel, trial.campaign, folder / RECORDING, seed=seed, progress=steps.reach)
+    (folder / "vessel.toml").write_bytes(settings_text("vessel", VESSEL))
+    (folder / "campaign.toml").write_bytes(settings_text("campaign", campaign))
+    return truth
+
+
+def _identify(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> _Found:
+    """Identify the gauge-aware structure and those of the thesis, and the latter once more the thesis' way."""
+    measurement = measure(recording, trial, mode="shaftprint", steps=steps)
+    structures = [structure(name) for name in (IDENTIFIED, *OF_THE_THESIS)]
+    settings = {
+        chosen.name: Settings(priors=known_beforehand(chosen, measurement.signals, {})) for chosen in structures
+    }
+    fits = fit(structures, measurement, settings=settings, seed=seed, steps=steps)
+    as_thesis = measure(recording, trial, mode="thesis", steps=steps)
+    unweighted = Settings(weighting=Unweighted(), draw=Uniform())
+    thesis_fits = fit(
+        structures[1:], as_thesis, settings=dict.fromkeys(OF_THE_THESIS, unweighted), seed=seed, steps=steps
+    )
+    steps.begin("Finding the intervals")
+    return _Found(
+        measurement=measurement,
+        fits=fits,
+        thesis_fits=thesis_fits,
+        fingerprint=fingerprint_of(fits[0], measurement, trial),
+    )
+
+
+def _print(found: _Found, true: Mapping[str, float]) -> None:
+    print_lines(found.measurement.spectra)
+    print_findings("Findings on the signals", found.measurement.signals.findings)
+    print_fits("Structures of the thesis, on the same signals, weighted by their noise", found.fits[1:])
+    print_fits("Structures of the thesis, signals and fits done the thesis' way", found.thesis_fits)
+    print_fingerprint(found.fingerprint, truth=true)
+
+
+def _where(output: Path) -> str:
+    again = f"shaftprint identify {output / RECORDING} --vessel {output / 'vessel.toml'} "
+    return (
+        f"Recording:   {output / RECORDING}\n"
+        f"Fingerprint: {output / 'fingerprint.json'}\n"
+        f"Report:      {output / 'index.html'}\n"
+        f"Again:       {again}--campaign {output / 'campaign.toml'} -o again"
+    )

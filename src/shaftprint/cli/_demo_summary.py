@@ -1,0 +1,49 @@
+"""The last lines of the demo: what was found, in words, with the truth beside it."""
+
+from collections.abc import Mapping, Sequence
+
+import click
+
+from shaftprint.cli._numbers import plain, with_uncertainty
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.identify import Identification
+
+
+def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], thesis_fits: Sequence[Identification]) -> None:
+    """Print what an engineer wants to know, each with its truth."""
+    click.echo("What was found")
+    for name, words in SENTENCES.items():
+        quantity = fingerprint.quantity(name)
+        value = with_uncertainty(quantity.value, quantity.std)
+        unit = "" if quantity.unit == "-" else f" {quantity.unit}"
+        click.echo(f"  * {words}: {value}{unit}; in truth {plain(truth[name])}.")
+    for sentence in _of_the_thesis(fingerprint, thesis_fits):
+        click.echo(f"  * {sentence}")
+    click.echo()
+
+
+SENTENCES = {
+    "I_dn": "Propeller, shaft and entrained water, the inertia behind the torque gauge",
+    "I_up": "Engine, coupling and gearbox, the inertia before the torque gauge",
+    "k_q": "The propeller torque grows with this power of the speed; 2 says that gauge and inflow are in order",
+    "t_d + t_sp": "From the set point to the fuel it takes, all delays together",
+    "K_p / K_i": "The governor's reset time",
+    "gain margin": "The governor gain may grow by this factor before the line hunts",
+    "delay margin": "This much more delay in the loop would make the line hunt",
+}
+
+
+def _of_the_thesis(fingerprint: Fingerprint, thesis_fits: Sequence[Identification]) -> list[str]:
+    """Return what the thesis' way finds in the same recording, and why."""
+    core = next((found for found in thesis_fits if found.structure.name == "OL1"), None)
+    if core is None:
+        return []
+    upstream, tau_up, tau = fingerprint.quantity("I_up"), fingerprint.quantity("tau_up"), core.value("tau_n")
+    if upstream.expected is None:
+        return []
+    expected = tau_up.value * upstream.expected / upstream.value
+    return [
+        f"The thesis' way finds an inertia time of {tau:.3f} s in the same recording and expects {expected:.3f} s from "
+        f"the {upstream.expected:.1f} kg m2 before the gauge: a factor {expected / tau:.1f}. A gauge shows only what "
+        "is behind it, and the delay of the pick-up adds to that."
+    ]

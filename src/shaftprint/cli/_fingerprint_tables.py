@@ -1,0 +1,118 @@
+"""A fingerprint as tables on the terminal."""
+
+from collections.abc import Mapping, Sequence
+
+import click
+
+from shaftprint.cli._numbers import plain, with_uncertainty
+from shaftprint.cli._tables import print_table
+from shaftprint.fingerprint import Conditions, Fingerprint, Quantity
+
+NO_TRUTH: Mapping[str, float] = {}
+
+
+def print_fingerprint(fingerprint: Fingerprint, *, truth: Mapping[str, float] = NO_TRUTH) -> None:
+    """Print conditions, parameters, physical values, margins, quality and findings.
+
+    Parameters
+    ----------
+    fingerprint
+        What to print.
+    truth
+        True values by the names of parameters, combinations and physical values, where they are known.
+    """
+    _print_conditions(fingerprint)
+    normalised = (*fingerprint.parameters, *fingerprint.combinations)
+    _print_quantities(f"{fingerprint.structure}: parameters, normalised at the working point", normalised, truth)
+    _print_quantities(
+        "Physical values, at the propeller shaft unless the unit says otherwise", fingerprint.physical, truth
+    )
+    if fingerprint.margins:
+        _print_quantities("Stability margins", fingerprint.margins, truth)
+    _print_quality(fingerprint)
+    print_findings("Findings", fingerprint.findings)
+
+
+def print_findings(title: str, findings: Sequence[str]) -> None:
+    """Print findings in words, one a line, under a title."""
+    click.echo(title)
+    for finding in findings or ("None.",):
+        click.echo(f"  * {finding}")
+    click.echo()
+
+
+def _print_conditions(fingerprint: Fingerprint) -> None:
+    where: Conditions = fingerprint.conditions
+    click.echo(f"{where.vessel}; {where.campaign}")
+    for quantity in (where.engine_speed, where.shaft_torque):
+        value = with_uncertainty(quantity.value, quantity.std)
+        click.echo(f"  {quantity.meaning}: {quantity.name} = {value} {quantity.unit}")
+    click.echo(f"  speed sensor {where.speed_channel}; signals prepared in {where.mode} mode")
+    click.echo(f"  lines used: {', '.join(where.lines_used)}")
+    if where.lines_left_out:
+        click.echo(f"  lines left out: {', '.join(where.lines_left_out)}")
+    for source in fingerprint.sources:
+        click.echo(f"  {source.name}: SHA-256 {source.sha256[:16]}...")
+    click.echo(f"  made {fingerprint.created:%Y-%m-%d %H:%M %Z} with shaftprint {fingerprint.shaftprint_version}\n")
+
+
+def _print_quantities(title: str, quantities: Sequence[Quantity], truth: Mapping[str, float]) -> None:
+    """Print quantities; columns that nothing would fill are left out."""
+    known = any(quantity.name in truth for quantity in quantities)
+    expected = any(quantity.expected is not None for quantity in quantities)
+    columns = ["quantity", "unit", "value +/- 1 std"]
+    profiled = any(quantity.interval_95 is not None for quantity in quantities)
+    columns += ["95 % interval"] * profiled + ["expected"] * expected + ["truth", "off by [std]"] * known + ["meaning"]
+    rows = []
+    for quantity in quantities:
+        row = [quantity.name, quantity.unit, _value(quantity)]
+        row += [_interval(quantity)] * profiled
+        row += [_expected(quantity)] * expected + _against(quantity, truth) * known + [quantity.meaning]
+        rows.append(row)
+    print_table(title, columns, rows, numbers=range(2, len(columns) - 1))
+
+
+def _value(quantity: Quantity) -> str:
+    return with_uncertainty(quantity.value, quantity.std) + (" at bound" if quantity.at_bound else "")
+
+
+def _interval(quantity: Quantity) -> str:
+    """Return the profile-likelihood interval; an end that only a bound of the search sets is marked."""
+    if quantity.interval_95 is None:
+        return ""
+    ends = [
+        f"{'bound ' if is_open else ''}{end:.4g}"
+        for end, is_open in zip(quantity.interval_95, quantity.interval_open, strict=True)
+    ]
+    return " to ".join(ends)
+
+
+def _expected(quantity: Quantity) -> str:
+    if quantity.expected is None:
+        return ""
+    if quantity.expected_std is None:
+        return plain(quantity.expected)
+    return with_uncertainty(quantity.expected, quantity.expected_std)
+
+
+def _against(quantity: Quantity, truth: Mapping[str, float]) -> list[str]:
+    if quantity.name not in truth:
+        return ["", ""]
+    true = truth[quantity.name]
+    off = (quantity.value - true) / quantity.std if quantity.std > 0.0 else 0.0
+    return [plain(true), f"{off:+.1f}"]
+
+
+def _print_quality(fingerprint: Fingerprint) -> None:
+    quality = fingerprint.quality
+    rows = [
+        (output, f"{percent:.2f}", f"{quality.fit_ceiling[output]:.2f}")
+        for output, percent in quality.fit_percent.items()
+    ]
+    print_table(
+        "How well the model explains the data", ("output", "FitPercent", "ceiling by noise"), rows, numbers=(1, 2)
+    )
+    click.echo(
+        f"  chi-square {quality.chi_square:.1f} for {quality.degrees_of_freedom} degrees of freedom; "
+        f"{quality.starts_at_optimum} of {quality.starts} starts reached this optimum\n"
+    )

@@ -1,0 +1,122 @@
+"""``shaftprint identify``: from a recording to a fingerprint."""
+
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._chain import fingerprint_of, fit, known_beforehand, measure
+from shaftprint.cli._fingerprint_tables import print_findings, print_fingerprint
+from shaftprint.cli._fit_tables import print_fits
+from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
+from shaftprint.cli._known_values import named_prior, named_value
+from shaftprint.cli._output_folder import force_option, output_folder
+from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.cli._results import write_results
+from shaftprint.errors import StructureError
+from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted
+from shaftprint.models import Structure, structure
+from shaftprint.signals import Mode, Signals
+
+
+@click.command("identify")
+@click.argument("recording", type=click.Path(path_type=Path))
+@vessel_option
+@campaign_option
+@click.option(
+    "--structure",
+    "names",
+    multiple=True,
+    default=("GAUGE-CLOSED",),
+    show_default=True,
+    help="Model structure; the fingerprint is of the first, others are fitted beside it.",
+)
+@click.option(
+    "--prior",
+    "priors",
+    metavar="NAME=MEAN+-STD",
+    type=named_prior,
+    multiple=True,
+    help="What is known of a parameter beforehand, such as g=0+-0.1, the default of gauge-aware structures.",
+)
+@click.option(
+    "--hold", "held", metavar="NAME=VALUE", type=named_value, multiple=True, help="Hold a parameter at a value."
+)
+@click.option(
+    "--mode",
+    type=click.Choice(["shaftprint", "thesis"]),
+    default="shaftprint",
+    show_default=True,
+    help="How signals and lines are prepared; the thesis' way is there to compare.",
+)
+@click.option("--unweighted", is_flag=True, help="Weigh all lines alike, as the thesis did; intervals are wider.")
+@click.option("--starts", type=click.IntRange(min=1), default=50, show_default=True, help="Starts of each search.")
+@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the starts.")
+@click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the results.")
+@force_option
+@no_progress_option
+def command(
+    recording: Path,
+    vessel: str,
+    campaign: str,
+    names: tuple[str, ...],
+    priors: tuple[tuple[str, Prior], ...],
+    held: tuple[tuple[str, float], ...],
+    mode: Mode,
+    unweighted: bool,
+    starts: int,
+    seed: int,
+    output: Path,
+    force: bool,
+    no_progress: bool,
+) -> None:
+    """Identify the fingerprint from a recording.
+
+    Writes the fingerprint as JSON, the figures and a report into a folder, and prints the tables.
+    """
+    structures = _structures(names, dict(held))
+    trial = load_trial(vessel, campaign)
+    weighting = Unweighted() if unweighted else MaximumLikelihood()
+    with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
+        measurement = measure(recording, trial, mode=mode, steps=steps)
+        settings = {
+            chosen.name: Settings(
+                weighting=weighting,
+                starts=starts,
+                priors=_priors(chosen, structures, measurement.signals, dict(priors)),
+            )
+            for chosen in structures
+        }
+        fits = fit(structures, measurement, settings=settings, seed=seed, steps=steps)
+        steps.begin("Writing the report")
+        fingerprint = fingerprint_of(fits[0], measurement, trial)
+        write_results(folder, recording, trial, measurement, fits, fingerprint)
+    print_fingerprint(fingerprint)
+    if len(fits) > 1:
+        print_fits("All structures", fits)
+    print_findings("Findings on the signals", measurement.signals.findings)
+    click.echo(f"Fingerprint: {output / 'fingerprint.json'}\nReport:      {output / 'index.html'}")
+
+
+def _structures(names: tuple[str, ...], held: dict[str, float]) -> tuple[Structure, ...]:
+    """Return the structures with what is held in those that have it; each value must be of use in one."""
+    chosen = tuple({name.upper(): structure(name) for name in names}.values())
+    unused = [name for name in held if not any(name in found.names for found in chosen)]
+    if unused:
+        raise StructureError(
+            f"--hold {', '.join(unused)}: expected a parameter of {', '.join(found.name for found in chosen)}, "
+            f"which have {', '.join(sorted({name for found in chosen for name in found.names}))}."
+        )
+    return tuple(
+        found.held_at(**{name: value for name, value in held.items() if name in found.names}) for found in chosen
+    )
+
+
+def _priors(
+    chosen: Structure, structures: tuple[Structure, ...], signals: Signals, given: dict[str, Prior]
+) -> dict[str, Prior]:
+    """Return the priors of one structure; a given one that no structure has is passed on, to be refused."""
+    free = {parameter.name for parameter in chosen.free}
+    anywhere = {parameter.name for found in structures for parameter in found.free}
+    return known_beforehand(
+        chosen, signals, {name: prior for name, prior in given.items() if name in free or name not in anywhere}
+    )

@@ -1,0 +1,123 @@
+"""``shaftprint inspect``: what is in a recording, and whether it is good enough."""
+
+from pathlib import Path
+
+import click
+import numpy as np
+
+from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.cli._fingerprint_tables import print_findings
+from shaftprint.cli._inputs import NAMES
+from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.cli._raw_levels import levels_of
+from shaftprint.cli._signal_tables import print_lines, print_signals
+from shaftprint.cli._tables import print_table
+from shaftprint.recording import Recording, read_recording
+from shaftprint.signals import ChannelReport, inspect_channels, prepare_signals
+from shaftprint.spectra import Spectra, estimate_spectra
+from shaftprint.vessel import Vessel, load_vessel
+
+# Noise as strong as the response: a weaker line adds little.
+LOWEST_DB = 0.0
+# GAUGE-CLOSED has about ten free parameters and a line gives four numbers: twice what is needed at the least.
+FEWEST_LINES = 5
+# Where governed lines of this size cross over: there delay, lag and proportional gain show.
+CROSSOVER_RAD_S = (1.0, 12.0)
+FEWEST_AT_CROSSOVER = 2
+
+
+@click.command("inspect")
+@click.argument("recording", type=click.Path(path_type=Path))
+@click.option("--vessel", help=f"Vessel file, {NAMES} stan-tug-1205: says what the channels are.")
+@click.option("--campaign", help=f"Campaign file, {NAMES} thesis: says what was asked of the ship.")
+@no_progress_option
+def command(recording: Path, vessel: str | None, campaign: str | None, no_progress: bool) -> None:
+    """Say what is in a recording and whether it is good enough.
+
+    Without a vessel file, the channels with rates, spans and levels. With one, what each sensor shows: pulses,
+    faults, outliers. With a campaign file too, the calibration and the signal-to-noise ratio of every test line.
+    """
+    if campaign is not None and vessel is None:
+        raise click.UsageError("--campaign needs --vessel, which says what each channel is.")
+    ship = None if vessel is None else load_vessel(vessel)
+    asked = None if campaign is None else load_campaign(campaign)
+    with read_recording(recording) as opened:
+        _print_channels(opened, hidden=no_progress)
+        if ship is None:
+            return
+        _print_sensors(opened, ship, hidden=no_progress)
+        if asked is not None:
+            _print_test(opened, ship, asked, hidden=no_progress)
+
+
+def _print_channels(opened: Recording, *, hidden: bool) -> None:
+    rows = []
+    with progress(hidden=hidden) as steps:
+        steps.begin("Reading the channels", total=float(len(opened.channels)))
+        for channel in opened.channels.values():
+            levels = levels_of(channel)
+            values = [f"{value:.5g}" for value in (levels.lowest, levels.mean, levels.highest)]
+            span = f"{channel.start_s:g} to {channel.start_s + channel.duration_s:g}"
+            rows.append((channel.name, channel.unit, f"{channel.rate_hz:g}", span, *values, str(levels.not_numbers)))
+            steps.advance(1.0)
+    click.echo(f"{opened.path}: {opened.format}, SHA-256 {opened.sha256}\n")
+    columns = ("channel", "unit", "rate [Hz]", "span [s]", "lowest", "mean", "highest", "not a number")
+    print_table("Channels, raw", columns, rows, numbers=(2, 4, 5, 6, 7))
+
+
+def _print_sensors(opened: Recording, ship: Vessel, *, hidden: bool) -> None:
+    with progress(hidden=hidden) as steps:
+        steps.begin("Looking at the sensors")
+        reports = inspect_channels(opened, ship)
+    columns = ("channel", "used for", "levels", "pulses [1/s]", "strip angles [deg]", "faults")
+    print_table("Sensors of the vessel file", columns, [_sensor_row(report) for report in reports], numbers=(3,))
+    print_findings("Problems", [report.problem for report in reports if report.problem is not None])
+
+
+def _sensor_row(report: ChannelReport) -> tuple[str, ...]:
+    pulses = report.pulses
+    between = (report.lowest, report.highest) if pulses is None else (pulses.low, pulses.high)
+    angles = () if pulses is None or len(pulses.strip_angles_deg) == 1 else pulses.strip_angles_deg
+    kinds = sorted({fault.kind for fault in report.faults})
+    counts = [f"{sum(fault.kind == kind for fault in report.faults)} x {kind}" for kind in kinds]
+    return (
+        report.channel,
+        report.use,
+        f"{between[0]:.3g} to {between[1]:.3g} {report.unit}",
+        "" if pulses is None else f"{pulses.per_second:.3f}",
+        ", ".join(f"{angle:.2f}" for angle in angles),
+        ", ".join(counts) or "none",
+    )
+
+
+def _print_test(opened: Recording, ship: Vessel, asked: Campaign, *, hidden: bool) -> None:
+    with progress(hidden=hidden) as steps:
+        steps.begin("Preparing the signals", total=1.0)
+        signals = prepare_signals(opened, ship, asked, progress=steps.reach)
+        steps.begin("Measuring the test lines")
+        spectra = estimate_spectra(signals, asked)
+    print_signals(signals)
+    print_lines(spectra)
+    print_findings("Findings on the signals", signals.findings)
+    click.echo(verdict(spectra))
+
+
+def verdict(spectra: Spectra) -> str:
+    """Return in one sentence whether the test lines are good enough to identify a propulsion line."""
+    ratios, response = spectra.signal_to_noise, spectra.response
+    columns = [ratios.channels.index(name) for name in (spectra.speed, "M_s")]
+    strong = np.all(ratios.local_db[:, columns] >= LOWEST_DB, axis=1)
+    named = dict(zip(ratios.lines, strong.tolist(), strict=True))
+    good = np.array([named[line] for line in response.lines]) & response.used
+    omega = response.omega_rad_s[good]
+    crossover = int(np.count_nonzero((omega >= CROSSOVER_RAD_S[0]) & (omega <= CROSSOVER_RAD_S[1])))
+    between = f"{crossover} of them between {CROSSOVER_RAD_S[0]:g} and {CROSSOVER_RAD_S[1]:g} rad/s"
+    found = f"{omega.size} of {good.size} lines are usable and above {LOWEST_DB:g} dB, {between}"
+    if omega.size < FEWEST_LINES:
+        return f"Not good enough: {found}; at least {FEWEST_LINES} are needed. Use a larger amplitude or more lines."
+    if crossover < FEWEST_AT_CROSSOVER:
+        return (
+            f"Not good enough: {found}, where the loop crosses over; at least {FEWEST_AT_CROSSOVER} are needed there "
+            "to find delay, lag and gain."
+        )
+    return f"Good enough: {found}, where the loop crosses over."

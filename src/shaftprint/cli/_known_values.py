@@ -1,0 +1,62 @@
+"""Options such as ``--prior g=0+-0.1`` and ``--hold v=1``: what is known of parameters before a fit."""
+
+import math
+
+import click
+
+from shaftprint.errors import IdentificationError
+from shaftprint.identify import Prior
+
+
+def named_prior(text: str) -> tuple[str, Prior]:
+    """Return the name and the prior of ``NAME=MEAN+-STD``, a mean and a standard deviation.
+
+    Raises
+    ------
+    click.BadParameter
+        If the text is not of that form.
+    """
+    name, numbers = _split(text.replace("+/-", "+-"))
+    mean, _, std = numbers.partition("+-")
+    try:
+        return name, Prior(mean=_number(mean), std=_number(std))
+    except ValueError:
+        raise click.BadParameter(
+            f"expected a parameter, its mean and its standard deviation such as g=0+-0.1, found {text!r}."
+        ) from None
+    except IdentificationError as error:
+        raise click.BadParameter(str(error)) from None
+
+
+def named_value(text: str) -> tuple[str, float]:
+    """Return the name and the number of ``NAME=VALUE``.
+
+    Raises
+    ------
+    click.BadParameter
+        If the text is not of that form.
+    """
+    name, number = _split(text)
+    try:
+        return name, _number(number)
+    except ValueError:
+        raise click.BadParameter(f"expected a parameter and its value such as v=1, found {text!r}.") from None
+
+
+def _split(text: str) -> tuple[str, str]:
+    name, _, rest = text.partition("=")
+    return name.strip(), rest.strip()
+
+
+def _number(text: str) -> float:
+    """Return a finite number.
+
+    Raises
+    ------
+    ValueError
+        If the text is anything else.
+    """
+    number = float(text)
+    if not math.isfinite(number):
+        raise ValueError(text)
+    return number

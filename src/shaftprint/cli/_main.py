@@ -1,0 +1,26 @@
+"""The program ``shaftprint``: its commands and how they end."""
+
+import sys
+
+import click
+
+from shaftprint import __version__
+from shaftprint.cli._command_group import CommandGroup
+
+
+@click.group(cls=CommandGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(__version__, message="%(prog)s %(version)s")
+def shaftprint() -> None:
+    """Find the fingerprint of a ship's propulsion line in a logger recording.
+
+    The fingerprint is the line's physical parameters with their uncertainty, its frequency response and
+    its stability margins. Begin with `shaftprint demo`.
+    """
+
+
+def main() -> None:
+    """Run the program; this is the entry point of the installed command."""
+    for stream in (sys.stdout, sys.stderr):
+        # a name that the console's code page lacks must not end a run of minutes
+        stream.reconfigure(errors="replace")  # type: ignore[union-attr]
+    shaftprint(prog_name="shaftprint")

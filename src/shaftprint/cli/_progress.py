@@ -1,0 +1,65 @@
+"""Progress bars on the error output of a terminal."""
+
+import contextlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import click
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
+
+no_progress_option = click.option("--no-progress", is_flag=True, help="Show no progress bars.")
+"""The option of every command that takes longer than a second."""
+
+
+@dataclass(kw_only=True, slots=True)
+class Steps:
+    """The steps of a command, one bar each; without a terminal nothing is shown."""
+
+    bars: Progress | None
+    """Where the bars are drawn; None where they are not."""
+    current: TaskID | None = None
+    """The bar of the step that runs."""
+
+    def begin(self, text: str, total: float | None = None) -> None:
+        """End the running step and begin the next.
+
+        Parameters
+        ----------
+        text
+            What is being done.
+        total
+            Amount of work, in any unit; None where it is not known.
+        """
+        if self.bars is None:
+            return
+        self.end()
+        self.current = self.bars.add_task(text, total=total)
+
+    def advance(self, amount: float) -> None:
+        """Move the running bar by an amount of work."""
+        if self.bars is not None and self.current is not None:
+            self.bars.advance(self.current, amount)
+
+    def reach(self, amount: float) -> None:
+        """Set the running bar to an amount of work."""
+        if self.bars is not None and self.current is not None:
+            self.bars.update(self.current, completed=amount)
+
+    def end(self) -> None:
+        """Fill the running bar."""
+        if self.bars is not None and self.current is not None:
+            total = self.bars.tasks[self.bars.task_ids.index(self.current)].total or 1.0
+            self.bars.update(self.current, total=total, completed=total)
+
+
+@contextlib.contextmanager
+def progress(*, hidden: bool) -> Iterator[Steps]:
+    """Give the bars of a command; they disappear when the block ends."""
+    console = Console(stderr=True)
+    if hidden or not console.is_terminal:
+        yield Steps(bars=None)
+        return
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    with Progress(*columns, console=console, transient=True) as bars:
+        yield Steps(bars=bars)

@@ -1,0 +1,30 @@
+"""``shaftprint sail``: a raw recording of a simulated tug."""
+
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._inputs import load_trial
+from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.tug import sail, truth_path
+
+
+@click.command("sail")
+@click.argument("vessel")
+@click.argument("campaign")
+@click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Recording to write.")
+@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all randomness.")
+@click.option("--force", is_flag=True, help="Replace an existing recording.")
+@no_progress_option
+def command(vessel: str, campaign: str, output: Path, seed: int, force: bool, no_progress: bool) -> None:
+    """Let a simulated tug sail a campaign and write its raw recording.
+
+    VESSEL and CAMPAIGN are files, or names of shipped ones such as stan-tug-1205 and thesis. What was put
+    into the recording goes to a file of its own beside it, which nothing that identifies will open.
+    """
+    trial = load_trial(vessel, campaign)
+    with progress(hidden=no_progress) as steps:
+        steps.begin("Sailing", total=1.0)
+        sail(trial.vessel, trial.campaign, output, seed=seed, overwrite=force, progress=steps.reach)
+    click.echo(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
+    click.echo(f"{truth_path(output)}: what was put into it.")

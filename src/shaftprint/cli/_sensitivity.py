@@ -1,0 +1,53 @@
+"""``shaftprint sensitivity``: what each parameter does to the response."""
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias
+
+import click
+
+from shaftprint.cli._output_folder import force_option, output_folder
+from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.models import structure
+from shaftprint.report import plot_sensitivity, save_figure, thesis_families
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    Drawings: TypeAlias = dict[str, partial[Figure]]
+
+ALL_OF_THE_THESIS = "THESIS"
+
+
+@click.command("sensitivity")
+@click.argument("name", metavar="STRUCTURE")
+@click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the figures.")
+@click.option("--format", "suffix", type=click.Choice(["svg", "png", "pdf"]), default="svg", show_default=True)
+@force_option
+@no_progress_option
+def command(name: str, output: Path, suffix: str, force: bool, no_progress: bool) -> None:
+    """Draw what each parameter of a structure does to its response.
+
+    One figure an output: the Bode families of STRUCTURE with each free parameter varied between its bounds. With
+    `thesis` for STRUCTURE, the sensitivity figures of the thesis (4.2 to 4.8, B.1 to B.4, D.1).
+    """
+    drawings = _of_the_thesis() if name.upper() == ALL_OF_THE_THESIS else _of_structure(name)
+    with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
+        steps.begin("Drawing", total=float(len(drawings)))
+        for stem, draw in drawings.items():
+            save_figure(draw(), folder / f"{stem}.{suffix}")
+            steps.advance(1.0)
+    for stem in drawings:
+        click.echo(output / f"{stem}.{suffix}")
+
+
+def _of_structure(name: str) -> "Drawings":
+    chosen = structure(name)
+    return {f"{chosen.name}_{output}": partial(plot_sensitivity, chosen, output=output) for output in chosen.outputs}
+
+
+def _of_the_thesis() -> "Drawings":
+    return {
+        f"figure_{family.figure}": partial(plot_sensitivity, family.structure, output=family.output, vary=family.vary)
+        for family in thesis_families()
+    }

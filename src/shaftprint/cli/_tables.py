@@ -1,0 +1,39 @@
+"""Tables on the terminal."""
+
+from collections.abc import Collection, Sequence
+
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+# A table that goes into a file or a pipe must not be folded to the width of a terminal that is not there.
+WIDTH_WITHOUT_TERMINAL = 160
+
+
+def print_table(
+    title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], *, numbers: Collection[int] = ()
+) -> None:
+    """Print a table with a title.
+
+    Parameters
+    ----------
+    title
+        What the table shows.
+    columns
+        Headings, with units.
+    rows
+        Cells, a row for each line.
+    numbers
+        Places of the columns that hold numbers; they are set to the right.
+    """
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for place, heading in enumerate(columns):
+        table.add_column(escape(heading), justify="right" if place in numbers else "left")
+    for row in rows:
+        table.add_row(*(escape(cell) for cell in row))
+    console = Console(highlight=False)
+    if not console.is_terminal:
+        console = Console(highlight=False, width=WIDTH_WITHOUT_TERMINAL)
+    console.print(title, style="bold", markup=False, soft_wrap=True)
+    console.print(table)
