@@ -45,7 +45,7 @@ class Demand:
         if not self.first > 0.0:
             raise SettingsError(
                 f"campaign {campaign.name}: expected a set point that asks for a positive speed at {start_s:g} s, "
-                f"found {rpm_from_rev_s(self.first):g} rpm by the line of the tug; change its slope, intercept or offset."
+                f"found {rpm_from_rev_s(self.first):g} rpm by its line; change slope, intercept or offset of the tug."
             )
         self._last = self.first
 

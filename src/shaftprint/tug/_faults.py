@@ -71,8 +71,9 @@ def draw_dropouts(noise: Noise, duration_s: float, rate_hz: float, rng: np.rando
     longest = noise.torque_dropout_longest_s
     length_s = rng.uniform(longest / 40.0, longest, times.size)
     start = np.floor(times * rate_hz).astype(np.int64)
-    # two dropouts may not overlap: the later one begins after the earlier has ended
     stop = start + np.maximum(1, np.round(length_s * rate_hz)).astype(np.int64)
-    start[1:] = np.maximum(start[1:], stop[:-1])
-    stop = np.maximum(stop, start + 1)
-    return Dropouts(start=start, stop=stop, holds=rng.integers(0, 2, times.size))
+    # one that begins before another has ended cannot be told from it
+    ended = np.maximum.accumulate(np.concatenate(([0], stop)))[:-1]
+    apart = start >= ended
+    holds = rng.integers(0, 2, times.size)
+    return Dropouts(start=start[apart], stop=stop[apart], holds=holds[apart])

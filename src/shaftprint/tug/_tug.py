@@ -37,7 +37,7 @@ class Tug:
     anti_windup_s: float = 0.5
     """Time constant of the back-calculation that empties the integrator at the limits [s]."""
     governor_delay_s: float = 0.0703
-    """Transport delay ``t_d`` between governor output and fuel rack, inside the loop [s]; 0 or at least 1.5 ms."""
+    """Transport delay ``t_d`` between governor output and fuel rack, inside the loop [s]; 0 or three time steps."""
     natural_frequency_rad_s: float = 10.3
     """Natural frequency ``omega_n`` of the fuel actuation [rad/s]."""
     damping_ratio: float = 0.47

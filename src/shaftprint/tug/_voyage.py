@@ -7,6 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.campaign import Campaign
+from shaftprint.errors import SettingsError
 from shaftprint.tug._demand import Demand
 from shaftprint.tug._disturbance import Disturbance
 from shaftprint.tug._physics import build_plant, equilibrium
@@ -65,10 +66,21 @@ def voyage(
     ------
     leg
         The next chunk.
+
+    Raises
+    ------
+    SettingsError
+        If the truth is not physical, or the delay in the loop is shorter than three steps and not zero.
     """
     plant = build_plant(tug, vessel)
     demand = Demand(tug, vessel, campaign, start_s=start_s, step_s=step_s)
     delay_steps = plant.delay_s / step_s
+    # the delayed rack is interpolated over four nodes of which the newest must already be known
+    if 0.0 < delay_steps < 3.0:
+        raise SettingsError(
+            f"tug: expected governor_delay_s of 0 or at least {3.0 * step_s:g}, three steps of the simulation, "
+            f"found {plant.delay_s:g}; give a longer delay or none."
+        )
     parts = [interpolation_weights(stage - delay_steps) for stage in (0.0, 0.5, 1.0)]
     delay = Delay(
         first=np.array([node for node, _ in parts], dtype=np.int64), weights=np.array([weight for _, weight in parts])
