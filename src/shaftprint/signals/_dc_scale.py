@@ -8,8 +8,10 @@ would be 0.1 % off at the thesis' lines because the loop has a pole near 0.6 rad
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.campaign import Campaign, Sine
@@ -22,7 +24,11 @@ _FEWEST_LINES = 3
 
 # The scatter of a line with few periods is drawn towards that of all lines, as with so many more.
 _PRIOR_DEGREES = 4.0
+_LEAST_VARIANCE = 1e-14
 _ROUNDS = 30
+
+# Orders of the sine that the propeller law makes: the fundamental and what its square and cube give.
+_ORDERS = (1, 2, 3)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -142,19 +148,19 @@ def zero_frequency_ratio(lines: LowLines) -> tuple[float, float]:
     The equations are made linear by the denominator of the round before (Sanathanan and Koerner,
     "Transfer function synthesis as a ratio of two complex polynomials", 1963).
     """
-    s: ComplexArray = 1j * lines.omega_rad_s
-    ones = np.ones(s.size, dtype=np.complex128)
+    s = 1j * lines.omega_rad_s
+    ones = np.ones_like(s)
     denominator = ones
-    found: FloatArray = np.zeros(4)
+    found = np.zeros(4)
     for _ in range(_ROUNDS):
-        columns: ComplexArray = np.stack([ones, s, -s * lines.ratio, -(s**2) * lines.ratio], axis=1)
+        columns = np.stack([ones, s, -s * lines.ratio, -(s**2) * lines.ratio], axis=1)
         weight = 1.0 / (lines.std * np.abs(denominator))
         matrix, right = _real(columns * weight[:, np.newaxis]), _real(lines.ratio * weight)
-        found = np.linalg.lstsq(matrix, right, rcond=None)[0]
+        found[:] = np.linalg.lstsq(matrix, right, rcond=None)[0]
         denominator = 1.0 + found[2] * s + found[3] * s**2
     numerator = found[0] + found[1] * s
-    columns = np.stack([ones, s, -s * numerator / denominator, -(s**2) * numerator / denominator], 1)
-    jacobian = _real(columns / (denominator * lines.std)[:, np.newaxis])
+    tangents = [ones, s, -s * numerator / denominator, -(s**2) * numerator / denominator]
+    jacobian = _real(np.stack(tangents, axis=1) / (denominator * lines.std)[:, np.newaxis])
     residual = _real((lines.ratio - numerator / denominator) / lines.std)
     covariance = np.linalg.pinv(jacobian.T @ jacobian)
     freedom = residual.size - found.size
@@ -163,7 +169,11 @@ def zero_frequency_ratio(lines: LowLines) -> tuple[float, float]:
 
 
 def _period_amplitudes(values: FloatArray, sine: Sine, rate_hz: float, start_s: float) -> ComplexArray:
-    """Return the complex amplitude in each whole period, by least squares with offset and drift."""
+    """Return the complex amplitude in each whole period, by least squares with offset, drift and harmonics.
+
+    Within one period a drift and a harmonic are not orthogonal: the second harmonic of the propeller law
+    would turn up as a drift, and through it change the ratio by 5e-4.
+    """
     omega = 2.0 * np.pi * sine.frequency_hz
     borders = sine.settled_s + np.arange(sine.periods + 1) / sine.frequency_hz
     samples = np.ceil((borders - start_s) * rate_hz - 1e-9).astype(np.int64)
@@ -172,7 +182,8 @@ def _period_amplitudes(values: FloatArray, sine: Sine, rate_hz: float, start_s: 
         part = values[samples[k] : samples[k + 1]]
         time = start_s + np.arange(samples[k], samples[k + 1]) / rate_hz - borders[k]
         phase = omega * time
-        design = np.column_stack([np.cos(phase), np.sin(phase), np.ones(time.size), time])
+        waves = [wave(order * phase) for order in _ORDERS for wave in (np.cos, np.sin)]
+        design = np.column_stack([*waves, np.ones(time.size), time])
         cosine, sinus, *_ = np.linalg.solve(design.T @ design, design.T @ part)
         found[k] = cosine - 1j * sinus
     return found
@@ -184,10 +195,11 @@ def _shrunk(variance: FloatArray, length_s: FloatArray, periods: FloatArray) -> 
         return variance
     freedom = 2.0 * (periods - 1.0)
     common = float(np.median(variance * length_s)) / length_s
-    shrunk: FloatArray = (freedom * variance + _PRIOR_DEGREES * common) / (freedom + _PRIOR_DEGREES)
-    return np.maximum(shrunk, 1e-14)
+    shrunk = freedom * variance + _PRIOR_DEGREES * common
+    # less two: a variance from few degrees of freedom is as often too small as too large
+    return np.maximum(shrunk / (freedom + _PRIOR_DEGREES - 2.0), _LEAST_VARIANCE)
 
 
-def _real(values: ComplexArray) -> FloatArray:
+def _real(values: NDArray[Any]) -> FloatArray:
     """Return real and imaginary parts one below the other."""
     return np.concatenate([values.real, values.imag])

@@ -10,7 +10,8 @@ from shaftprint.campaign import Campaign, Chirp, Sine
 _BLOCK_S = 1.0
 _SHORTEST_S = 15
 _SHORTEST_SETTLED_S = 8
-_BATCH_BLOCKS = 4
+_BATCH_BLOCKS = 8
+_PRIOR_DEGREES = 4.0
 
 # The set point stands still when it stays within this share of its whole range.
 _TOLERANCE = 0.005
@@ -73,26 +74,31 @@ def steady_stretches(
     still = _block_spread(set_point_v, length) <= tolerance
     still &= _outside_waves(starts, length / rate_hz, campaign)
     moved = np.abs(np.diff(means[0], prepend=means[0][:1])) > tolerance
-    found = []
-    for first, stop in _runs(still, moved):
-        if stop - first < _SHORTEST_S:
-            continue
-        first += _settling(means[1][first:stop])
-        if stop - first < _SHORTEST_SETTLED_S:
-            continue
-        (volts, _), (speed, speed_std), (torque, torque_std) = (_mean_and_std(values[first:stop]) for values in means)
-        found.append(
-            SteadyStretch(
-                start_s=float(starts[first]),
-                stop_s=float(starts[stop - 1]) + length / rate_hz,
-                set_point_v=volts,
-                speed_rev_s=speed,
-                speed_std_rev_s=speed_std,
-                torque_nm=torque,
-                torque_std_nm=torque_std,
-            )
+    settled = [_settled(run, means[1]) for run in _runs(still, moved)]
+    kept = [run for run in settled if run is not None]
+    volts = [float(means[0][slice(*run)].mean()) for run in kept]
+    speed, torque = (_means(values, kept) for values in means[1:])
+    return tuple(
+        SteadyStretch(
+            start_s=float(starts[first]),
+            stop_s=float(starts[stop - 1]) + length / rate_hz,
+            set_point_v=volts[k],
+            speed_rev_s=speed[k][0],
+            speed_std_rev_s=speed[k][1],
+            torque_nm=torque[k][0],
+            torque_std_nm=torque[k][1],
         )
-    return tuple(found)
+        for k, (first, stop) in enumerate(kept)
+    )
+
+
+def _settled(run: tuple[int, int], speed: FloatArray) -> tuple[int, int] | None:
+    """Return the part of a run after everything has settled, or nothing if too little is left."""
+    first, stop = run
+    if stop - first < _SHORTEST_S:
+        return None
+    first += _settling(speed[first:stop])
+    return (first, stop) if stop - first >= _SHORTEST_SETTLED_S else None
 
 
 def _block_means(values: FloatArray, length: int) -> FloatArray:
@@ -140,8 +146,22 @@ def _settling(speed: FloatArray) -> int:
     return 2 * (int(away[-1]) + 1) + 1 if away.size else 1
 
 
-def _mean_and_std(blocks: FloatArray) -> tuple[float, float]:
-    """Return the mean and its standard deviation, from batches because neighbours are correlated."""
-    batches = blocks[: blocks.size - blocks.size % _BATCH_BLOCKS].reshape(-1, _BATCH_BLOCKS)
-    scatter = float(np.std(batches.mean(axis=1), ddof=1))
-    return float(blocks.mean()), scatter / np.sqrt(batches.shape[0])
+def _means(values: FloatArray, runs: list[tuple[int, int]]) -> list[tuple[float, float]]:
+    """Return mean and standard deviation of each run.
+
+    The variance of a mean is that of batches, because neighbouring values are correlated. A run has few
+    batches: its variance is drawn towards that of all runs.
+    """
+    densities, freedoms = [], []
+    for run in runs:
+        inside = values[slice(*run)]
+        batch = min(_BATCH_BLOCKS, inside.size // 2)
+        batches = inside[: inside.size - inside.size % batch].reshape(-1, batch).mean(axis=1)
+        densities.append(float(np.var(batches, ddof=1)) * batch)
+        freedoms.append(batches.size - 1)
+    density, freedom = np.array(densities), np.array(freedoms)
+    common = float(density @ freedom) / max(float(freedom.sum()), 1.0)
+    drawn = (freedom * density + _PRIOR_DEGREES * common) / (freedom + _PRIOR_DEGREES)
+    return [
+        (float(values[slice(*run)].mean()), float(np.sqrt(drawn[k] / (run[1] - run[0])))) for k, run in enumerate(runs)
+    ]

@@ -16,21 +16,27 @@ if TYPE_CHECKING:
     from shaftprint.recording import Channel
     from shaftprint.signals._pulses import PulseTrain
 
+# A rounding error must not push what lies on a sample to the next one.
+_ROUNDING = 1e-6
+
 
 def previous_neighbours(samples: Iterable[FloatArray], grid: Grid) -> FloatArray:
     """Return the last sample at or before each instant of the grid, shape (grid.count,).
 
     Before the first sample the first one is taken, after the last one the last.
     """
-    place = np.floor(grid.first + grid.step * np.arange(grid.count) + 1e-6).astype(np.int64)
-    np.maximum(place, 0, out=place)
     out = np.empty(grid.count)
     origin, done = 0, 0
     last = np.nan
     for block in samples:
-        stop = int(np.searchsorted(place, origin + block.size))
-        out[done:stop] = block[place[done:stop] - origin]
-        origin, done, last = origin + block.size, stop, block[-1]
+        origin += block.size
+        # a few instants too many, of which those beyond the block wait for the next one
+        reach = min(grid.count, int((origin - grid.first) / grid.step) + 2)
+        instants = np.arange(done, max(reach, done))
+        place = np.floor(grid.first + grid.step * instants + _ROUNDING).astype(np.int64)
+        place = np.maximum(place[place < origin], 0)
+        out[done : done + place.size] = block[place - origin + block.size]
+        done, last = done + place.size, block[-1]
     out[done:] = last
     return out
 
@@ -59,14 +65,13 @@ def pulse_period_speed(
     start_s, step_s, count
         The grid [s]. Before the second pulse the first period is taken.
     """
-    # a rounding error must not push an edge that lies on a sample to the next one
-    quantised = np.ceil(train.position - 1e-6)
+    quantised = np.ceil(train.position - _ROUNDING)
     speed = channel.rate_hz / (np.diff(quantised) * strips)
     whole = np.diff(train.number) == 1
     place = np.arange(speed.size)
     speed[~whole] = np.interp(place[~whole], place[whole], speed[whole])
-    instants = start_s + step_s * np.arange(count)
-    ends = channel.start_s + quantised[1:] / channel.rate_hz
-    ended = np.searchsorted(ends, instants + 1e-9, side="right") - 1
-    out: FloatArray = speed[np.maximum(ended, 0)]
-    return out
+    # the instant from which each period is the last whole one; the first serves from the beginning
+    ends_s = channel.start_s + quantised[2:] / channel.rate_hz
+    instant = np.ceil((ends_s - start_s) / step_s - _ROUNDING).astype(np.int64)
+    border = np.concatenate([[0], np.clip(instant, 0, count), [count]])
+    return np.repeat(speed, np.diff(border))
