@@ -1,5 +1,6 @@
 """What perfect sensors would show: set point, speed and torque of a voyage without a measurement chain."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,7 +10,7 @@ from shaftprint.campaign import Campaign
 from shaftprint.tug._demand import demanded_speed, helm_voltage
 from shaftprint.tug._disturbance import Disturbance
 from shaftprint.tug._tug import Tug
-from shaftprint.tug._voyage import voyage
+from shaftprint.tug._voyage import Leg, voyage
 from shaftprint.vessel import Vessel
 
 _CHUNK = 1 << 17
@@ -85,17 +86,8 @@ def simulate_signals(
         start_s=start_s,
         disturbance=disturbance,
     )
-    # copies: a view would keep every step in memory
-    parts = [
-        (
-            leg.shaft_speed_rev_s[::every] * vessel.gearbox.ratio,
-            leg.shaft_torque_nm[::every].copy(),
-            leg.brake_torque_nm[::every].copy(),
-            leg.limited.reshape(-1, every).any(axis=1),
-        )
-        for leg in legs
-    ]
-    speed, torque, brake, limited = (np.concatenate(part) for part in zip(*parts, strict=True))
+    speed, torque, brake, limited = _sampled(legs, every)
+    speed *= vessel.gearbox.ratio
     time = start_s + np.arange(samples) / rate_hz
     return IdealSignals(
         time_s=frozen_float(time),
@@ -105,3 +97,19 @@ def simulate_signals(
         brake_torque_nm=frozen_float(brake),
         limited=frozen_bool(limited),
     )
+
+
+def _sampled(legs: Iterable[Leg], every: int) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
+    """Return every so many steps of shaft speed and torques, and whether a limit acted in any step between."""
+    # copies: a view would keep every step in memory
+    parts = [
+        (
+            leg.shaft_speed_rev_s[::every].copy(),
+            leg.shaft_torque_nm[::every].copy(),
+            leg.brake_torque_nm[::every].copy(),
+            leg.limited.reshape(-1, every).any(axis=1),
+        )
+        for leg in legs
+    ]
+    speed, torque, brake, limited = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return speed, torque, brake, limited
