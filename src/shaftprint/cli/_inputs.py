@@ -64,4 +64,4 @@ def campaign_option(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def _source(kind: Literal["vessel", "campaign"], path_or_name: str) -> SourceFile:
     content = settings_text(kind, path_or_name)
-    return SourceFile(name=Path(path_or_name).name, sha256=hashlib.sha256(content).hexdigest())
+    return SourceFile(role=kind, name=Path(path_or_name).name, sha256=hashlib.sha256(content).hexdigest())

@@ -12,6 +12,7 @@ delay margin        s           smallest extra delay in the loop that reaches in
 """
 
 from shaftprint.fingerprint._fingerprint import (
+    Belief,
     Conditions,
     Fingerprint,
     Quality,
@@ -25,6 +26,7 @@ from shaftprint.fingerprint._physical import physical_quantities
 from shaftprint.fingerprint._take import take_fingerprint
 
 __all__ = [
+    "Belief",
     "Conditions",
     "Fingerprint",
     "Quality",

@@ -11,7 +11,17 @@ BETTER_KNOWN = 0.4
 HARDLY_KNOWN = 0.1
 # 99 % point of the ratio chi-square / degrees of freedom is near 1 + 2.33 sqrt(2 / dof).
 NORMAL_99 = 2.326
+# A search that fewer of its starts agree on than this share may have missed the optimum.
 FEW_STARTS = 0.1
+# So many standard deviations from what was expected are worth a sentence.
+SURPRISING = 3.0
+# A slope this close to 2 is as good as 2, however well it is known.
+SLOPE_TOLERANCE = 0.02
+AMPLE, SMALL = 2.0, 1.3
+WHY = {
+    "I": " A torque gauge shows only the inertia downstream of it: compare with that, or fit a gauge-aware structure.",
+    "K_Q": " The propeller, its inflow or the torque gauge has changed.",
+}
 
 
 def findings_of(
@@ -36,7 +46,10 @@ def _stability(identification: Identification) -> list[str]:
         return []
     if not margin.stable:
         return [f"The identified line is unstable: {margin.unstable_poles} poles in the right half plane."]
-    words = "ample" if margin.gain_margin >= 2.0 else "small" if margin.gain_margin >= 1.3 else "very small"
+    if not np.isfinite(margin.gain_margin):
+        return ["The governed line is stable, and no gain of the governor makes it hunt."]
+    reserve = max(margin.gain_margin, 1.0 / margin.gain_margin)
+    words = "ample" if reserve >= AMPLE else "small" if reserve >= SMALL else "very small"
     return [
         f"The governed line is stable; its gain margin of {margin.gain_margin:.2f} at "
         f"{margin.gain_margin_rad_s:.1f} rad/s is {words}."
@@ -98,24 +111,29 @@ def _sensor_checks(identification: Identification) -> list[str]:
         f"k_q = {_written(e)} instead of 2: the torque gauge has a zero offset, there is constant friction, or the "
         "inflow is not zero."
         for e in identification.parameters
-        if e.name == "k_q" and abs(e.value - 2.0) > max(3.0 * e.std, 0.02)
+        if e.name == "k_q" and abs(e.value - 2.0) > max(SURPRISING * e.std, SLOPE_TOLERANCE)
     ]
 
 
 def _against_expected(physical: tuple[Quantity, ...]) -> list[str]:
     found = []
     for quantity in physical:
-        if quantity.expected is None or not quantity.name.startswith("I"):
+        if quantity.expected is None:
             continue
         spread = np.hypot(quantity.std, quantity.expected_std or 0.0)
-        if abs(quantity.value - quantity.expected) > 3.0 * spread:
+        if abs(quantity.value - quantity.expected) > SURPRISING * spread:
             factor = max(quantity.expected / quantity.value, quantity.value / quantity.expected)
+            unit = _unit(quantity)
             found.append(
-                f"{quantity.name} = {quantity.value:.3g} {quantity.unit} against {quantity.expected:.3g} "
-                f"{quantity.unit} of the vessel file: a factor {factor:.2f}."
+                f"{quantity.name} = {quantity.value:.4g}{unit} against {quantity.expected:.4g}{unit} of the vessel "
+                f"file: a factor {factor:.2f}.{WHY.get(quantity.name, '')}"
             )
     return found
 
 
 def _written(estimate: Estimate) -> str:
-    return f"{estimate.value:.4g} +/- {estimate.std:.2g} {estimate.unit}"
+    return f"{estimate.value:.4g} +/- {estimate.std:.2g}{_unit(estimate)}"
+
+
+def _unit(number: Estimate | Quantity) -> str:
+    return "" if number.unit == "-" else f" {number.unit}"

@@ -1,15 +1,15 @@
 """The noun of the room: what is kept of one test, as a JSON record."""
 
-from datetime import datetime
+import json
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AwareDatetime, BaseModel, ConfigDict, ValidationError
 
 from shaftprint.errors import FingerprintError
 from shaftprint.files import written_whole
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION: Final = 1
 
 
 class _Record(BaseModel):
@@ -46,6 +46,8 @@ class Quantity(_Record):
 class SourceFile(_Record):
     """A file that went into the fingerprint."""
 
+    role: Literal["recording", "vessel", "campaign"]
+    """What it is."""
     name: str
     """File name or the name of a shipped file."""
     sha256: str
@@ -63,6 +65,8 @@ class Conditions(_Record):
     """Working-point engine speed."""
     shaft_torque: Quantity
     """Working-point shaft torque at the gauge."""
+    set_point_v: float
+    """Mean set-point voltage of the working point [V]."""
     speed_channel: str
     """Speed sensor that was identified."""
     mode: Literal["shaftprint", "thesis"]
@@ -73,15 +77,28 @@ class Conditions(_Record):
     """Test lines that were not, with the reason."""
 
 
+class Belief(_Record):
+    """What was known of a parameter before the test: a normal distribution."""
+
+    mean: float
+    """Expected value."""
+    std: float
+    """Standard deviation."""
+
+
 class Quality(_Record):
     """How well the model explains the data, and how good the data were."""
+
+    weighting: str
+    """How the lines were weighed against each other, ``MaximumLikelihood`` or ``Unweighted``."""
 
     fit_percent: dict[str, float]
     """FitPercent of each output (thesis eq. 2.41)."""
     fit_ceiling: dict[str, float]
     """FitPercent that the noise allows."""
-    chi_square: float
-    """Sum of squared weighted residuals; of the order of ``degrees_of_freedom`` when the model explains the data."""
+    chi_square: float | None
+    """Sum of squared weighted residuals, of the order of ``degrees_of_freedom`` when the model explains the data; None
+    for a fit that was not weighted by the covariance."""
     degrees_of_freedom: int
     """Number of data and priors minus the number of free parameters."""
     starts: int
@@ -94,16 +111,18 @@ class Quality(_Record):
     """Local signal-to-noise ratio by channel and line [dB] (thesis eq. 3.10)."""
     repairs: dict[str, int]
     """Number of repairs by channel and kind."""
+    remarks: tuple[str, ...]
+    """What was found on the signals, and on test lines that were fitted all the same."""
 
 
 class Fingerprint(_Record):
     """Physical and normalised parameters of one propulsion line with uncertainty, margins and conditions."""
 
-    schema_version: Annotated[int, Field(ge=1, le=SCHEMA_VERSION)] = SCHEMA_VERSION
+    schema_version: Literal[1] = SCHEMA_VERSION
     """Version of this record's layout."""
     shaftprint_version: str
     """Version of shaftprint that made it."""
-    created: datetime
+    created: AwareDatetime
     """When it was made, with time zone."""
     sources: tuple[SourceFile, ...]
     """Recording, vessel and campaign with their hashes."""
@@ -115,6 +134,8 @@ class Fingerprint(_Record):
     """Free parameters, normalised."""
     held: dict[str, float]
     """Parameters that were held, with their values."""
+    priors: dict[str, Belief]
+    """Parameters of which something was known before the test; it counts in the standard deviations."""
     covariance: tuple[tuple[float, ...], ...]
     """Covariance of the free parameters, in their order."""
     combinations: tuple[Quantity, ...]
@@ -123,20 +144,22 @@ class Fingerprint(_Record):
     """Physical values, each with what was expected."""
     margins: tuple[Quantity, ...]
     """Stability margins; empty for a structure without feedback."""
+    calibration: tuple[Quantity, ...]
+    """What the recording itself told of its sensors: the set-point line and the angles of the strips."""
     quality: Quality
     """Fit and data quality."""
     findings: tuple[str, ...]
     """What a reader must know, in words."""
 
     def quantity(self, name: str) -> Quantity:
-        """Return a parameter, combination, physical value or margin by its name.
+        """Return a parameter, combination, physical value, margin or calibration by its name.
 
         Raises
         ------
         FingerprintError
             If there is none of that name.
         """
-        found = (*self.parameters, *self.combinations, *self.physical, *self.margins)
+        found = (*self.parameters, *self.combinations, *self.physical, *self.margins, *self.calibration)
         for quantity in found:
             if quantity.name == name:
                 return quantity
@@ -146,9 +169,19 @@ class Fingerprint(_Record):
 
 
 def write_fingerprint(fingerprint: Fingerprint, path: str | Path) -> None:
-    """Write a fingerprint as JSON, whole or not at all; an existing file is replaced."""
-    with written_whole(Path(path), overwrite=True) as part:
-        part.write_text(fingerprint.model_dump_json(indent=2) + "\n", encoding="utf-8")
+    """Write a fingerprint as JSON, whole or not at all; an existing file is replaced.
+
+    Raises
+    ------
+    FingerprintError
+        If the file cannot be written.
+    """
+    place = Path(path)
+    try:
+        with written_whole(place, overwrite=True) as part:
+            part.write_text(fingerprint.model_dump_json(indent=2) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise FingerprintError(f"{place}: the fingerprint cannot be written: {error}.") from None
 
 
 def read_fingerprint(path: str | Path) -> Fingerprint:
@@ -157,17 +190,33 @@ def read_fingerprint(path: str | Path) -> Fingerprint:
     Raises
     ------
     FingerprintError
-        If the file is missing, is no fingerprint, or has fields that are wrong; all of them are listed.
+        If the file is missing, is no fingerprint, is of another schema, or has fields that are wrong; all of them are
+        listed.
     """
     place = Path(path)
-    try:
-        text = place.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise FingerprintError(f"{place}: expected a fingerprint in JSON, but it cannot be read: {error}.") from error
+    text = _fingerprint_text(place)
     try:
         return Fingerprint.model_validate_json(text)
     except ValidationError as error:
-        wrong = "; ".join(
-            f"{'.'.join(str(part) for part in e['loc']) or 'the file'}: {e['msg']}" for e in error.errors()
+        wrong = "; ".join(f"{'.'.join(str(part) for part in e['loc'])}: {e['msg']}" for e in error.errors())
+        raise FingerprintError(f"{place} is not a fingerprint of schema {SCHEMA_VERSION}: {wrong}.") from None
+
+
+def _fingerprint_text(place: Path) -> str:
+    """Return the content of a file that claims to be a fingerprint of the schema that is known here."""
+    try:
+        text = place.read_text(encoding="utf-8")
+        content = json.loads(text)
+    except OSError as error:
+        raise FingerprintError(f"{place}: expected a fingerprint in JSON, but it cannot be read: {error}.") from None
+    except ValueError as error:
+        raise FingerprintError(f"{place}: expected a fingerprint in JSON, found something else: {error}.") from None
+    schema = content.get("schema_version") if isinstance(content, dict) else None
+    if schema is None:
+        raise FingerprintError(f"{place}: expected a fingerprint, found JSON without a schema_version.")
+    if schema != SCHEMA_VERSION:
+        raise FingerprintError(
+            f"{place}: expected a fingerprint of schema {SCHEMA_VERSION}, found schema {schema}; read it with the "
+            "version of shaftprint that wrote it, or a newer one."
         )
-        raise FingerprintError(f"{place} is not a fingerprint of schema {SCHEMA_VERSION}: {wrong}.") from error
+    return text

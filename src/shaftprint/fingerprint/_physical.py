@@ -40,10 +40,11 @@ def physical_quantities(
 ) -> tuple[Quantity, ...]:
     """Return physical values with standard deviations, beside the values of the vessel file where it has them.
 
-    The uncertainty of the fit, of the working-point torque and of the gauge's scale are added in quadrature.
+    The uncertainties of the fit, of the working-point torque and of the gauge's scale are added in quadrature, for
+    the torque coefficient also that of the gauge's zero and of the working-point speed.
     """
-    torque = working_point.shaft_torque_nm
-    gauge = vessel.sensors.shaft_torque.scale_std_fraction or 0.0
+    torque, sensor = working_point.shaft_torque_nm, vessel.sensors.shaft_torque
+    gauge = sensor.scale_std_fraction or 0.0
     torque_share = float(np.hypot(working_point.shaft_torque_std_nm / torque, gauge))
     found = []
     for item in _catalogue(working_point, vessel):
@@ -63,7 +64,9 @@ def physical_quantities(
                 meaning=item.meaning,
             )
         )
-    return (*found, _torque_coefficient(working_point, vessel, torque_share))
+    # a zero offset shifts the torque itself, but not its changes, of which all other values are made
+    zero_share = (sensor.zero_std_nm or 0.0) / torque
+    return (*found, _torque_coefficient(working_point, vessel, float(np.hypot(torque_share, zero_share))))
 
 
 def _catalogue(working_point: "WorkingPoint", vessel: "Vessel") -> tuple[_Physical, ...]:

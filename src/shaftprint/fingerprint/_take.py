@@ -7,8 +7,16 @@ from typing import TYPE_CHECKING
 
 import shaftprint
 from shaftprint.errors import FingerprintError
+from shaftprint.fingerprint._calibration import calibration_quantities
 from shaftprint.fingerprint._findings import findings_of
-from shaftprint.fingerprint._fingerprint import Conditions, Fingerprint, Quality, Quantity, SourceFile
+from shaftprint.fingerprint._fingerprint import (
+    Belief,
+    Conditions,
+    Fingerprint,
+    Quality,
+    Quantity,
+    SourceFile,
+)
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._physical import physical_quantities
 from shaftprint.identify import Estimate, Identification, Interval, profile_intervals
@@ -58,15 +66,20 @@ def take_fingerprint(
     return Fingerprint(
         shaftprint_version=shaftprint.__version__,
         created=now,
-        sources=(SourceFile(name=signals.recording_name, sha256=signals.recording_sha256), *settings_files),
+        sources=(
+            SourceFile(role="recording", name=signals.recording_name, sha256=signals.recording_sha256),
+            *settings_files,
+        ),
         conditions=_conditions(identification, signals, vessel, campaign, left_out),
         structure=identification.structure.name,
         parameters=tuple(_quantity(e, meanings, intervals) for e in identification.parameters),
         held={p.name: p.value for p in identification.structure.parameters if p.held},
+        priors={n: Belief(mean=p.mean, std=p.std) for n, p in identification.settings.priors.items()},
         covariance=tuple(tuple(row) for row in identification.covariance.tolist()),
         combinations=tuple(_quantity(e, meanings, intervals) for e in identification.combinations),
         physical=physical,
         margins=margin_quantities(identification),
+        calibration=calibration_quantities(signals),
         quality=_quality(identification, signals, signal_to_noise),
         findings=findings_of(identification, physical, left_out),
     )
@@ -94,6 +107,7 @@ def _conditions(
         campaign=campaign.name,
         engine_speed=speed,
         shaft_torque=torque,
+        set_point_v=signals.working_point.set_point_v,
         speed_channel=signals.engine_speed.name,
         mode=signals.mode,
         lines_used=tuple(name for name in identification.response.lines if name not in left_out),
@@ -142,10 +156,17 @@ def _quantity(estimate: Estimate, meanings: Mapping[str, str], intervals: Mappin
 
 def _quality(identification: Identification, signals: "Signals", signal_to_noise: "SignalToNoise") -> Quality:
     counts = Counter(f"{repair.channel}: {repair.kind}" for repair in signals.repairs)
+    response = identification.response
+    remarks = (
+        f"Line {name} is fitted, but: {response.remarks[name]}."
+        for name, fitted in zip(response.lines, identification.fitted, strict=True)
+        if fitted and name in response.remarks
+    )
     return Quality(
+        weighting=type(identification.settings.weighting).__name__,
         fit_percent=dict(identification.fit_percent),
         fit_ceiling=dict(identification.fit_ceiling),
-        chi_square=2.0 * identification.cost,
+        chi_square=2.0 * identification.cost if identification.is_likelihood else None,
         degrees_of_freedom=identification.degrees_of_freedom,
         starts=identification.settings.starts,
         starts_at_optimum=identification.reached,
@@ -155,4 +176,5 @@ def _quality(identification: Identification, signals: "Signals", signal_to_noise
             for channel, column in zip(signal_to_noise.channels, signal_to_noise.local_db.T.tolist(), strict=True)
         },
         repairs=dict(sorted(counts.items())),
+        remarks=(*signals.findings, *remarks),
     )

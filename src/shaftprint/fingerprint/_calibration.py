@@ -1,0 +1,60 @@
+"""What a recording tells of its own sensors, as quantities to be followed over the years."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.fingerprint._fingerprint import Quantity
+from shaftprint.units import rpm_from_rev_s
+
+if TYPE_CHECKING:
+    from shaftprint.signals import SetPointCalibration, Signals, StripAngles
+
+DEGREES_PER_REVOLUTION = 360.0
+
+
+def calibration_quantities(signals: "Signals") -> tuple[Quantity, ...]:
+    """Return the set-point line, its scale at low frequency and the angles of the strips, with standard deviations."""
+    scale = Quantity(
+        name="set-point scale",
+        unit="-",
+        value=signals.dc_scale,
+        std=signals.dc_scale_std,
+        meaning="factor on the set point that lets the speed follow it exactly at low frequency",
+    )
+    strips = (quantity for angles in signals.strips for quantity in _strip_quantities(angles))
+    return (*_line_quantities(signals.calibration), scale, *strips)
+
+
+def _line_quantities(line: "SetPointCalibration") -> tuple[Quantity, Quantity]:
+    slope_std, intercept_std = np.sqrt(np.diag(line.covariance)).tolist()
+    return (
+        Quantity(
+            name="set-point slope",
+            unit="rpm/V",
+            value=rpm_from_rev_s(line.slope_rev_s_per_v),
+            std=rpm_from_rev_s(slope_std),
+            meaning="engine speed for one volt of set point, from the steady levels",
+        ),
+        Quantity(
+            name="set-point intercept",
+            unit="rpm",
+            value=rpm_from_rev_s(line.intercept_rev_s),
+            std=rpm_from_rev_s(intercept_std),
+            meaning="engine speed of that line at no voltage",
+        ),
+    )
+
+
+def _strip_quantities(strips: "StripAngles") -> list[Quantity]:
+    pairs = zip(strips.angle_rev.tolist(), strips.std_rev.tolist(), strict=True)
+    return [
+        Quantity(
+            name=f"{strips.channel} strip {number}",
+            unit="deg",
+            value=DEGREES_PER_REVOLUTION * angle,
+            std=DEGREES_PER_REVOLUTION * std,
+            meaning="angle to the next strip",
+        )
+        for number, (angle, std) in enumerate(pairs, start=1)
+    ]
