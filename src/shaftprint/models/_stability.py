@@ -23,6 +23,7 @@ LOWEST_RAD_S = 1e-5
 HIGHEST_RAD_S = 1e5
 INDENTATION = np.exp(1j * np.linspace(0.0, np.pi / 2.0, 33))
 PHASE_STEP_RAD = 0.05
+SHARP_TURN_RAD = 0.5
 BISECTIONS = 60
 NEWTON_STEPS = 30
 NEWTON_GRID = 25
@@ -45,7 +46,7 @@ class Margins:
     phase_margin_rad_s: float
     """Crossover frequency of the phase margin [rad/s]; nan where there is none."""
     delay_margin_s: float
-    """Smallest extra delay that reaches instability [s]; infinite where none does."""
+    """Extra delay that reaches instability [s]; infinite where none does, below 0 where less delay would stabilise."""
     peak_sensitivity: float
     """Largest ``|1 / (1 + L)|``: the inverse of the smallest distance to the critical point."""
     peak_sensitivity_rad_s: float
@@ -74,9 +75,9 @@ def unstable_poles(structure: Structure, values: ArrayLike) -> int:
     table = np.asarray(values, dtype=np.float64)
     if structure.loop is None:
         return sum(_unstable_open(block, structure, table) for block in structure.blocks)
-    _, gain = _swept_loop(structure, table)
-    start = loop_gain(structure, table, LOWEST_RAD_S * INDENTATION)
-    path = 1.0 + np.concatenate([start, gain])
+    omega, gain = _swept_loop(structure, table)
+    path = _smooth_path(structure, table, omega, 1.0 + gain)
+    path = np.concatenate([1.0 + loop_gain(structure, table, LOWEST_RAD_S * INDENTATION), path])
     turns = np.sum(np.angle(path[1:] / path[:-1])) - np.angle(path[-1])
     opened = sum(_unstable_open(block, structure, table) for block in _blocks_of(_loop_of(structure)))
     return int(np.rint(-turns / np.pi)) + opened
@@ -113,8 +114,8 @@ def margins(structure: Structure, values: ArrayLike) -> Margins:
     crossover = _refined(omega, np.abs(gain) - 1.0, lambda at: np.abs(loop(at)) - 1.0)
     phase = np.angle(-loop(crossover))
     weakest = np.argmin(np.abs(phase)) if phase.size else None
-    delay = np.where(phase < 0.0, phase, np.mod(phase, 2.0 * np.pi)) / crossover
     unstable = unstable_poles(structure, table)
+    delay = np.where((phase < 0.0) & (unstable > 0), phase, np.mod(phase, 2.0 * np.pi)) / crossover
     sensitivity = 1.0 / np.abs(1.0 + gain)
     peak = int(np.argmax(sensitivity))
     return Margins(
@@ -198,6 +199,18 @@ def _swept_loop(structure: Structure, table: FloatArray) -> tuple[FloatArray, Co
     count = int(min(2e6, max(2.0, last * delay / PHASE_STEP_RAD)))
     omega = np.union1d(coarse, np.linspace(coarse[0], last, count))
     return omega, loop_gain(structure, table, 1j * omega)
+
+
+def _smooth_path(structure: Structure, table: FloatArray, omega: FloatArray, path: ComplexArray) -> ComplexArray:
+    """Return ``1 + L`` on frequencies so close that no step turns sharply: a chord may pass the origin wrongly."""
+    for _ in range(BISECTIONS):
+        sharp = np.flatnonzero(np.abs(np.angle(path[1:] / path[:-1])) > SHARP_TURN_RAD)
+        if sharp.size == 0:
+            break
+        middle = 0.5 * (omega[sharp] + omega[sharp + 1])
+        path = np.insert(path, sharp + 1, 1.0 + loop_gain(structure, table, 1j * middle))
+        omega = np.insert(omega, sharp + 1, middle)
+    return path
 
 
 def _refined(omega: FloatArray, values: FloatArray, function: Callable[[FloatArray], FloatArray]) -> FloatArray:
