@@ -1,0 +1,211 @@
+"""Every shipped structure against the equations of the thesis, written out in 50-digit arithmetic.
+
+The forms below come from the equations, not from the blocks: no composition, no shared sub-expressions, no derivative
+by hand. Derivatives are mpmath's, at 50 digits.
+"""
+
+import mpmath
+import numpy as np
+import pytest
+from mpmath import mp
+
+from shaftprint.models import STRUCTURES, structure
+
+DIGITS = 50
+OMEGA = np.array([0.01, 0.0276, 0.691, 4.91, 10.29, 31.0, 94.31, 200.0])
+
+
+def governor(s, p):
+    """``M_s / e`` of eqs 4.3, 4.20, 4.22 (with ``2 zeta omega_n s``); a missing element is 1."""
+    lag = 1
+    if "omega_n" in p:
+        lag = p["omega_n"] ** 2 / (s**2 + 2 * p["zeta"] * p["omega_n"] * s + p["omega_n"] ** 2)
+    return p.get("v", 1) * (p["K_p"] + p["K_i"] / s) * mp.exp(-p.get("t_d", 0) * s) * lag
+
+
+def core(s, p):
+    """``n / M_s`` of eq. 4.2."""
+    return 1 / (p["tau_n"] * s + p["k_q"])
+
+
+def closed(s, p, engine=governor):
+    """``n / n_set`` and ``M_s / n_set`` of eqs 4.25 and 4.26."""
+    loop = core(s, p) * engine(s, p)
+    return loop / (loop + 1), engine(s, p) / (loop + 1)
+
+
+def governor_pade(s, p):
+    """The same with the delay of eq. 4.24, whose terms are ``(s t_d)^k``."""
+    x = s * p["t_d"]
+    above = 30240 - 15120 * x + 3360 * x**2 - 420 * x**3 + 30 * x**4 - x**5
+    below = 30240 + 15120 * x + 3360 * x**2 + 420 * x**3 + 30 * x**4 + x**5
+    return governor(s, {name: value for name, value in p.items() if name != "t_d"}) * above / below
+
+
+def pid(s, p):
+    """PID governor with a filtered derivative, eqs 4.18 and 4.19."""
+    return p["K_p"] + p["K_i"] / s + p["K_d"] * s / (p["T_f"] * s + 1)
+
+
+def five_parameters(s, p):
+    """Eqs 2.26-2.28, the last with the ``s`` that is missing in print; 2 stands where the propeller's slope is."""
+    tau, g, k = p["tau_n"], p["g"], p["k_q"]
+    v_p, v_i = p["v"] * p["K_p"], p["v"] * p["K_i"]
+    below = s**2 + (v_p - g + k) / tau * s + v_i / tau
+    speed = (v_p / tau * s + v_i / tau) / below
+    error = (s + (k - g) / tau) / below
+    torque = (v_p * s**2 + (v_i * tau + k * v_p) / tau * s + k * v_i / tau) / below
+    return speed, error, torque
+
+
+def sinc(x):
+    return mp.one if x == 0 else mp.sin(x) / x
+
+
+def pick_up(s, p):
+    """Mean over a window, hold, delay; on the frequency axis both windows are ``sin(w T / 2) / (w T / 2)``."""
+    omega = s / mp.j
+    windows = sinc(omega * p["T_average"] / 2) * sinc(omega * p["T_hold"] / 2)
+    return windows * mp.exp(-s * p["t_pickup"])
+
+
+def gauge(s, p):
+    """``n / n_set`` (true speed) and ``M_s / n_set`` of the two free bodies cut at the gauge.
+
+    Upstream ``M_b - M_s = tau_up s n`` with ``M_b = g n + v C e^(-s t_d) F e``; downstream
+    ``M_s - k_q n = tau_dn s n``; the error is ``e = c_set e^(-s t_sp) n_set - n``. Three equations in ``M_b``,
+    ``M_s`` and ``n``, solved as a linear system.
+    """
+    engine = governor(s, p)
+    demand = p["c_set"] * mp.exp(-s * p["t_sp"])
+    matrix = mp.matrix(
+        [
+            [1, -1, -p["tau_up"] * s],
+            [0, 1, -p["k_q"] - p["tau_dn"] * s],
+            [1, 0, -p["g"] + engine],
+        ]
+    )
+    _, torque, speed = mp.lu_solve(matrix, mp.matrix([0, 0, engine * demand]))
+    return speed, torque
+
+
+def gauge_open(s, p):
+    """``M_s / e`` from the measured speed: ``e = n_set - pick-up(n)``."""
+    speed, torque = gauge(s, p)
+    return (torque / (1 - pick_up(s, p) * speed),)
+
+
+def gauge_closed(s, p):
+    speed, torque = gauge(s, p)
+    return pick_up(s, p) * speed, torque
+
+
+FORMS = {
+    "OL1": lambda s, p: (core(s, p),),
+    "OL2": lambda s, p: (governor(s, p),),
+    "OL3": lambda s, p: (governor(s, p),),
+    "OL4": lambda s, p: (governor(s, p),),
+    "OL5": lambda s, p: (governor(s, p),),
+    "OL-PID": lambda s, p: (pid(s, p),),
+    "CL1": closed,
+    "CL3": closed,
+    "CL4": closed,
+    "CL4-PADE5": lambda s, p: closed(s, p, governor_pade),
+    "INITIAL": five_parameters,
+    "BENCHMARK": lambda s, p: five_parameters(s, p)[::2],
+    "GAUGE-CORE": lambda s, p: (pick_up(s, p) / (p["tau_dn"] * s + p["k_q"]),),
+    "GAUGE-OPEN": gauge_open,
+    "GAUGE-CLOSED": gauge_closed,
+}
+
+# A block's own zero is where formulas lose digits or divide by zero: no gain, no delay, no window.
+EDGES = {"K_p": 0.0, "t_d": 0.0, "T_average": 0.0, "T_hold": 0.0, "t_pickup": 0.0, "t_sp": 0.0, "g": 0.0, "K_d": 0.0}
+# Both sides of the change from series to quotient in the pick-up's windows, at 10.29 rad/s and 200 rad/s.
+WINDOWS = {"T_average": 0.0038, "T_hold": 0.000201}
+
+
+def random_values(shipped, seed):
+    """Draw every parameter, held ones too, well inside its bounds."""
+    rng = np.random.default_rng(seed)
+    return np.array([p.lower + (p.upper - p.lower) * rng.uniform(0.02, 0.98) for p in shipped.parameters])
+
+
+def exact(name, values, omega):
+    shipped = structure(name)
+    named = dict(zip(shipped.names, map(mp.mpf, values), strict=True))
+    return [FORMS[name](mp.mpc(0, mp.mpf(w)), named) for w in omega]
+
+
+def exact_slope(name, values, omega, parameter, output):
+    shipped = structure(name)
+    named = dict(zip(shipped.names, map(mp.mpf, values), strict=True))
+    s = mp.mpc(0, mp.mpf(omega))
+    return mp.diff(lambda x: FORMS[name](s, named | {parameter: x})[output], named[parameter])
+
+
+def value_sets(shipped):
+    """Three random sets, the defaults, and the edges."""
+    yield from (random_values(shipped, seed) for seed in (1, 2, 3))
+    yield shipped.vector({})
+    yield shipped.vector({name: value for name, value in EDGES.items() if name in shipped.names})
+    yield shipped.vector({name: value for name, value in WINDOWS.items() if name in shipped.names})
+
+
+def test_every_shipped_structure_has_a_closed_form_here():
+    assert set(FORMS) == set(STRUCTURES)
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_responses_equal_the_printed_equations(name):
+    shipped = structure(name)
+    with mpmath.workdps(DIGITS):
+        for values in value_sets(shipped):
+            expected = np.array([[complex(x) for x in row] for row in exact(name, values, OMEGA)]).T
+            np.testing.assert_allclose(shipped.response(values, 1j * OMEGA), expected, rtol=1e-12, atol=0.0)
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_gradients_of_all_parameters_equal_50_digit_arithmetic(name):
+    """Held parameters too; 1e-9 of each complex derivative by itself, at every frequency."""
+    shipped = structure(name)
+    omega = OMEGA[[0, 2, 3, 4, 5, 7]]
+    with mpmath.workdps(DIGITS):
+        for values in value_sets(shipped):
+            response, slopes = shipped.gradient(values, 1j * omega, shipped.names)
+            np.testing.assert_allclose(response, shipped.response(values, 1j * omega), rtol=1e-15)
+            for i, parameter in enumerate(shipped.names):
+                for output in range(len(shipped.outputs)):
+                    expected = [complex(exact_slope(name, values, w, parameter, output)) for w in omega]
+                    np.testing.assert_allclose(
+                        slopes[i, output], expected, rtol=1e-9, atol=1e-40, err_msg=f"{name} {parameter} {output}"
+                    )
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_a_batch_is_a_loop(name):
+    shipped = structure(name)
+    table = np.array([[random_values(shipped, 10 * i + j) for j in range(3)] for i in range(2)])
+    response, slopes = shipped.gradient(table, 1j * OMEGA)
+    assert response.shape == (2, 3, len(shipped.outputs), OMEGA.size)
+    assert slopes.shape == (2, 3, len(shipped.free), len(shipped.outputs), OMEGA.size)
+    for i, j in np.ndindex(2, 3):
+        alone, alone_slopes = shipped.gradient(table[i, j], 1j * OMEGA)
+        np.testing.assert_allclose(response[i, j], alone, rtol=1e-14)
+        np.testing.assert_allclose(slopes[i, j], alone_slopes, rtol=1e-13, atol=1e-300)
+
+
+@pytest.mark.parametrize("name", ["BENCHMARK", "CL4", "GAUGE-CLOSED"])
+def test_a_factor_on_a_parameter_at_a_line_is_that_parameter_there(name):
+    """``k_q`` may differ from line to line: the same as another value of ``k_q`` at each of them."""
+    shipped = structure(name)
+    values = random_values(shipped, 5)
+    place = shipped.names.index("k_q")
+    load = np.linspace(0.97, 1.04, OMEGA.size)
+    response, slopes = shipped.gradient(values, 1j * OMEGA, shipped.names, factors={"k_q": load, "unknown": load})
+    for i, omega in enumerate(OMEGA):
+        moved = values.copy()
+        moved[place] *= load[i]
+        alone, alone_slopes = shipped.gradient(moved, [1j * omega], shipped.names)
+        alone_slopes[place] *= load[i]
+        np.testing.assert_allclose(response[:, i], alone[:, 0], rtol=1e-14)
+        np.testing.assert_allclose(slopes[:, :, i], alone_slopes[:, :, 0], rtol=1e-13, atol=1e-300)
