@@ -115,14 +115,12 @@ def _clustered(objective: Objective, descent: Descent) -> list[tuple[FloatArray,
     nothing = 0.5 * float(np.sum((objective.weights @ objective.data[:, :, None]) ** 2))
     width = objective.upper - objective.lower
     found: list[tuple[FloatArray, float, int]] = []
-    for place, value in zip(theta, cost, strict=True):
-        for i, (other, lowest, count) in enumerate(found):
-            close = value - lowest <= SAME_COST * lowest + SAME_COST_OF_NOTHING * nothing
-            if close and np.all(np.abs(place - other) <= SAME_PLACE * width):
-                found[i] = (other, lowest, count + 1)
-                break
-        else:
-            found.append((place, float(value), 1))
+    while cost.size:
+        close = cost - cost[0] <= SAME_COST * cost[0] + SAME_COST_OF_NOTHING * nothing
+        close &= np.all(np.abs(theta - theta[0]) <= SAME_PLACE * width, axis=1)
+        close[0] = True
+        found.append((theta[0], float(cost[0]), int(close.sum())))
+        theta, cost = theta[~close], cost[~close]
     return found
 
 

@@ -21,7 +21,13 @@ Residuals = Callable[[FloatArray, IntArray], tuple[FloatArray, FloatArray]]
 FIRST_DAMPING = 0.1
 FIRST_GROWTH = 2.0
 LARGEST_DAMPING = 1e12
-BOUND_PASSES = 12
+SMALLEST_DAMPING = 1e-12
+# Curvature of a parameter without influence: the system stays solvable and its step stays zero.
+SMALLEST_SCALE = 1e-100
+BOUND_PASSES = 16
+# In the last passes one parameter changes at a time, the first that must: that cannot run in a circle (Murty, Note on a
+# Bard-type scheme for solving the complementarity problem, 1974).
+SINGLE_PASSES = 13
 # 64 ulp of the cost: below it a gain cannot be told from rounding.
 ROUNDING = 1.5e-14
 
@@ -66,88 +72,134 @@ def descend(
         Limit of steps for each start.
     """
     theta = np.clip(start, lower, upper)
-    alive = np.arange(theta.shape[0])
-    r, jacobian = residuals(theta, alive)
-    cost = 0.5 * np.einsum("sr,sr->s", r, r)
-    gradient = np.einsum("spr,sr->sp", jacobian, r)
-    hessian = jacobian @ jacobian.swapaxes(1, 2)
-    scale = np.maximum(np.einsum("spp->sp", hessian), 1e-300)
-    damping = np.full(cost.size, FIRST_DAMPING)
-    growth = np.full(cost.size, FIRST_GROWTH)
-    iterations = np.zeros(cost.size, dtype=np.int64)
-    converged = np.zeros(cost.size, dtype=bool)
-    for _ in range(max_iterations):
-        step, settled = _bounded_step(
-            hessian[alive],
-            gradient[alive],
-            damping[alive],
-            scale[alive],
-            theta[alive],
-            lower,
-            upper,
-        )
-        predicted = -np.einsum("sp,sp->s", step, gradient[alive]) - 0.5 * np.einsum(
-            "sp,spq,sq->s", step, hessian[alive], step
-        )
-        iterations[alive] += 1
+    starts = np.arange(theta.shape[0])
+    iterations = np.full(starts.size, max_iterations)
+    cost, converged = np.empty(starts.size), np.zeros(starts.size, dtype=np.bool_)
+    # The old Jacobian lives until the new one is there: freed before, its memory would go back and be faulted in again.
+    r, jacobian = residuals(theta, starts)
+    at = _Position.at_start(theta, r, jacobian)
+    for iteration in range(1, max_iterations + 1):
+        step, settled = _bounded_step(at, lower, upper)
+        predicted = -np.vecdot(step, at.gradient + 0.5 * _times(at.hessian, step))
         # A step cut short, by a refusal or by bounds that found no peace, promises little without an optimum near.
-        trusted = ((growth[alive] == FIRST_GROWTH) & settled) | (damping[alive] > LARGEST_DAMPING)
-        flat = trusted & (predicted <= max(tolerance, ROUNDING) * cost[alive])
-        converged[alive[flat]] = True
-        moving = ~flat
-        alive, step, predicted = alive[moving], step[moving], predicted[moving]
-        if alive.size == 0:
-            break
-        trial = np.clip(theta[alive] + step, lower, upper)
-        r, jacobian = residuals(trial, alive)
-        trial_cost = 0.5 * np.einsum("sr,sr->s", r, r)
-        good = (trial_cost < cost[alive]) & (predicted > 0.0)
-        gain = np.divide(cost[alive] - trial_cost, predicted, out=np.zeros_like(cost[alive]), where=good)
-        taken, kept = alive[good], alive[~good]
-        theta[taken], cost[taken] = trial[good], trial_cost[good]
-        gradient[taken] = np.einsum("spr,sr->sp", jacobian[good], r[good])
-        hessian[taken] = jacobian[good] @ jacobian[good].swapaxes(1, 2)
-        scale[taken] = np.maximum(scale[taken], np.einsum("spp->sp", hessian[taken]))
-        damping[taken] *= np.clip(1.0 - (2.0 * gain[good] - 1.0) ** 3, 1.0 / 3.0, 2.0)
-        growth[taken] = FIRST_GROWTH
-        damping[kept] *= growth[kept]
-        growth[kept] *= 2.0
+        trusted = ((at.growth == FIRST_GROWTH) & settled) | (at.damping > LARGEST_DAMPING)
+        flat = trusted & (predicted <= max(tolerance, ROUNDING) * at.cost)
+        if flat.any():
+            done, moving = at.starts[flat], ~flat
+            theta[done], cost[done] = at.theta[flat], at.cost[flat]
+            iterations[done], converged[done] = iteration, True
+            at, step, predicted = at.chosen(moving), step[moving], predicted[moving]
+            if at.starts.size == 0:
+                break
+        trial = np.clip(at.theta + step, lower, upper)
+        r, jacobian = residuals(trial, at.starts)
+        at.advance(trial, r, jacobian, predicted)
+    theta[at.starts], cost[at.starts] = at.theta, at.cost
     return Descent(theta=theta, cost=cost, iterations=iterations, converged=converged)
 
 
-def _bounded_step(
-    hessian: FloatArray,
-    gradient: FloatArray,
-    damping: FloatArray,
-    scale: FloatArray,
-    theta: FloatArray,
-    lower: FloatArray,
-    upper: FloatArray,
-) -> tuple[FloatArray, BoolArray]:
+@dataclass(slots=True, eq=False)
+class _Position:
+    """Where the starts stand that still move, one row each."""
+
+    starts: IntArray
+    theta: FloatArray
+    cost: FloatArray
+    gradient: FloatArray
+    hessian: FloatArray
+    scale: FloatArray
+    damping: FloatArray
+    growth: FloatArray
+
+    @classmethod
+    def at_start(cls, theta: FloatArray, r: FloatArray, jacobian: FloatArray) -> "_Position":
+        """Return the position of every start before its first step."""
+        cost, gradient, hessian = _quadratic(r, jacobian)
+        return cls(
+            starts=np.arange(cost.size),
+            theta=theta.copy(),
+            cost=cost,
+            gradient=gradient,
+            hessian=hessian,
+            scale=np.maximum(_diagonal(hessian), SMALLEST_SCALE),
+            damping=np.full(cost.size, FIRST_DAMPING),
+            growth=np.full(cost.size, FIRST_GROWTH),
+        )
+
+    def chosen(self, rows: BoolArray) -> "_Position":
+        """Return some of the rows."""
+        return _Position(*(getattr(self, name)[rows] for name in self.__slots__))
+
+    def advance(self, trial: FloatArray, r: FloatArray, jacobian: FloatArray, predicted: FloatArray) -> None:
+        """Take the trials that lower the cost, and change the damping by how well their gain was predicted."""
+        cost, gradient, hessian = _quadratic(r, jacobian)
+        good = (cost < self.cost) & (predicted > 0.0)
+        gain = np.divide(self.cost - cost, predicted, out=np.zeros_like(cost), where=good)
+        change = np.where(good, np.clip(1.0 - (2.0 * gain - 1.0) ** 3, 1.0 / 3.0, 2.0), self.growth)
+        self.damping = np.maximum(self.damping * change, SMALLEST_DAMPING)
+        self.growth = np.where(good, FIRST_GROWTH, 2.0 * self.growth)
+        if good.all():
+            self.theta, self.cost, self.gradient, self.hessian = trial, cost, gradient, hessian
+        else:
+            row = good[:, None]
+            self.theta, self.cost = np.where(row, trial, self.theta), np.where(good, cost, self.cost)
+            self.gradient = np.where(row, gradient, self.gradient)
+            self.hessian = np.where(row[:, :, None], hessian, self.hessian)
+        self.scale = np.maximum(self.scale, _diagonal(self.hessian))
+
+
+def _quadratic(residuals: FloatArray, jacobian: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return cost, gradient and Gauss-Newton matrix of every row."""
+    hessian = jacobian @ jacobian.swapaxes(1, 2)
+    return 0.5 * np.vecdot(residuals, residuals), _times(jacobian, residuals), hessian
+
+
+def _times(matrix: FloatArray, vector: FloatArray) -> FloatArray:
+    """Return the product of every row's matrix and vector."""
+    return np.asarray((matrix @ vector[:, :, None])[:, :, 0])
+
+
+def _diagonal(matrix: FloatArray) -> FloatArray:
+    """Return a view of the diagonal of every row's matrix."""
+    return np.asarray(np.einsum("spp->sp", matrix))
+
+
+def _bounded_step(at: _Position, lower: FloatArray, upper: FloatArray) -> tuple[FloatArray, BoolArray]:
     """Return the damped step of every start that stays inside the box, and whether it is the best such step."""
-    to_lower, to_upper = lower - theta, upper - theta
-    on_lower = (to_lower >= 0.0) & (gradient > 0.0)
-    on_upper = (to_upper <= 0.0) & (gradient < 0.0)
-    step = np.zeros_like(theta)
-    settled = np.zeros(theta.shape[0], dtype=np.bool_)
-    diagonal = np.arange(theta.shape[1])
-    damped = hessian.copy()
-    damped[:, diagonal, diagonal] += damping[:, None] * scale
-    left: IntArray | slice = slice(None)
-    for _ in range(BOUND_PASSES):
-        low, high, matrix = on_lower[left], on_upper[left], damped[left]
-        found = _step_beside(matrix, gradient[left], low, high, to_lower[left], to_upper[left])
-        below, above = found < to_lower[left], found > to_upper[left]
-        if low.any() or high.any():
-            slope = gradient[left] + (matrix @ found[:, :, None])[:, :, 0]
-            below |= low & (slope >= 0.0)
-            above |= high & (slope <= 0.0)
-        settled[left] = ((below == low) & (above == high)).all(axis=1)
-        step[left], on_lower[left], on_upper[left] = found, below, above
-        left = np.flatnonzero(~settled)
-        if left.size == 0:
-            break
-    return np.clip(step, to_lower, to_upper), settled
+    to_lower, to_upper = lower - at.theta, upper - at.theta
+    damped = at.hessian.copy()
+    _diagonal(damped)[...] += at.damping[:, None] * at.scale
+    low = (to_lower >= 0.0) & (at.gradient > 0.0)
+    high = (to_upper <= 0.0) & (at.gradient < 0.0)
+    return _held_step(damped, at.gradient, to_lower, to_upper, low, high, BOUND_PASSES)
+
+
+def _held_step(
+    damped: FloatArray,
+    gradient: FloatArray,
+    to_lower: FloatArray,
+    to_upper: FloatArray,
+    low: BoolArray,
+    high: BoolArray,
+    passes: int,
+) -> tuple[FloatArray, BoolArray]:
+    """Return the step with some parameters put on their bounds; the rows that chose them wrong go again."""
+    step = _step_beside(damped, gradient, low, high, to_lower, to_upper)
+    slope = gradient + _times(damped, step)
+    below, above = step < to_lower, step > to_upper
+    back_up, back_down = low & (slope < 0.0), high & (slope > 0.0)
+    change = below | above | back_up | back_down
+    settled: BoolArray = np.logical_not(change.any(axis=1))
+    if settled.all() or passes == 1:
+        return np.clip(step, to_lower, to_upper), settled
+    if passes <= SINGLE_PASSES:
+        change &= np.cumsum(change, axis=1) == 1
+    low, high = (low & ~(back_up & change)) | (below & change), (high & ~(back_down & change)) | (above & change)
+    left = ~settled
+    step[left], settled[left] = _held_step(
+        damped[left], gradient[left], to_lower[left], to_upper[left], low[left], high[left], passes - 1
+    )
+    return step, settled
 
 
 def _step_beside(
@@ -159,12 +211,11 @@ def _step_beside(
     to_upper: FloatArray,
 ) -> FloatArray:
     """Return the damped step with some parameters put on their lower and upper bounds."""
-    free = ~(low | high)
-    if free.all():
+    held = low | high
+    if not held.any():
         return np.asarray(np.linalg.solve(damped, -gradient[:, :, None])[:, :, 0])
-    diagonal = np.arange(gradient.shape[1])
-    system = np.where(free[:, :, None] & free[:, None, :], damped, 0.0)
-    system[:, diagonal, diagonal] = np.where(free, damped[:, diagonal, diagonal], 1.0)
     put = np.where(low, to_lower, np.where(high, to_upper, 0.0))
-    right = np.where(free, -gradient - (damped @ put[:, :, None])[:, :, 0], put)
+    right = np.where(held, put, -gradient - _times(damped, put))
+    system = np.where(held[:, :, None] | held[:, None, :], 0.0, damped)
+    _diagonal(system)[held] = 1.0
     return np.asarray(np.linalg.solve(system, right[:, :, None])[:, :, 0])
