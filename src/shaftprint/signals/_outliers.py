@@ -101,19 +101,19 @@ def flagged(samples: Iterable[Counts], limits: FaultLimits) -> Iterator[tuple[Co
     At both ends the channel is mirrored, so that every sample has a whole window.
     """
     margin = limits.margin
-    held: Counts | None = None
+    held: Counts = np.empty(0)
+    mirrored = False
     for block in samples:
-        if held is None:
-            head = np.pad(block[: margin + 1], (margin, 0), mode="reflect")[:margin]
-            held = np.concatenate([head, block])
-        else:
-            held = np.concatenate([held, block])
-        if held.size > 2 * margin:
+        held = np.concatenate([held, block]) if held.size else block
+        if not mirrored and held.size > margin:
+            held, mirrored = np.concatenate([held[margin:0:-1], held]), True
+        if mirrored and held.size > 2 * margin:
             yield held[margin:-margin], sample_codes(held, limits)
             held = held[-2 * margin :]
-    if held is not None:
-        tail = np.pad(held[-margin - 1 :], (0, margin), mode="reflect")[-margin:]
-        held = np.concatenate([held, tail])
+    if held.size:
+        if not mirrored:
+            held = np.pad(held, (margin, 0), mode="reflect")
+        held = np.pad(held, (0, margin), mode="reflect")
         yield held[margin:-margin], sample_codes(held, limits)
 
 
@@ -203,4 +203,4 @@ def _distances(values: FloatArray) -> FloatArray:
 def _usual_run(values: FloatArray) -> int:
     """Return the length of a run of equal values that only one in a thousand exceeds."""
     borders = np.flatnonzero(np.diff(values) != 0.0)
-    return int(np.quantile(np.diff(borders), 0.999)) if borders.size > 1 else values.size
+    return int(np.quantile(np.diff(borders), 0.999)) if borders.size > 1 else _STANDS_STILL + 1

@@ -1,0 +1,104 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from shaftprint.errors import SignalError
+from shaftprint.signals._edges import PulseLevels, find_edges, pulse_levels, scan_edges
+
+LEVELS = PulseLevels(low=0.0, high=1000.0, noise=1.0, duty=0.1)
+
+
+def trapezoids(starts: np.ndarray, *, rise: float = 2.5, top: float = 8.0, count: int = 2000) -> np.ndarray:
+    """Pulses of height 1000 that are half way up at the given places."""
+    place = np.arange(count)
+    height = np.zeros(count)
+    for start in starts:
+        up = np.clip((place - start) / rise + 0.5, 0.0, 1.0)
+        down = np.clip((start + top - place) / rise + 0.5, 0.0, 1.0)
+        height = np.maximum(height, np.minimum(up, down))
+    return 1000.0 * height
+
+
+def test_edges_between_samples_are_exact_on_a_straight_flank():
+    starts = np.array([40.0, 100.37, 171.912, 250.5, 400.001])
+    assert find_edges([trapezoids(starts)], LEVELS) == pytest.approx(starts, abs=1e-9)
+
+
+def test_edges_of_int16_counts_are_as_good_as_their_resolution():
+    starts = 50.0 + 61.803 * np.arange(30)
+    counts = np.rint(trapezoids(starts)).astype(np.int16)
+    # half a count on a slope of 400 counts a sample
+    assert find_edges([counts], LEVELS) == pytest.approx(starts, abs=0.5 / 400.0 + 1e-9)
+
+
+@settings(deadline=None, max_examples=40)
+@given(size=st.integers(1, 700), seed=st.integers(0, 5))
+def test_cut_into_blocks_does_not_matter(cut, size, seed):
+    rng = np.random.default_rng(seed)
+    starts = 30.0 + np.cumsum(rng.uniform(25.0, 60.0, 30))
+    counts = np.rint(trapezoids(starts) + 20.0 * rng.standard_normal(2000)).astype(np.int16)
+    whole = find_edges([counts], LEVELS)
+    assert np.array_equal(find_edges(cut(counts, size), LEVELS), whole)
+    assert whole.size == 30
+
+
+def test_compiled_and_plain_kernel_agree():
+    counts = trapezoids(np.array([40.2, 100.7]), count=150)
+    compiled, plain = np.empty(76), np.empty(76)
+    states = [np.array([0.0, np.inf, 0.0]) for _ in range(2)]
+    assert scan_edges(counts, 0, 1.0, 300.0, 500.0, 700.0, states[0], compiled) == 2
+    assert scan_edges.py_func(counts, 0, 1.0, 300.0, 500.0, 700.0, states[1], plain) == 2
+    assert plain[:2] == pytest.approx([40.2, 100.7], abs=1e-9)
+    assert np.array_equal(compiled[:2], plain[:2])
+    assert np.array_equal(states[0], states[1])
+
+
+def test_ripple_around_the_middle_makes_one_edge():
+    counts = np.array([0.0, 400.0, 600.0, 450.0, 650.0, 900.0, 1000.0, 0.0])
+    # the last crossing before the pulse is up: between 450 and 650
+    assert find_edges([counts], LEVELS) == pytest.approx([3.25])
+
+
+def test_pulse_that_is_already_up_at_the_start_is_no_edge():
+    assert find_edges([trapezoids(np.array([-1.0, 60.5]))], LEVELS) == pytest.approx([60.5])
+
+
+def test_no_blocks_no_edges():
+    assert find_edges([], LEVELS).size == 0
+
+
+def turning(seconds: float = 40.0, speed_rev_s: float = 19.7) -> np.ndarray:
+    return speed_rev_s * np.arange(round(seconds * 2000.0)) / 2000.0
+
+
+def test_levels_are_found_in_noise(make_channel, pulse_train):
+    rng = np.random.default_rng(3)
+    volts = 0.35 + 4.15 * pulse_train(turning(), np.array([0.4])) + 0.02 * rng.standard_normal(80_000)
+    levels = pulse_levels(make_channel(volts))
+    assert levels.low == pytest.approx(0.35, abs=0.01)
+    # the median of a short pulse leans a little towards its flanks
+    assert levels.high == pytest.approx(4.5, abs=0.08)
+    assert levels.noise == pytest.approx(0.02, rel=0.1)
+    assert levels.duty == pytest.approx(0.06, abs=0.005)
+
+
+@pytest.mark.parametrize(("edge", "scale"), [("falling", 1.0), ("rising", -1.0)])
+def test_pulses_that_point_down_are_timed_at_their_beginning(make_channel, edge, scale):
+    starts = 50.25 + 61.5 * np.arange(30)
+    counts = 2000.0 - trapezoids(starts)
+    levels = pulse_levels(make_channel(counts, scale=scale), edge=edge)
+    assert (levels.low, levels.high) == (2000.0, 1000.0)
+    assert find_edges([counts], levels) == pytest.approx(starts, abs=1e-9)
+
+
+def test_both_edge_and_scale_turned_over_is_upright_again(make_channel):
+    counts = trapezoids(50.25 + 61.5 * np.arange(30))
+    levels = pulse_levels(make_channel(counts, scale=-1.0), edge="falling")
+    assert levels.high > levels.low
+
+
+@pytest.mark.parametrize("values", [np.full(5000, 2.0), np.random.default_rng(1).normal(2.0, 0.1, 5000)])
+def test_channel_without_pulses_is_dead(make_channel, values):
+    with pytest.raises(SignalError, match=r"channel PTM_e: expected pulses .* dead or saturated near (1.9|2).* V from 12\.5 s on"):
+        pulse_levels(make_channel(values, name="PTM_e", start_s=12.5))
