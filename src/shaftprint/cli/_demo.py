@@ -8,8 +8,8 @@ import click
 
 from shaftprint.cli._chain import Measurement, fingerprint_of, fit, known_beforehand, measure
 from shaftprint.cli._demo_summary import print_summary
-from shaftprint.cli._demo_truth import fingerprint_truth, print_measurement_truth
-from shaftprint.cli._fingerprint_tables import print_findings, print_fingerprint
+from shaftprint.cli._demo_truth import fingerprint_truth
+from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_tables import print_fits
 from shaftprint.cli._inputs import Trial, load_trial, settings_text
 from shaftprint.cli._output_folder import force_option, output_folder
@@ -58,8 +58,7 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
             found.fingerprint,
             thesis=found.thesis_fits,
         )
-    true = fingerprint_truth(truth, found.fits[0].structure, found.measurement.signals.working_point)
-    print_measurement_truth(found.measurement.signals, truth)
+    true = fingerprint_truth(truth, found.fits[0].structure, found.measurement.signals)
     _print(found, true)
     print_summary(found.fingerprint, true, found.thesis_fits)
     click.echo(_where(output))
@@ -108,7 +107,6 @@ def _identify(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> _Fou
 
 def _print(found: _Found, true: Mapping[str, float]) -> None:
     print_lines(found.measurement.spectra)
-    print_findings("Findings on the signals", found.measurement.signals.findings)
     print_fits("Structures of the thesis, on the same signals, weighted by their noise", found.fits[1:])
     print_fits("Structures of the thesis, signals and fits done the thesis' way", found.thesis_fits)
     print_fingerprint(found.fingerprint, truth=true)

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import click
 
 from shaftprint.cli._numbers import plain, with_uncertainty
-from shaftprint.fingerprint import Fingerprint
+from shaftprint.fingerprint import Fingerprint, Quantity
 from shaftprint.identify import Identification
 
 
@@ -14,12 +14,19 @@ def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], thesis_f
     click.echo("What was found")
     for name, words in SENTENCES.items():
         quantity = fingerprint.quantity(name)
-        value = with_uncertainty(quantity.value, quantity.std)
         unit = "" if quantity.unit == "-" else f" {quantity.unit}"
-        click.echo(f"  * {words}: {value}{unit}; in truth {plain(truth[name])}.")
+        click.echo(f"  * {words}: {_value(quantity)}{unit}; in truth {plain(truth[name])}{unit}.")
     for sentence in _of_the_thesis(fingerprint, thesis_fits):
         click.echo(f"  * {sentence}")
     click.echo()
+
+
+def _value(quantity: Quantity) -> str:
+    """Return the value with its 95 % interval, or with its standard deviation where there is no interval."""
+    if quantity.interval_95 is None:
+        return with_uncertainty(quantity.value, quantity.std)
+    lower, upper = quantity.interval_95
+    return f"{plain(quantity.value)}, 95 % between {plain(lower)} and {plain(upper)}"
 
 
 SENTENCES = {

@@ -27,10 +27,12 @@ def print_fingerprint(fingerprint: Fingerprint, *, truth: Mapping[str, float] = 
     _print_quantities(
         "Physical values, at the propeller shaft unless the unit says otherwise", fingerprint.physical, truth
     )
+    _print_priors(fingerprint)
     if fingerprint.margins:
         _print_quantities("Stability margins", fingerprint.margins, truth)
+    _print_quantities("What the recording tells of its sensors", fingerprint.calibration, truth)
     _print_quality(fingerprint)
-    print_findings("Findings", fingerprint.findings)
+    print_findings("Findings", (*fingerprint.findings, *fingerprint.quality.remarks))
 
 
 def print_findings(title: str, findings: Sequence[str]) -> None:
@@ -52,8 +54,14 @@ def _print_conditions(fingerprint: Fingerprint) -> None:
     if where.lines_left_out:
         click.echo(f"  lines left out: {', '.join(where.lines_left_out)}")
     for source in fingerprint.sources:
-        click.echo(f"  {source.name}: SHA-256 {source.sha256[:16]}...")
+        click.echo(f"  {source.role} {source.name}: SHA-256 {source.sha256[:16]}...")
     click.echo(f"  made {fingerprint.created:%Y-%m-%d %H:%M %Z} with shaftprint {fingerprint.shaftprint_version}\n")
+
+
+def _print_priors(fingerprint: Fingerprint) -> None:
+    known = [f"{name} = {plain(prior.mean)} +/- {plain(prior.std)}" for name, prior in fingerprint.priors.items()]
+    held = [f"{name} = {plain(value)}" for name, value in fingerprint.held.items()]
+    click.echo(f"  known beforehand: {', '.join(known) or 'nothing'}; held: {', '.join(held) or 'nothing'}\n")
 
 
 def _print_quantities(title: str, quantities: Sequence[Quantity], truth: Mapping[str, float]) -> None:
@@ -100,7 +108,7 @@ def _against(quantity: Quantity, truth: Mapping[str, float]) -> list[str]:
         return ["", ""]
     true = truth[quantity.name]
     off = (quantity.value - true) / quantity.std if quantity.std > 0.0 else 0.0
-    return [plain(true), f"{off:+.1f}"]
+    return [f"{true:.6g}", f"{off:+.1f}"]
 
 
 def _print_quality(fingerprint: Fingerprint) -> None:
@@ -112,7 +120,8 @@ def _print_quality(fingerprint: Fingerprint) -> None:
     print_table(
         "How well the model explains the data", ("output", "FitPercent", "ceiling by noise"), rows, numbers=(1, 2)
     )
+    square = "" if quality.chi_square is None else f"chi-square {quality.chi_square:.1f} for "
     click.echo(
-        f"  chi-square {quality.chi_square:.1f} for {quality.degrees_of_freedom} degrees of freedom; "
+        f"  {square}{quality.degrees_of_freedom} degrees of freedom; "
         f"{quality.starts_at_optimum} of {quality.starts} starts reached this optimum\n"
     )

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._chain import fingerprint_of, fit, known_beforehand, measure
-from shaftprint.cli._fingerprint_tables import print_findings, print_fingerprint
+from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_tables import print_fits
 from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
 from shaftprint.cli._known_values import named_prior, named_value
@@ -93,7 +93,6 @@ def command(
     print_fingerprint(fingerprint)
     if len(fits) > 1:
         print_fits("All structures", fits)
-    print_findings("Findings on the signals", measurement.signals.findings)
     click.echo(f"Fingerprint: {output / 'fingerprint.json'}\nReport:      {output / 'index.html'}")
 
 

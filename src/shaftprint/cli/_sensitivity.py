@@ -22,7 +22,10 @@ ALL_OF_THE_THESIS = "THESIS"
 @click.command("sensitivity")
 @click.argument("name", metavar="STRUCTURE")
 @click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the figures.")
-@click.option("--format", "suffix", type=click.Choice(["svg", "png", "pdf"]), default="svg", show_default=True)
+@click.option(
+    "--format", "suffix", type=click.Choice(["svg", "png", "pdf"]), default="svg", show_default=True,
+    help="Kind of picture.",
+)  # fmt: skip
 @force_option
 @no_progress_option
 def command(name: str, output: Path, suffix: str, force: bool, no_progress: bool) -> None:

@@ -1,0 +1,79 @@
+"""``shaftprint demo``: the whole way, with truth beside estimate."""
+
+import tomllib
+
+from shaftprint.cli._inputs import load_trial
+from shaftprint.fingerprint import read_fingerprint
+from shaftprint.recording import read_recording
+from shaftprint.tug import read_truth
+
+
+def test_files(demo):
+    folder, result = demo
+    assert result.exit_code == 0
+    with read_recording(folder / "recording.nc") as recording:
+        found = read_fingerprint(folder / "fingerprint.json")
+        assert found.sources[0].sha256 == recording.sha256
+    assert read_truth(folder / "recording.truth.json").seed == 1
+    assert tomllib.loads((folder / "campaign.toml").read_text())["duration_s"] == 860.0
+    trial = load_trial(str(folder / "vessel.toml"), str(folder / "campaign.toml"))
+    assert [source.sha256 for source in trial.sources] == [source.sha256 for source in found.sources[1:]]
+
+
+def test_last_lines_say_what_was_found_and_where(demo):
+    folder, result = demo
+    tail = result.stdout[result.stdout.index("What was found") :]
+    assert "the inertia behind the torque gauge: " in tail
+    assert "in truth 17 kg m2." in tail
+    assert "in truth 0.1221 s." in tail
+    assert "in truth 2." in tail
+    assert "The thesis' way finds an inertia time of" in tail
+    assert tail.rstrip().splitlines()[-4:-1] == [
+        f"Recording:   {folder / 'recording.nc'}",
+        f"Fingerprint: {folder / 'fingerprint.json'}",
+        f"Report:      {folder / 'index.html'}",
+    ]
+    assert result.stderr == ""
+
+
+def test_truth_lies_in_the_intervals(demo):
+    folder, _ = demo
+    found, truth = read_fingerprint(folder / "fingerprint.json"), read_truth(folder / "recording.truth.json")
+    for name, true in (
+        ("I_dn", truth.physical["inertia_downstream_kg_m2"]),
+        ("I_up", truth.physical["inertia_upstream_kg_m2"]),
+        ("set-point slope", truth.set_point_slope_rpm_per_v),
+        ("k_q", 2.0),
+        ("K_p / K_i", truth.normalised["K_p"] / truth.normalised["K_i"]),
+    ):
+        quantity = found.quantity(name)
+        assert abs(quantity.value - true) < 3.0 * quantity.std, name
+
+
+def test_structures_of_the_thesis_are_shown_both_ways(demo):
+    _, result = demo
+    for heading in (
+        "Structures of the thesis, on the same signals, weighted by their noise",
+        "Structures of the thesis, signals and fits done the thesis' way",
+    ):
+        rows = result.stdout[result.stdout.index(heading) :].splitlines()[4:20]
+        first = [row.split()[0] for row in rows if row.split()]
+        for name in ("OL1", "OL2", "OL3", "OL4", "OL5", "CL1", "CL3", "CL4"):
+            assert name in first
+
+
+def test_line_to_do_it_again_works(demo, run, tmp_path):
+    _, result = demo
+    words = result.stdout.rstrip().splitlines()[-1].split()
+    assert words[:2] == ["Again:", "shaftprint"]
+    arguments = [*words[2:-1], tmp_path / "again"]
+    assert run(*arguments).exit_code == 0
+    again, before = (read_fingerprint(place / "fingerprint.json") for place in (tmp_path / "again", demo[0]))
+    assert again.parameters == before.parameters
+
+
+def test_folder_of_others_is_refused_before_sailing(run, tmp_path):
+    (tmp_path / "mine.txt").write_text("mine")
+    result = run("demo", "--short", "-o", tmp_path)
+    assert result.exit_code == 1
+    assert [entry.name for entry in tmp_path.iterdir()] == ["mine.txt"]

@@ -1,0 +1,74 @@
+"""What is said without a command being called, and what that must not load."""
+
+import importlib
+import subprocess
+import sys
+
+import click
+import pytest
+
+from shaftprint import __version__
+from shaftprint.cli import shaftprint
+from shaftprint.cli._command_group import COMMANDS
+
+HEAVY = ("numpy", "scipy", "numba", "h5py", "pydantic", "matplotlib", "rich", "jinja2", "tomlkit")
+
+
+def test_commands_are_those_that_were_asked_for():
+    assert set(COMMANDS) == {"demo", "sail", "inspect", "identify", "structures", "sensitivity", "show", "new"}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_table_of_commands_agrees_with_each_command(name):
+    command = importlib.import_module(f"shaftprint.cli._{name}").command
+    assert isinstance(command, click.Command)
+    assert command.name == name
+    assert command.get_short_help_str(limit=200) == COMMANDS[name]
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_every_option_has_a_help(run, name):
+    result = run(name, "--help")
+    assert result.exit_code == 0
+    command = importlib.import_module(f"shaftprint.cli._{name}").command
+    for parameter in command.params:
+        if isinstance(parameter, click.Option):
+            assert parameter.help, f"{name} {parameter.name}"
+
+
+def test_help_lists_every_command_with_its_help(run):
+    result = run("--help")
+    assert result.exit_code == 0
+    text = " ".join(result.output.split())
+    for name, words in COMMANDS.items():
+        assert f"{name} {words}" in text
+
+
+def test_help_loads_nothing_heavy():
+    script = (
+        "import sys\n"
+        "from shaftprint.cli import shaftprint\n"
+        "shaftprint(['--help'], standalone_mode=False)\n"
+        f"print('loaded:', [name for name in {HEAVY!r} if name in sys.modules])\n"
+    )
+    found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert "Commands:" in found.stdout
+    assert found.stdout.endswith("loaded: []\n")
+
+
+def test_module_and_program_are_the_same():
+    found = subprocess.run(
+        [sys.executable, "-m", "shaftprint", "--version"], capture_output=True, text=True, check=True
+    )
+    assert found.stdout == f"shaftprint {__version__}\n"
+
+
+def test_unknown_command_is_a_usage_error(run):
+    result = run("fingerprint")
+    assert result.exit_code == 2
+    assert "No such command 'fingerprint'" in result.stderr
+
+
+def test_group_knows_no_command_that_is_not_listed():
+    context = click.Context(shaftprint)
+    assert shaftprint.get_command(context, "main") is None

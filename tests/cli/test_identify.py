@@ -1,0 +1,144 @@
+"""``shaftprint identify``: from a recording to a fingerprint in a folder."""
+
+import pytest
+
+from shaftprint.fingerprint import read_fingerprint
+from shaftprint.recording import read_recording, write_csv
+
+GIVEN = ("--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress")
+
+
+@pytest.fixture(scope="module")
+def identified(recording, tmp_path_factory):
+    """The fingerprint of the default structure."""
+    folder = tmp_path_factory.mktemp("identify") / "out"
+    return folder, ("identify", recording, *GIVEN, "-o", folder)
+
+
+def test_default_is_the_gauge_aware_closed_loop(run, identified):
+    folder, arguments = identified
+    result = run(*arguments)
+    assert result.exit_code == 0
+    assert f"Fingerprint: {folder / 'fingerprint.json'}" in result.output
+    found = read_fingerprint(folder / "fingerprint.json")
+    assert found.structure == "GAUGE-CLOSED"
+    assert found.quality.weighting == "MaximumLikelihood"
+    assert found.quality.starts == 50
+    assert found.priors["g"].mean == 0.0
+    assert found.priors["g"].std == 0.1
+    assert found.priors["c_set"].mean == 1.0
+    assert [source.role for source in found.sources] == ["recording", "vessel", "campaign"]
+    assert [source.name for source in found.sources] == ["recording.nc", "stan-tug-1205", "short"]
+    # the truth of the simulated tug: 17.0 kg m2 of propeller, shaft and water; 0.0703 + 0.0518 s
+    assert found.quantity("I_dn").value == pytest.approx(17.0, rel=0.02)
+    assert found.quantity("t_d + t_sp").value == pytest.approx(0.1221, rel=0.05)
+
+
+def test_same_seed_same_fingerprint(run, recording, tmp_path):
+    for name in ("a", "b"):
+        run("identify", recording, *GIVEN, "--structure", "CL4", "--seed", 5, "-o", tmp_path / name)
+    first, second = (read_fingerprint(tmp_path / name / "fingerprint.json") for name in ("a", "b"))
+    assert first.model_copy(update={"created": second.created}) == second
+
+
+def test_structures_beside_each_other(run, recording, tmp_path):
+    names = ("OL1", "CL4", "ol1")
+    options = [word for name in names for word in ("--structure", name)]
+    result = run("identify", recording, *GIVEN, *options, "--starts", 20, "-o", tmp_path / "out")
+    assert result.exit_code == 0
+    table = result.output[result.output.index("All structures") :]
+    assert table.count("OL1") == 1
+    assert "CL4" in table
+    assert "20/20" in table
+    assert read_fingerprint(tmp_path / "out" / "fingerprint.json").structure == "OL1"
+
+
+def test_hold_and_prior(run, recording, tmp_path):
+    options = ("--hold", "tau_up=1.016", "--prior", "g=-0.1+-0.05", "--prior", "k_q=2+-0.01")
+    result = run("identify", recording, *GIVEN, *options, "-o", tmp_path / "out")
+    assert result.exit_code == 0
+    found = read_fingerprint(tmp_path / "out" / "fingerprint.json")
+    assert found.held["tau_up"] == 1.016
+    assert {name: (prior.mean, prior.std) for name, prior in found.priors.items() if name != "c_set"} == {
+        "g": (-0.1, 0.05),
+        "k_q": (2.0, 0.01),
+    }
+
+
+def test_the_way_of_the_thesis(run, recording, tmp_path):
+    options = ("--mode", "thesis", "--unweighted", "--structure", "OL1")
+    result = run("identify", recording, *GIVEN, *options, "-o", tmp_path / "out")
+    assert result.exit_code == 0
+    found = read_fingerprint(tmp_path / "out" / "fingerprint.json")
+    assert found.conditions.mode == "thesis"
+    assert found.quality.weighting == "Unweighted"
+    assert found.priors == {}
+    # one revolution of the engine, 50.7 ms, is taken for inertia: more than the true 0.317 s
+    assert 0.37 < found.quantity("tau_n").value < 0.47
+
+
+def test_gauge_aware_structure_in_thesis_mode_has_no_prior_of_the_scale(run, recording, tmp_path):
+    result = run("identify", recording, *GIVEN, "--mode", "thesis", "-o", tmp_path / "out")
+    assert result.exit_code == 0
+    assert list(read_fingerprint(tmp_path / "out" / "fingerprint.json").priors) == ["g"]
+
+
+def test_recording_of_another_format(run, recording, identified, tmp_path):
+    path = tmp_path / "short.csv"
+    with read_recording(recording) as opened:
+        write_csv(path, opened.channels.values())
+    result = run("identify", path, *GIVEN, "--structure", "OL1", "-o", tmp_path / "out")
+    assert result.exit_code == 0, result.stderr
+    found = read_fingerprint(tmp_path / "out" / "fingerprint.json")
+    assert found.quantity("tau_n").value == pytest.approx(0.3172, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "message"),
+    [
+        (("--structure", "CL9"), 1, "there is no structure 'CL9'; the shipped ones are OL1"),
+        (("--hold", "mass=1"), 1, "--hold mass: expected a parameter of GAUGE-CLOSED"),
+        (("--prior", "mass=1+-1"), 1, "prior of mass: structure GAUGE-CLOSED has the free parameters K_p"),
+        (("--hold", "k_q=2", "--prior", "k_q=2+-1"), 1, "prior of k_q"),
+        (("--hold", "v"), 2, "expected a parameter and its value such as v=1, found 'v'"),
+        (("--prior", "g=0"), 2, "its standard deviation such as g=0+-0.1, found 'g=0'"),
+        (("--starts", "0"), 2, "0 is not in the range x>=1"),
+        (("--mode", "guess"), 2, "'guess' is not one of 'shaftprint', 'thesis'"),
+        (("--colour", "red"), 2, "No such option '--colour'"),
+        (("--campaign", "thesis"), 1, "found 860.0 s"),
+        (("--campaign", "trip.toml"), 1, "trip.toml: expected a settings file, found nothing there"),
+        (("--vessel", "tor"), 1, "one of the shipped names stan-tug-1205"),
+    ],
+)
+def test_wrong_input_leaves_nothing_behind(run, recording, tmp_path, options, code, message):
+    result = run("identify", recording, *GIVEN, *options, "-o", tmp_path / "out")
+    assert result.exit_code == code
+    assert message in result.stderr
+    assert "Traceback" not in result.output
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_missing_recording(run, tmp_path):
+    result = run("identify", tmp_path / "test.nc", *GIVEN, "-o", tmp_path / "out")
+    assert result.exit_code == 1
+    assert result.stderr == f"Error: {tmp_path / 'test.nc'}: expected a logger file, found none there.\n"
+
+
+def test_missing_options_are_usage_errors(run, recording):
+    result = run("identify", recording, "--vessel", "stan-tug-1205", "-o", "out")
+    assert result.exit_code == 2
+    assert "Missing option '--campaign'" in result.stderr
+
+
+def test_folder_of_others_is_refused_before_any_work(run, recording, tmp_path):
+    (tmp_path / "mine.txt").write_text("mine")
+    result = run("identify", recording, *GIVEN, "-o", tmp_path)
+    assert result.exit_code == 1
+    assert "expected an empty folder or one with results of shaftprint, found mine.txt" in result.stderr
+
+
+def test_place_below_a_file(run, recording, tmp_path):
+    (tmp_path / "mine.txt").write_text("mine")
+    result = run("identify", recording, *GIVEN, "-o", tmp_path / "mine.txt" / "out")
+    assert result.exit_code == 1
+    assert "check the path, the permissions and the free space" in result.stderr

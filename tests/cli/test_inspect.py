@@ -1,0 +1,165 @@
+"""``shaftprint inspect`` says what is in a recording and whether it is good enough."""
+
+import numpy as np
+import pytest
+
+from shaftprint.cli._inspect import verdict
+from shaftprint.recording import RecordingWriter
+from shaftprint.spectra import FrequencyResponse, SignalToNoise, Spectra
+
+
+def _cells(output, first):
+    """Return the words of the table row that begins with a word."""
+    return next(line.split() for line in output.splitlines() if line.split()[:1] == [first])
+
+
+def test_channels_alone(run, recording):
+    result = run("inspect", recording)
+    assert result.exit_code == 0
+    assert f"{recording}: shaftprint recording (NetCDF-4), SHA-256 " in result.output
+    words = _cells(result.output, "PTM_e")
+    assert words[1:6] == ["V", "2000", "0", "to", "860"]
+    assert words[-1] == "0"
+    assert "Sensors of the vessel file" not in result.output
+
+
+def test_values_that_are_not_numbers_are_counted(run, tmp_path):
+    path = tmp_path / "test.nc"
+    with RecordingWriter(path) as writer:
+        for name, values in (("half", [1.0, np.nan, 3.0, np.inf]), ("none", [np.nan, np.nan]), ("empty", [])):
+            writer.declare(name, unit="V", rate_hz=10.0, dtype="float64")
+            writer.append(name, np.array(values))
+    output = run("inspect", path).output
+    assert _cells(output, "half")[-4:] == ["1", "2", "3", "2"]
+    assert _cells(output, "none")[-4:] == ["nan", "nan", "nan", "2"]
+    assert _cells(output, "empty")[-4:] == ["nan", "nan", "nan", "0"]
+
+
+def test_sensors_with_a_vessel_file(run, recording):
+    result = run("inspect", recording, "--vessel", "stan-tug-1205")
+    assert result.exit_code == 0
+    four = next(line for line in result.output.splitlines() if "PTM_4" in line and "speed" in line)
+    # table 3.4 of the thesis, scaled from its printed sum of 360.02 to 360; which strip comes first is not seen
+    turned = ["90.40", "87.24", "90.73", "91.63"]
+    found = [word.strip(",") for word in four.split() if word.startswith(("9", "8"))]
+    assert sorted(float(angle) for angle in found) == pytest.approx(sorted(map(float, turned)), abs=0.02)
+    assert "missing pulse" in result.output
+    assert "Problems\n  * None." in result.output
+    assert "Signal-to-noise" not in result.output
+
+
+def test_whole_test_with_a_campaign_file(run, recording):
+    result = run("inspect", recording, "--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress")
+    assert result.exit_code == 0
+    for heading in (
+        "Channels, raw", "Sensors of the vessel file", "Steady state", "Engine-speed channels", "Strip angles of PTM_4",
+        "Time from set point to speed", "Repairs; the raw file is as it was", "Signal-to-noise ratio of the test lines",
+        "Findings on the signals",
+    ):  # fmt: skip
+        assert heading in result.output
+    assert result.output.rstrip().endswith("Good enough: 10 of 10 lines are usable and above 0 dB, 4 of them between 1 "
+                                           "and 12 rad/s, where the loop crosses over.")  # fmt: skip
+
+
+def test_campaign_without_vessel_is_a_usage_error(run, recording):
+    result = run("inspect", recording, "--campaign", "short")
+    assert result.exit_code == 2
+    assert "--campaign needs --vessel" in result.stderr
+
+
+def test_campaign_longer_than_the_recording(run, recording):
+    result = run("inspect", recording, "--vessel", "stan-tug-1205", "--campaign", "thesis")
+    assert result.exit_code == 1
+    assert "found 860.0 s" in result.stderr
+    assert "Sensors of the vessel file" in result.output
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (None, "expected a logger file, found none there"),
+        (b"", "expected a logger file, found an empty one"),
+        (b"Dear reader, this is a letter.\n", "found none of them"),
+    ],
+)
+def test_file_that_is_no_recording(run, tmp_path, content, message):
+    path = tmp_path / "test.dat"
+    if content is not None:
+        path.write_bytes(content)
+    result = run("inspect", path)
+    assert result.exit_code == 1
+    assert str(path) in result.stderr
+    assert message in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+
+
+def test_folder_in_the_place_of_a_recording(run, tmp_path):
+    result = run("inspect", tmp_path)
+    assert result.exit_code == 1
+    assert "expected a logger file" in result.stderr
+
+
+def test_truncated_recording(run, recording, tmp_path):
+    path = tmp_path / "cut.nc"
+    path.write_bytes(recording.read_bytes()[:1_000_000])
+    result = run("inspect", path)
+    assert result.exit_code == 1
+    assert "damaged or truncated" in result.stderr
+
+
+def test_channel_that_the_vessel_file_names_is_missing(run, tmp_path):
+    path = tmp_path / "test.nc"
+    with RecordingWriter(path) as writer:
+        writer.declare("speed", unit="V", rate_hz=2000.0, dtype="float64")
+        writer.append("speed", np.zeros(4000))
+    result = run("inspect", path, "--vessel", "stan-tug-1205")
+    assert result.exit_code == 1
+    assert "PTM_e" in result.stderr
+
+
+def _spectra(frequency_hz, local_db, used):
+    count = len(frequency_hz)
+    lines = tuple(f"S{number}" for number in range(1, count + 1))
+    response = FrequencyResponse(
+        frequency_hz=np.array(frequency_hz),
+        response=np.ones((2, 1, count), dtype=complex),
+        covariance=np.broadcast_to(np.eye(4), (count, 4, 4)),
+        inputs=("n_set",),
+        outputs=("n", "M_s"),
+        lines=lines,
+        used=np.array(used),
+    )
+    table = np.column_stack([np.full(count, 80.0), local_db, np.full(count, 20.0)])
+    ratios = SignalToNoise(lines=lines, channels=("n_set", "n_e", "M_s"), local_db=table, overall=np.ones(3))
+    return Spectra(
+        response=response,
+        windows=(),
+        signal_to_noise=ratios,
+        harmonics=None,
+        load_drift=None,
+        speed="n_e",
+    )
+
+
+SIX = [0.01, 0.05, 0.1, 0.3, 0.6, 4.0]
+
+
+def test_verdict_good():
+    sentence = verdict(_spectra(SIX, [20.0] * 6, [True] * 6))
+    assert sentence == (
+        "Good enough: 6 of 6 lines are usable and above 0 dB, 2 of them between 1 and 12 rad/s, where the loop crosses "
+        "over."
+    )
+
+
+def test_verdict_too_few_lines():
+    # one line drowns in noise and one is aliased: four are left
+    sentence = verdict(_spectra(SIX, [20.0, -0.1, 20.0, 20.0, 20.0, 20.0], [True] * 5 + [False]))
+    assert sentence.startswith("Not good enough: 4 of 6 lines are usable and above 0 dB")
+    assert "at least 5 are needed" in sentence
+
+
+def test_verdict_nothing_at_the_crossover():
+    sentence = verdict(_spectra([0.01, 0.02, 0.05, 0.1, 0.12, 0.3], [20.0] * 6, [True] * 6))
+    assert sentence.startswith("Not good enough: 6 of 6")
+    assert "at least 2 are needed there" in sentence

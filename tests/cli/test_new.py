@@ -1,0 +1,36 @@
+"""``shaftprint new`` writes files that can be loaded as they stand."""
+
+import pytest
+
+from shaftprint.campaign import load_campaign
+from shaftprint.vessel import load_vessel
+
+
+@pytest.mark.parametrize(("kind", "load"), [("vessel", load_vessel), ("campaign", load_campaign)])
+def test_template_can_be_loaded(run, tmp_path, kind, load):
+    path = tmp_path / f"mine {kind}.toml"
+    result = run("new", kind, path)
+    assert result.exit_code == 0
+    assert result.output == f"{path}: a {kind} to fill in.\n"
+    assert load(path).name
+
+
+def test_existing_file_is_kept(run, tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text("mine")
+    result = run("new", "vessel", path)
+    assert result.exit_code == 1
+    assert "exists already" in result.stderr
+    assert path.read_text() == "mine"
+
+
+def test_missing_folder(run, tmp_path):
+    result = run("new", "vessel", tmp_path / "no" / "mine.toml")
+    assert result.exit_code == 1
+    assert "cannot be written" in result.stderr
+
+
+def test_unknown_kind_is_a_usage_error(run, tmp_path):
+    result = run("new", "propeller", tmp_path / "mine.toml")
+    assert result.exit_code == 2
+    assert "'propeller' is not one of 'vessel', 'campaign'" in result.stderr
