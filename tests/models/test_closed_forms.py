@@ -168,7 +168,7 @@ def test_responses_equal_the_printed_equations(name):
 def test_gradients_of_all_parameters_equal_50_digit_arithmetic(name):
     """Held parameters too; 1e-9 of each complex derivative by itself, at every frequency."""
     shipped = structure(name)
-    omega = OMEGA[[0, 2, 3, 4, 5, 7]]
+    omega = OMEGA[[0, 3, 4, 7]]
     with mpmath.workdps(DIGITS):
         for values in value_sets(shipped):
             response, slopes = shipped.gradient(values, 1j * omega, shipped.names)
