@@ -1,0 +1,174 @@
+"""What is said in words: each rule where it applies, and where it does not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from shaftprint.fingerprint import physical_quantities
+from shaftprint.fingerprint._findings import findings_of
+from shaftprint.identify import Prior, Settings, Unweighted
+
+
+def found(identification, physical=(), left_out=None):
+    return findings_of(identification, physical, left_out or {})
+
+
+def one(findings, start):
+    """Return the one finding that begins so."""
+    matching = [finding for finding in findings if finding.startswith(start)]
+    assert len(matching) == 1, findings
+    return matching[0]
+
+
+def none(findings, part):
+    return not any(part in finding for finding in findings)
+
+
+@pytest.fixture(scope="module")
+def sharp(gauge_fit, put_by_hand):
+    """A fit that knows every parameter to 1 % and that most starts reached."""
+    winner = replace(gauge_fit.clusters[0], starts=18)
+    std = {parameter.name: 0.01 * abs(parameter.value) for parameter in gauge_fit.parameters}
+    return put_by_hand(replace(gauge_fit, clusters=(winner,)), std=std)
+
+
+@pytest.fixture(scope="module")
+def judged(working_point, vessel):
+    """The findings on the physical values of a fit."""
+
+    def judge(identification, point=working_point):
+        return found(identification, physical_quantities(identification, point, vessel))
+
+    return judge
+
+
+def test_sharp_fit_of_a_good_line_says_only_that_it_is_stable(sharp):
+    assert found(sharp) == ("The governed line is stable; its gain margin of 1.60 at 8.1 rad/s is small.",)
+
+
+@pytest.mark.parametrize(
+    ("gain", "words"), [(5.7, "small"), (2.5, "ample"), (8.0, "very small")], ids=["small", "ample", "very small"]
+)
+def test_gain_margin_in_words(gauge_fit, put_by_hand, gain, words):
+    stable = one(found(put_by_hand(gauge_fit, values={"K_p": gain})), "The governed line is stable")
+    assert stable.endswith(f"rad/s is {words}.")
+
+
+def test_unstable_line(gauge_fit, put_by_hand):
+    unstable = put_by_hand(gauge_fit, values={"K_p": 11.0})
+    assert found(unstable)[0] == "The identified line is unstable: 2 poles in the right half plane."
+
+
+def test_line_that_no_gain_makes_hunt(fit):
+    first = found(fit("CL1", {"tau_n": 0.39, "K_p": 3.0, "K_i": 4.0}))[0]
+    assert first == "The governed line is stable, and no gain of the governor makes it hunt."
+
+
+def test_no_word_on_stability_without_feedback(fit):
+    assert found(fit("OL1", {"tau_n": 0.39})) == ()
+
+
+def test_misfit(sharp):
+    # 46 degrees of freedom: the 99 % point of chi-square is 71.2; the normal approximation used here gives 68.3
+    assert sharp.degrees_of_freedom == 46
+    assert none(found(replace(sharp, cost=0.5 * 66.0)), "explain")
+    worse = one(found(replace(sharp, cost=0.5 * 92.0)), "The structure does not explain the data")
+    assert "chi-square is 92 for 46 degrees of freedom" in worse
+    unweighted = replace(sharp, cost=0.5 * 92.0, settings=replace(sharp.settings, weighting=Unweighted()))
+    assert none(found(unweighted), "explain")
+    assert none(found(replace(sharp, cost=10.0, degrees_of_freedom=0)), "explain")
+
+
+def test_bound(sharp, put_by_hand):
+    stopped = put_by_hand(sharp, values={"omega_n": 60.0})
+    assert one(found(stopped), "omega_n stopped") == (
+        "omega_n stopped at its bound 60 rad/s: widen the bound or doubt the structure."
+    )
+    assert none(found(sharp), "bound")
+
+
+def test_search(sharp):
+    winner = sharp.clusters[0]
+    for starts, few in ((2, True), (3, False)):
+        searched = replace(sharp, clusters=(replace(winner, starts=starts),))
+        assert none(found(searched), "starts reached") is not few
+    few = replace(sharp, clusters=(replace(winner, starts=2),))
+    assert "Only 2 of 20 starts reached the optimum: use more starts." in found(few)
+
+
+def test_delays_that_only_their_sum_is_known_of(sharp):
+    """t_d and t_sp trade against each other: 0.03 s each, their sum to 0.001 s."""
+    names = [parameter.name for parameter in sharp.structure.free]
+    both = np.ix_([names.index("t_d"), names.index("t_sp")], [names.index("t_d"), names.index("t_sp")])
+    covariance = sharp.covariance.copy()
+    spread, total = 0.03**2, 0.001**2
+    covariance[both] = [[spread, 0.5 * total - spread], [0.5 * total - spread, spread]]
+    findings = found(replace(sharp, covariance=covariance))
+    for name, value in (("t_d", "0.0703"), ("t_sp", "0.0518")):
+        assert one(findings, name) == (
+            f"{name} = {value} +/- 0.03 s is hardly known from this test; known is t_d + t_sp = 0.1221 +/- 0.001 s."
+        )
+    assert len(findings) == 3
+
+
+def test_parameter_without_a_better_known_combination(sharp, put_by_hand):
+    vague = one(found(put_by_hand(sharp, std={"zeta": 0.2})), "zeta")
+    assert vague == "zeta = 0.47 +/- 0.2 is hardly known from this test."
+
+
+def test_parameter_of_which_nothing_is_known(sharp, put_by_hand):
+    assert one(found(put_by_hand(sharp, std={"zeta": np.inf})), "zeta").endswith(
+        "+/- inf is hardly known from this test."
+    )
+
+
+def test_known_to_a_tenth_is_known(sharp, put_by_hand):
+    assert none(found(put_by_hand(sharp, std={"zeta": 0.0469})), "hardly")
+    assert not none(found(put_by_hand(sharp, std={"zeta": 0.0471})), "hardly")
+
+
+def test_what_was_known_beforehand_is_not_complained_of(sharp, put_by_hand):
+    assert none(found(put_by_hand(sharp, std={"g": 0.1})), "hardly")
+    without = replace(sharp, settings=Settings(starts=20, priors={"tau_up": Prior(1.016, 0.1)}))
+    assert not none(found(put_by_hand(without, std={"g": 0.1})), "hardly")
+
+
+@pytest.mark.parametrize(
+    ("slope", "std", "said"),
+    [(2.05, 0.001, True), (1.95, 0.001, True), (2.019, 0.001, False), (2.05, 0.02, False), (2.07, 0.02, True)],
+)
+def test_propeller_slope_other_than_two(sharp, put_by_hand, slope, std, said):
+    findings = found(put_by_hand(sharp, values={"k_q": slope}, std={"k_q": std}))
+    assert none(findings, "instead of 2: the torque gauge has a zero offset") is not said
+
+
+def test_inertia_off_the_torsional_vibration_calculation(sharp, put_by_hand, judged):
+    """Three times the downstream inertia: 51 against 17.0 +/- 1.6 kg m2."""
+    heavy = judged(put_by_hand(sharp, values={"tau_dn": 0.96}))
+    assert one(heavy, "I_dn") == "I_dn = 51.03 kg m2 against 17 kg m2 of the vessel file: a factor 3.00."
+    light = judged(put_by_hand(sharp, values={"tau_dn": 0.16}))
+    assert one(light, "I_dn").endswith("a factor 2.00.")
+    assert none(judged(put_by_hand(sharp, values={"tau_dn": 0.36})), "I_dn")
+
+
+def test_inertia_of_the_thesis_is_explained(fit, judged):
+    assert one(judged(fit("OL1", {"tau_n": 0.3897})), "I ") == (
+        "I = 20.71 kg m2 against 54.01 kg m2 of the vessel file: a factor 2.61. A torque gauge shows only the "
+        "inertia downstream of it: compare with that, or fit a gauge-aware structure."
+    )
+
+
+def test_torque_coefficient_off_the_vessel_file(sharp, judged, working_point):
+    """12 % more torque at the same speed; gauge scale and zero allow 2.5 %."""
+    fouled = judged(sharp, replace(working_point, shaft_torque_nm=1.12 * 1725.0))
+    assert one(fouled, "K_Q").startswith("K_Q = 0.05536 against 0.04943 of the vessel file: a factor 1.12.")
+    assert none(judged(sharp, replace(working_point, shaft_torque_nm=1.05 * 1725.0)), "K_Q")
+
+
+def test_lines_left_out_are_named_with_their_reason(sharp, fit, take, fingerprint):
+    assert found(sharp, left_out={"S15": "aliased"})[-1] == "Line S15 is left out: aliased."
+    used = np.arange(14) != 13
+    part = take(fit("OL1", {"tau_n": 0.39}, used=used, remarks={"S14": "above 2.6 Hz: aliased"}))
+    assert part.findings[-1] == "Line S14 is left out: above 2.6 Hz: aliased."
+    assert none(fingerprint.findings, "left out")

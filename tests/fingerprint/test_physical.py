@@ -1,0 +1,78 @@
+"""Physical values against numbers worked out by hand for the Stan Tug 1205 at 1183.8 rpm and 1725 N m.
+
+The propeller shaft turns at 1183.8 / 60 / 3.82 = 5.164921 rev/s, so 2 pi n_s0 = 32.45216 rad/s.
+"""
+
+from dataclasses import replace
+
+import pytest
+
+from shaftprint.fingerprint import physical_quantities
+
+
+@pytest.fixture
+def found(gauge_fit, working_point, vessel):
+    return {quantity.name: quantity for quantity in physical_quantities(gauge_fit, working_point, vessel)}
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "unit"),
+    [
+        ("I_dn", 17.0096, "kg m2"),  # 0.32 * 1725 / 32.45216
+        ("I_up", 54.0056, "kg m2"),  # 1.016 * 1725 / 32.45216
+        ("governor proportional action", 8.30588, "N m/rpm"),  # 5.7 * 1725 / 1183.8
+        ("governor integral action", 6.22212, "N m/(rpm s)"),  # 4.27 * 1725 / 1183.8
+        ("K_Q", 0.049430, "-"),  # 1725 / (1025 * 5.164921^2 * 1.05^5)
+    ],
+)
+def test_values_are_those_worked_out_by_hand(found, name, value, unit):
+    assert found[name].value == pytest.approx(value, rel=2e-5)
+    assert found[name].unit == unit
+
+
+def test_values_stand_beside_those_of_the_torsional_vibration_calculation(found):
+    assert (found["I_up"].expected, found["I_dn"].expected) == pytest.approx((54.006, 17.0), abs=1e-3)
+    # water 1.5, propeller 0.61 and shaft 0.10 kg m2 in quadrature
+    assert found["I_dn"].expected_std == pytest.approx(1.6224, rel=1e-3)
+    assert found["K_Q"].expected == 0.04943
+    assert found["governor integral action"].expected is None
+
+
+def test_standard_deviations_are_fit_working_point_and_gauge_in_quadrature(
+    gauge_fit, put_by_hand, working_point, vessel
+):
+    # 1 % of the fit, 8 / 1725 of the working-point torque, 2 % of the gauge's scale: 2.28365 %
+    known = put_by_hand(gauge_fit, std={"tau_dn": 0.0032, "K_p": 0.057})
+    found = {quantity.name: quantity for quantity in physical_quantities(known, working_point, vessel)}
+    assert found["I_dn"].std == pytest.approx(0.388442, rel=1e-4)
+    assert found["governor proportional action"].std == pytest.approx(0.0228365 * 8.30588, rel=1e-4)
+    # 25 N m of the gauge's zero and twice 0.01 / 19.73 of the speed as well: 2.51511 %
+    assert found["K_Q"].std == pytest.approx(0.0251511 * 0.049430, rel=1e-4)
+
+
+def test_without_stated_accuracy_only_fit_and_working_point_count(gauge_fit, put_by_hand, working_point, vessel):
+    sensor = vessel.sensors.shaft_torque.model_copy(update={"scale_std_fraction": None, "zero_std_nm": None})
+    plain = vessel.model_copy(update={"sensors": vessel.sensors.model_copy(update={"shaft_torque": sensor})})
+    known = put_by_hand(gauge_fit, std={"tau_dn": 0.0032})
+    point = replace(working_point, shaft_torque_std_nm=17.25, engine_speed_std_rev_s=0.0)
+    found = {quantity.name: quantity for quantity in physical_quantities(known, point, plain)}
+    assert found["I_dn"].std == pytest.approx(17.0096 * 0.0141421, rel=1e-4)
+    assert found["K_Q"].std == pytest.approx(0.049430 * 0.01, rel=1e-4)
+
+
+def test_inertia_of_the_thesis_is_that_of_its_own_arithmetic(fit, working_point, vessel):
+    # thesis: tau_n 0.3897 s; 0.3897 * 1725 / 32.45216 = 20.71 kg m2
+    core = fit("OL1", {"tau_n": 0.3897})
+    found = {quantity.name: quantity for quantity in physical_quantities(core, working_point, vessel)}
+    assert set(found) == {"I", "K_Q"}
+    assert found["I"].value == pytest.approx(20.71, abs=0.01)
+    assert found["I"].expected == pytest.approx(54.006, abs=1e-3)
+
+
+def test_values_grow_with_the_torque_of_the_working_point(gauge_fit, working_point, vessel):
+    # twice the torque at the same normalised inertia time: twice the inertia, the same share of uncertainty of the fit
+    double = replace(working_point, shaft_torque_nm=3450.0, shaft_torque_std_nm=16.0)
+    once = physical_quantities(gauge_fit, working_point, vessel)
+    twice = physical_quantities(gauge_fit, double, vessel)
+    assert [q.value for q in twice] == pytest.approx([2.0 * q.value for q in once])
+    assert [q.std for q in twice[:-1]] == pytest.approx([2.0 * q.std for q in once[:-1]])

@@ -1,0 +1,240 @@
+"""The record: what is kept, and that it comes back from its file as it was."""
+
+import json
+from datetime import UTC, datetime, timedelta, timezone
+from zoneinfo import ZoneInfo
+
+import numpy as np
+import pytest
+
+from shaftprint.errors import FingerprintError
+from shaftprint.fingerprint import Quantity, read_fingerprint, write_fingerprint
+from shaftprint.identify import Prior, Settings, Unweighted
+
+NOW = datetime(2026, 3, 14, 9, 30, tzinfo=UTC)
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "fingerprint.json"
+
+
+def written_and_read(fingerprint, path):
+    write_fingerprint(fingerprint, path)
+    return read_fingerprint(path)
+
+
+def with_field(fingerprint, path, change):
+    """Write a fingerprint whose JSON has been changed by hand."""
+    content = json.loads(fingerprint.model_dump_json())
+    change(content)
+    path.write_text(json.dumps(content), encoding="utf-8")
+
+
+def test_loads_back_equal(fingerprint, path):
+    assert written_and_read(fingerprint, path) == fingerprint
+
+
+def test_loads_back_equal_with_all_that_a_number_can_be(fingerprint, path):
+    odd = Quantity(
+        name="t_d",
+        unit="s",
+        value=1.0 / 3.0,
+        std=np.inf,
+        interval_95=(0.0, np.inf),
+        interval_open=(True, True),
+        at_bound=True,
+        expected=-1e-300,
+        expected_std=0.0,
+        meaning='delay "t_d", 80 % in äußerst schwerer See',
+    )
+    unusual = fingerprint.model_copy(
+        update={"parameters": (odd,), "covariance": ((np.inf, -1e-17), (-1e-17, 0.1 + 0.2)), "findings": ()}
+    )
+    assert written_and_read(unusual, path) == unusual
+
+
+def test_every_fit_loads_back_equal(fit, take, path):
+    """Held parameters, lines left out, no feedback, no profile of an unweighted fit."""
+    core = fit("OL1", {"tau_n": 0.39}, settings=Settings(weighting=Unweighted(), starts=5), lines=["S1", "S5", "S9"])
+    kept = written_and_read(take(core), path)
+    assert kept == take(core)
+    assert kept.held == {"k_q": 2.0}
+    assert kept.margins == ()
+    assert kept.parameters[0].interval_95 is None
+    assert kept.quality.chi_square is None
+    assert kept.quality.weighting == "Unweighted"
+
+
+@pytest.mark.parametrize("zone", [timezone(timedelta(hours=-3, minutes=-30)), ZoneInfo("Europe/Amsterdam")])
+def test_time_keeps_its_instant_and_offset(gauge_fit, take, path, zone):
+    now = datetime(2026, 7, 1, 23, 59, 59, 123456, tzinfo=zone)
+    kept = written_and_read(take(gauge_fit, now=now), path)
+    assert kept.created == now
+    assert kept.created.utcoffset() == now.utcoffset()
+
+
+def test_time_without_zone_is_refused(gauge_fit, take):
+    with pytest.raises(FingerprintError, match="now: expected a time with time zone"):
+        take(gauge_fit, now=NOW.replace(tzinfo=None))
+
+
+def test_keeps_what_is_needed_to_judge_it_in_ten_years(fingerprint):
+    assert fingerprint.schema_version == 1
+    assert [(s.role, s.name, s.sha256[:2]) for s in fingerprint.sources] == [
+        ("recording", "port.nc", "ab"),
+        ("vessel", "tug.toml", "cd"),
+        ("campaign", "test.toml", "ef"),
+    ]
+    where = fingerprint.conditions
+    assert (where.vessel, where.campaign) == ("Stan Tug 1205, port", "Test around -5 V")
+    assert where.engine_speed.value == pytest.approx(1183.8)
+    assert where.engine_speed.std == pytest.approx(0.6)
+    assert (where.shaft_torque.value, where.shaft_torque.std) == (1725.0, 8.0)
+    assert (where.set_point_v, where.speed_channel, where.mode) == (-5.05, "n_e", "shaftprint")
+    assert fingerprint.structure == "GAUGE-CLOSED"
+    assert fingerprint.held == {"v": 1.0, "T_average": 0.0, "T_hold": 0.0, "t_pickup": 0.0}
+    assert {name: (belief.mean, belief.std) for name, belief in fingerprint.priors.items()} == {"g": (0.0, 0.1)}
+
+
+def test_parameters_are_the_truth_within_their_intervals(fingerprint, truth):
+    found = {quantity.name: quantity for quantity in fingerprint.parameters}
+    assert set(found) == set(truth) - {"v"}
+    for name, quantity in found.items():
+        assert quantity.value == pytest.approx(truth[name], abs=1e-3)
+        assert quantity.interval_95[0] <= truth[name] <= quantity.interval_95[1]
+        assert quantity.std > 0.0
+        assert quantity.meaning
+    assert found["t_sp"].unit == "s"
+
+
+def test_combinations_are_those_of_the_truth(fingerprint):
+    found = {quantity.name: quantity.value for quantity in fingerprint.combinations}
+    assert found["t_d + t_sp"] == pytest.approx(0.1221, abs=1e-5)
+    assert found["K_p / K_i"] == pytest.approx(5.7 / 4.27, rel=1e-4)
+    assert found["v K_i / (k_q - g)"] == pytest.approx(4.27 / 2.0, rel=1e-3)
+    assert found["v K_p / (tau_up + tau_dn)"] == pytest.approx(5.7 / 1.336, rel=1e-3)
+
+
+def test_covariance_is_that_of_the_parameters(fingerprint):
+    covariance = np.array(fingerprint.covariance)
+    std = [quantity.std for quantity in fingerprint.parameters]
+    assert np.sqrt(np.diag(covariance)) == pytest.approx(std)
+    names = [quantity.name for quantity in fingerprint.parameters]
+    both = [names.index("t_d"), names.index("t_sp")]
+    total = np.sqrt(covariance[np.ix_(both, both)].sum())
+    assert total == pytest.approx(fingerprint.quantity("t_d + t_sp").std, rel=1e-6)
+
+
+def test_keeps_how_good_the_data_were(fingerprint):
+    quality = fingerprint.quality
+    assert quality.chi_square == pytest.approx(0.0, abs=1e-6)
+    # 14 lines of two complex values and one prior, 11 free parameters
+    assert quality.degrees_of_freedom == 14 * 4 + 1 - 11
+    assert quality.weighting == "MaximumLikelihood"
+    assert quality.fit_percent == pytest.approx({"n": 100.0, "M_s": 100.0}, abs=1e-3)
+    assert quality.snr_overall == {"n_set": 0.999, "n_e": 0.94, "M_s": 0.57}
+    assert quality.snr_local_db["M_s"]["S2"] == 5.0
+    assert quality.repairs == {"M_s: outlier": 2, "PTM_e: missing pulse": 1}
+    assert quality.remarks == ("channel M_s reaches full scale from 12.0 s on: 3 samples are cut off there",)
+    assert 1 <= quality.starts_at_optimum <= quality.starts == 20
+
+
+def test_keeps_the_history_of_the_sensors(fingerprint):
+    found = {quantity.name: quantity for quantity in fingerprint.calibration}
+    slope, intercept, scale = (found[f"set-point {name}"] for name in ("slope", "intercept", "scale"))
+    assert (slope.value, slope.std, slope.unit) == (pytest.approx(-252.0), pytest.approx(0.6), "rpm/V")
+    assert (intercept.value, intercept.std) == (pytest.approx(-84.0), pytest.approx(3.0))
+    assert (scale.value, scale.std) == (1.004, 0.001)
+    assert [found[f"PTM_4 strip {n}"].value for n in (1, 2, 3, 4)] == [90.0] * 4
+    assert found["PTM_4 strip 4"].std == pytest.approx(0.036)
+
+
+def test_line_that_is_fitted_in_spite_of_a_remark_keeps_it(fit, take):
+    remarks = {"S13": "aliased", "S14": "aliased too"}
+    core = fit("OL1", {"tau_n": 0.39}, remarks=remarks, lines=["S1", "S5", "S13"])
+    kept = take(core)
+    assert kept.quality.remarks[1:] == ("Line S13 is fitted, but: aliased.",)
+    assert kept.conditions.lines_used == ("S1", "S5", "S13")
+    assert kept.conditions.lines_left_out["S14"] == "aliased too"
+    assert kept.conditions.lines_left_out["S2"] == "not chosen"
+
+
+def test_quantity_is_found_by_name_wherever_it_stands(fingerprint):
+    for name in ("K_p", "t_d + t_sp", "I_dn", "gain margin", "set-point scale"):
+        assert fingerprint.quantity(name).name == name
+    with pytest.raises(FingerprintError, match=r"has no 'K_P'; it has .*K_p, .*I_dn"):
+        fingerprint.quantity("K_P")
+
+
+def test_prior_is_kept_in_its_own_unit(fit, take, truth):
+    settings = Settings(starts=20, priors={"g": Prior(0.0, 0.1), "tau_up": Prior(1.016, 0.03)})
+    assert take(fit("GAUGE-CLOSED", truth, settings=settings)).priors["tau_up"].std == 0.03
+
+
+def test_file_that_is_missing(tmp_path):
+    with pytest.raises(FingerprintError, match=r"none\.json: expected a fingerprint in JSON, but it cannot be read"):
+        read_fingerprint(tmp_path / "none.json")
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"\x89HDF\r\n\x1a\n\x00\xff", "expected a fingerprint in JSON, found something else"),
+        (b"time;n_e\n0,0;1183,8\n", "expected a fingerprint in JSON, found something else"),
+        (b"", "expected a fingerprint in JSON, found something else"),
+        (b"[1, 2]", "expected a fingerprint, found JSON without a schema_version"),
+        (b'{"schema": 1, "vessel": "tug"}', "expected a fingerprint, found JSON without a schema_version"),
+        (b'{"schema_version": 2, "hull": {}}', "expected a fingerprint of schema 1, found schema 2; read it with"),
+        (b'{"schema_version": "one"}', "expected a fingerprint of schema 1, found schema one"),
+    ],
+)
+def test_foreign_file(path, content, message):
+    path.write_bytes(content)
+    with pytest.raises(FingerprintError, match=message):
+        read_fingerprint(path)
+
+
+def test_cut_file(fingerprint, path):
+    write_fingerprint(fingerprint, path)
+    path.write_bytes(path.read_bytes()[:-200])
+    with pytest.raises(FingerprintError, match="found something else"):
+        read_fingerprint(path)
+
+
+def test_unknown_fields_are_refused_with_their_place(fingerprint, path):
+    with_field(fingerprint, path, lambda c: c.update(colour="red"))
+    with pytest.raises(FingerprintError, match=r"not a fingerprint of schema 1: colour: Extra inputs"):
+        read_fingerprint(path)
+    with_field(fingerprint, path, lambda c: c["conditions"].update(tide_m=1.2))
+    with pytest.raises(FingerprintError, match=r"conditions\.tide_m: Extra inputs"):
+        read_fingerprint(path)
+
+
+def test_all_wrong_fields_are_listed(fingerprint, path):
+    def spoil(content):
+        content["conditions"]["mode"] = "martinus"
+        content["parameters"][1]["value"] = "much"
+        content["created"] = "2026-03-14T09:30:00"
+        del content["sources"]
+
+    with_field(fingerprint, path, spoil)
+    with pytest.raises(FingerprintError) as caught:
+        read_fingerprint(path)
+    for place in ("conditions.mode: ", "parameters.1.value: ", "created: ", "sources: Field required"):
+        assert place in str(caught.value)
+
+
+def test_is_written_whole_or_not_at_all(fingerprint, path, tmp_path):
+    write_fingerprint(fingerprint, path)
+    write_fingerprint(fingerprint, path)
+    assert [place.name for place in tmp_path.iterdir()] == ["fingerprint.json"]
+    with pytest.raises(FingerprintError, match=r"nowhere.*the fingerprint cannot be written"):
+        write_fingerprint(fingerprint, tmp_path / "nowhere" / "fingerprint.json")
+
+
+def test_is_readable_by_anything_that_reads_json(fingerprint, path):
+    write_fingerprint(fingerprint.model_copy(update={"covariance": ((np.inf,),)}), path)
+    content = json.loads(path.read_text(encoding="utf-8"), parse_constant=pytest.fail)
+    assert content["covariance"] == [["Infinity"]]
+    assert content["created"] == "2026-03-14T09:30:00Z"
