@@ -1,0 +1,80 @@
+"""Figures and the report.
+
+========================= ========== ==========================================================================
+quantity                  unit       how it is drawn
+========================= ========== ==========================================================================
+frequency                 rad/s      logarithmic, plain numbers
+magnitude                 dB         ``20 log10 |H|``
+phase                     deg        unwrapped; whole turns of data agree with the closest model drawn
+interval of data          95 %       error bar; Student's t where the covariance was measured from few periods
+band of a model           95 %       filled; covariance of the parameters through exact derivatives
+normalised signals        -          deviation over the working point
+set point, speed          rpm        of the engine
+torque                    N m        at the gauge
+========================= ========== ==========================================================================
+
+Every ``plot_*`` function returns a matplotlib ``Figure`` that belongs to nobody else; ``save_figure`` writes it.
+"""
+
+from shaftprint.report._bode import plot_bode
+from shaftprint.report._calibration_figure import plot_calibration
+from shaftprint.report._campaign_figure import plot_campaign
+from shaftprint.report._correlation_figure import plot_correlation
+from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
+from shaftprint.report._fit_figures import (
+    plot_closed_loop_comparison,
+    plot_closed_loop_fits,
+    plot_core_fit,
+    plot_governor_fits,
+    plot_open_loop_comparison,
+)
+from shaftprint.report._nyquist import plot_nyquist
+from shaftprint.report._outlier_figure import plot_outliers
+from shaftprint.report._render import render_report
+from shaftprint.report._residual_figure import plot_residuals
+from shaftprint.report._response_figures import (
+    plot_closed_loop_response,
+    plot_line_selection,
+    plot_open_loop_responses,
+)
+from shaftprint.report._sensitivity import plot_sensitivity
+from shaftprint.report._signal_to_noise_figure import plot_signal_to_noise
+from shaftprint.report._step_figure import plot_step_delays
+from shaftprint.report._strip_figure import plot_strip_angles
+from shaftprint.report._style import save_figure
+from shaftprint.report._thesis_families import Family, thesis_families
+from shaftprint.report._thesis_mode import ThesisMode
+from shaftprint.report._time_series import plot_chirp, plot_excitation, plot_staircase
+
+__all__ = [
+    "Curve",
+    "Family",
+    "ThesisMode",
+    "closed_loop_curve",
+    "open_loop_curve",
+    "plot_bode",
+    "plot_calibration",
+    "plot_campaign",
+    "plot_chirp",
+    "plot_closed_loop_comparison",
+    "plot_closed_loop_fits",
+    "plot_closed_loop_response",
+    "plot_core_fit",
+    "plot_correlation",
+    "plot_excitation",
+    "plot_governor_fits",
+    "plot_line_selection",
+    "plot_nyquist",
+    "plot_open_loop_comparison",
+    "plot_open_loop_responses",
+    "plot_outliers",
+    "plot_residuals",
+    "plot_sensitivity",
+    "plot_signal_to_noise",
+    "plot_staircase",
+    "plot_step_delays",
+    "plot_strip_angles",
+    "render_report",
+    "save_figure",
+    "thesis_families",
+]

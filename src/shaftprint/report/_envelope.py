@@ -1,0 +1,65 @@
+"""Long signals drawn with the smallest and largest sample of each stretch, so that files stay small and spikes stay.
+
+Millions of samples on a page of a thousand dots: each stretch of samples is replaced by its smallest and its largest
+one, in the order in which they came. No spike is lost, whatever its length.
+"""
+
+import itertools
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel
+
+STRETCHES = 1200
+_CHUNK = 1 << 20
+
+
+def envelope(time_s: FloatArray, values: FloatArray, *, stretches: int = STRETCHES) -> tuple[FloatArray, FloatArray]:
+    """Return times and values of the smallest and the largest sample of each stretch.
+
+    Parameters
+    ----------
+    time_s, values
+        Samples in the order of time, shape (samples,).
+    stretches
+        Number of stretches; a signal of at most twice as many samples comes back as it is.
+
+    Returns
+    -------
+        Times and values, shape (at most 2 * stretches,), in the order of time.
+    """
+    if values.size <= 2 * stretches:
+        return time_s, values
+    edges = np.linspace(0, values.size, stretches + 1).astype(np.intp)
+    places = np.empty(2 * stretches, dtype=np.intp)
+    for stretch, (first, last) in enumerate(itertools.pairwise(edges)):
+        piece = values[first:last]
+        pair = (first + np.argmin(piece), first + np.argmax(piece))
+        places[2 * stretch : 2 * stretch + 2] = sorted(pair)
+    return time_s[places], values[places]
+
+
+def channel_envelope(channel: "Channel", *, stretches: int = STRETCHES) -> tuple[FloatArray, FloatArray]:
+    """Return times and values of the smallest and largest sample of each stretch of a raw channel, read in pieces.
+
+    Parameters
+    ----------
+    channel
+        Channel of a recording that is open.
+    stretches
+        Number of stretches over the whole channel, at least.
+
+    Returns
+    -------
+        Times [s] and values in the channel's unit, in the order of time.
+    """
+    pieces = []
+    for first in range(0, channel.count, _CHUNK):
+        last = min(first + _CHUNK, channel.count)
+        share = int(np.ceil(stretches * (last - first) / channel.count))
+        pieces.append(envelope(channel.time_s(first, last), channel.values(first, last), stretches=share))
+    return np.concatenate([time for time, _ in pieces]), np.concatenate([value for _, value in pieces])

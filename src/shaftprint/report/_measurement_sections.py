@@ -1,0 +1,161 @@
+"""The sections of a report on what was measured: campaign, calibration, quality, responses, time signals."""
+
+from functools import partial
+from itertools import groupby
+
+from shaftprint.report._calibration_figure import plot_calibration
+from shaftprint.report._campaign_figure import plot_campaign
+from shaftprint.report._outlier_figure import plot_outliers
+from shaftprint.report._response_figures import (
+    plot_closed_loop_response,
+    plot_line_selection,
+    plot_open_loop_responses,
+)
+from shaftprint.report._sections import Inputs, Picture, Section
+from shaftprint.report._signal_tables import (
+    calibration_table,
+    local_ratio_table,
+    overall_ratio_table,
+    repair_table,
+    step_table,
+    strip_table,
+    window_table,
+)
+from shaftprint.report._signal_to_noise_figure import plot_signal_to_noise
+from shaftprint.report._step_figure import plot_step_delays
+from shaftprint.report._strip_figure import plot_strip_angles
+from shaftprint.report._time_series import plot_excitation, plot_staircase
+from shaftprint.spectra import open_loop
+
+
+def signal_section(inputs: Inputs) -> Section:
+    """Return how the raw channels became signals: repairs, calibration, strips, delays."""
+    signals = inputs.signals
+    tables = [repair_table(signals), calibration_table(signals), strip_table(signals), step_table(signals)]
+    pictures = [
+        *_raw_pictures(inputs),
+        Picture(
+            name="calibration",
+            caption="Line from voltage to engine speed through the steady levels, with residuals (as figure 3.1).",
+            alt="Straight line of engine speed over set-point voltage, and the distances of the levels from it.",
+            draw=partial(plot_calibration, signals.calibration),
+        ),
+    ]
+    if any(strip.angle_rev.size > 1 for strip in signals.strips):
+        pictures.append(
+            Picture(
+                name="strips",
+                caption="Angles between the reflection strips against an even spacing (values of table 3.4).",
+                alt="Bars of the deviation of each strip angle from an even spacing.",
+                draw=partial(plot_strip_angles, signals.strips, inputs.vessel),
+            )
+        )
+    if signals.step_delays:
+        pictures.append(
+            Picture(
+                name="step_delays",
+                caption="Steps of the set point, the speed that follows, and the level-crossing delay (as figure 3.3).",
+                alt="Staircase of set point and speed, one step enlarged with its delay, and the delay of every step.",
+                draw=partial(plot_step_delays, signals),
+            )
+        )
+    return Section(
+        key="signals",
+        title="From raw channels to signals",
+        tables=[table for table in tables if table.rows],
+        pictures=pictures,
+    )
+
+
+def _raw_pictures(inputs: Inputs) -> list[Picture]:
+    if inputs.recording is None:
+        return []
+    return [
+        Picture(
+            name="campaign",
+            caption="Raw set-point voltage over the whole recording, with the tests named (as figure 2.2).",
+            alt="Set-point voltage over time in two rows, with a bar and a name above each test.",
+            draw=partial(plot_campaign, inputs.recording, inputs.vessel, inputs.campaign),
+        ),
+        Picture(
+            name="outliers",
+            caption="Set point and shaft torque before and after the repair of outliers (as figure 3.2).",
+            alt="Set point and shaft torque over time; spikes of the raw signal stand out of the prepared one.",
+            draw=partial(plot_outliers, inputs.recording, inputs.signals, inputs.vessel),
+        ),
+    ]
+
+
+def quality_section(inputs: Inputs) -> Section:
+    """Return windows and signal-to-noise ratios."""
+    spectra = inputs.spectra
+    return Section(
+        key="quality",
+        title="Test lines and their quality",
+        tables=(window_table(spectra), overall_ratio_table(spectra), local_ratio_table(spectra)),
+        pictures=(
+            Picture(
+                name="signal_to_noise",
+                caption="Local signal-to-noise ratio of each line and channel; lines that are not used are hollow.",
+                alt="Signal-to-noise ratio over frequency, one line a channel; it falls towards high frequencies.",
+                draw=partial(plot_signal_to_noise, spectra, aliasing_limit_hz=inputs.aliasing_limit_hz),
+            ),
+        ),
+    )
+
+
+def response_section(inputs: Inputs) -> Section:
+    """Return the measured responses in closed and open loop."""
+    response, limit = inputs.spectra.response, inputs.aliasing_limit_hz
+    governor, core = open_loop(response)
+    pictures = [
+        Picture(
+            name="closed_loop",
+            caption="Measured closed-loop response of speed and torque with 95 % intervals (as figure 3.7).",
+            alt="Bode diagram of measured engine speed and shaft torque over set point.",
+            draw=partial(plot_closed_loop_response, response, aliasing_limit_hz=limit),
+        ),
+        Picture(
+            name="open_loop",
+            caption="Open-loop responses calculated from it, with the covariance carried through (as figure 3.8).",
+            alt="Bode diagram of torque over speed error and of speed over torque.",
+            draw=partial(plot_open_loop_responses, governor, core, aliasing_limit_hz=limit),
+        ),
+    ]
+    if inputs.line_selection:
+        pictures.append(
+            Picture(
+                name="line_selection",
+                caption="The same lines measured in several ways, points side by side (as figure 3.5).",
+                alt="Bode diagram with one set of points for each way to measure a sine.",
+                draw=partial(plot_line_selection, inputs.line_selection, aliasing_limit_hz=limit),
+            )
+        )
+    return Section(key="responses", title="Measured responses", pictures=pictures)
+
+
+def time_section(inputs: Inputs) -> list[Section]:
+    """Return chirps, neighbours of one name put end to end, and the last staircase; nothing where there are none."""
+    pictures = []
+    for name, group in groupby(inputs.campaign.chirps, key=lambda chirp: chirp.name[:-1]):
+        chirps = list(group)
+        listed = ", ".join(chirp.name for chirp in chirps)
+        pictures.append(
+            Picture(
+                name=f"chirp_{name.lower()}",
+                caption=f"Chirp {listed}: smallest and largest sample of each stretch (as figures 3.9 and 3.10).",
+                alt=f"Engine speed and shaft torque over time with the set point, chirp {listed}.",
+                draw=partial(plot_excitation, inputs.signals, chirps),
+            )
+        )
+    if inputs.campaign.staircases:
+        last = inputs.campaign.staircases[-1].name
+        pictures.append(
+            Picture(
+                name="staircase",
+                caption=f"Staircase {last}: smallest and largest sample of each stretch (as figure 3.11).",
+                alt=f"Engine speed and shaft torque over time with the set point, staircase {last}.",
+                draw=partial(plot_staircase, inputs.signals, inputs.campaign),
+            )
+        )
+    return [Section(key="time", title="Time signals", pictures=pictures)] if pictures else []

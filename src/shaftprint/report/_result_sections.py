@@ -1,0 +1,167 @@
+"""The first sections of a report: summary in words, parameters, fit and stability."""
+
+import math
+from typing import TYPE_CHECKING
+
+from shaftprint.report._bode import plot_bode
+from shaftprint.report._correlation_figure import plot_correlation
+from shaftprint.report._curve import Curve
+from shaftprint.report._fingerprint_tables import (
+    combination_table,
+    fit_table,
+    margin_table,
+    parameter_table,
+    physical_table,
+    truth_of_combinations,
+)
+from shaftprint.report._numbers import plain, with_deviation
+from shaftprint.report._nyquist import plot_nyquist
+from shaftprint.report._residual_figure import plot_residuals
+from shaftprint.report._sections import Inputs, Picture, Section
+from shaftprint.report._symbols import unit_text
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint, Quantity
+
+# A parameter with a smaller standard deviation, as a share of its value, is called well known.
+WELL_KNOWN = 0.03
+# 99 % point of the normal distribution, one-sided: chi-square may exceed its degrees of freedom by that much.
+NORMAL_99 = 2.326
+
+
+def summary_section(inputs: Inputs) -> Section:
+    """Return the verdict in words and the findings."""
+    fingerprint = inputs.fingerprint
+    paragraphs = (
+        _conditions(fingerprint),
+        _explained(fingerprint),
+        *_well_known(fingerprint),
+        *_against_vessel(fingerprint),
+    )
+    return Section(key="summary", title="Summary", paragraphs=paragraphs, points=fingerprint.findings)
+
+
+def _conditions(fingerprint: "Fingerprint") -> str:
+    conditions = fingerprint.conditions
+    speed, torque = conditions.engine_speed, conditions.shaft_torque
+    total = len(conditions.lines_used) + len(conditions.lines_left_out)
+    return (
+        f"{conditions.vessel}, test “{conditions.campaign}”. Working point: engine speed "
+        f"{with_deviation(speed.value, speed.std)} {unit_text(speed.unit)}, shaft torque "
+        f"{with_deviation(torque.value, torque.std)} {unit_text(torque.unit)}. The structure {fingerprint.structure} "
+        f"was fitted to {len(conditions.lines_used)} of {total} test lines."
+    )
+
+
+def _explained(fingerprint: "Fingerprint") -> str:
+    quality = fingerprint.quality
+    fit = ", ".join(
+        f"{name} {plain(value, 1)} % of at most {plain(quality.fit_ceiling[name], 1)} %"
+        for name, value in quality.fit_percent.items()
+    )
+    if quality.chi_square is None:
+        return f"The fit was not weighted by the noise, so it says nothing of the model's validity. FitPercent: {fit}."
+    limit = quality.degrees_of_freedom + NORMAL_99 * math.sqrt(2.0 * quality.degrees_of_freedom)
+    words = "explains" if quality.chi_square <= limit else "does not explain"
+    return (
+        f"The model {words} the measured responses within their noise (chi-square {plain(quality.chi_square, 0)} for "
+        f"{quality.degrees_of_freedom} degrees of freedom). FitPercent: {fit}."
+    )
+
+
+def _well_known(fingerprint: "Fingerprint") -> list[str]:
+    known = [q for q in (*fingerprint.parameters, *fingerprint.combinations) if _share(q) <= WELL_KNOWN]
+    if not known:
+        return []
+    listed = "; ".join(f"{q.name} = {with_deviation(q.value, q.std)} {unit_text(q.unit)}".strip() for q in known)
+    return [f"Known to better than {plain(100.0 * WELL_KNOWN, 0)} % (one standard deviation): {listed}."]
+
+
+def _share(quantity: "Quantity") -> float:
+    return quantity.std / abs(quantity.value) if quantity.value != 0.0 else math.inf
+
+
+def _against_vessel(fingerprint: "Fingerprint") -> list[str]:
+    compared = [q for q in fingerprint.physical if q.expected is not None]
+    if not compared:
+        return []
+    listed = "; ".join(
+        f"{q.name} = {with_deviation(q.value, q.std)} {unit_text(q.unit)}".strip()
+        + f" (vessel file {with_deviation(q.expected or 0.0, q.expected_std or 0.0)})".replace(" ± 0)", ")")
+        for q in compared
+    )
+    return [f"Physical values: {listed}."]
+
+
+def parameter_section(inputs: Inputs) -> Section:
+    """Return parameters, combinations and physical values with uncertainty, and their correlation."""
+    truth = dict(inputs.truth)
+    truth |= truth_of_combinations(inputs.identification, truth) if truth else {}
+    tables = [
+        parameter_table(inputs.fingerprint, truth),
+        combination_table(inputs.fingerprint, truth),
+        physical_table(inputs.fingerprint),
+    ]
+    held = ", ".join(f"{name} = {value:g}" for name, value in inputs.fingerprint.held.items())
+    return Section(
+        key="parameters",
+        title="Parameters",
+        paragraphs=(f"Held during the fit: {held}.",) if held else (),
+        tables=[table for table in tables if table.rows],
+        pictures=(
+            Picture(
+                name="correlation",
+                caption=(
+                    "Correlation of the estimates. Parameters with a correlation near ±1 cannot be told apart by this "
+                    "test; their combinations above can."
+                ),
+                alt="Matrix of the correlation between all free parameters, with the numbers written in each field.",
+                draw=lambda: plot_correlation(inputs.identification),
+            ),
+        ),
+    )
+
+
+def fit_section(inputs: Inputs) -> Section:
+    """Return how well the model explains the data."""
+    curve = Curve.of(inputs.identification)
+    return Section(
+        key="fit",
+        title="Model and data",
+        tables=(fit_table(inputs.fingerprint),),
+        pictures=(
+            Picture(
+                name="fit",
+                caption=(
+                    "Identified model with its 95 % band (covariance of the parameters) and measured response with "
+                    "95 % intervals, most of them smaller than their markers. Hollow lines are not used."
+                ),
+                alt="Bode diagram of the identified model through the measured points of all outputs.",
+                draw=lambda: plot_bode(
+                    [curve], data=inputs.identification.response, aliasing_limit_hz=inputs.aliasing_limit_hz
+                ),
+            ),
+            Picture(
+                name="residuals",
+                caption="What the model leaves, over its standard deviation, and chi-square of each line.",
+                alt="Two panels: normalised residuals and chi-square of each test line.",
+                draw=lambda: plot_residuals(inputs.identification),
+            ),
+        ),
+    )
+
+
+def stability_section(inputs: Inputs) -> list[Section]:
+    """Return the stability margins; nothing for a structure without feedback."""
+    if inputs.identification.margins is None:
+        return []
+    curve = Curve.of(inputs.identification)
+    picture = Picture(
+        name="nyquist",
+        caption="Nyquist plot of the loop gain with exact delays. Dots are labelled with their frequency in rad/s.",
+        alt="Curve of the loop gain in the complex plane with gain margin, phase margin and critical point marked.",
+        draw=lambda: plot_nyquist(curve),
+    )
+    return [
+        Section(key="stability", title="Stability", tables=(margin_table(inputs.fingerprint),), pictures=(picture,))
+    ]

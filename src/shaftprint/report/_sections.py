@@ -1,0 +1,75 @@
+"""What a report is made of: sections with words, tables and pictures."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from shaftprint.report._table import Table
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from shaftprint.campaign import Campaign
+    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.identify import Identification
+    from shaftprint.models import Structure
+    from shaftprint.recording import Recording
+    from shaftprint.report._thesis_mode import ThesisMode
+    from shaftprint.signals import Signals
+    from shaftprint.spectra import FrequencyResponse, Spectra
+    from shaftprint.vessel import Vessel
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Inputs:
+    """Everything that a report may show; see ``render_report``."""
+
+    fingerprint: "Fingerprint"
+    identification: "Identification"
+    signals: "Signals"
+    spectra: "Spectra"
+    vessel: "Vessel"
+    campaign: "Campaign"
+    recording: "Recording | None"
+    fits: Mapping[str, "Identification"]
+    thesis: "ThesisMode | None"
+    truth: Mapping[str, float]
+    line_selection: Mapping[str, "FrequencyResponse"]
+    sensitivity: Sequence["Structure"]
+
+    @property
+    def aliasing_limit_hz(self) -> float:
+        """Half the pulse rate of the identified speed sensor [Hz]."""
+        return self.signals.engine_speed.nyquist_hz
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Picture:
+    """A figure of the report, drawn when it is needed."""
+
+    name: str
+    """File name without suffix."""
+    caption: str
+    """What the figure shows, below it."""
+    alt: str
+    """What the figure shows, for those who cannot see it."""
+    draw: "Callable[[], Figure]"
+    """Draws it."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Section:
+    """A part of the report under one heading."""
+
+    key: str
+    """Anchor of the heading."""
+    title: str
+    """Heading."""
+    paragraphs: Sequence[str] = ()
+    """Text before all else."""
+    points: Sequence[str] = ()
+    """Findings, one a line."""
+    tables: Sequence[Table] = ()
+    """Tables."""
+    pictures: Sequence[Picture] = ()
+    """Figures."""

@@ -1,0 +1,161 @@
+"""Tables of the measurement: calibration, steps, strips, windows, signal-to-noise ratios, repairs."""
+
+from collections import Counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.report._numbers import plain, with_deviation
+from shaftprint.report._table import Cell, Table, symbol_html
+from shaftprint.units import SECONDS_PER_MINUTE
+
+if TYPE_CHECKING:
+    from shaftprint.signals import Signals
+    from shaftprint.spectra import Spectra
+
+DEGREES_PER_REV = 360.0
+
+
+def calibration_table(signals: "Signals") -> Table:
+    """Return the steady levels of the set point and their distance from the line (thesis table 3.1)."""
+    line = signals.calibration
+    slope, intercept = SECONDS_PER_MINUTE * line.slope_rev_s_per_v, SECONDS_PER_MINUTE * line.intercept_rev_s
+    std = SECONDS_PER_MINUTE * np.sqrt(np.diag(line.covariance))
+    rows = []
+    for volts, speed, spread in zip(line.level_v, line.level_rev_s, line.level_std_rev_s, strict=True):
+        rpm = SECONDS_PER_MINUTE * float(speed)
+        rows.append(
+            (
+                plain(float(volts), 3),
+                with_deviation(rpm, SECONDS_PER_MINUTE * float(spread)),
+                plain(rpm - slope * float(volts) - intercept, 2),
+            )
+        )
+    return Table(
+        caption="Set-point voltage and engine speed at the steady levels (as table 3.1)",
+        header=("set point [V]", "engine speed [rpm]", "above the line [rpm]"),
+        rows=tuple(rows),
+        note=(
+            f"Line: slope {with_deviation(slope, float(std[0]))} rpm/V, intercept "
+            f"{with_deviation(intercept, float(std[1]))} rpm. DC scale on the deviation from the working point: "
+            f"{with_deviation(signals.dc_scale, signals.dc_scale_std)}."
+        ),
+    )
+
+
+def step_table(signals: "Signals") -> Table:
+    """Return the delay of every step (thesis table 3.3)."""
+    rows = tuple(
+        (
+            step.staircase,
+            plain(step.set_point_time_s, 3),
+            plain(step.speed_time_s, 3),
+            plain(step.delay_s, 3),
+            "rising" if step.rising else "falling",
+        )
+        for step in signals.step_delays
+    )
+    delays = np.array([step.delay_s for step in signals.step_delays])
+    note = "Level-crossing delays hold transport delay, rise time of the loop and delay of the sensor together."
+    if delays.size > 1:
+        error = float(delays.std(ddof=1)) / np.sqrt(delays.size)
+        note = f"Mean {with_deviation(float(delays.mean()), error)} s. {note}"
+    return Table(
+        caption="Delay between set point and speed at each step (as table 3.3)",
+        header=("staircase", "set point crosses at [s]", "speed crosses at [s]", "delay [s]", "speed"),
+        rows=rows,
+        note=note,
+    )
+
+
+def strip_table(signals: "Signals") -> Table:
+    """Return the angles between the reflection strips (thesis table 3.4)."""
+    rows = []
+    for strip in signals.strips:
+        for number, (angle, std) in enumerate(zip(strip.angle_rev, strip.std_rev, strict=True), start=1):
+            value = DEGREES_PER_REV * float(angle)
+            even = DEGREES_PER_REV / strip.angle_rev.size
+            rows.append(
+                (
+                    strip.channel,
+                    str(number),
+                    with_deviation(value, DEGREES_PER_REV * float(std)),
+                    f"{plain(100.0 * (value / even - 1.0), 2)} %",
+                )
+            )
+    removed = "not removed (thesis mode)" if signals.mode == "thesis" else "removed from the speed"
+    return Table(
+        caption="Angles between the reflection strips (as table 3.4)",
+        header=("channel", "strip", "angle to the next [deg]", "error of an even spacing"),
+        rows=tuple(rows),
+        note=f"The uneven angles are {removed}.",
+    )
+
+
+def window_table(spectra: "Spectra") -> Table:
+    """Return the analysis windows of whole periods (thesis table 3.5) with remarks."""
+    response = spectra.response
+    used = dict(zip(response.lines, response.used, strict=True))
+    rows = tuple(
+        (
+            window.line,
+            str(window.periods),
+            plain(window.frequency_hz, 4),
+            plain(window.start_s, 2),
+            plain(window.stop_s, 2),
+            "yes" if used.get(window.line, False) else "no",
+            spectra.remarks.get(window.line, ""),
+        )
+        for window in spectra.windows
+    )
+    return Table(
+        caption="Analysis windows of whole periods (as table 3.5)",
+        header=("line", "periods i", "frequency [Hz]", "start [s]", "stop [s]", "used", "remark"),
+        rows=rows,
+    )
+
+
+def overall_ratio_table(spectra: "Spectra") -> Table:
+    """Return the overall signal-to-noise ratio of each channel (thesis table 3.6)."""
+    ratios = spectra.signal_to_noise
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
+        (symbol_html(channel), plain(float(value), 4))
+        for channel, value in zip(ratios.channels, ratios.overall, strict=True)
+    )
+    return Table(
+        caption="Overall signal-to-noise ratio of each channel (as table 3.6)",
+        header=("channel", "ratio, 1 without noise"),
+        rows=rows,
+    )
+
+
+def local_ratio_table(spectra: "Spectra") -> Table:
+    """Return the local signal-to-noise ratio of each line and channel (thesis table 3.7)."""
+    ratios = spectra.signal_to_noise
+    rows = tuple(
+        (line, *(plain(float(value), 1) for value in values))
+        for line, values in zip(ratios.lines, ratios.local_db, strict=True)
+    )
+    return Table(
+        caption="Local signal-to-noise ratio [dB], 20 bins on each side (as table 3.7)",
+        header=("line", *(symbol_html(channel) for channel in ratios.channels)),
+        rows=rows,
+        note="0 dB means as much noise as signal; the thesis asks for 3 dB.",
+    )
+
+
+def repair_table(signals: "Signals") -> Table:
+    """Return how many places of each channel were repaired, and how."""
+    places = Counter((repair.channel, repair.kind) for repair in signals.repairs)
+    samples: Counter[tuple[str, str]] = Counter()
+    for repair in signals.repairs:
+        samples[repair.channel, repair.kind] += repair.count
+    rows = tuple(
+        (channel, kind, str(number), str(samples[channel, kind])) for (channel, kind), number in sorted(places.items())
+    )
+    return Table(
+        caption="Repairs of raw channels",
+        header=("channel", "kind", "places", "samples or pulses"),
+        rows=rows,
+        note="The raw file is never changed; every repair with its time is kept in the prepared signals.",
+    )

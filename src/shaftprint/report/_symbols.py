@@ -1,0 +1,54 @@
+"""Parameter names as the reader knows them: mathtext for figures, plain text with units for labels."""
+
+import re
+
+_GREEK = {"tau", "omega", "zeta", "delta", "eta", "rho"}
+_NAME = re.compile(r"[A-Za-z]+(?:_[A-Za-z0-9]+)?")
+_UNITS = {"kg m2": "kg m²", "N m": "N·m", "N m/rpm": "N·m/rpm", "N m/(rpm s)": "N·m/(rpm·s)", "1/s": "s⁻¹", "-": ""}
+
+
+def name_parts(formula: str) -> list[tuple[str, str, str]]:
+    """Return a formula cut into ``(text before, symbol, subscript)``; the last part may hold text only."""
+    parts, end = [], 0
+    for found in _NAME.finditer(formula):
+        base, _, index = found.group().partition("_")
+        parts.append((formula[end : found.start()], base, index))
+        end = found.end()
+    if formula[end:]:
+        parts.append((formula[end:], "", ""))
+    return parts
+
+
+def is_symbol(base: str, index: str) -> bool:
+    """Return whether a word of a formula is a symbol, not an ordinary word such as ``margin``."""
+    return bool(index) or len(base) == 1 or base in _GREEK
+
+
+def mathtext(formula: str) -> str:
+    """Return a parameter name or formula such as ``K_p / K_i`` as mathtext; ordinary words stay words."""
+    words = []
+    for before, base, index in name_parts(formula):
+        words.append(before)
+        if not base:
+            continue
+        if not is_symbol(base, index):
+            words.append(base)
+            continue
+        symbol = rf"\{base}" if base in _GREEK else base
+        words.append(rf"${symbol}_{{\mathrm{{{index}}}}}$" if index else rf"${symbol}$")
+    return "".join(words)
+
+
+def unit_text(unit: str) -> str:
+    """Return a unit as printed; nothing for a number without unit."""
+    return _UNITS.get(unit, unit)
+
+
+def with_unit(label: str, unit: str) -> str:
+    """Return an axis label with its unit in brackets, ``[-]`` for a number without unit."""
+    return f"{label} [{unit_text(unit) or '-'}]"
+
+
+def response_label(output: str, input_: str) -> str:
+    """Return the label of a response, output over input, as mathtext."""
+    return f"{mathtext(output)} / {mathtext(input_)}"
