@@ -102,8 +102,8 @@ class Objective:
     """Covariance of the data, shape (lines, size, size)."""
     weights: FloatArray
     """``W`` of each line, shape (lines, size, size)."""
-    diagonal: FloatArray | None
-    """Diagonal of ``W``, shape (lines, size), where all are diagonal: the cheap case."""
+    terms: tuple[tuple[int, int, FloatArray], ...]
+    """Row, column and elements of ``-W``, shape (lines,), where they are not all zero; those of the diagonal first."""
     prior_rows: FloatArray
     """Rows ``(index of free parameter, mean, 1 / std)`` of priors and regularisation, shape (rows, 3)."""
     prior_counts: FloatArray
@@ -145,26 +145,30 @@ class Objective:
         -------
             Residuals, shape (starts, rows), and Jacobian, shape (starts, free, rows).
         """
-        response, slopes = self.structure.gradient(self.complete(theta), self.s, factors=self.factors)
-        starts, count, outputs, lines = slopes.shape
-        stacked = np.empty((starts, count + 1, 2 * outputs, lines))
-        stacked[:, 0, :outputs] = self.data.T[:outputs] - response.real
-        stacked[:, 0, outputs:] = self.data.T[outputs:] - response.imag
-        stacked[:, 1:, :outputs] = -slopes.real
-        stacked[:, 1:, outputs:] = -slopes.imag
-        if self.diagonal is not None:
-            stacked *= self.diagonal.T
-        else:
-            stacked = np.einsum("fab,skbf->skaf", self.weights, stacked)
-        table = stacked.reshape(starts, count + 1, 2 * outputs * lines)
+        stacked = self.structure.stacked(self.complete(theta), self.s, factors=self.factors)
+        starts, count, outputs, lines = stacked.shape
+        stacked[:, 0] -= self.data.T[:outputs] + 1j * self.data.T[outputs:]
+        table = self._weighted(stacked).reshape(starts, count, 2 * outputs * lines)
         if not self.prior_rows.size:
             return table[:, 0], table[:, 1:]
         index = self.prior_rows[:, 0].astype(int)
-        known = np.zeros((starts, count + 1, index.size))
+        known = np.zeros((starts, count, index.size))
         known[:, 0] = (theta[:, index] - self.prior_rows[:, 1]) * self.prior_rows[:, 2]
         known[:, 1 + index, np.arange(index.size)] = self.prior_rows[:, 2]
         table = np.concatenate([table, known], axis=2)
         return table[:, 0], table[:, 1:]
+
+    def _weighted(self, stacked: ComplexArray) -> FloatArray:
+        """Return ``-W`` times [Re, Im] of stacked responses, shape (starts, stack, 2 outputs, lines), term by term."""
+        starts, count, outputs, lines = stacked.shape
+        table = np.empty((starts, count, 2 * outputs, lines))
+        for row, column, weight in self.terms:
+            part = (stacked.real if column < outputs else stacked.imag)[:, :, column % outputs]
+            if row == column:
+                np.multiply(part, weight, out=table[:, :, row])
+            else:
+                table[:, :, row] += part * weight
+        return table
 
 
 def build_objective(
@@ -201,7 +205,6 @@ def build_objective(
         )
     covariance = response.covariance[chosen]
     weights = weighting.matrices(response, covariance)
-    plain = np.all(weights == weights * np.eye(weights.shape[1]))
     places = {p.name: i for i, p in enumerate(names)}
     return Objective(
         structure=structure,
@@ -210,12 +213,19 @@ def build_objective(
         data=data,
         covariance=covariance,
         weights=weights,
-        diagonal=np.diagonal(weights, axis1=1, axis2=2).copy() if plain else None,
+        terms=_terms(weights),
         prior_rows=np.array([[places[n], p.mean, 1.0 / p.std] for n, p in known]).reshape(-1, 3),
         prior_counts=np.array([1.0] * len(priors) + [0.0] * len(regularisation)),
         held=structure.vector({}),
         free=tuple(i for i, p in enumerate(structure.parameters) if not p.held),
     )
+
+
+def _terms(weights: FloatArray) -> tuple[tuple[int, int, FloatArray], ...]:
+    """Return row, column and elements of ``-W`` where they are not all zero, the diagonal first."""
+    size = weights.shape[1]
+    rest = [(i, j) for i in range(size) for j in range(size) if i != j and weights[:, i, j].any()]
+    return tuple((i, j, -weights[:, i, j]) for i, j in [*((i, i) for i in range(size)), *rest])
 
 
 def load_factors(response: FrequencyResponse, chosen: BoolArray | None = None) -> dict[str, FloatArray]:

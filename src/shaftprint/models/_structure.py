@@ -145,8 +145,7 @@ class Structure:
         -------
             Response, shape (..., outputs, frequencies).
         """
-        response, _ = self._evaluate(values, s, (), factors or {})
-        return response
+        return self.stacked(values, s, (), factors=factors)[..., 0, :, :]
 
     def gradient(
         self,
@@ -162,32 +161,43 @@ class Structure:
         -------
             Response, shape (..., outputs, frequencies), and derivatives, shape (..., wanted, outputs, frequencies).
         """
-        names = tuple(p.name for p in self.free) if wanted is None else tuple(wanted)
-        self._expect_names(names)
-        return self._evaluate(values, s, names, factors or {})
+        stacked = self.stacked(values, s, wanted, factors=factors)
+        return stacked[..., 0, :, :], stacked[..., 1:, :, :]
 
-    def _evaluate(
-        self, values: ArrayLike, s: ArrayLike, wanted: tuple[str, ...], factors: Mapping[str, FloatArray]
-    ) -> tuple[ComplexArray, ComplexArray]:
+    def stacked(
+        self,
+        values: ArrayLike,
+        s: ArrayLike,
+        wanted: Sequence[str] | None = None,
+        *,
+        factors: Mapping[str, FloatArray] | None = None,
+    ) -> ComplexArray:
+        """Return the response and below it its derivatives, as ``gradient`` does, in one array.
+
+        Returns
+        -------
+            Shape (..., 1 + wanted, outputs, frequencies).
+        """
         table = np.asarray(values, dtype=np.float64)
         if table.shape[-1:] != (len(self.parameters),):
             raise StructureError(
                 f"structure {self.name}: expected {len(self.parameters)} parameter values "
                 f"({', '.join(self.names)}), found an array of shape {table.shape}."
             )
+        names = [p.name for p in self.free] if wanted is None else wanted
+        self._expect_names(names)
         laplace = np.atleast_1d(np.asarray(s, dtype=np.complex128))
-        columns = {p.name: table[..., i : i + 1] * factors.get(p.name, 1.0) for i, p in enumerate(self.parameters)}
-        walk = Walk(laplace, columns, frozenset(wanted))
-        lead = table.shape[:-1]
-        response = np.empty((*lead, len(self.outputs), laplace.size), dtype=np.complex128)
-        gradient = np.zeros((*lead, len(wanted), len(self.outputs), laplace.size), dtype=np.complex128)
+        columns = {p.name: table[..., i : i + 1] for i, p in enumerate(self.parameters)}
+        known = {name: factor for name, factor in (factors or {}).items() if name in columns}
+        columns |= {name: columns[name] * factor for name, factor in known.items()}
+        walk = Walk(laplace, columns, frozenset(names))
+        stacked = np.empty((*table.shape[:-1], 1 + len(names), len(self.outputs), laplace.size), dtype=np.complex128)
         for i, expression in enumerate(self.outputs.values()):
-            value, slopes = walk.dual(expression)
-            response[..., i, :] = value
-            for j, name in enumerate(wanted):
-                if name in slopes:
-                    gradient[..., j, i, :] = slopes[name] * factors.get(name, 1.0)
-        return response, gradient
+            stacked[..., 0, i, :], slopes = walk.dual(expression)
+            for j, name in enumerate(names, start=1):
+                slope = slopes.get(name, 0.0)
+                stacked[..., j, i, :] = slope * known[name] if name in known else slope
+        return stacked
 
     def _expect_names(self, names: Mapping[str, object] | Sequence[str]) -> None:
         unknown = [name for name in names if name not in self.names]
