@@ -1,8 +1,8 @@
 """Stability of every set that the thesis identified, with exact delay, and of the gauge-aware set of the simulator.
 
 The expected numbers were found apart from the package (roots of ``1 + L`` and a fine frequency sweep); the thesis only
-says "stable". It prints the denominator of the lag as ``s^2 + zeta omega_n s + omega_n^2`` (eqs 4.22, 4.23); that is half
-the damping in ``s^2 + 2 zeta omega_n s + omega_n^2``.
+says "stable". It prints the denominator of the lag as ``s^2 + zeta omega_n s + omega_n^2`` (eqs 4.22, 4.23); that is
+half the damping in ``s^2 + 2 zeta omega_n s + omega_n^2``.
 """
 
 from dataclasses import dataclass
