@@ -11,6 +11,7 @@ from shaftprint.spectra._noise import (
     line_noise,
     residual_spectrum,
     stretch_amplitudes,
+    without_modulation,
 )
 from shaftprint.spectra._signal_to_noise import LineVariances, line_variances
 
@@ -83,7 +84,7 @@ def measure_line(samples: "WindowSamples", method: "SineMethod") -> LineMeasurem
         harmonic=harmonic,
         harmonic_variance=harmonic_variance,
         mean=fit.mean,
-        noise=line_noise(spectrum, residual_stretches, periods=window.periods),
+        noise=line_noise(*without_modulation(spectrum, residual_stretches, samples), periods=window.periods),
         variances=variances,
         stretches=fit.amplitude[0][:, np.newaxis] + residual_stretches,
         set_point_frequency_hz=(

@@ -105,5 +105,6 @@ def signal_to_noise(
         lines=lines,
         channels=channels,
         local_db=np.stack([line.local_db for line in variances]),
-        overall=np.sqrt(signal / np.maximum(overall, np.finfo(np.float64).tiny)),
+        # a window of whole periods is not one of whole samples: without noise the ratio may exceed 1 by a sample
+        overall=np.sqrt(np.minimum(signal / np.maximum(overall, np.finfo(np.float64).tiny), 1.0)),
     )

@@ -12,6 +12,7 @@ from shaftprint.spectra._harmonics import Harmonics, collect_harmonics
 from shaftprint.spectra._line_fit import SineMethod, WindowSamples, cut_window
 from shaftprint.spectra._line_measurement import LineMeasurement, measure_line
 from shaftprint.spectra._load_drift import LoadDrift, load_drift
+from shaftprint.spectra._pick_up_gain import pick_up_gain
 from shaftprint.spectra._response_covariance import response_of_line, with_common_error
 from shaftprint.spectra._set_point_check import check_frequency_unit, check_set_point
 from shaftprint.spectra._signal_to_noise import SignalToNoise, signal_to_noise
@@ -56,13 +57,12 @@ def estimate_response(
     *,
     method: SineMethod = _WHOLE_PERIOD_SINE,
     speed: str | None = None,
-    follow_load: bool = True,
 ) -> FrequencyResponse:
     """Estimate the response from set point to speed and torque with full covariance.
 
     Parameters, result and errors are those of `estimate_spectra`, of which this is the response.
     """
-    return estimate_spectra(signals, campaign, method=method, speed=speed, follow_load=follow_load).response
+    return estimate_spectra(signals, campaign, method=method, speed=speed).response
 
 
 def estimate_spectra(
@@ -71,14 +71,14 @@ def estimate_spectra(
     *,
     method: SineMethod = _WHOLE_PERIOD_SINE,
     speed: str | None = None,
-    follow_load: bool = True,
 ) -> Spectra:
     """Measure every sine of a campaign in every channel.
 
     All values are divided by the working point of the whole recording: set point and speed by ``n_0``, torque by
-    ``M_s0``. Lines above half the pulse rate of the speed sensor are aliased and not used by default; neither are
-    lines whose set point is not a sine of the stated frequency. In thesis mode all lines are used, as the thesis did,
-    and the remarks say what speaks against them.
+    ``M_s0``; the propeller load of each window relative to it goes with the response as ``load``. Lines above half the
+    pulse rate of the speed sensor are aliased and not used by default; neither are lines whose set point is not a sine
+    of the stated frequency. In thesis mode all lines are used, as the thesis did, and the remarks say what speaks
+    against them.
 
     Parameters
     ----------
@@ -90,9 +90,6 @@ def estimate_spectra(
         The way to measure a sine: `WholePeriodSine`, or for comparison `ExactBin` or `HighestPeak`.
     speed
         Name of the speed sensor to use, by default the first of the vessel.
-    follow_load
-        Whether the response carries the propeller load of each window, for a fit whose ``k_q`` follows it. Otherwise
-        the load is given as 1 and its scatter between the windows is part of the covariance.
 
     Returns
     -------
@@ -120,10 +117,10 @@ def estimate_spectra(
     used = np.ones_like(usable) if signals.mode == "thesis" else usable
     return Spectra(
         response=replace(
-            _response(signals, measurements, used_channels, drift if not follow_load else None),
+            _response(signals, measurements, used_channels, sensor),
             used=used,
             remarks=remarks,
-            load=1.0 + drift.delta if follow_load else np.ones_like(drift.delta),
+            load=1.0 + drift.delta,
             averaging_s=sensor.averaging_s,
             hold_s=sensor.hold_s,
             pick_up_delay_s=sensor.delay_s,
@@ -231,20 +228,17 @@ def _judge(
 
 
 def _response(
-    signals: "Signals", measurements: Sequence[LineMeasurement], channels: list[int], drift: LoadDrift | None
+    signals: "Signals", measurements: Sequence[LineMeasurement], channels: list[int], sensor: "SpeedSignal"
 ) -> FrequencyResponse:
-    """Put the lines together; with a drift, its scatter becomes part of the covariance."""
     response = np.empty((2, 1, len(measurements)), dtype=np.complex128)
     covariance = np.empty((len(measurements), 4, 4))
     for place, line in enumerate(measurements):
+        scale = np.array([1.0, 1.0 / pick_up_gain(sensor, line.window.frequency_hz), 1.0])
         values, spread = response_of_line(
-            line.amplitude[channels],
-            line.noise.covariance[np.ix_(channels, channels)],
+            scale * line.amplitude[channels],
+            scale[:, np.newaxis] * line.noise.covariance[np.ix_(channels, channels)] * scale,
             complex_samples=line.noise.complex_samples,
         )
-        if drift is not None:
-            direction = drift_direction(values, line.window.frequency_hz, drift.time_constant_s)
-            spread = with_common_error(spread, direction, drift.standard_deviation)
         response[:, 0, place] = values
         covariance[place] = with_common_error(spread, values, signals.dc_scale_std / signals.dc_scale)
     return FrequencyResponse(
