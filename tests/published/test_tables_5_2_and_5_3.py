@@ -111,9 +111,9 @@ def test_all_starts_of_ol1_end_at_one_value():
 @pytest.mark.parametrize("one", ["OL2", "OL3", "OL4", "OL5"])
 @pytest.mark.parametrize("other", ["OL2", "OL3", "OL4", "OL5"])
 def test_printed_sets_explain_each_other_though_their_gains_differ(one, other):
-    """``K_p`` is 1.0 to 4.4 and ``t_d`` 0 to 0.4 s, yet FitPercent is 94 to 98: S1 and S2 carry 92 % of the sum."""
+    """``K_p`` is 1.0 to 4.4 and ``t_d`` 0 to 0.4 s, yet FitPercent is 94 to 97.5: S1 and S2 carry 92 % of the sum."""
     measured, model = data(one).response[0, 0], data(other).response[0, 0]
-    expected = (100.0, 100.0) if one == other else (93.9, 97.6)
+    expected = (100.0, 100.0) if one == other else (93.85, 97.6)
     assert expected[0] <= fit_percent(measured, model) <= expected[1]
     squares = np.abs(measured) ** 2 / np.sum(np.abs(measured) ** 2)
     assert squares[0] == pytest.approx(0.75, abs=0.01)
