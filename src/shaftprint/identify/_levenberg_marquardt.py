@@ -6,6 +6,10 @@ box, the parameters that leave are put on their bound and the others are solved 
 then points back inside is let go. Clipping the step instead stops early, and so does a set that can only grow. The
 damping follows Nielsen (Damping parameter in Marquardt's method, 1999).
 
+Where a step gains much more than ``A`` foretells, the cost is flatter than ``A`` says: the next step is stretched, each
+time twice as far, until one gains less than foretold. Without it a model that cannot follow the data creeps, such as a
+pure delay between two wraps of the fast lines' phase.
+
 All starts go through the same array operations; those that have converged are left out of the next step.
 """
 
@@ -22,6 +26,9 @@ FIRST_DAMPING = 0.1
 FIRST_GROWTH = 2.0
 LARGEST_DAMPING = 1e12
 SMALLEST_DAMPING = 1e-12
+STRETCH_ABOVE_GAIN = 1.5
+UNSTRETCH_BELOW_GAIN = 1.0
+LARGEST_STRETCH = 64.0
 # Curvature of a parameter without influence: the system stays solvable and its step stays zero.
 SMALLEST_SCALE = 1e-100
 BOUND_PASSES = 16
@@ -91,7 +98,7 @@ def descend(
             at, step, predicted = at.chosen(moving), step[moving], predicted[moving]
             if at.starts.size == 0:
                 break
-        trial = np.clip(at.theta + step, lower, upper)
+        trial = np.minimum(np.maximum(at.theta + at.stretch[:, None] * step, lower), upper)
         r, jacobian = residuals(trial, at.starts)
         at.advance(trial, r, jacobian, predicted)
     theta[at.starts], cost[at.starts] = at.theta, at.cost
@@ -110,6 +117,7 @@ class _Position:
     scale: FloatArray
     damping: FloatArray
     growth: FloatArray
+    stretch: FloatArray
 
     @classmethod
     def at_start(cls, theta: FloatArray, r: FloatArray, jacobian: FloatArray) -> "_Position":
@@ -124,6 +132,7 @@ class _Position:
             scale=np.maximum(_diagonal(hessian), SMALLEST_SCALE),
             damping=np.full(cost.size, FIRST_DAMPING),
             growth=np.full(cost.size, FIRST_GROWTH),
+            stretch=np.ones(cost.size),
         )
 
     def chosen(self, rows: BoolArray) -> "_Position":
@@ -131,13 +140,18 @@ class _Position:
         return _Position(*(getattr(self, name)[rows] for name in self.__slots__))
 
     def advance(self, trial: FloatArray, r: FloatArray, jacobian: FloatArray, predicted: FloatArray) -> None:
-        """Take the trials that lower the cost, and change the damping by how well their gain was predicted."""
+        """Take the trials that lower the cost; change damping and stretch by how well their gain was predicted."""
         cost, gradient, hessian = _quadratic(r, jacobian)
         good = (cost < self.cost) & (predicted > 0.0)
-        gain = np.divide(self.cost - cost, predicted, out=np.zeros_like(cost), where=good)
-        change = np.where(good, np.clip(1.0 - (2.0 * gain - 1.0) ** 3, 1.0 / 3.0, 2.0), self.growth)
-        self.damping = np.maximum(self.damping * change, SMALLEST_DAMPING)
-        self.growth = np.where(good, FIRST_GROWTH, 2.0 * self.growth)
+        gain = np.divide(self.cost - cost, predicted * self.stretch, out=np.zeros_like(cost), where=good)
+        # A stretched step that fails says nothing against the step itself.
+        failed = ~good & (self.stretch == 1.0)
+        fitting = np.where(good, np.minimum(np.maximum(1.0 - (2.0 * gain - 1.0) ** 3, 1.0 / 3.0), 2.0), 1.0)
+        self.damping = np.maximum(self.damping * np.where(failed, self.growth, fitting), SMALLEST_DAMPING)
+        self.growth = np.where(failed, 2.0 * self.growth, FIRST_GROWTH)
+        longer = np.minimum(2.0 * self.stretch, LARGEST_STRETCH)
+        shorter = np.where(gain < UNSTRETCH_BELOW_GAIN, 1.0, self.stretch)
+        self.stretch = np.where(gain > STRETCH_ABOVE_GAIN, longer, shorter)
         if good.all():
             self.theta, self.cost, self.gradient, self.hessian = trial, cost, gradient, hessian
         else:
@@ -161,7 +175,8 @@ def _times(matrix: FloatArray, vector: FloatArray) -> FloatArray:
 
 def _diagonal(matrix: FloatArray) -> FloatArray:
     """Return a view of the diagonal of every row's matrix."""
-    return np.asarray(np.einsum("spp->sp", matrix))
+    rows, size, _ = matrix.shape
+    return matrix.reshape(rows, -1)[:, :: size + 1]
 
 
 def _bounded_step(at: _Position, lower: FloatArray, upper: FloatArray) -> tuple[FloatArray, BoolArray]:
@@ -185,13 +200,16 @@ def _held_step(
 ) -> tuple[FloatArray, BoolArray]:
     """Return the step with some parameters put on their bounds; the rows that chose them wrong go again."""
     step = _step_beside(damped, gradient, low, high, to_lower, to_upper)
-    slope = gradient + _times(damped, step)
     below, above = step < to_lower, step > to_upper
-    back_up, back_down = low & (slope < 0.0), high & (slope > 0.0)
-    change = below | above | back_up | back_down
+    change = below | above
+    back_up, back_down = low, high
+    if low.any() or high.any():
+        slope = gradient + _times(damped, step)
+        back_up, back_down = low & (slope < 0.0), high & (slope > 0.0)
+        change |= back_up | back_down
     settled: BoolArray = np.logical_not(change.any(axis=1))
     if settled.all() or passes == 1:
-        return np.clip(step, to_lower, to_upper), settled
+        return np.minimum(np.maximum(step, to_lower), to_upper), settled
     if passes <= SINGLE_PASSES:
         change &= np.cumsum(change, axis=1) == 1
     low, high = (low & ~(back_up & change)) | (below & change), (high & ~(back_down & change)) | (above & change)
