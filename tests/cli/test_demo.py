@@ -20,6 +20,14 @@ def test_files(demo):
     assert [source.sha256 for source in trial.sources] == [source.sha256 for source in found.sources[1:]]
 
 
+def test_report_has_its_figures(demo):
+    folder, _ = demo
+    page = (folder / "index.html").read_text(encoding="utf-8")
+    named = {name for name in (path.name for path in (folder / "figures").iterdir()) if f"figures/{name}" in page}
+    assert named == {path.name for path in (folder / "figures").iterdir()}
+    assert {"fit.svg", "closed_loop.svg", "thesis_mode_5_1.svg", "strips.svg"} <= named
+
+
 def test_last_lines_say_what_was_found_and_where(demo):
     folder, result = demo
     tail = result.stdout[result.stdout.index("What was found") :]

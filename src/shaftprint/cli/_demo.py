@@ -14,11 +14,12 @@ from shaftprint.cli._fit_tables import print_fits
 from shaftprint.cli._inputs import Trial, load_trial, settings_text
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._progress import Steps, no_progress_option, progress
-from shaftprint.cli._results import write_results
+from shaftprint.cli._results import where, write_results
 from shaftprint.cli._signal_tables import print_lines
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.identify import Identification, Settings, Uniform, Unweighted
 from shaftprint.models import structure
+from shaftprint.report import ThesisMode
 from shaftprint.tug import Truth, sail
 
 VESSEL = "stan-tug-1205"
@@ -48,7 +49,7 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
     with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
         truth = _sail(folder, trial, campaign, seed=seed, steps=steps)
         found = _identify(folder / RECORDING, trial, seed=seed, steps=steps)
-        steps.begin("Drawing the figures and writing the report")
+        true = fingerprint_truth(truth, found.fits[0].structure, found.measurement.signals)
         write_results(
             folder,
             folder / RECORDING,
@@ -56,11 +57,12 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
             found.measurement,
             found.fits,
             found.fingerprint,
-            thesis=found.thesis_fits,
+            steps=steps,
+            thesis=found.thesis,
+            truth=true,
         )
-    true = fingerprint_truth(truth, found.fits[0].structure, found.measurement.signals)
     _print(found, true)
-    print_summary(found.fingerprint, true, found.thesis_fits)
+    print_summary(found.fingerprint, true, found.thesis.identifications["OL1"])
     click.echo(_where(output))
 
 
@@ -70,7 +72,7 @@ class _Found:
 
     measurement: Measurement
     fits: tuple[Identification, ...]
-    thesis_fits: tuple[Identification, ...]
+    thesis: ThesisMode
     fingerprint: Fingerprint
 
 
@@ -100,7 +102,11 @@ def _identify(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> _Fou
     return _Found(
         measurement=measurement,
         fits=fits,
-        thesis_fits=thesis_fits,
+        thesis=ThesisMode(
+            signals=as_thesis.signals,
+            spectra=as_thesis.spectra,
+            identifications=dict(zip(OF_THE_THESIS, thesis_fits, strict=True)),
+        ),
         fingerprint=fingerprint_of(fits[0], measurement, trial),
     )
 
@@ -108,15 +114,15 @@ def _identify(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> _Fou
 def _print(found: _Found, true: Mapping[str, float]) -> None:
     print_lines(found.measurement.spectra)
     print_fits("Structures of the thesis, on the same signals, weighted by their noise", found.fits[1:])
-    print_fits("Structures of the thesis, signals and fits done the thesis' way", found.thesis_fits)
+    print_fits(
+        "Structures of the thesis, signals and fits done the thesis' way", tuple(found.thesis.identifications.values())
+    )
     print_fingerprint(found.fingerprint, truth=true)
 
 
 def _where(output: Path) -> str:
-    again = f"shaftprint identify {output / RECORDING} --vessel {output / 'vessel.toml'} "
+    again = f"shaftprint identify {output / RECORDING} --vessel {output / 'vessel.toml'}"
     return (
-        f"Recording:   {output / RECORDING}\n"
-        f"Fingerprint: {output / 'fingerprint.json'}\n"
-        f"Report:      {output / 'index.html'}\n"
-        f"Again:       {again}--campaign {output / 'campaign.toml'} -o again"
+        f"Recording:   {output / RECORDING}\n{where(output)}\n"
+        f"Again:       {again} --campaign {output / 'campaign.toml'} -o again"
     )

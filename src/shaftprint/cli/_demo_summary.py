@@ -1,6 +1,6 @@
 """The last lines of the demo: what was found, in words, with the truth beside it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import click
 
@@ -9,14 +9,14 @@ from shaftprint.fingerprint import Fingerprint, Quantity
 from shaftprint.identify import Identification
 
 
-def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], thesis_fits: Sequence[Identification]) -> None:
+def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], core: Identification) -> None:
     """Print what an engineer wants to know, each with its truth."""
     click.echo("What was found")
     for name, words in SENTENCES.items():
         quantity = fingerprint.quantity(name)
         unit = "" if quantity.unit == "-" else f" {quantity.unit}"
         click.echo(f"  * {words}: {_value(quantity)}{unit}; in truth {plain(truth[name])}{unit}.")
-    for sentence in _of_the_thesis(fingerprint, thesis_fits):
+    for sentence in _of_the_thesis(fingerprint, core):
         click.echo(f"  * {sentence}")
     click.echo()
 
@@ -40,11 +40,8 @@ SENTENCES = {
 }
 
 
-def _of_the_thesis(fingerprint: Fingerprint, thesis_fits: Sequence[Identification]) -> list[str]:
+def _of_the_thesis(fingerprint: Fingerprint, core: Identification) -> list[str]:
     """Return what the thesis' way finds in the same recording, and why."""
-    core = next((found for found in thesis_fits if found.structure.name == "OL1"), None)
-    if core is None:
-        return []
     upstream, tau_up, tau = fingerprint.quantity("I_up"), fingerprint.quantity("tau_up"), core.value("tau_n")
     if upstream.expected is None:
         return []

@@ -11,7 +11,7 @@ from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
 from shaftprint.cli._known_values import named_prior, named_value
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.cli._results import write_results
+from shaftprint.cli._results import where, write_results
 from shaftprint.errors import StructureError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted
 from shaftprint.models import Structure, structure
@@ -87,13 +87,13 @@ def command(
             for chosen in structures
         }
         fits = fit(structures, measurement, settings=settings, seed=seed, steps=steps)
-        steps.begin("Writing the report")
+        steps.begin("Finding the intervals")
         fingerprint = fingerprint_of(fits[0], measurement, trial)
-        write_results(folder, recording, trial, measurement, fits, fingerprint)
+        write_results(folder, recording, trial, measurement, fits, fingerprint, steps=steps)
     print_fingerprint(fingerprint)
     if len(fits) > 1:
         print_fits("All structures", fits)
-    click.echo(f"Fingerprint: {output / 'fingerprint.json'}\nReport:      {output / 'index.html'}")
+    click.echo(where(output))
 
 
 def _structures(names: tuple[str, ...], held: dict[str, float]) -> tuple[Structure, ...]:

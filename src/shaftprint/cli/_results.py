@@ -1,12 +1,19 @@
 """The files of results that ``identify`` and ``demo`` leave behind."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from shaftprint.cli._chain import Measurement
 from shaftprint.cli._inputs import Trial
+from shaftprint.cli._progress import Steps
 from shaftprint.fingerprint import Fingerprint, write_fingerprint
 from shaftprint.identify import Identification
+from shaftprint.recording import read_recording
+from shaftprint.report import ThesisMode, render_report
+from shaftprint.spectra import ExactBin, FrequencyResponse, HighestPeak, estimate_response
+
+FINGERPRINT = "fingerprint.json"
+REPORT = "index.html"
 
 
 def write_results(
@@ -17,7 +24,59 @@ def write_results(
     fits: Sequence[Identification],
     fingerprint: Fingerprint,
     *,
-    thesis: Sequence[Identification] = (),
+    steps: Steps,
+    thesis: ThesisMode | None = None,
+    truth: Mapping[str, float] | None = None,
 ) -> None:
-    """Write fingerprint, figures and report into a folder."""
-    write_fingerprint(fingerprint, folder / "fingerprint.json")
+    """Write fingerprint, figures and report into a folder.
+
+    Parameters
+    ----------
+    folder
+        Where they go.
+    recording, trial, measurement
+        What the fits were made from.
+    fits
+        Fitted structures; the fingerprint is that of the first.
+    fingerprint
+        What is kept.
+    steps
+        Progress of the command.
+    thesis
+        The same recording done the thesis' way, to compare.
+    truth
+        True values by name, where they are known.
+    """
+    write_fingerprint(fingerprint, folder / FINGERPRINT)
+    steps.begin("Drawing the figures of the report", total=1.0)
+    with read_recording(recording) as opened:
+        render_report(
+            folder,
+            fingerprint=fingerprint,
+            identification=fits[0],
+            signals=measurement.signals,
+            spectra=measurement.spectra,
+            vessel=trial.vessel,
+            campaign=trial.campaign,
+            recording=opened,
+            fits={found.structure.name: found for found in fits[1:]},
+            thesis=thesis,
+            truth=truth,
+            line_selection=_line_selection(trial, measurement),
+            sensitivity=(fits[0].structure,),
+            progress=steps.reach,
+        )
+
+
+def where(output: Path) -> str:
+    """Return where the results are, one a line."""
+    return f"Fingerprint: {output / FINGERPRINT}\nReport:      {output / REPORT}"
+
+
+def _line_selection(trial: Trial, measurement: Measurement) -> dict[str, FrequencyResponse]:
+    """Return the response as other ways to measure a sine would have it."""
+    others = {"bin of the line": ExactBin(), "highest peak": HighestPeak()}
+    found = {"whole periods": measurement.spectra.response}
+    for name, method in others.items():
+        found[name] = estimate_response(measurement.signals, trial.campaign, method=method)
+    return found
