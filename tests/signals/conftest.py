@@ -1,7 +1,7 @@
 """Channels in memory, and a small ship in closed form that fills them."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +15,10 @@ from shaftprint.vessel import Vessel, load_vessel
 
 Array = NDArray[np.float64]
 
-SLOPE_REV_S_PER_V, INTERCEPT_REV_S = -4.18, -1.39
-LAG_S = 0.4
-STRIPS_REV = (0.26, 0.23, 0.27, 0.24)
 
-
-def channel_of(values: NDArray[Any], *, name: str = "X", unit: str = "V", rate_hz: float = 2000.0, **more: Any) -> Channel:
+def channel_of(
+    values: NDArray[Any], *, name: str = "X", unit: str = "V", rate_hz: float = 2000.0, **more: Any
+) -> Channel:
     return Channel(
         name=name,
         unit=unit,
@@ -61,16 +59,25 @@ class Ship:
     """What to do to the raw counts of a channel."""
     units: dict[str, str] = field(default_factory=dict)
     gear_ratio: float = 3.82
+    slope_rev_s_per_v: float = -4.18
+    intercept_rev_s: float = -1.39
+    lag_s: float = 0.15
+    strips_rev: tuple[float, ...] = (0.26, 0.23, 0.27, 0.24)
     torque_latency_s: float = 0.005
 
+    prepared: "Ship | None" = None
+
     def __post_init__(self) -> None:
+        if self.prepared is not None:
+            self.counts = self.prepared.counts
+            return
         rng = np.random.default_rng(7)
         count = round((self.campaign.duration_s + self.extra_s) * self.rate_hz)
         self.time_s = np.arange(count) / self.rate_hz
         volts = setpoint(self.campaign, self.time_s)
-        self.set_point_rev_s = SLOPE_REV_S_PER_V * volts + INTERCEPT_REV_S
+        self.set_point_rev_s = self.slope_rev_s_per_v * volts + self.intercept_rev_s
         # exact for a set point that is constant between samples
-        share = 1.0 - np.exp(-1.0 / (self.rate_hz * LAG_S))
+        share = 1.0 - np.exp(-1.0 / (self.rate_hz * self.lag_s))
         speed = np.empty(count)
         state = self.set_point_rev_s[0]
         for k, asked in enumerate(self.set_point_rev_s.tolist()):
@@ -81,7 +88,7 @@ class Ship:
         self.torque_nm = 1700.0 * (speed / 19.5) ** 2
         late = np.interp(self.time_s - self.torque_latency_s, self.time_s, self.torque_nm)
         shaft = self.angle_rev / self.gear_ratio
-        strips = np.concatenate([[0.0], np.cumsum(STRIPS_REV[:-1])]) + 0.1
+        strips = np.concatenate([[0.0], np.cumsum(self.strips_rev[:-1])]) + 0.1
         analog = {
             "PTM_e": 0.3 + 4.0 * pulses_at(self.angle_rev, np.array([0.2])),
             "PTM_1": 0.3 + 4.0 * pulses_at(shaft, np.array([0.7])),
@@ -90,7 +97,9 @@ class Ship:
             "U_setpoint": volts + 0.0005 * self.noise * rng.standard_normal(count),
         }
         self.counts = {
-            name: np.rint((values + (0.01 * self.noise * rng.standard_normal(count) if "PTM" in name else 0.0)) * 3200.0)
+            name: np.rint(
+                (values + (0.01 * self.noise * rng.standard_normal(count) if "PTM" in name else 0.0)) * 3200.0
+            )
             .clip(-32768, 32767)
             .astype(np.int16)
             for name, values in analog.items()
@@ -149,7 +158,11 @@ def campaign() -> Campaign:
                     "settled_s": start + 8.0,
                     "stop_s": stop,
                 }
-                for number, frequency, start, stop in ((1, 0.05, 110.0, 160.0), (2, 0.1, 165.0, 200.0), (3, 0.15, 202.0, 230.0))
+                for number, frequency, start, stop in (
+                    (1, 0.05, 110.0, 160.0),
+                    (2, 0.1, 165.0, 200.0),
+                    (3, 0.15, 202.0, 230.0),
+                )
             ],
         }
     )
@@ -158,3 +171,19 @@ def campaign() -> Campaign:
 @pytest.fixture(scope="session")
 def ship(campaign: Campaign) -> Ship:
     return Ship(campaign=campaign)
+
+
+@pytest.fixture(scope="session")
+def silent_ship(campaign: Campaign) -> Ship:
+    """The same without noise."""
+    return Ship(campaign=campaign, noise=0.0)
+
+
+@pytest.fixture(scope="session")
+def spoiled(ship: Ship) -> Callable[..., Recording]:
+    """The recording of the ship with changes to the counts of some channels."""
+
+    def record(units: dict[str, str] | None = None, **changes: Callable[[NDArray[Any]], NDArray[Any]]) -> Recording:
+        return replace(ship, changes=changes, units=units or {}, prepared=ship).recording()
+
+    return record

@@ -74,5 +74,5 @@ def test_compiled_and_plain_kernels_agree():
 
 
 def test_grid_finer_than_the_samples():
-    with pytest.raises(SignalError, match="channel M_s: expected at least the rate of the signals, found 0.5 times"):
+    with pytest.raises(SignalError, match=r"channel M_s: expected at least the rate of the signals, found 0\.5 times"):
         decimated([SIGNAL], Grid(first=0.0, step=0.5, count=10), channel="M_s")

@@ -100,5 +100,7 @@ def test_both_edge_and_scale_turned_over_is_upright_again(make_channel):
 
 @pytest.mark.parametrize("values", [np.full(5000, 2.0), np.random.default_rng(1).normal(2.0, 0.1, 5000)])
 def test_channel_without_pulses_is_dead(make_channel, values):
-    with pytest.raises(SignalError, match=r"channel PTM_e: expected pulses .* dead or saturated near (1.9|2).* V from 12\.5 s on"):
+    with pytest.raises(
+        SignalError, match=r"channel PTM_e: expected pulses .* dead or saturated near (1.9|2).* V from 12\.5 s on"
+    ):
         pulse_levels(make_channel(values, name="PTM_e", start_s=12.5))

@@ -60,7 +60,9 @@ LIMITS = FaultLimits(floor=400.0, hold_samples=12, lowest=-3000.0, highest=3000.
 
 def faulty(count: int = 3000) -> tuple[np.ndarray, np.ndarray]:
     rng = np.random.default_rng(11)
-    values = (60.0 * rng.standard_normal(count) + 500.0 * np.sin(2 * np.pi * 60.0 * np.arange(count) / 2000.0)).astype(np.int16)
+    values = (60.0 * rng.standard_normal(count) + 500.0 * np.sin(2 * np.pi * 60.0 * np.arange(count) / 2000.0)).astype(
+        np.int16
+    )
     codes = np.zeros(count, dtype=np.uint8)
     for sample in (3, 500, 501, 1800, 2997):
         values[sample] += 1700 if values[sample] < 0 else -1700
@@ -88,6 +90,12 @@ def test_cut_into_blocks_does_not_matter(cut, size):
     parts = list(flagged(cut(values, size), LIMITS))
     assert np.array_equal(np.concatenate([shown for shown, _ in parts]), values)
     assert np.array_equal(np.concatenate([codes for _, codes in parts]), expected)
+
+
+def test_fewer_samples_than_a_margin():
+    ((shown, codes),) = list(flagged([np.array([1.0, 2.0]), np.array([3.0])], LIMITS))
+    assert shown.tolist() == [1.0, 2.0, 3.0]
+    assert codes.tolist() == [GOOD, GOOD, GOOD]
 
 
 def test_no_blocks_nothing_flagged():

@@ -89,7 +89,9 @@ def test_too_few_pulses():
 
 def test_too_many_faults():
     kept = np.delete(steady(200), np.arange(10, 190, 9))
-    with pytest.raises(SignalError, match=r"channel PTM_1: expected regular pulses, found \d+ missing or doubled among"):
+    with pytest.raises(
+        SignalError, match=r"channel PTM_1: expected regular pulses, found \d+ missing or doubled among"
+    ):
         number_pulses(kept, channel="PTM_1")
 
 

@@ -11,7 +11,9 @@ from shaftprint.signals._strips import find_strips, renumbered, revolutions
 TABLE_3_4 = np.array([90.40, 87.24, 90.74, 91.64]) / 360.02
 
 
-def pulses_of(angles: np.ndarray, *, turns: int = 1500, wave: float = 0.0, jitter: float = 0.0, seed: int = 0) -> np.ndarray:
+def pulses_of(
+    angles: np.ndarray, *, turns: int = 1500, wave: float = 0.0, jitter: float = 0.0, seed: int = 0
+) -> np.ndarray:
     """Places of the pulses [samples] of a shaft at 5.16 rev/s, its speed waving at 0.3 Hz."""
     places = np.concatenate([[0.0], np.cumsum(angles[:-1])])
     angle = (np.arange(turns)[:, np.newaxis] + places).ravel()
@@ -23,7 +25,9 @@ def pulses_of(angles: np.ndarray, *, turns: int = 1500, wave: float = 0.0, jitte
     return 2000.0 * time + jitter * rng.standard_normal(time.size)
 
 
-@pytest.mark.parametrize("angles", [TABLE_3_4, np.array([0.3, 0.33, 0.37]), np.array([0.47, 0.53]), np.full(6, 1.0 / 6.0)])
+@pytest.mark.parametrize(
+    "angles", [TABLE_3_4, np.array([0.3, 0.33, 0.37]), np.array([0.47, 0.53]), np.full(6, 1.0 / 6.0)]
+)
 def test_angles_of_a_steady_shaft_are_exact(angles):
     train = number_pulses(pulses_of(angles), channel="P")
     found = find_strips(train, angles.size, channel="P")
@@ -55,7 +59,9 @@ def test_missing_pulse_does_not_turn_the_strips():
     found = find_strips(train, 4, channel="P")
     assert found.angle_rev == pytest.approx(TABLE_3_4, abs=1e-9)
     # the angle of the shaft at every pulse that is left
-    assert revolutions(train, found.angle_rev) == pytest.approx(np.delete(places, [101, 403, 404]) * 5.16 / 2000.0, abs=1e-6)
+    assert revolutions(train, found.angle_rev) == pytest.approx(
+        np.delete(places, [101, 403, 404]) * 5.16 / 2000.0, abs=1e-6
+    )
 
 
 @pytest.mark.parametrize("miscount", [1, -1, 2])
@@ -90,7 +96,9 @@ def test_even_strips_and_short_stretches_give_no_reason_to_recount():
 
 def test_too_few_revolutions():
     train = number_pulses(pulses_of(TABLE_3_4, turns=15), channel="PTM_4")
-    with pytest.raises(SignalError, match="channel PTM_4: expected at least 20 steady revolutions to find the angles of its 4"):
+    with pytest.raises(
+        SignalError, match="channel PTM_4: expected at least 20 steady revolutions to find the angles of its 4"
+    ):
         find_strips(train, 4, channel="PTM_4")
 
 

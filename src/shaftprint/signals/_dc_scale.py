@@ -17,7 +17,7 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.campaign import Campaign, Sine
 
 # Lines whose ratio is further from 1 are beyond the reach of the low-order form: up to here the delays
-# of the reference ship turn into an error of 1e-4, up to 0.3 into 1e-3.
+# of the reference ship turn into an error of 2e-4, up to 0.3 into 1e-3.
 _LARGEST_DEPARTURE = 0.2
 _MOST_LINES = 9
 _FEWEST_LINES = 3

@@ -101,7 +101,7 @@ def flagged(samples: Iterable[Counts], limits: FaultLimits) -> Iterator[tuple[Co
     At both ends the channel is mirrored, so that every sample has a whole window.
     """
     margin = limits.margin
-    held: Counts = np.empty(0)
+    held: NDArray[Any] = np.empty(0)
     mirrored = False
     for block in samples:
         held = np.concatenate([held, block]) if held.size else block

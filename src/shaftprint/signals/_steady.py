@@ -137,13 +137,14 @@ def _runs(still: BoolArray, moved: BoolArray) -> list[tuple[int, int]]:
 
 
 def _settling(speed: FloatArray) -> int:
-    """Return how many blocks to leave out: twice as long as the speed needs to come near its end."""
+    """Return how many blocks to leave out: twice as many as the speed needs to come near its end."""
     rest = speed[speed.size // 2 :]
     final = float(np.median(rest))
     scatter = 1.4826 * float(np.median(np.abs(rest - final)))
     near = np.abs(speed - final) <= max(_SCATTERS * scatter, _SETTLED * abs(final))
-    away = np.flatnonzero(~near[: speed.size // 2])
-    return 2 * (int(away[-1]) + 1) + 1 if away.size else 1
+    # three in a row: noise may leave the band again, and one block may only pass through it
+    arrived = np.flatnonzero(near[:-2] & near[1:-1] & near[2:])
+    return 2 * int(arrived[0]) + 1 if arrived.size else speed.size
 
 
 def _means(values: FloatArray, runs: list[tuple[int, int]]) -> list[tuple[float, float]]:

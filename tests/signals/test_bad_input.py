@@ -1,0 +1,215 @@
+"""What design.md calls bad input: one clear sentence, or a result with a finding."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from shaftprint.campaign import Campaign
+from shaftprint.errors import SignalError
+from shaftprint.recording import Recording
+from shaftprint.signals import prepare_signals
+
+
+def refused(recording, vessel, campaign, match, **more):
+    with pytest.raises(SignalError, match=match) as caught:
+        prepare_signals(recording, vessel, campaign, **more)
+    assert "\n" not in str(caught.value)
+
+
+def without(recording: Recording, name: str) -> Recording:
+    channels = {key: channel for key, channel in recording.channels.items() if key != name}
+    return replace(recording, channels=channels)
+
+
+def test_missing_channel_lists_those_that_exist(ship, vessel, campaign):
+    refused(
+        without(ship.recording(), "M_s"),
+        vessel,
+        campaign,
+        r'ship\.nc: expected a channel "M_s" for the shaft torque, .*found PTM_e, PTM_1, PTM_4, U_setpoint; correct',
+    )
+    nothing = replace(ship.recording(), channels={})
+    refused(nothing, vessel, campaign, "found no channel at all")
+
+
+def test_wrong_unit(spoiled, vessel, campaign):
+    refused(
+        spoiled(units={"U_setpoint": "mV"}),
+        vessel,
+        campaign,
+        r'channel U_setpoint: expected the unit "V" for the set point, found "mV"',
+    )
+
+
+def test_empty_channel(ship, vessel, campaign):
+    recording = ship.recording()
+    empty = replace(recording.channels["PTM_1"], count=0)
+    refused(
+        replace(recording, channels={**recording.channels, "PTM_1": empty}),
+        vessel,
+        campaign,
+        "channel PTM_1: expected samples, found none",
+    )
+
+
+def test_recording_shorter_than_the_campaign(spoiled, vessel, campaign):
+    refused(
+        spoiled(M_s=lambda counts: counts[:400_000]),
+        vessel,
+        campaign,
+        r"expected a recording up to 230\.0 s, where .* ends S3, found 200\.0 s: 30\.0 s too short; leave S3 out",
+    )
+
+
+def test_not_a_number(spoiled, vessel, campaign):
+    def gap(counts):
+        values = counts.astype(float)
+        values[123_456] = np.nan
+        return values
+
+    refused(spoiled(U_setpoint=gap), vessel, campaign, r"channel U_setpoint: expected numbers, found nan at 61\.728 s")
+
+
+def test_values_in_float_are_as_good_as_counts(spoiled, vessel, campaign):
+    counted = prepare_signals(spoiled(), vessel, campaign)
+    names = ("PTM_e", "PTM_1", "PTM_4", "M_s", "U_setpoint")
+    floating = prepare_signals(spoiled(**dict.fromkeys(names, lambda counts: counts.astype(float))), vessel, campaign)
+    assert floating.shaft_torque_nm == pytest.approx(counted.shaft_torque_nm, rel=1e-9)
+    assert floating.engine_speed.speed_rev_s == pytest.approx(counted.engine_speed.speed_rev_s, rel=1e-9)
+    assert len(floating.repairs) == len(counted.repairs)
+
+
+def test_set_point_that_never_moves(spoiled, vessel, campaign):
+    refused(
+        spoiled(U_setpoint=lambda counts: np.full_like(counts, -16_000)),
+        vessel,
+        campaign,
+        r"channel U_setpoint: expected a set point that moves by 1\.5 V, found it between -5 and -5 V from start",
+    )
+
+
+def test_another_campaign(ship, vessel, campaign):
+    other = Campaign.model_validate(
+        {
+            "name": "other",
+            "duration_s": 250.0,
+            "offset_v": -5.0,
+            "staircases": [{"name": "X", "levels_v": [-5.0, -4.0, -6.0], "dwell_s": 25.0, "start_s": 120.0}],
+        }
+    )
+    refused(ship.recording(), vessel, other, r'the campaign "other", found another course in every slow test \(X\)')
+
+
+def test_one_test_at_another_time_is_a_finding(ship, vessel, campaign):
+    sines = [sine.model_dump() for sine in campaign.sines]
+    sines[2] |= {"start_s": 232.0, "settled_s": 233.0, "stop_s": 249.0}
+    moved = Campaign.model_validate({**campaign.model_dump(), "sines": sines})
+    found = prepare_signals(ship.recording(), vessel, moved)
+    assert any("does not follow the campaign during S3" in finding for finding in found.findings)
+
+
+def test_dead_and_saturated_gauge(spoiled, vessel, campaign):
+    def dies(counts):
+        counts[300_000:] = 321
+        return counts
+
+    def stands(counts):
+        return np.full_like(counts, 321)
+
+    def clips(counts):
+        return np.minimum(counts, 13_504)
+
+    refused(spoiled(M_s=dies), vessel, campaign, r"channel M_s: .* dead for more than 2 s from 150\.0 s on")
+    refused(
+        spoiled(M_s=stands),
+        vessel,
+        campaign,
+        r"channel M_s: expected the torque to move during St, found it dead near 50 N m",
+    )
+    sensors = vessel.sensors.model_copy(
+        update={"shaft_torque": vessel.sensors.shaft_torque.model_copy(update={"full_scale_nm": 2110.0})}
+    )
+    small = vessel.model_copy(update={"sensors": sensors})
+    refused(
+        spoiled(M_s=clips),
+        small,
+        campaign,
+        r"channel M_s: expected a torque within full scale, found .*% of the samples",
+    )
+
+
+def test_a_few_clipped_crests_are_a_finding(spoiled, vessel, campaign):
+    sensors = vessel.sensors.model_copy(
+        update={"shaft_torque": vessel.sensors.shaft_torque.model_copy(update={"full_scale_nm": 2165.0})}
+    )
+    small = vessel.model_copy(update={"sensors": sensors})
+    found = prepare_signals(spoiled(M_s=lambda counts: np.minimum(counts, 13_850)), small, campaign)
+    assert found.findings[0].startswith("channel M_s reaches full scale from 4")
+    assert {repair.kind for repair in found.repairs} == {"saturated"}
+
+
+def test_first_pick_up_dead_is_an_error_another_a_finding(spoiled, vessel, campaign):
+    def dead(counts):
+        return np.full_like(counts, 1000)
+
+    refused(
+        spoiled(PTM_e=dead),
+        vessel,
+        campaign,
+        r"channel PTM_e: expected pulses between two levels, found the channel dead",
+    )
+    found = prepare_signals(spoiled(PTM_1=dead), vessel, campaign)
+    assert list(found.speeds) == ["n_e", "n_e4"]
+    assert found.findings[0].startswith("n_e1 was left out: channel PTM_1: expected pulses between two levels")
+
+
+@pytest.mark.parametrize(
+    ("first", "stop", "said"), [(200_000, 206_000, "99.9"), (0, 6000, "0.0"), (494_000, 500_000, "24")]
+)
+def test_gap_in_the_pulses(spoiled, vessel, campaign, first, stop, said):
+    def gap(counts):
+        counts[first:stop] = 1000
+        return counts
+
+    refused(
+        spoiled(PTM_e=gap), vessel, campaign, rf"channel PTM_e: expected pulses all the time, found none from {said}"
+    )
+
+
+def test_wrong_gear_ratio(ship, vessel, campaign):
+    geared = vessel.model_copy(update={"gearbox": vessel.gearbox.model_copy(update={"ratio": 3.90})})
+    refused(
+        ship.recording(),
+        geared,
+        campaign,
+        r"PTM_e and PTM_1: .* found n_e1 / n_e = 1\.0209, as with a gear ratio of 3\.8\d* instead of 3\.9; check",
+    )
+    nearly = vessel.model_copy(update={"gearbox": vessel.gearbox.model_copy(update={"ratio": 3.835})})
+    found = prepare_signals(ship.recording(), nearly, campaign)
+    assert len(found.findings) == 2
+    assert "found n_e4 / n_e = 1.0039" in found.findings[1]
+
+
+def test_pulses_that_point_the_other_way_are_a_finding(spoiled, vessel, campaign):
+    found = prepare_signals(spoiled(PTM_4=lambda counts: 15_000 - counts), vessel, campaign)
+    assert any("PTM_4 is high for" in finding and 'set edge = "falling"' in finding for finding in found.findings)
+
+
+def test_one_level_only(vessel, ship, campaign, spoiled):
+    sines = Campaign.model_validate({**campaign.model_dump(), "staircases": []})
+
+    def without_steps(counts):
+        counts[30_000:180_000] = -16_000
+        return counts
+
+    refused(
+        spoiled(U_setpoint=without_steps),
+        vessel,
+        sines,
+        r"channel U_setpoint: expected at least two steady levels .*; record a staircase",
+    )
+
+
+def test_unknown_mode(ship, vessel, campaign):
+    refused(ship.recording(), vessel, campaign, 'mode: expected "shaftprint" or "thesis", found "fast"', mode="fast")

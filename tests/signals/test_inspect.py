@@ -1,0 +1,54 @@
+import numpy as np
+import pytest
+
+from shaftprint.signals import inspect_channels
+
+
+def test_what_each_channel_holds(ship, vessel):
+    reports = {report.channel: report for report in inspect_channels(ship.recording(), vessel)}
+    assert list(reports) == ["PTM_e", "PTM_1", "PTM_4", "M_s", "U_setpoint"]
+    assert [report.use for report in reports.values()] == ["speed", "speed", "speed", "shaft torque", "set point"]
+    for report in reports.values():
+        assert (report.unit, report.rate_hz, report.start_s, report.duration_s) == ("V", 2000.0, 0.0, 250.0)
+        assert report.problem is None
+        assert report.faults == ()
+    engine, four = reports["PTM_e"].pulses, reports["PTM_4"].pulses
+    assert (engine.low, engine.high) == pytest.approx((0.3, 4.25), abs=0.1)
+    assert engine.per_second == pytest.approx(np.mean(ship.speed_rev_s), rel=2e-3)
+    assert engine.strip_angles_deg == (360.0,)
+    assert sorted(four.strip_angles_deg) == pytest.approx(sorted(360.0 * np.array(ship.strips_rev)), abs=0.02)
+    assert reports["M_s"].pulses is None
+    assert reports["U_setpoint"].lowest == pytest.approx(-5.5, abs=0.01)
+    assert reports["U_setpoint"].highest == pytest.approx(-4.0, abs=0.01)
+
+
+def test_problems_are_told_channel_by_channel(spoiled, vessel):
+    def dead(counts):
+        return np.full_like(counts, 640)
+
+    def silent(counts):
+        counts[200_000:210_000] = 5
+        return counts
+
+    reports = {
+        report.channel: report for report in inspect_channels(spoiled(PTM_1=dead, M_s=silent, PTM_e=silent), vessel)
+    }
+    assert reports["PTM_1"].problem.startswith("channel PTM_1: expected pulses between two levels")
+    assert reports["PTM_1"].lowest == reports["PTM_1"].highest == pytest.approx(0.2)
+    assert reports["PTM_1"].pulses is None
+    assert "found none from 99.9" in reports["PTM_e"].problem
+    assert reports["PTM_e"].pulses is not None
+    assert "dead for more than 2 s from 100.0 s on" in reports["M_s"].problem
+    assert reports["U_setpoint"].problem is None
+
+
+def test_faults_are_listed(spoiled, vessel):
+    def spike(counts):
+        counts[[50_000, 90_001]] = 25_000
+        return counts
+
+    reports = {report.channel: report for report in inspect_channels(spoiled(U_setpoint=spike), vessel)}
+    assert [(fault.kind, fault.time_s, fault.count) for fault in reports["U_setpoint"].faults] == [
+        ("outlier", 25.0, 1),
+        ("outlier", 45.0005, 1),
+    ]

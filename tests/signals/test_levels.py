@@ -1,0 +1,292 @@
+"""Steady stretches, the line through them, the working point and the delays of steps."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from shaftprint.campaign import Campaign, setpoint
+from shaftprint.errors import SignalError
+from shaftprint.signals import deviation
+from shaftprint.signals._calibrate import calibrate
+from shaftprint.signals._compare import compare_speeds
+from shaftprint.signals._match import expect_campaign
+from shaftprint.signals._steady import SteadyStretch, steady_stretches
+from shaftprint.signals._steps import find_step_delays
+from shaftprint.signals._torque import expect_moving_torque
+from shaftprint.signals._working_point import find_working_point
+
+RATE_HZ = 50.0
+
+# table 3.1 of the thesis
+TABLE_3_1_V = np.array([-3.031, -4.031, -5.035, -6.024, -7.022])
+TABLE_3_1_RPM = np.array([676.57, 927.94, 1182.60, 1428.50, 1676.61])
+
+
+def stretch(volts, speed, *, start_s=0.0, length_s=40.0, std=0.01, torque=1000.0, torque_std=5.0):
+    return SteadyStretch(
+        start_s=start_s,
+        stop_s=start_s + length_s,
+        set_point_v=volts,
+        speed_rev_s=speed,
+        speed_std_rev_s=std,
+        torque_nm=torque,
+        torque_std_nm=torque_std,
+    )
+
+
+@pytest.fixture(scope="module")
+def steps():
+    return Campaign.model_validate(
+        {
+            "name": "steps",
+            "duration_s": 400.0,
+            "offset_v": -5.0,
+            "staircases": [{"name": "St", "levels_v": [-3.0, -4.0, -5.0, -5.0], "dwell_s": 40.0, "start_s": 100.0}],
+            "chirps": [
+                {
+                    "name": "C",
+                    "start_frequency_hz": 0.001,
+                    "stop_frequency_hz": 0.02,
+                    "amplitude_v": 0.6,
+                    "start_s": 290.0,
+                    "stop_s": 390.0,
+                }
+            ],
+        }
+    )
+
+
+def lagging(values, lag_s):
+    out = np.empty(values.size)
+    state = values[0]
+    share = 1.0 - np.exp(-1.0 / (RATE_HZ * lag_s))
+    for k, value in enumerate(values):
+        out[k] = state
+        state += share * (value - state)
+    return out
+
+
+def test_steady_stretches_leave_out_settling_and_waves(steps):
+    time = np.arange(20_000) / RATE_HZ
+    volts = setpoint(steps, time)
+    speed = lagging(-4.18 * volts - 1.4, 2.0)
+    rng = np.random.default_rng(0)
+    noisy = speed + 0.02 * rng.standard_normal(time.size)
+    found = steady_stretches(volts, noisy, noisy**2, steps, rate_hz=RATE_HZ, start_s=0.0)
+    assert [round(one.set_point_v, 6) for one in found] == [-5.0, -3.0, -4.0, -5.0]
+    # the chirp begins at 290 s and ends at 390 s: ten seconds are left
+    assert [one.stop_s for one in found] == pytest.approx([100.0, 140.0, 180.0, 290.0], abs=1.0)
+    for one, begin in zip(found[1:], (100.0, 140.0, 180.0), strict=True):
+        # 2 s of lag and a step of 4 to 8 rev/s: 1e-3 of it is left after seven lags
+        assert 8.0 < one.start_s - begin < 30.0
+        assert one.speed_rev_s == pytest.approx(-4.18 * one.set_point_v - 1.4, abs=0.01)
+        # 50 values a second of independent noise
+        assert one.speed_std_rev_s == pytest.approx(0.02 / np.sqrt(50.0 * one.duration_s), rel=0.5)
+
+
+def test_fast_sine_about_the_working_voltage_is_not_steady():
+    campaign = Campaign.model_validate(
+        {
+            "name": "none",
+            "duration_s": 60.0,
+            "offset_v": -5.0,
+            "staircases": [{"name": "St", "levels_v": [-5.0], "dwell_s": 1.0, "start_s": 0.0}],
+        }
+    )
+    volts = -5.0 + 0.3 * np.sin(2 * np.pi * 4.0 * np.arange(3000) / RATE_HZ)
+    volts[:50] = -6.0
+    assert steady_stretches(volts, 20.0 + 0.0 * volts, volts, campaign, rate_hz=RATE_HZ, start_s=0.0) == ()
+
+
+def test_speed_that_never_settles_gives_no_stretch(steps):
+    volts = np.full(1000, -5.0)
+    volts[:50] = -4.0
+    speed = np.linspace(15.0, 20.0, 1000)
+    speed[500:] = 20.0
+    assert steady_stretches(volts, speed, speed, steps, rate_hz=RATE_HZ, start_s=0.0) == ()
+
+
+def test_stated_deviation_of_a_mean_is_its_scatter(steps):
+    # noise with a memory of two seconds, 200 stretches of 40 s
+    rng = np.random.default_rng(1)
+    means, stated = [], []
+    for _ in range(200):
+        noise = lagging(rng.standard_normal(5000), 2.0)
+        volts = np.full(5000, -5.0)
+        volts[:500] = -4.0
+        (one,) = [
+            part
+            for part in steady_stretches(volts, 20.0 + noise, noise, steps, rate_hz=RATE_HZ, start_s=0.0)
+            if part.set_point_v < -4.5
+        ]
+        means.append(one.speed_rev_s)
+        stated.append(one.speed_std_rev_s)
+    assert np.sqrt(np.mean(np.square(stated))) == pytest.approx(np.std(means), rel=0.25)
+
+
+def test_line_of_table_3_1():
+    # domain knowledge: ordinary least squares of the printed table, residuals up to 2.55 rpm, slope +/- 0.60
+    found = calibrate(
+        tuple(stretch(volts, rpm) for volts, rpm in zip(TABLE_3_1_V, TABLE_3_1_RPM, strict=True)),
+        weighted=False,
+        channel="U",
+    )
+    assert found.slope_rev_s_per_v == pytest.approx(-250.693, abs=1e-3)
+    assert found.intercept_rev_s == pytest.approx(-82.190, abs=1e-3)
+    assert np.sqrt(np.diag(found.covariance)) == pytest.approx([0.60, 3.1], abs=0.06)
+    assert found.level_v.tolist() == sorted(TABLE_3_1_V)
+
+
+def test_weights_and_stretches_of_one_level():
+    stretches = (
+        stretch(-5.0, 20.0, length_s=30.0),
+        stretch(-5.001, 20.2, length_s=10.0),
+        stretch(-3.0, 12.0, std=0.02),
+    )
+    found = calibrate(stretches, weighted=True, channel="U")
+    assert found.level_v == pytest.approx([-5.00025, -3.0])
+    assert found.level_rev_s == pytest.approx([20.05, 12.0])
+    # between the stretches: sqrt(0.75 0.05^2 + 0.25 0.15^2) over one degree of freedom
+    assert found.level_std_rev_s == pytest.approx([np.sqrt(0.75 * 0.05**2 + 0.25 * 0.15**2), 0.02])
+    assert found.slope_rev_s_per_v == pytest.approx((12.0 - 20.05) / (5.00025 - 3.0))
+    expected = np.sqrt(float(np.sum(found.level_std_rev_s**2))) / (5.00025 - 3.0)
+    assert np.sqrt(found.covariance[0, 0]) == pytest.approx(expected)
+
+
+def test_covariance_of_the_line_is_its_scatter():
+    rng = np.random.default_rng(2)
+    volts = np.array([-7.0, -6.0, -5.0, -4.0, -3.0])
+    std = np.array([0.02, 0.01, 0.003, 0.01, 0.02])
+    slopes, stated = [], []
+    for _ in range(2000):
+        speed = -4.18 * volts - 1.4 + std * rng.standard_normal(5)
+        found = calibrate(
+            tuple(stretch(u, n, std=s) for u, n, s in zip(volts, speed, std, strict=True)), weighted=True, channel="U"
+        )
+        slopes.append(found.slope_rev_s_per_v)
+        stated.append(found.covariance[0, 0])
+    assert np.mean(slopes) == pytest.approx(-4.18, abs=3 * np.std(slopes) / np.sqrt(2000))
+    # enlarged where a draw scatters more than stated, never made smaller
+    assert 1.0 < np.mean(stated) / np.var(slopes) < 1.5
+
+
+def test_two_levels_unweighted_have_the_deviation_of_their_means():
+    found = calibrate((stretch(-5.0, 20.0, std=0.03), stretch(-3.0, 12.0, std=0.03)), weighted=False, channel="U")
+    assert np.sqrt(found.covariance[0, 0]) == pytest.approx(0.03 * np.sqrt(2.0) / 2.0)
+
+
+def test_too_few_levels():
+    with pytest.raises(SignalError, match=r"channel U: expected at least two steady levels .*, found -5\.00\d V;"):
+        calibrate((stretch(-5.0, 20.0), stretch(-5.001, 20.0)), weighted=True, channel="U")
+    with pytest.raises(SignalError, match="found none;"):
+        calibrate((), weighted=True, channel="U")
+
+
+def test_working_point_is_the_mean_between_the_tests(steps):
+    quiet = [
+        stretch(-5.0, 19.7, start_s=0.0, length_s=50.0, torque=1700.0),
+        stretch(-5.0, 19.8, start_s=395.0, length_s=50.0, torque=1800.0),
+    ]
+    inside = stretch(-5.0, 25.0, start_s=190.0, length_s=60.0)
+    found = find_working_point((*quiet, inside, stretch(-3.0, 11.0)), steps, channel="U")
+    assert found.engine_speed_rev_s == pytest.approx(19.75)
+    assert found.shaft_torque_nm == pytest.approx(1750.0)
+    # standard error of two equal shares: half their difference
+    assert found.engine_speed_std_rev_s == pytest.approx(0.05)
+    assert found.shaft_torque_std_nm == pytest.approx(50.0)
+
+
+def test_working_point_from_a_level_where_nothing_else_is_quiet(steps):
+    found = find_working_point((stretch(-4.9, 19.6, start_s=190.0, std=0.02),), steps, channel="U")
+    assert (found.engine_speed_rev_s, found.engine_speed_std_rev_s) == (19.6, 0.02)
+    assert (found.shaft_torque_std_nm, found.set_point_v) == (5.0, -4.9)
+
+
+def test_no_working_point(steps):
+    with pytest.raises(
+        SignalError, match=r"channel U: expected a quiet stretch .* near the working voltage of -5 V, .* -3\.00 V"
+    ):
+        find_working_point((stretch(-3.0, 11.0),), steps, channel="U")
+    with pytest.raises(SignalError, match="found steady levels at none"):
+        find_working_point((), steps, channel="U")
+
+
+def test_deviation_is_relative_to_its_reference():
+    assert deviation(np.array([22.0, 18.0]), 20.0) == pytest.approx([0.1, -0.1])
+
+
+def test_delay_of_a_pure_delay_and_steps_that_are_missing(steps):
+    time = np.arange(20_000) / RATE_HZ
+    asked = -4.18 * setpoint(steps, time) - 1.4
+    followed = -4.18 * setpoint(steps, time - 0.36) - 1.4
+    delays, findings = find_step_delays(asked, followed, steps, rate_hz=RATE_HZ, start_s=0.0)
+    # of the four levels the last two are equal
+    assert [delay.staircase for delay in delays] == ["St", "St"]
+    assert [delay.rising for delay in delays] == [True, True]
+    assert [delay.delay_s for delay in delays] == pytest.approx([0.36, 0.36])
+    assert findings == ()
+    delays, findings = find_step_delays(asked, np.full(20_000, np.nan), steps, rate_hz=RATE_HZ, start_s=0.0)
+    assert delays == ()
+    assert findings[0].startswith("step 1 of St near 140 s: expected the speed to cross the middle")
+    delays, findings = find_step_delays(np.full(20_000, np.nan), followed, steps, rate_hz=RATE_HZ, start_s=0.0)
+    assert "expected the set point to cross" in findings[1]
+
+
+def test_fast_test_stands_in_where_there_is_no_slow_one():
+    campaign = Campaign.model_validate(
+        {
+            "name": "fast",
+            "duration_s": 60.0,
+            "offset_v": -5.0,
+            "sines": [
+                {
+                    "name": "S",
+                    "frequency_hz": 2.0,
+                    "amplitude_v": 0.5,
+                    "start_s": 10.0,
+                    "settled_s": 20.0,
+                    "stop_s": 40.0,
+                }
+            ],
+        }
+    )
+    time = np.arange(3000) / RATE_HZ
+    volts = setpoint(campaign, time)
+    assert expect_campaign(volts, campaign, rate_hz=RATE_HZ, start_s=0.0, channel="U") == ()
+    with pytest.raises(SignalError, match=r"found another course in every slow test \(S\)"):
+        expect_campaign(-10.0 - volts, campaign, rate_hz=RATE_HZ, start_s=0.0, channel="U")
+    # nothing fast is expected of the torque
+    sensor = SimpleNamespace(channel="M_s", full_scale_nm=5000.0)
+    assert expect_moving_torque(np.zeros(3000), campaign, sensor, rate_hz=RATE_HZ, start_s=0.0) is None
+
+
+def test_set_point_that_stands_still_in_one_test_only(steps):
+    time = np.arange(20_000) / RATE_HZ
+    volts = setpoint(steps, time)
+    volts[(time > 285.0) & (time < 395.0)] = -5.0
+    (finding,) = expect_campaign(volts, steps, rate_hz=RATE_HZ, start_s=0.0, channel="U")
+    assert "during C" in finding
+
+
+def test_two_sensors_of_one_shaft_have_no_gear_ratio_to_blame():
+    sensors = [SimpleNamespace(name=name, shaft="engine") for name in ("a", "b")]
+    vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=3.82))
+    speeds = tuple(
+        SimpleNamespace(name=name, channel=name.upper(), speed_rev_s=np.full(5, value))
+        for name, value in (("a", 20.0), ("b", 20.04))
+    )
+    (finding,) = compare_speeds(speeds, vessel)
+    assert finding == "channels A and B: expected the same engine-side speed, found b / a = 1.0020"
+
+
+def test_gear_ratio_the_other_way_round():
+    sensors = [SimpleNamespace(name="shaft", shaft="propeller"), SimpleNamespace(name="engine", shaft="engine")]
+    vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=4.0))
+    speeds = tuple(
+        SimpleNamespace(name=name, channel=name, speed_rev_s=np.full(5, value))
+        for name, value in (("shaft", 20.0), ("engine", 19.0))
+    )
+    # the shaft turns at 5 rev/s and the engine at 19: the ratio is 3.8
+    with pytest.raises(SignalError, match=r"as with a gear ratio of 3\.8000 instead of 4"):
+        compare_speeds(speeds, vessel)
