@@ -7,6 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.errors import IdentificationError
+from shaftprint.identify._covariance import variance_along
 from shaftprint.identify._objective import MaximumLikelihood, Objective, Prior, Weighting
 from shaftprint.identify._starts import Draw, LatinHypercube
 from shaftprint.models import Margins, Structure, margins
@@ -147,8 +148,8 @@ class Identification:
     def correlation(self) -> FloatArray:
         """Correlation of the free parameters, shape (free, free); nan where a variance is infinite."""
         std = np.sqrt(np.diag(self.covariance))
-        with np.errstate(invalid="ignore"):
-            return np.asarray(self.covariance / np.outer(std, std))
+        std[np.isinf(std)] = np.nan
+        return np.asarray(self.covariance / np.outer(std, std))
 
     @property
     def margins(self) -> Margins | None:
@@ -185,19 +186,20 @@ class Identification:
         Parameters
         ----------
         of
-            Takes the parameter values by name, gives the number.
+            Takes the parameter values by name, gives the number; a quotient by a parameter that is 0 is infinite.
         """
-        value = float(of(self._named(self.values)))
         places = [self.structure.names.index(p.name) for p in self.structure.free]
         slopes = np.zeros(len(places))
-        for i, place in enumerate(places):
-            width = 1e-6 * max(abs(self.values[place]), 1e-3)
-            ahead, behind = self.values.copy(), self.values.copy()
-            ahead[place] += width
-            behind[place] -= width
-            slopes[i] = (of(self._named(ahead)) - of(self._named(behind))) / (2.0 * width)
-        used = slopes != 0.0
-        variance = slopes[used] @ self.covariance[np.ix_(used, used)] @ slopes[used]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            value = float(of(self._named(self.values)))
+            for i, place in enumerate(places):
+                width = 1e-6 * max(abs(self.values[place]), 1e-3)
+                ahead, behind = self.values.copy(), self.values.copy()
+                ahead[place] += width
+                behind[place] -= width
+                slopes[i] = (of(self._named(ahead)) - of(self._named(behind))) / (2.0 * width)
+        known = np.isfinite(value) and bool(np.all(np.isfinite(slopes)))
+        variance = variance_along(self.objective, self.values[places], slopes) if known else np.inf
         return Estimate(name=name, unit=unit, value=value, std=float(np.sqrt(variance)))
 
     def model(self, frequency_hz: FloatArray) -> ComplexArray:
@@ -205,4 +207,4 @@ class Identification:
         return self.structure.response(self.values, 2j * np.pi * frequency_hz)
 
     def _named(self, values: FloatArray) -> dict[str, float]:
-        return dict(zip(self.structure.names, values.tolist(), strict=True))
+        return dict(zip(self.structure.names, values, strict=True))

@@ -91,6 +91,8 @@ class _Pulls:
 def profile_intervals(identification: Identification) -> dict[str, Interval]:
     """Return the 95 % profile-likelihood interval of every free parameter and combination, by name.
 
+    A combination that is infinite at the estimate, as a quotient by a parameter at 0, has the whole axis.
+
     Raises
     ------
     IdentificationError
@@ -109,7 +111,7 @@ def profile_intervals(identification: Identification) -> dict[str, Interval]:
         if search.working.size == 0:
             break
     ends = pulls.middle + pulls.side * pulls.scale * search.at
-    return {
+    found = {
         name: Interval(
             name=name,
             lower=float(ends[2 * i]),
@@ -118,6 +120,11 @@ def profile_intervals(identification: Identification) -> dict[str, Interval]:
             upper_open=bool(search.open_end[2 * i + 1]),
         )
         for i, name in enumerate(names)
+    }
+    return {
+        e.name: found.get(e.name)
+        or Interval(name=e.name, lower=-np.inf, upper=np.inf, lower_open=True, upper_open=True)
+        for e in (*identification.parameters, *identification.combinations)
     }
 
 
@@ -188,7 +195,9 @@ class _Search:
 
 
 def _pulls_of(identification: Identification) -> tuple[_Pulls, tuple[str, ...]]:
-    estimates = (*identification.parameters, *identification.combinations)
+    # A combination is infinite where a parameter that it divides by is at its bound 0: there is nothing to pull at.
+    combinations = (e for e in identification.combinations if np.isfinite(e.value))
+    estimates = (*identification.parameters, *combinations)
     of = {p.name: _parameter(p.name) for p in identification.structure.free}
     of |= {c.name: c.of for c in identification.structure.combinations}
     width = {p.name: p.upper - p.lower for p in identification.structure.free}
@@ -222,14 +231,16 @@ def _pulled(objective: Objective, pulls: _Pulls, rows: IntArray, target: FloatAr
         slope = at.slopes(objective, trial) / width[:, None]
         return np.concatenate([r, pull[:, None]], axis=1), np.concatenate([jacobian, slope[:, :, None]], axis=2)
 
-    found = descend(
-        residuals,
-        theta,
-        objective.lower,
-        objective.upper,
-        tolerance=PULL_TOLERANCE,
-        max_iterations=PULL_ITERATIONS,
-    )
+    # A quotient of parameters may pass through infinity on the way; the search turns back from there by itself.
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        found = descend(
+            residuals,
+            theta,
+            objective.lower,
+            objective.upper,
+            tolerance=PULL_TOLERANCE,
+            max_iterations=PULL_ITERATIONS,
+        )
     return found.theta
 
 
