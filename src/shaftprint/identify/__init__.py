@@ -17,6 +17,7 @@ from shaftprint.identify._identification import Cluster, Estimate, Identificatio
 from shaftprint.identify._identify import identify
 from shaftprint.identify._objective import MaximumLikelihood, Prior, Unweighted, Weighting
 from shaftprint.identify._profile import Interval, profile_intervals
+from shaftprint.identify._refit import Refits, refit
 from shaftprint.identify._starts import Draw, LatinHypercube, Uniform
 
 __all__ = [
@@ -28,6 +29,7 @@ __all__ = [
     "LatinHypercube",
     "MaximumLikelihood",
     "Prior",
+    "Refits",
     "Settings",
     "Uniform",
     "Unweighted",
@@ -37,4 +39,5 @@ __all__ = [
     "fit_percent",
     "identify",
     "profile_intervals",
+    "refit",
 ]
