@@ -185,7 +185,8 @@ def build_objective(
     Raises
     ------
     IdentificationError
-        If input or outputs differ, a prior names no free parameter, or there are fewer data than free parameters.
+        If input or outputs differ, a prior names no free parameter, no parameter is free, or there are fewer data than
+        free parameters.
     """
     _expect_same_channels(structure, response)
     names = structure.free
@@ -198,7 +199,11 @@ def build_objective(
         )
     chosen = _chosen_lines(response, lines)
     data = np.concatenate([response.response[:, 0].real, response.response[:, 0].imag]).T[chosen]
-    if data.size + len(known) < len(names) or not names:
+    if not names:
+        raise IdentificationError(
+            f"structure {structure.name} has no free parameter: free one with free_between(), or compare its response."
+        )
+    if data.size + len(known) < len(names):
         raise IdentificationError(
             f"structure {structure.name} has {len(names)} free parameters, the response {data.size} usable numbers "
             f"({int(chosen.sum())} lines): measure more lines or hold parameters."
