@@ -68,6 +68,11 @@ def residual_spectrum(fit: LineFit) -> ComplexArray:
     return spectrum
 
 
+def stretch_periods(periods: int) -> int:
+    """Return the number of periods in one stretch of a window of so many periods."""
+    return max(1, periods // _STRETCHES)
+
+
 def stretch_amplitudes(fit: LineFit) -> ComplexArray:
     """Return the amplitude that the residual adds in each stretch of whole periods.
 
@@ -156,7 +161,7 @@ def line_noise(spectrum: ComplexArray, stretches: ComplexArray, *, periods: int,
     count = stretches.shape[1]
     if order > 1 or count < _FEWEST_STRETCHES:
         return LineNoise(covariance=covariance, complex_samples=samples)
-    length = _stretch_periods(periods)
+    length = stretch_periods(periods)
     scatter = stretches @ stretches.conj().T * (length / periods / (count - 1))
     width = np.sqrt(_stretch_gain(slope, periods, length))
     scatter /= width[:, np.newaxis] * width
@@ -222,16 +227,12 @@ def _complex_samples(neighbours: _Neighbours) -> float:
 
 def _stretch_means(samples: WindowSamples, values: NDArray[Any]) -> NDArray[Any]:
     """Mean of each row over each stretch."""
-    length = _stretch_periods(samples.window.periods)
+    length = stretch_periods(samples.window.periods)
     count = samples.window.periods // length
     border_s = np.arange(count + 1) * length / samples.window.frequency_hz
     border = np.searchsorted(samples.time_s, border_s - 1e-9)
     means: NDArray[Any] = np.add.reduceat(values[:, : border[-1]], border[:-1], axis=1) / np.diff(border)
     return means
-
-
-def _stretch_periods(periods: int) -> int:
-    return max(1, periods // _STRETCHES)
 
 
 def _stretch_gain(slope: FloatArray, periods: int, length: int) -> FloatArray:

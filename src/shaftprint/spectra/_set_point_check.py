@@ -8,6 +8,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import ResponseError
+from shaftprint.spectra._noise import stretch_periods
 
 if TYPE_CHECKING:
     from shaftprint.spectra._line_measurement import LineMeasurement
@@ -54,14 +55,14 @@ def check_frequency_unit(measurements: Sequence["LineMeasurement"]) -> None:
         worst = measurements[int(np.argmax(angular))]
         raise ResponseError(
             f"{worst.window.line}: expected the set point to move at "
-            f"{worst.window.frequency_hz:g} Hz, found {worst.set_point_frequency_hz:.4g} Hz, "
+            f"{worst.window.frequency_hz:g} Hz, found {worst.set_point_frequency_hz:.3g} Hz, "
             f"1/(2 pi) of it, likewise in {np.count_nonzero(angular)} of {ratio.size} sines: the "
             "campaign's frequency_hz seems to be in rad/s; divide it by 2 pi."
         )
     if not np.any(ratio == 1.0):
         first = measurements[0]
         found = (
-            "a set point that does not move" if np.all(np.isnan(ratio)) else f"{first.set_point_frequency_hz:.4g} Hz"
+            "a set point that does not move" if np.all(np.isnan(ratio)) else f"{first.set_point_frequency_hz:.3g} Hz"
         )
         raise ResponseError(
             f"{first.window.line}: expected the set point to move at {first.window.frequency_hz:g} "
@@ -97,35 +98,36 @@ def check_set_point(
     if line.set_point_frequency_hz != line.window.frequency_hz:
         return SetPointFinding(remarks=(_wrong_sine(line, found, expected, rpm),), usable=False)
     if found < _UNEXCITED_SHARE * expected:
-        return SetPointFinding(remarks=(_amplitude_remark(found, expected, rpm),), usable=False)
-    remarks = []
-    if abs(found - expected) > _AMPLITUDE_TOLERANCE * expected:
-        remarks.append(_amplitude_remark(found, expected, rpm))
-    offset_bins = _frequency_offset_bins(line)
-    if abs(offset_bins) > _FREQUENCY_TOLERANCE_BINS:
-        hz = line.window.frequency_hz + offset_bins / line.window.duration_s
-        remarks.append(f"set point runs at {hz:.6g} Hz where the campaign says {line.window.frequency_hz:g} Hz")
+        return SetPointFinding(remarks=(amplitude_remark(found, expected, rpm),), usable=False)
     disturbed = _disturbed_stretches(line)
     if np.any(disturbed):
-        remarks.append(_stretch_remark(line, disturbed))
+        usable = bool(disturbed.mean() < _STRETCH_LIMIT)
+        return SetPointFinding(remarks=(_stretch_remark(line, disturbed),), usable=usable)
+    remarks = []
+    if abs(found - expected) > _AMPLITUDE_TOLERANCE * expected:
+        remarks.append(amplitude_remark(found, expected, rpm))
+    offset_hz = _frequency_offset_hz(line)
+    offset_bins = abs(offset_hz) * line.window.duration_s
     typical_db = _typical_db(local_db, place)
-    if local_db[place] < min(_CLEAN_DB, typical_db - _NEIGHBOUR_GAP_DB):
+    if offset_bins > _FREQUENCY_TOLERANCE_BINS:
+        hz = line.window.frequency_hz
+        remarks.append(f"set point runs at {hz + offset_hz:.4g} Hz where the campaign says {hz:g} Hz")
+    elif local_db[place] < min(_CLEAN_DB, typical_db - _NEIGHBOUR_GAP_DB):
         remarks.append(
             f"set point is not a clean sine: signal-to-noise {local_db[place]:.1f} dB where the "
             f"lines beside it have {typical_db:.1f} dB"
         )
-    usable = abs(offset_bins) < _FREQUENCY_LIMIT_BINS and disturbed.mean() < _STRETCH_LIMIT
-    return SetPointFinding(remarks=tuple(remarks), usable=bool(usable))
+    return SetPointFinding(remarks=tuple(remarks), usable=offset_bins < _FREQUENCY_LIMIT_BINS)
 
 
 def _wrong_sine(line: "LineMeasurement", found: float, expected: float, rpm: float) -> str:
     hz = line.set_point_frequency_hz
     if not _moves(line, expected):
-        return _amplitude_remark(found, expected, rpm)
+        return amplitude_remark(found, expected, rpm)
     if not abs(hz / line.window.frequency_hz - 1.0) * line.window.periods >= 1.0:
         share = line.variances.signal[0] / line.variances.overall[0]
         return f"set point is not a clean sine: the line is {100.0 * share:.0f} % of its variance"
-    return f"set point moves at {hz:.4g} Hz where the campaign says {line.window.frequency_hz:g} Hz"
+    return f"set point moves at {hz:.3g} Hz where the campaign says {line.window.frequency_hz:g} Hz"
 
 
 def _moves(line: "LineMeasurement", expected: float) -> bool:
@@ -133,17 +135,29 @@ def _moves(line: "LineMeasurement", expected: float) -> bool:
     return bool(line.variances.overall[0] > (_UNEXCITED_SHARE * expected) ** 2 / 2.0)
 
 
-def _amplitude_remark(found: float, expected: float, rpm: float) -> str:
+def amplitude_remark(found: float, expected: float, rpm: float) -> str:
+    """Say what amplitude the set point has.
+
+    Parameters
+    ----------
+    found, expected
+        Amplitudes over the working point.
+    rpm
+        Engine speed of the working point [rpm].
+    """
     return f"set point has an amplitude of {found * rpm:.3g} rpm where the campaign asks for {expected * rpm:.3g} rpm"
 
 
-def _frequency_offset_bins(line: "LineMeasurement") -> float:
-    """Difference between true and stated frequency in bins, from the turning of the phase over the window."""
-    amplitude = line.stretches[0]
-    turn = np.unwrap(np.angle(amplitude / line.amplitude[0]))
+def _stretch_s(line: "LineMeasurement") -> float:
+    return stretch_periods(line.window.periods) / line.window.frequency_hz
+
+
+def _frequency_offset_hz(line: "LineMeasurement") -> float:
+    """Difference between true and stated frequency, from the turning of the phase over the window."""
+    turn = np.unwrap(np.angle(line.stretches[0] / line.amplitude[0]))
     place = np.arange(turn.size) - 0.5 * (turn.size - 1)
-    slope_rad = (place @ turn) / (place @ place)
-    return float(slope_rad * turn.size / (2.0 * np.pi))
+    slope_rad = float((place @ turn) / (place @ place))
+    return slope_rad / (2.0 * np.pi * _stretch_s(line))
 
 
 def _disturbed_stretches(line: "LineMeasurement") -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
@@ -156,7 +170,7 @@ def _disturbed_stretches(line: "LineMeasurement") -> np.ndarray[tuple[int, ...],
 
 
 def _stretch_remark(line: "LineMeasurement", disturbed: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> str:
-    length_s = line.window.duration_s / disturbed.size
+    length_s = _stretch_s(line)
     place = np.flatnonzero(disturbed)
     first_s = line.window.start_s + length_s * place[0]
     last_s = line.window.start_s + length_s * (place[-1] + 1)

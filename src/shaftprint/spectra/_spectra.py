@@ -14,7 +14,7 @@ from shaftprint.spectra._line_measurement import LineMeasurement, measure_line
 from shaftprint.spectra._load_drift import LoadDrift, load_drift
 from shaftprint.spectra._pick_up_gain import pick_up_gain
 from shaftprint.spectra._response_covariance import response_of_line, with_common_error
-from shaftprint.spectra._set_point_check import check_frequency_unit, check_set_point
+from shaftprint.spectra._set_point_check import amplitude_remark, check_frequency_unit, check_set_point
 from shaftprint.spectra._signal_to_noise import SignalToNoise, signal_to_noise
 from shaftprint.spectra._sine_fit import WholePeriodSine
 from shaftprint.spectra._windows import Window, plan_windows
@@ -29,6 +29,7 @@ _WHOLE_PERIOD_SINE = WholePeriodSine()
 
 # A line this close to half the rate of the grid has no neighbours above it and is bent by the anti-alias filter.
 _HIGHEST_SHARE_OF_RATE = 0.45
+_SILENT_SHARE = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -107,6 +108,7 @@ def estimate_spectra(
     cuts, left_out = _cut_windows(signals, campaign)
     measurements = [_measure(cut, names, method) for cut in cuts]
     check_frequency_unit(measurements)
+    measurements, silent = _without_silent(signals, campaign, measurements)
     ratios = signal_to_noise(
         [line.variances for line in measurements],
         lines=tuple(line.window.line for line in measurements),
@@ -130,7 +132,7 @@ def estimate_spectra(
         harmonics=collect_harmonics(measurements, speed=used_channels[1], torque=used_channels[2]),
         load_drift=drift,
         speed=sensor.name,
-        remarks=remarks | left_out,
+        remarks=remarks | silent | left_out,
     )
 
 
@@ -195,6 +197,28 @@ def _measure(cut: WindowSamples, names: Sequence[str], method: SineMethod) -> Li
     return measure_line(cut, method)
 
 
+def _expected_amplitude(signals: "Signals", campaign: "Campaign", line: LineMeasurement) -> float:
+    """Amplitude that the campaign asks of the set point, over the working point."""
+    amplitude_v = next(sine.amplitude_v for sine in campaign.sines if sine.name == line.window.line)
+    return amplitude_v * abs(signals.calibration.slope_rev_s_per_v) / signals.working_point.engine_speed_rev_s
+
+
+def _without_silent(
+    signals: "Signals", campaign: "Campaign", measurements: Sequence[LineMeasurement]
+) -> tuple[list[LineMeasurement], dict[str, str]]:
+    """Leave out lines whose set point does not move: they have no response, not even a bad one."""
+    heard, silent = [], {}
+    rpm = rpm_from_rev_s(signals.working_point.engine_speed_rev_s)
+    for line in measurements:
+        expected = _expected_amplitude(signals, campaign, line)
+        found = float(np.abs(line.amplitude[0]))
+        if found < _SILENT_SHARE * expected:
+            silent[line.window.line] = f"left out: {amplitude_remark(found, expected, rpm)}"
+        else:
+            heard.append(line)
+    return heard, silent
+
+
 def _judge(
     signals: "Signals",
     campaign: "Campaign",
@@ -203,19 +227,16 @@ def _judge(
     local_db: "FloatArray",
 ) -> tuple[dict[str, str], "BoolArray"]:
     """Collect remarks on each line and say which lines have a clean set point and a speed without aliasing."""
-    speed_rev_s = signals.working_point.engine_speed_rev_s
-    rev_s_per_v = abs(signals.calibration.slope_rev_s_per_v)
-    amplitude_v = {sine.name: sine.amplitude_v for sine in campaign.sines}
     remarks = {}
     usable = np.ones(len(measurements), dtype=bool)
     for place, line in enumerate(measurements):
         name = line.window.line
         finding = check_set_point(
             line,
-            expected=amplitude_v[name] * rev_s_per_v / speed_rev_s,
+            expected=_expected_amplitude(signals, campaign, line),
             local_db=local_db,
             place=place,
-            rpm=rpm_from_rev_s(speed_rev_s),
+            rpm=rpm_from_rev_s(signals.working_point.engine_speed_rev_s),
         )
         found = list(finding.remarks)
         aliased = line.window.frequency_hz > sensor.nyquist_hz
