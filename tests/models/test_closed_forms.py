@@ -74,7 +74,7 @@ def gauge(s, p):
 
     Upstream ``M_b - M_s = tau_up s n`` with ``M_b = g n + v C e^(-s t_d) F e``; downstream
     ``M_s - k_q n = tau_dn s n``; the error is ``e = c_set e^(-s t_sp) n_set - n``. Three equations in ``M_b``,
-    ``M_s`` and ``n``, solved as a linear system.
+    ``M_s`` and ``n``, solved as a linear system. The torque is seen ``t_gauge`` late.
     """
     engine = governor(s, p)
     demand = p["c_set"] * mp.exp(-s * p["t_sp"])
@@ -86,7 +86,7 @@ def gauge(s, p):
         ]
     )
     _, torque, speed = mp.lu_solve(matrix, mp.matrix([0, 0, engine * demand]))
-    return speed, torque
+    return speed, torque * mp.exp(-s * p["t_gauge"])
 
 
 def gauge_open(s, p):
@@ -113,7 +113,7 @@ FORMS = {
     "CL4-PADE5": lambda s, p: closed(s, p, governor_pade),
     "INITIAL": five_parameters,
     "BENCHMARK": lambda s, p: five_parameters(s, p)[::2],
-    "GAUGE-CORE": lambda s, p: (pick_up(s, p) / (p["tau_dn"] * s + p["k_q"]),),
+    "GAUGE-CORE": lambda s, p: (pick_up(s, p) * mp.exp(s * p["t_gauge"]) / (p["tau_dn"] * s + p["k_q"]),),
     "GAUGE-OPEN": gauge_open,
     "GAUGE-CLOSED": gauge_closed,
 }

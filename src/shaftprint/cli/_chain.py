@@ -10,15 +10,12 @@ import numpy as np
 from shaftprint.cli._inputs import Trial
 from shaftprint.cli._progress import Steps
 from shaftprint.fingerprint import Fingerprint, take_fingerprint
-from shaftprint.identify import Identification, Prior, Settings, identify
+from shaftprint.identify import Identification, Prior, Settings, identify, priors_from_vessel
 from shaftprint.models import Structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import Mode, Signals, prepare_signals
 from shaftprint.spectra import ExactBin, FrequencyResponse, Spectra, WholePeriodSine, estimate_spectra, open_loop
-
-# What is known of an engine's torque slope before any test: brake torque over speed at constant rack is nearly flat
-# in the middle of the range, and no test of set point, speed and shaft torque can tell it from the inertia.
-PRIOR_OF_G = Prior(mean=0.0, std=0.1)
+from shaftprint.vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -52,26 +49,11 @@ def measure(recording: Path, trial: Trial, *, mode: Mode, steps: Steps) -> Measu
     return Measurement(signals=signals, spectra=spectra, responses=responses)
 
 
-def known_beforehand(structure: Structure, signals: Signals, given: Mapping[str, Prior]) -> dict[str, Prior]:
-    """Return the priors of a gauge-aware structure: of ``g``, and of ``c_set`` from the calibration.
-
-    Parameters
-    ----------
-    structure
-        The structure; one without ``c_set`` gets no priors but those given.
-    signals
-        They know how well the set point is calibrated.
-    given
-        Priors that the user states; they replace those of the same name.
-    """
-    free = {parameter.name for parameter in structure.free}
-    found: dict[str, Prior] = {}
-    if "c_set" in free:
-        found["g"] = PRIOR_OF_G
-        if signals.dc_scale_std > 0.0:
-            found["c_set"] = Prior(mean=1.0, std=signals.dc_scale_std / signals.dc_scale)
-    found |= given
-    return {name: prior for name, prior in found.items() if name in free or name in given}
+def known_beforehand(
+    structure: Structure, vessel: Vessel, signals: Signals, given: Mapping[str, Prior]
+) -> dict[str, Prior]:
+    """Return the priors of a structure: what the vessel file knows, and what the user states instead or besides."""
+    return priors_from_vessel(structure, vessel, signals.working_point) | dict(given)
 
 
 def fit(

@@ -90,7 +90,8 @@ def _identify(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> _Fou
     measurement = measure(recording, trial, mode="shaftprint", steps=steps)
     structures = [structure(name) for name in (IDENTIFIED, *OF_THE_THESIS)]
     settings = {
-        chosen.name: Settings(priors=known_beforehand(chosen, measurement.signals, {})) for chosen in structures
+        chosen.name: Settings(priors=known_beforehand(chosen, trial.vessel, measurement.signals, {}))
+        for chosen in structures
     }
     fits = fit(structures, measurement, settings=settings, seed=seed, steps=steps)
     as_thesis = measure(recording, trial, mode="thesis", steps=steps)

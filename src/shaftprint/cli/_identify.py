@@ -15,7 +15,7 @@ from shaftprint.cli._results import where, write_results
 from shaftprint.errors import StructureError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted
 from shaftprint.models import Structure, structure
-from shaftprint.signals import Mode, Signals
+from shaftprint.signals import Mode
 
 
 @click.command("identify")
@@ -36,7 +36,14 @@ from shaftprint.signals import Mode, Signals
     metavar="NAME=MEAN+-STD",
     type=named_prior,
     multiple=True,
-    help="What is known of a parameter beforehand, such as g=0+-0.1, the default of gauge-aware structures.",
+    help="What is known of a parameter beforehand, such as g=0+-0.1; instead of what the vessel file knows.",
+)
+@click.option(
+    "--free",
+    "freed",
+    metavar="NAME",
+    multiple=True,
+    help="Take nothing as known of a parameter, such as tau_up, of which the vessel file knows the inertia.",
 )
 @click.option(
     "--hold", "held", metavar="NAME=VALUE", type=named_value, multiple=True, help="Hold a parameter at a value."
@@ -60,6 +67,7 @@ def command(
     campaign: str,
     names: tuple[str, ...],
     priors: tuple[tuple[str, Prior], ...],
+    freed: tuple[str, ...],
     held: tuple[tuple[str, float], ...],
     mode: Mode,
     unweighted: bool,
@@ -74,18 +82,20 @@ def command(
     Writes the fingerprint as JSON, the figures and a report into a folder, and prints the tables.
     """
     structures = _structures(names, dict(held))
+    _expect_free(freed, structures)
     trial = load_trial(vessel, campaign)
     weighting = Unweighted() if unweighted else MaximumLikelihood()
     with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode=mode, steps=steps)
-        settings = {
-            chosen.name: Settings(
+        settings = {}
+        for chosen in structures:
+            given = _given(chosen, structures, dict(priors))
+            known = known_beforehand(chosen, trial.vessel, measurement.signals, given)
+            settings[chosen.name] = Settings(
                 weighting=weighting,
                 starts=starts,
-                priors=_priors(chosen, structures, measurement.signals, dict(priors)),
+                priors={name: prior for name, prior in known.items() if name not in freed},
             )
-            for chosen in structures
-        }
         fits = fit(structures, measurement, settings=settings, seed=seed, steps=steps)
         steps.begin("Finding the intervals")
         fingerprint = fingerprint_of(fits[0], measurement, trial)
@@ -110,12 +120,15 @@ def _structures(names: tuple[str, ...], held: dict[str, float]) -> tuple[Structu
     )
 
 
-def _priors(
-    chosen: Structure, structures: tuple[Structure, ...], signals: Signals, given: dict[str, Prior]
-) -> dict[str, Prior]:
-    """Return the priors of one structure; a given one that no structure has is passed on, to be refused."""
+def _expect_free(freed: tuple[str, ...], structures: tuple[Structure, ...]) -> None:
+    anywhere = sorted({parameter.name for found in structures for parameter in found.free})
+    unknown = [name for name in freed if name not in anywhere]
+    if unknown:
+        raise StructureError(f"--free {', '.join(unknown)}: expected a free parameter, one of {', '.join(anywhere)}.")
+
+
+def _given(chosen: Structure, structures: tuple[Structure, ...], given: dict[str, Prior]) -> dict[str, Prior]:
+    """Return the priors that concern a structure; one that no structure has is passed on, to be refused."""
     free = {parameter.name for parameter in chosen.free}
     anywhere = {parameter.name for found in structures for parameter in found.free}
-    return known_beforehand(
-        chosen, signals, {name: prior for name, prior in given.items() if name in free or name not in anywhere}
-    )
+    return {name: prior for name, prior in given.items() if name in free or name not in anywhere}

@@ -15,12 +15,14 @@ from shaftprint.identify._covariance import estimate_covariance
 from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify._identification import Cluster, Estimate, Identification, Settings
 from shaftprint.identify._identify import identify
+from shaftprint.identify._known import PRIOR_OF_G, priors_from_vessel
 from shaftprint.identify._objective import MaximumLikelihood, Prior, Unweighted, Weighting
 from shaftprint.identify._profile import Interval, profile_intervals
 from shaftprint.identify._refit import Refits, refit
 from shaftprint.identify._starts import Draw, LatinHypercube, Uniform
 
 __all__ = [
+    "PRIOR_OF_G",
     "Cluster",
     "Draw",
     "Estimate",
@@ -38,6 +40,7 @@ __all__ = [
     "fit_ceiling",
     "fit_percent",
     "identify",
+    "priors_from_vessel",
     "profile_intervals",
     "refit",
 ]

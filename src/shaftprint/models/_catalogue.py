@@ -54,6 +54,7 @@ GAUGE_OMEGA_N = Parameter("omega_n", "rad/s", 3.0, 60.0, 10.0, "natural frequenc
 GAUGE_ZETA = Parameter("zeta", "-", 0.1, 4.0, 0.5, "damping ratio of the actuation lag")
 T_SP = Parameter("t_sp", "s", 0.0, 0.5, 0.05, "latency of the set point, outside the loop")
 C_SET = Parameter("c_set", "-", 0.95, 1.05, 1.0, "scale error of the measured set point")
+T_GAUGE = Parameter("t_gauge", "s", -0.02, 0.02, 0.0, "error of the known latency of the torque telemetry")
 T_AVERAGE = Parameter("T_average", "s", 0.0, 1.0, 0.0, "window of the pick-up's mean", held=True)
 T_HOLD = Parameter("T_hold", "s", 0.0, 1.0, 0.0, "time for which a pick-up value is held", held=True)
 T_PICKUP = Parameter("t_pickup", "s", 0.0, 1.0, 0.0, "delay of the pick-up's value", held=True)
@@ -173,8 +174,11 @@ def _five_parameters(name: str, title: str, *, integrated_error: bool) -> Struct
 
 
 def gauge_core() -> Structure:
-    """Return the gauge-aware core propulsion, ``n / M_s = sensor / (tau_dn s + k_q)``: only what is downstream."""
-    core = Shaft((TAU_DN,), K_Q) * SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP)
+    """Return the gauge-aware core propulsion: only what is downstream.
+
+    ``n / M_s = sensor exp(s t_gauge) / (tau_dn s + k_q)``.
+    """
+    core = Shaft((TAU_DN,), K_Q) * Inverse(Delay(T_GAUGE)) * SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP)
     return Structure(name="GAUGE-CORE", title="gauge-aware core propulsion", input="M_s", outputs={"n": core})
 
 
@@ -200,7 +204,7 @@ def gauge_closed() -> Structure:
     """Return the gauge-aware closed loop, ``n`` and ``M_s`` from ``n_set``.
 
     ``n = c_set sensor exp(-s t_sp) L / (1 + L)`` with ``L = v C exp(-s t_d) F / ((tau_up + tau_dn) s + k_q - g)``, and
-    ``M_s = (tau_dn s + k_q) n`` without the sensor.
+    ``M_s = (tau_dn s + k_q) exp(-s t_gauge) n`` without the sensor.
     """
     speed, torque = _gauge_outputs()
     return Structure(
@@ -217,7 +221,8 @@ def _gauge_outputs() -> tuple[Expression, Expression]:
     engine = Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA)
     loop = governor * engine * Shaft((TAU_DN, TAU_UP), K_Q, G)
     speed = loop * Sensitivity(loop) * Delay(T_SP) * Gain(C_SET)
-    return speed * SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP), speed * TorqueBalance(TAU_DN, K_Q)
+    torque = speed * TorqueBalance(TAU_DN, K_Q) * Delay(T_GAUGE)
+    return speed * SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP), torque
 
 
 def _gauge_combinations() -> tuple[Combination, ...]:
