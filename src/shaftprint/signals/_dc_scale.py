@@ -169,22 +169,26 @@ def zero_frequency_ratio(lines: LowLines) -> tuple[float, float]:
 
 
 def _period_amplitudes(values: FloatArray, sine: Sine, rate_hz: float, start_s: float) -> ComplexArray:
-    """Return the complex amplitude in each whole period, by least squares with offset, drift and harmonics.
+    """Return the complex amplitude in each whole period.
 
-    Within one period a drift and a harmonic are not orthogonal: the second harmonic of the propeller law
-    would turn up as a drift, and through it change the ratio by 5e-4.
+    Offset, drift and harmonics are those of the whole window, fitted together. A drift
+    for each period would not do: within one period drift and harmonics look alike, and either the second
+    harmonic of the propeller law changes the ratio by 5e-4, or the scatter doubles.
     """
-    omega = 2.0 * np.pi * sine.frequency_hz
     borders = sine.settled_s + np.arange(sine.periods + 1) / sine.frequency_hz
     samples = np.ceil((borders - start_s) * rate_hz - 1e-9).astype(np.int64)
+    part = values[samples[0] : samples[-1]]
+    time = start_s + np.arange(samples[0], samples[-1]) / rate_hz - sine.settled_s
+    phase = 2.0 * np.pi * sine.frequency_hz * time
+    waves = [wave(order * phase) for order in _ORDERS for wave in (np.cos, np.sin)]
+    design = np.column_stack([*waves, np.ones(time.size), time])
+    fitted = np.linalg.solve(design.T @ design, design.T @ part)
+    rest = part - design[:, 2:] @ fitted[2:]
     found = np.empty(sine.periods, dtype=np.complex128)
     for k in range(sine.periods):
-        part = values[samples[k] : samples[k + 1]]
-        time = start_s + np.arange(samples[k], samples[k + 1]) / rate_hz - borders[k]
-        phase = omega * time
-        waves = [wave(order * phase) for order in _ORDERS for wave in (np.cos, np.sin)]
-        design = np.column_stack([*waves, np.ones(time.size), time])
-        cosine, sinus, *_ = np.linalg.solve(design.T @ design, design.T @ part)
+        inside = slice(samples[k] - samples[0], samples[k + 1] - samples[0])
+        pair = design[inside, :2]
+        cosine, sinus = np.linalg.solve(pair.T @ pair, pair.T @ rest[inside])
         found[k] = cosine - 1j * sinus
     return found
 
