@@ -27,6 +27,7 @@ TRUTH = {
     "omega_n": 10.3,
     "zeta": 0.47,
     "c_set": 1.0,
+    "t_gauge": 0.0,
 }
 FREQUENCY_HZ = np.geomspace(0.005, 6.0, 14)
 LINES = tuple(f"S{number}" for number in range(1, 15))
@@ -35,7 +36,8 @@ NOW = datetime(2026, 3, 14, 9, 30, tzinfo=UTC)
 
 def exact_response(model, values, share, **changes):
     """Return the response of a model without noise, whose stated standard deviation is a share of its size."""
-    true = model.response(model.vector(values), 2j * np.pi * FREQUENCY_HZ)
+    known = {name: value for name, value in values.items() if name in model.names}
+    true = model.response(model.vector(known), 2j * np.pi * FREQUENCY_HZ)
     variance = np.concatenate([np.abs(true), np.abs(true)]).T ** 2 * share**2
     given = {
         "frequency_hz": FREQUENCY_HZ,
@@ -48,8 +50,9 @@ def exact_response(model, values, share, **changes):
     return FrequencyResponse(**given | changes)
 
 
-def fitted(name, values, share=0.001, settings=None, lines=None, **changes):
+def fitted(name, values, share=0.001, settings=None, lines=None, held=(), **changes):
     model = structure(name)
+    model = model.held_at(**{parameter: values[parameter] for parameter in held})
     return identify(
         model,
         exact_response(model, values, share, **changes),

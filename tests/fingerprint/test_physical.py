@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 
 from shaftprint.fingerprint import physical_quantities
+from shaftprint.identify import Prior, Settings
 
 
 @pytest.fixture
@@ -38,25 +39,42 @@ def test_values_stand_beside_those_of_the_torsional_vibration_calculation(found)
     assert found["governor integral action"].expected is None
 
 
-def test_standard_deviations_are_fit_working_point_and_gauge_in_quadrature(
-    gauge_fit, put_by_hand, working_point, vessel
-):
+def known_from_a_prior(fit, name, values, parameter, std, held=()):
+    """A fit whose data say next to nothing, so that all that is known of one parameter is its prior."""
+    settings = Settings(starts=5, priors={parameter: Prior(values[parameter], std)})
+    return fit(name, values, share=1e4, settings=settings, held=held)
+
+
+@pytest.fixture
+def core(fit):
+    """An inertia time of 0.32 s, known to 1 %."""
+    return known_from_a_prior(fit, "OL1", {"tau_n": 0.32}, "tau_n", 0.0032)
+
+
+def test_standard_deviations_are_fit_working_point_and_gauge_in_quadrature(core, working_point, vessel):
     # 1 % of the fit, 8 / 1725 of the working-point torque, 2 % of the gauge's scale: 2.28365 %
-    known = put_by_hand(gauge_fit, std={"tau_dn": 0.0032, "K_p": 0.057})
-    found = {quantity.name: quantity for quantity in physical_quantities(known, working_point, vessel)}
-    assert found["I_dn"].std == pytest.approx(0.388442, rel=1e-4)
-    assert found["governor proportional action"].std == pytest.approx(0.0228365 * 8.30588, rel=1e-4)
-    # 25 N m of the gauge's zero and twice 0.01 / 19.73 of the speed as well: 2.51511 %
+    found = {quantity.name: quantity for quantity in physical_quantities(core, working_point, vessel)}
+    assert found["I"].value == pytest.approx(17.0096, rel=1e-5)
+    assert found["I"].std == pytest.approx(0.388442, rel=1e-4)
+    # 25 N m of the gauge's zero and twice 0.01 / 19.73 of the speed, but no fit: 2.51511 %
     assert found["K_Q"].std == pytest.approx(0.0251511 * 0.049430, rel=1e-4)
 
 
-def test_without_stated_accuracy_only_fit_and_working_point_count(gauge_fit, put_by_hand, working_point, vessel):
+def test_standard_deviation_of_the_governor_action(fit, truth, working_point, vessel):
+    held = ["K_i", "tau_dn", "tau_up", "k_q", "g", "t_sp", "omega_n", "c_set"]
+    governed = known_from_a_prior(fit, "GAUGE-CLOSED", truth, "K_p", 0.057, held=held)
+    found = {quantity.name: quantity for quantity in physical_quantities(governed, working_point, vessel)}
+    assert found["governor proportional action"].std == pytest.approx(0.0228365 * 8.30588, rel=1e-3)
+    # K_i is held: 8 / 1725 and 2 %
+    assert found["governor integral action"].std == pytest.approx(0.0205307 * 6.22212, rel=1e-4)
+
+
+def test_without_stated_accuracy_only_fit_and_working_point_count(core, working_point, vessel):
     sensor = vessel.sensors.shaft_torque.model_copy(update={"scale_std_fraction": None, "zero_std_nm": None})
     plain = vessel.model_copy(update={"sensors": vessel.sensors.model_copy(update={"shaft_torque": sensor})})
-    known = put_by_hand(gauge_fit, std={"tau_dn": 0.0032})
     point = replace(working_point, shaft_torque_std_nm=17.25, engine_speed_std_rev_s=0.0)
-    found = {quantity.name: quantity for quantity in physical_quantities(known, point, plain)}
-    assert found["I_dn"].std == pytest.approx(17.0096 * 0.0141421, rel=1e-4)
+    found = {quantity.name: quantity for quantity in physical_quantities(core, point, plain)}
+    assert found["I"].std == pytest.approx(17.0096 * 0.0141421, rel=1e-4)
     assert found["K_Q"].std == pytest.approx(0.049430 * 0.01, rel=1e-4)
 
 

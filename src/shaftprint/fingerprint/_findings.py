@@ -4,10 +4,11 @@ import numpy as np
 
 from shaftprint.fingerprint._fingerprint import Quantity
 from shaftprint.identify import Estimate, Identification
+from shaftprint.models import Parameter
 
 # A combination is worth naming when it is known this much better, relative to its size, than a parameter in it.
 BETTER_KNOWN = 0.4
-# Parameters whose standard deviation exceeds this share of their value are called hardly known.
+# Parameters whose standard deviation exceeds this share of their size are called hardly known.
 HARDLY_KNOWN = 0.1
 # 99 % point of the ratio chi-square / degrees of freedom is near 1 + 2.33 sqrt(2 / dof).
 NORMAL_99 = 2.326
@@ -86,14 +87,21 @@ def _search(identification: Identification) -> list[str]:
 
 def _hardly_known(identification: Identification) -> list[str]:
     found = []
-    for estimate in identification.parameters:
-        if estimate.std <= HARDLY_KNOWN * abs(estimate.value) or estimate.name in identification.settings.priors:
+    for parameter, estimate in zip(identification.structure.free, identification.parameters, strict=True):
+        sharp = estimate.std <= HARDLY_KNOWN * _size(parameter, estimate)
+        if sharp or estimate.name in identification.settings.priors:
             continue
         text = f"{estimate.name} = {_written(estimate)} is hardly known from this test"
         better = [c for c in identification.combinations if _is_better(c, estimate, identification)]
         known = ", ".join(f"{c.name} = {_written(c)}" for c in better)
         found.append(text + (f"; known is {known}." if better else "."))
     return found
+
+
+def _size(parameter: Parameter, estimate: Estimate) -> float:
+    """Return what a deviation is compared with: the value, or the range of a parameter that may have either sign."""
+    either_sign = parameter.lower < 0.0 < parameter.upper
+    return max(abs(estimate.value), parameter.upper - parameter.lower if either_sign else 0.0)
 
 
 def _is_better(combination: Estimate, estimate: Estimate, identification: Identification) -> bool:

@@ -1,70 +1,47 @@
 """Stability margins with their standard deviations."""
 
+from collections.abc import Callable, Mapping
+from functools import cache
+
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.fingerprint._fingerprint import Quantity
 from shaftprint.identify import Identification
-from shaftprint.models import margins
+from shaftprint.models import Margins, margins
 
-# Share of a standard deviation by which a parameter is moved to see how a margin follows, ...
-NUDGE = 0.01
-# ... and share of its search width where the test says nothing about it.
-NUDGE_UNKNOWN = 1e-4
-# A margin that follows such a parameter by less than this share of itself does not depend on it.
-UNMOVED = 1e-6
+MARGINS: tuple[tuple[str, str, Callable[[Margins], float], str], ...] = (
+    ("gain margin", "-", lambda found: found.gain_margin, "factor on the loop gain that makes the line hunt"),
+    (
+        "phase margin",
+        "deg",
+        lambda found: float(np.degrees(found.phase_margin_rad)),
+        "smallest phase reserve over all crossovers",
+    ),
+    ("delay margin", "s", lambda found: found.delay_margin_s, "extra delay in the loop that makes the line hunt"),
+)
 
 
 def margin_quantities(identification: Identification) -> tuple[Quantity, ...]:
     """Return gain, phase and delay margin with standard deviations to first order; nothing without feedback.
 
-    A margin that does not exist, because no gain or delay reaches instability, is left out. The standard deviation of
-    one that depends on a parameter of which the test says nothing is infinite.
+    A margin that does not exist, because no gain or delay reaches instability, is left out.
     """
-    if identification.margins is None:
+    if identification.structure.loop is None:
         return ()
-    middle = _numbers(identification, identification.values)
-    there = np.isfinite(middle)
-    spread = np.full(middle.size, np.nan)
-    spread[there] = _spread(identification, middle[there], there)
-    meanings = (
-        ("gain margin", "-", "factor on the loop gain that makes the line hunt"),
-        ("phase margin", "deg", "smallest phase reserve over all crossovers"),
-        ("delay margin", "s", "extra delay in the loop that makes the line hunt"),
+
+    # all three margins are asked for at the same points, and each point costs a sweep of the loop
+    @cache
+    def at(values: tuple[float, ...]) -> Margins:
+        return margins(identification.structure, values)
+
+    def follow(number: Callable[[Margins], float]) -> Callable[[Mapping[str, float]], float]:
+        return lambda named: number(at(tuple(float(value) for value in named.values())))
+
+    estimates = (
+        (identification.derived(name, unit, follow(number)), meaning) for name, unit, number, meaning in MARGINS
     )
     return tuple(
-        Quantity(name=name, unit=unit, value=float(middle[i]), std=float(spread[i]), meaning=meaning)
-        for i, (name, unit, meaning) in enumerate(meanings)
-        if there[i]
+        Quantity(name=found.name, unit=found.unit, value=found.value, std=found.std, meaning=meaning)
+        for found, meaning in estimates
+        if np.isfinite(found.value)
     )
-
-
-def _spread(identification: Identification, middle: FloatArray, there: BoolArray) -> FloatArray:
-    """Return the standard deviation of each margin that exists."""
-    std = np.sqrt(np.diag(identification.covariance))
-    known = np.isfinite(std)
-    free = identification.structure.free
-    slopes = np.zeros((len(free), middle.size))
-    lost = np.zeros(middle.size, dtype=np.bool_)
-    for i, parameter in enumerate(free):
-        width = NUDGE * std[i] if known[i] else NUDGE_UNKNOWN * (parameter.upper - parameter.lower)
-        if width == 0.0:
-            continue
-        place = identification.structure.names.index(parameter.name)
-        ahead, behind = identification.values.copy(), identification.values.copy()
-        ahead[place] += width
-        behind[place] -= width
-        change = _numbers(identification, ahead)[there] - _numbers(identification, behind)[there]
-        if known[i]:
-            lost |= ~np.isfinite(change)
-            slopes[i] = np.where(np.isfinite(change), change, 0.0) / (2.0 * width)
-        else:
-            lost |= ~(np.abs(change) <= UNMOVED * np.abs(middle))
-    covariance = identification.covariance[np.ix_(known, known)]
-    variance = np.einsum("im,ij,jm->m", slopes[known], covariance, slopes[known])
-    return np.where(lost, np.inf, np.sqrt(variance))
-
-
-def _numbers(identification: Identification, values: FloatArray) -> FloatArray:
-    found = margins(identification.structure, values)
-    return np.array([found.gain_margin, np.degrees(found.phase_margin_rad), found.delay_margin_s])
