@@ -34,10 +34,8 @@ def truth_of_combinations(identification: "Identification", truth: Mapping[str, 
 
     Combinations of parameters whose truth is not known are left out.
     """
-    held = {parameter.name: parameter.value for parameter in identification.structure.parameters if parameter.held}
+    held = {p.name: p.value if p.held else math.nan for p in identification.structure.parameters}
     known = held | dict(truth)
-    if not set(identification.structure.names) <= set(known):
-        known |= {name: math.nan for name in identification.structure.names if name not in known}
     values = {c.name: float(c.of(known)) for c in identification.structure.combinations}  # type: ignore[arg-type]
     return {name: value for name, value in values.items() if math.isfinite(value)}
 
@@ -81,42 +79,51 @@ def _interval_text(quantity: "Quantity") -> str:
     return f"{text}*" if open_high else text
 
 
-def physical_table(fingerprint: "Fingerprint") -> Table:
-    """Return the physical values beside those of the vessel file (torsional vibration calculation)."""
+def physical_table(fingerprint: "Fingerprint", truth: Mapping[str, float]) -> Table:
+    """Return the physical values beside those of the vessel file (torsional vibration calculation) and the truth."""
+    told = any(quantity.name in truth for quantity in fingerprint.physical)
     rows: list[tuple[Cell, ...]] = []
     for quantity in fingerprint.physical:
         lower, upper = limits(quantity)
         expected = quantity.expected
-        beside = "–" if expected is None else with_deviation(expected, quantity.expected_std or 0.0)
-        if expected is not None and not quantity.expected_std:
-            beside = rounded(expected)
         share = "–" if expected is None else f"{plain(100.0 * (quantity.value / expected - 1.0), 1)} %"
+        true = truth.get(quantity.name, math.nan)
         rows.append(
             (
                 symbol_html(quantity.name),
                 with_deviation(quantity.value, quantity.std),
                 interval(lower, upper, quantity.std),
-                beside,
+                *((plain(true, decimals_of(true, quantity.std)),) if told else ()),
+                expected_text(quantity),
                 share,
                 unit_text(quantity.unit),
                 quantity.meaning,
             )
         )
+    beside = ("truth", "vessel file") if told else ("vessel file",)
     return Table(
         caption="Physical values beside those of the vessel file",
-        header=("quantity", "value ± std", "95 % interval", "vessel file", "difference", "unit", "meaning"),
+        header=("quantity", "value ± std", "95 % interval", *beside, "difference", "unit", "meaning"),
         rows=tuple(rows),
-        note="Standard deviations hold the scale of the torque gauge and the scatter of the working point too.",
+        note=(
+            "Standard deviations hold the scale of the torque gauge and the scatter of the working point too. The "
+            "difference is that from the vessel file."
+        ),
     )
 
 
-def margin_table(fingerprint: "Fingerprint") -> Table:
-    """Return the stability margins with standard deviations."""
-    rows = tuple(
-        (quantity.name, with_deviation(quantity.value, quantity.std), unit_text(quantity.unit), quantity.meaning)
-        for quantity in fingerprint.margins
-    )
-    return Table(caption="Stability margins", header=("margin", "value ± std", "unit", "meaning"), rows=rows)
+def expected_text(quantity: "Quantity") -> str:
+    """Return the value of the vessel file with its standard deviation, where there are such."""
+    if quantity.expected is None:
+        return "–"
+    if not quantity.expected_std:
+        return rounded(quantity.expected)
+    return with_deviation(quantity.expected, quantity.expected_std)
+
+
+def margin_table(fingerprint: "Fingerprint", truth: Mapping[str, float]) -> Table:
+    """Return the stability margins with intervals, beside the truth where it is known."""
+    return _quantities("Stability margins", fingerprint.margins, truth)
 
 
 def fit_table(fingerprint: "Fingerprint") -> Table:

@@ -62,6 +62,7 @@ def signal_section(inputs: Inputs) -> Section:
     return Section(
         key="signals",
         title="From raw channels to signals",
+        points=signals.findings,
         tables=[table for table in tables if table.rows],
         pictures=pictures,
     )

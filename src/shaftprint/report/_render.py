@@ -16,6 +16,7 @@ from shaftprint.report._model_sections import sensitivity_section, structure_sec
 from shaftprint.report._result_sections import fit_section, parameter_section, stability_section, summary_section
 from shaftprint.report._sections import Inputs, Picture, Section
 from shaftprint.report._style import save_figure
+from shaftprint.report._table import sentence_html
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
@@ -149,6 +150,7 @@ def _page(inputs: Inputs, sections: Sequence[Section], sources: Mapping[str, str
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["symbols"] = sentence_html
     return environment.get_template(TEMPLATE).render(
         fingerprint=inputs.fingerprint,
         sections=sections,

@@ -8,6 +8,7 @@ from shaftprint.report._correlation_figure import plot_correlation
 from shaftprint.report._curve import Curve
 from shaftprint.report._fingerprint_tables import (
     combination_table,
+    expected_text,
     fit_table,
     margin_table,
     parameter_table,
@@ -87,7 +88,7 @@ def _against_vessel(fingerprint: "Fingerprint") -> list[str]:
         return []
     listed = "; ".join(
         f"{q.name} = {with_deviation(q.value, q.std)} {unit_text(q.unit)}".strip()
-        + f" (vessel file {with_deviation(q.expected or 0.0, q.expected_std or 0.0)})".replace(" ± 0)", ")")
+        + f" (vessel file {expected_text(q)})"
         for q in compared
     )
     return [f"Physical values: {listed}."]
@@ -95,12 +96,11 @@ def _against_vessel(fingerprint: "Fingerprint") -> list[str]:
 
 def parameter_section(inputs: Inputs) -> Section:
     """Return parameters, combinations and physical values with uncertainty, and their correlation."""
-    truth = dict(inputs.truth)
-    truth |= truth_of_combinations(inputs.identification, truth) if truth else {}
+    truth = truth_of_combinations(inputs.identification, inputs.truth) | dict(inputs.truth) if inputs.truth else {}
     tables = [
         parameter_table(inputs.fingerprint, truth),
         combination_table(inputs.fingerprint, truth),
-        physical_table(inputs.fingerprint),
+        physical_table(inputs.fingerprint, truth),
     ]
     held = ", ".join(f"{name} = {value:g}" for name, value in inputs.fingerprint.held.items())
     return Section(
@@ -163,5 +163,10 @@ def stability_section(inputs: Inputs) -> list[Section]:
         draw=lambda: plot_nyquist(curve),
     )
     return [
-        Section(key="stability", title="Stability", tables=(margin_table(inputs.fingerprint),), pictures=(picture,))
+        Section(
+            key="stability",
+            title="Stability",
+            tables=(margin_table(inputs.fingerprint, inputs.truth),),
+            pictures=(picture,),
+        )
     ]

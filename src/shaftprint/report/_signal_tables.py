@@ -55,11 +55,11 @@ def step_table(signals: "Signals") -> Table:
         )
         for step in signals.step_delays
     )
-    delays = np.array([step.delay_s for step in signals.step_delays])
     note = "Level-crossing delays hold transport delay, rise time of the loop and delay of the sensor together."
-    if delays.size > 1:
-        error = float(delays.std(ddof=1)) / np.sqrt(delays.size)
-        note = f"Mean {with_deviation(float(delays.mean()), error)} s. {note}"
+    for name in dict.fromkeys(step.staircase for step in signals.step_delays):
+        delays = np.array([step.delay_s for step in signals.step_delays if step.staircase == name])
+        error = float(delays.std(ddof=1)) / np.sqrt(delays.size) if delays.size > 1 else 0.0
+        note += f" Mean of {name}: {with_deviation(float(delays.mean()), error)} s."
     return Table(
         caption="Delay between set point and speed at each step (as table 3.3)",
         header=("staircase", "set point crosses at [s]", "speed crosses at [s]", "delay [s]", "speed"),

@@ -1,5 +1,6 @@
 """A table of the report, and names of parameters as HTML."""
 
+import re
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -9,6 +10,7 @@ from shaftprint.report._symbols import is_symbol, name_parts
 
 Cell: TypeAlias = str | Markup
 
+_SYMBOL = re.compile(r"\b(?:(?:[A-Za-z]|tau|omega)_[A-Za-z0-9]+|zeta)\b")
 _LETTERS = {"tau": "τ", "omega": "ω", "zeta": "ζ", "delta": "δ", "eta": "η", "rho": "ρ"}
 
 
@@ -36,6 +38,15 @@ class Table:
         for row in self.rows:
             if len(row) != len(self.header):
                 raise ValueError(f"table {self.caption}: expected {len(self.header)} cells in a row, found {len(row)}.")
+
+
+def sentence_html(text: str) -> Markup:
+    """Return a sentence as HTML, symbols with an index or a Greek name set as such, all else as it is."""
+    parts, end = Markup(), 0
+    for found in _SYMBOL.finditer(text):
+        parts += escape(text[end : found.start()]) + symbol_html(found.group())
+        end = found.end()
+    return parts + escape(text[end:])
 
 
 def symbol_html(formula: str) -> Markup:

@@ -1,0 +1,268 @@
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pytest
+
+from shaftprint.identify import Settings, Unweighted, identify
+from shaftprint.models import structure
+from shaftprint.report import ThesisMode, render_report
+from shaftprint.report import _render as render_module
+
+VOID = {"meta", "img", "br", "link"}
+
+
+class Page(HTMLParser):
+    """Checks nesting and collects what the tests ask for."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.tags, self.words, self.ids, self.rows = [], [], [], [], []
+        self.feed(text)
+        assert not self.open, f"never closed: {self.open}"
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append((tag, dict(attributes)))
+        if "id" in dict(attributes):
+            self.ids.append(dict(attributes)["id"])
+        if tag == "tr":
+            self.rows.append([])
+        if tag in ("td", "th"):
+            self.rows[-1].append("")
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if "style" not in self.open:
+            self.words.append(data)
+        if "td" in self.open or "th" in self.open:
+            self.rows[-1][-1] += data
+
+    def all(self, tag):
+        return [attributes for name, attributes in self.tags if name == tag]
+
+    @property
+    def text(self):
+        return re.sub(r"\s+", " ", "".join(self.words))
+
+
+@pytest.fixture(scope="session")
+def thesis(signals, spectra, open_responses):
+    """Unweighted fits of the thesis, all lines used, speeds a turn late."""
+    governor, core = open_responses
+    late = {name: replace(speed, delay_s=0.0507) for name, speed in signals.speeds.items()}
+    everything = replace(spectra.response, used=np.ones(16, dtype=np.bool_))
+    settings = Settings(weighting=Unweighted(), starts=12)
+    rng = np.random.default_rng(6)
+    data = {"OL1": core, "OL2": governor, "OL5": governor}
+    return ThesisMode(
+        signals=replace(signals, mode="thesis", speeds=late),
+        spectra=replace(spectra, response=everything),
+        identifications={name: identify(structure(name), r, rng=rng, settings=settings) for name, r in data.items()},
+    )
+
+
+@pytest.fixture(scope="session")
+def nouns(fingerprint, identification, signals, spectra, vessel, campaign):
+    return {
+        "fingerprint": fingerprint,
+        "identification": identification,
+        "signals": signals,
+        "spectra": spectra,
+        "vessel": vessel,
+        "campaign": campaign,
+    }
+
+
+@pytest.fixture(scope="session")
+def report(tmp_path_factory, nouns, recording, fits, thesis, response):
+    folder = tmp_path_factory.mktemp("out") / "report"
+    told = []
+    page = render_report(
+        folder,
+        **nouns,
+        recording=recording,
+        fits={name: fits[name] for name in ("OL1", "OL2", "BENCHMARK")},
+        thesis=thesis,
+        truth={"tau_dn": 0.32, "K_p": 5.7, "K_i": 4.27, "t_d": 0.07, "t_sp": 0.05, "k_q": 9.0, "I_dn": 17.0},
+        line_selection={"fit": response, "bin": response},
+        sensitivity=[structure("OL2")],
+        progress=told.append,
+    )
+    assert told[-1] == 1.0
+    assert np.all(np.diff(told) > 0.0)
+    return page
+
+
+@pytest.fixture(scope="session")
+def page(report):
+    return Page(report.read_text(encoding="utf-8"))
+
+
+def test_every_picture_is_there_parses_and_has_words(report, page):
+    images = page.all("img")
+    assert len(images) >= 20
+    for image in images:
+        file = report.parent / image["src"]
+        assert file.stat().st_size < 500_000
+        assert len(image["alt"]) > 20
+        if file.suffix == ".svg":
+            root = ET.parse(file).getroot()  # noqa: S314
+            assert root.tag.endswith("svg")
+    drawn = {file.name for file in (report.parent / "figures").iterdir()}
+    assert drawn == {image["src"].partition("/")[2] for image in images}
+
+
+def test_the_page_asks_for_nothing_outside(report, page):
+    text = report.read_text(encoding="utf-8")
+    assert not page.all("script")
+    assert not page.all("link")
+    assert "http://" not in text
+    assert "https://" not in text
+    for attributes in page.all("a"):
+        assert attributes["href"].startswith("#")
+    policy = next(m["content"] for m in page.all("meta") if m.get("http-equiv") == "Content-Security-Policy")
+    assert "default-src 'none'" in policy
+    assert "unsafe" not in policy
+
+
+def test_pictures_refer_to_nothing_outside(report):
+    for file in (report.parent / "figures").glob("*.svg"):
+        links = re.findall(r'(?:href|src)="([^"]*)"', file.read_text(encoding="utf-8"))
+        assert all(link.startswith(("#", "data:")) for link in links)
+
+
+def test_the_policy_allows_exactly_this_style_sheet(report, page):
+    import base64
+    import hashlib
+
+    text = report.read_text(encoding="utf-8")
+    style = re.search(r"<style>(.*?)</style>", text, re.DOTALL).group(1)
+    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
+    assert f"'sha256-{digest}'" in next(m["content"] for m in page.all("meta") if "http-equiv" in m).replace(
+        "&#39;", "'"
+    )
+    assert "prefers-color-scheme: dark" in style
+    assert "@media print" in style
+
+
+def test_headings_and_anchors(page):
+    levels = [int(tag[1]) for tag, _ in page.tags if re.fullmatch(r"h[1-6]", tag)]
+    assert levels[0] == 1
+    assert levels.count(1) == 1
+    assert np.diff(levels).max() <= 1
+    assert len(set(page.ids)) == len(page.ids)
+    assert {a["href"][1:] for a in page.all("a")} <= set(page.ids)
+
+
+def test_summary_comes_first_and_in_words(page, fingerprint):
+    summary = page.text[page.text.index("Summary", page.text.index("Sensitivity")) :]
+    assert "within their noise" in summary[:1200]
+    assert "Known to better than 3 %" in summary[:2000]
+    assert "vessel file 17.0 ± 1.6" in page.text
+    assert "The governed line is stable" in page.text
+
+
+def test_truth_stands_beside_the_estimate(page):
+    """tau_dn is true at 0.32 and found there; k_q is not 9."""
+    row = next(row for row in page.rows if row[0] == "τdn")
+    assert (float(row[3]), row[4]) == (0.32, "yes")
+    row = next(row for row in page.rows if row[0] == "kq")
+    assert (float(row[3]), row[4]) == (9.0, "no")
+    row = next(row for row in page.rows if row[0] == "Idn")
+    assert float(row[3]) == 17.0
+    row = next(row for row in page.rows if row[0] == "td + tsp")
+    assert float(row[3]) == pytest.approx(0.12)
+
+
+def test_tables_of_the_thesis_are_there(page):
+    for words in ("table 3.1", "table 3.3", "table 3.4", "table 3.5", "table 3.6", "table 3.7", "tables 5.2 and 5.3"):
+        assert words in page.text
+    assert "dropout" not in page.text
+    assert "missing pulse" in page.text
+
+
+def test_why_thesis_mode_differs(page):
+    """tau of 54.006 kg m2 at 19.53 / 3.82 rev/s and 1725 N m is 1.006 s."""
+    assert "a factor" in page.text
+    assert "upstream of the gauge gives 1.006 s" in page.text
+    assert "sees only what lies downstream of the gauge" in page.text
+    assert "50.7 ms late" in page.text
+    assert "nearly the same, though their Kp lie between" in page.text
+    assert "S15 and S16 lie above 9.87 Hz" in page.text
+
+
+def test_a_report_of_the_bare_nouns(tmp_path, nouns):
+    bare = nouns | {
+        "signals": replace(nouns["signals"], strips=(), step_delays=(), repairs=()),
+        "campaign": nouns["campaign"].model_copy(update={"chirps": (), "staircases": ()}),
+    }
+    page = Page(render_report(tmp_path / "bare", **bare).read_text(encoding="utf-8"))
+    assert "truth within" not in page.text
+    assert "thesis-mode" not in page.ids
+    assert "time" not in page.ids
+    assert not any("campaign" in image["src"] for image in page.all("img"))
+
+
+def test_names_of_users_are_escaped(tmp_path, nouns, monkeypatch):
+    monkeypatch.setattr(render_module, "_sections", lambda inputs: [render_module.summary_section(inputs)])
+    evil = "<b>Tug & Co</b>"
+    fingerprint = nouns["fingerprint"]
+    renamed = fingerprint.model_copy(
+        update={
+            "conditions": fingerprint.conditions.model_copy(update={"vessel": evil}),
+            "findings": ("k_q is <script>alert(1)</script>",),
+        }
+    )
+    text = render_report(tmp_path / "evil", **(nouns | {"fingerprint": renamed})).read_text(encoding="utf-8")
+    assert "<b>" not in text
+    assert "<script" not in text
+    assert "&lt;b&gt;Tug &amp; Co" in text
+    assert "<i>k</i><sub>q</sub> is &lt;script&gt;" in text
+
+
+def test_an_earlier_report_is_kept_unless_overwriting_is_asked_for(tmp_path, nouns, monkeypatch):
+    monkeypatch.setattr(render_module, "_sections", lambda inputs: [])
+    (tmp_path / "recording.nc").write_text("raw")
+    first = render_report(tmp_path, **nouns).read_bytes()
+    (tmp_path / "figures" / "old.svg").write_text("old")
+    with pytest.raises(FileExistsError, match=r"index\.html exists already"):
+        render_report(tmp_path, **nouns)
+    assert (tmp_path / "index.html").read_bytes() == first
+    render_report(tmp_path, **nouns, overwrite=True)
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["figures", "index.html", "recording.nc"]
+    assert not list((tmp_path / "figures").iterdir())
+
+
+def test_a_report_that_fails_leaves_nothing(tmp_path, nouns, monkeypatch):
+    def fail(*_):
+        raise OSError("disk full")
+
+    monkeypatch.setattr(render_module, "_drawn", fail)
+    with pytest.raises(OSError, match="disk full"):
+        render_report(tmp_path / "report", **nouns)
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_large_picture_becomes_png(tmp_path, nouns, monkeypatch):
+    sections = [render_module.fit_section]
+    monkeypatch.setattr(render_module, "LARGEST_SVG_BYTES", 10)
+    monkeypatch.setattr(render_module, "_sections", lambda inputs: [make(inputs) for make in sections])
+    page = render_report(tmp_path / "report", **nouns)
+    images = Page(page.read_text(encoding="utf-8")).all("img")
+    assert {image["src"] for image in images} == {"figures/fit.png", "figures/residuals.png"}
+    for image in images:
+        assert (page.parent / image["src"]).read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_structure_without_feedback_has_no_stability_section(tmp_path, nouns, fits, monkeypatch):
+    found = render_module.stability_section
+    inputs = []
+    monkeypatch.setattr(render_module, "_sections", lambda given: inputs.append(given) or [])
+    render_report(tmp_path / "report", **nouns)
+    assert found(replace(inputs[0], identification=fits["OL1"])) == []
