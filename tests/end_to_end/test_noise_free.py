@@ -118,6 +118,8 @@ def test_parameters_are_the_truth(sailed):
     # g and the inertias cannot be told apart from any such test
     fit = identify(structure("GAUGE-CLOSED").held_at(g=tug.g), known, rng=np.random.default_rng(1))
     found = {estimate.name: estimate.value for estimate in fit.parameters}
+    # the error of the known latency of the telemetry, where it is free
+    assert found.pop("t_gauge", 0.0) == pytest.approx(0.0, abs=1e-5)
     exactly = {
         "K_p": tug.proportional_gain,
         "K_i": tug.integral_gain_per_s,

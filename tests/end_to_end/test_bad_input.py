@@ -1,0 +1,156 @@
+"""What is wrong with a file ends in one sentence that names it, a non-zero exit code and no output."""
+
+from importlib.resources import files
+from re import sub
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from shaftprint.cli._main import shaftprint
+from shaftprint.errors import ShaftprintError
+
+SHORT = (files("shaftprint.campaign") / "shipped" / "short.toml").read_text(encoding="utf-8")
+
+
+def gap(values):
+    """A second without numbers, 200 s after the start."""
+    values = values.copy()
+    values[400_000:402_000] = np.nan
+    return values
+
+
+# name: (how the recording is spoilt, what the sentence says)
+RECORDINGS = {
+    "missing torque": ({"leave_out": ("M_s",)}, r'expected a channel "M_s" for the shaft torque'),
+    "missing pick-up": ({"leave_out": ("PTM_e",)}, r'expected a channel "PTM_e"'),
+    "missing set point": ({"leave_out": ("U_setpoint",)}, r'expected a channel "U_setpoint"'),
+    "set point that never moves": (
+        {"change": lambda x: np.full_like(x, -5.05), "channels": ("U_setpoint",)},
+        r"channel U_setpoint: expected a set point that moves by 3 V, found it between -5\.05 and -5\.05 V",
+    ),
+    "set point of another test": (
+        {"change": lambda x: x[::-1].copy(), "channels": ("U_setpoint",)},
+        r"channel U_setpoint: expected the set point of the campaign .*check the campaign file",
+    ),
+    "too short": (
+        {"change": lambda x: x[:1_000_000]},
+        r"expected a recording up to 854\.4 s, .*found 500\.0 s: 354\.4 s too short",
+    ),
+    "gap in the torque": (
+        {"change": gap, "channels": ("M_s",)},
+        r"channel M_s: expected numbers, found nan at 200\.000 s",
+    ),
+    "gap in the set point": (
+        {"change": gap, "channels": ("U_setpoint",)},
+        r"channel U_setpoint: expected numbers, found nan at 200\.000 s",
+    ),
+    "gap in the pulses": (
+        {"change": gap, "channels": ("PTM_e",)},
+        r"channel PTM_e: expected numbers, found nan at 200\.000 s",
+    ),
+    "dead torque": (
+        {"change": lambda x: np.full_like(x, 3.45), "channels": ("M_s",)},
+        r"channel M_s: expected the torque to move during St1, found it dead near 1725 N m",
+    ),
+    "dead pick-up": (
+        {"change": lambda x: np.full_like(x, 0.02), "channels": ("PTM_e",)},
+        r"channel PTM_e: expected pulses between two levels, found the channel dead",
+    ),
+    "torque in another unit": (
+        {"channels": ("M_s",), "unit": "kN m"},
+        r'"?M_s"?.*V.*kN m',
+    ),
+}
+
+
+@pytest.fixture
+def refused(tmp_path):
+    """The sentence with which the command line refuses a recording; nothing is left behind."""
+
+    def run(recording, campaign="short", vessel="stan-tug-1205"):
+        before = {place.name for place in tmp_path.iterdir()}
+        output = tmp_path / "results"
+        arguments = ["identify", str(recording), "--vessel", str(vessel), "--campaign", str(campaign)]
+        result = CliRunner().invoke(shaftprint, [*arguments, "--output", str(output), "--no-progress"])
+        assert result.exit_code == 1
+        assert isinstance(result.exception, SystemExit)
+        assert {place.name for place in tmp_path.iterdir()} == before
+        assert result.output.startswith("Error: ")
+        return result.output.removeprefix("Error: ").strip()
+
+    return run
+
+
+@pytest.mark.parametrize(("spoilt", "sentence"), RECORDINGS.values(), ids=RECORDINGS)
+def test_spoilt_recording(spoil, refused, identified, short_campaign, tmp_path, spoilt, sentence):
+    path = spoil(tmp_path / "spoilt.nc", **spoilt)
+    with pytest.raises(ShaftprintError, match=sentence) as caught:
+        identified(path, short_campaign)
+    assert "\n" not in str(caught.value)
+    assert refused(path) == str(caught.value)
+
+
+@pytest.mark.parametrize("share", [0.999, 0.5, 0.01])
+def test_truncated_recording(short_trip, refused, tmp_path, share):
+    content = short_trip.path.read_bytes()
+    path = tmp_path / "cut.nc"
+    path.write_bytes(content[: int(share * len(content))])
+    assert refused(path).startswith(f"{path}: expected a whole recording, found a damaged or truncated file")
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (b"PK\x03\x04 a document" * 50, "expected one of the formats"),
+        (b"", "expected a logger file, found an empty one"),
+    ],
+)
+def test_foreign_recording(refused, tmp_path, content, sentence):
+    path = tmp_path / "foreign.nc"
+    path.write_bytes(content)
+    assert f"{path}: {sentence}" in refused(path)
+
+
+def test_recording_that_is_not_there(refused, tmp_path):
+    path = tmp_path / "none.nc"
+    assert refused(path) == f"{path}: expected a logger file, found none there."
+
+
+def test_truth_of_a_simulation_is_no_recording(short_trip, refused):
+    assert "expected one of the formats" in refused(short_trip.path.with_suffix(".truth.json"))
+
+
+def test_campaign_in_rad_per_second(short_trip, refused, tmp_path):
+    path = tmp_path / "rad.toml"
+    angular = sub(
+        r"frequency_hz = ([\d.]+)", lambda match: f"frequency_hz = {2.0 * np.pi * float(match[1]):.6g}", SHORT
+    )
+    path.write_text(angular, encoding="utf-8")
+    sentence = refused(short_trip.path, path)
+    assert sentence.startswith("S1: expected the set point to move at 0.125664 Hz, found 0.01")
+    assert sentence.endswith("the campaign's frequency_hz seems to be in rad/s; divide it by 2 pi.")
+
+
+def test_campaign_of_another_test(short_trip, refused):
+    assert "found 860.0 s: 10590.0 s too short" in refused(short_trip.path, "thesis")
+
+
+def test_campaign_with_several_mistakes_names_them_all(short_trip, refused, tmp_path):
+    path = tmp_path / "wrong.toml"
+    spoilt = SHORT.replace("frequency_hz = 0.02\n", "frequency = 0.02\n").replace("dwell_s = 30.0", "dwell_s = -30.0")
+    path.write_text(spoilt, encoding="utf-8")
+    sentence = refused(short_trip.path, path)
+    assert sentence.startswith(f"{path}: 3 fields cannot be used.")
+    for wrong in ("frequency_hz (S1): ", "frequency (S1): ", "dwell_s (St1): "):
+        assert wrong in sentence
+
+
+def test_pick_up_with_wrong_number_of_pulses(short_trip, refused, tmp_path):
+    """The vessel file says 2 pulses a turn of the engine where there is one: half the speed."""
+    shipped = (files("shaftprint.vessel") / "shipped" / "stan_tug_1205.toml").read_text(encoding="utf-8")
+    path = tmp_path / "vessel.toml"
+    path.write_text(shipped.replace("pulses_per_revolution = 1\n", "pulses_per_revolution = 2\n", 1), encoding="utf-8")
+    sentence = refused(short_trip.path, vessel=path)
+    assert sentence.startswith("channels PTM_e and PTM_1: expected the same engine-side speed, found n_e1 / n_e = 2.0")
+    assert sentence.endswith("check gearbox.ratio and pulses_per_revolution in the vessel file.")
