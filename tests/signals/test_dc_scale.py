@@ -128,3 +128,12 @@ def test_sine_of_a_single_period_is_passed_over(sines):
     asked, found = responses(sines)
     lines = low_lines(asked, found, short, rate_hz=RATE_HZ, start_s=0.0)
     assert lines.omega_rad_s[0] == pytest.approx(2 * np.pi * LINES_HZ[1])
+
+
+def test_sine_before_the_first_sample_is_passed_over(sines):
+    asked, found = responses(sines)
+    late = sines.sines[1].settled_s - 1.0
+    skipped = round(late * RATE_HZ)
+    lines = low_lines(asked[skipped:], found[skipped:], sines, rate_hz=RATE_HZ, start_s=late)
+    assert lines.omega_rad_s[0] == pytest.approx(2 * np.pi * LINES_HZ[1])
+    assert lines.ratio[0] == pytest.approx(loop(lines.omega_rad_s[0]), abs=1e-7)

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -164,6 +166,29 @@ def test_thesis_mode_shows_the_symptoms_of_the_thesis(thesis, silent, silent_shi
     assert thesis.shaft_torque_nm[8001:8200] == pytest.approx(silent_ship.torque_nm[80_000:82_000:10][1:200], abs=0.3)
     # the angles are found all the same
     assert thesis.strips[0].angle_rev == pytest.approx(silent.strips[0].angle_rev, abs=1e-12)
+
+
+def test_each_channel_has_its_own_clock(silent_ship, vessel, campaign):
+    recording = silent_ship.recording()
+    torque = recording.channels["M_s"]
+    # every other sample, from sample 2001 on
+    half = replace(
+        torque,
+        rate_hz=1000.0,
+        start_s=2001 / 2000.0,
+        count=248_999,
+        source=lambda first, stop: torque.read(2001, torque.count)[::2][first:stop],
+    )
+    found = prepare_signals(replace(recording, channels={**recording.channels, "M_s": half}), vessel, campaign)
+    assert found.start_s == 1.0005
+    away = away_from_steps()
+    away[:201] = False
+    instants = np.flatnonzero(away)
+    instants = instants[(instants > 300) & (instants < 49_700)]
+    # sample j of the grid is raw sample 2001 + 10 j
+    raw = 2001 + 10 * (instants - 201)
+    assert found.shaft_torque_nm[instants - 201] == pytest.approx(silent_ship.torque_nm[raw], abs=0.4)
+    assert found.set_point_rev_s[instants - 201] == pytest.approx(silent_ship.set_point_rev_s[raw], rel=1e-3)
 
 
 def test_other_rate_of_the_grid(silent_ship, vessel, campaign, silent):

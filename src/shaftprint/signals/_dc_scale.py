@@ -7,6 +7,7 @@ lowest sine of the thesis. The ratio at the low lines is carried to zero frequen
 would be 0.1 % off at the thesis' lines because the loop has a pole near 0.6 rad/s.
 """
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -29,6 +30,7 @@ _ROUNDS = 30
 
 # Orders of the sine that the propeller law makes: the fundamental and what its square and cube give.
 _ORDERS = (1, 2, 3)
+_BLOCKS_A_PERIOD = 100.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -121,7 +123,7 @@ def low_lines(
     """Return the ratio of speed to set point at the slow sines, from the lowest on while it is near 1."""
     omega, ratio, variance, length_s, periods = [], [], [], [], []
     for sine in sorted(campaign.sines, key=lambda sine: sine.frequency_hz)[:_MOST_LINES]:
-        if sine.periods < 2:
+        if sine.periods < 2 or sine.settled_s < start_s:
             continue
         pair = [_period_amplitudes(values, sine, rate_hz, start_s) for values in (set_point_rev_s, speed_rev_s)]
         asked = float(np.sum(np.abs(pair[0]) ** 2))
@@ -175,18 +177,21 @@ def _period_amplitudes(values: FloatArray, sine: Sine, rate_hz: float, start_s: 
     for each period would not do: within one period drift and harmonics look alike, and either the second
     harmonic of the propeller law changes the ratio by 5e-4, or the scatter doubles.
     """
-    borders = sine.settled_s + np.arange(sine.periods + 1) / sine.frequency_hz
-    samples = np.ceil((borders - start_s) * rate_hz - 1e-9).astype(np.int64)
-    part = values[samples[0] : samples[-1]]
-    time = start_s + np.arange(samples[0], samples[-1]) / rate_hz - sine.settled_s
+    # means of blocks: what they take from the sine they take from set point and speed alike
+    length = max(int(rate_hz / (_BLOCKS_A_PERIOD * sine.frequency_hz)), 1)
+    first, stop = (math.ceil((instant - start_s) * rate_hz - 1e-9) for instant in (sine.settled_s, sine.window_stop_s))
+    blocks = (stop - first) // length
+    part = values[first : first + blocks * length].reshape(blocks, length).mean(axis=1)
+    time = start_s + (first + length * np.arange(blocks)) / rate_hz - sine.settled_s
     phase = 2.0 * np.pi * sine.frequency_hz * time
     waves = [wave(order * phase) for order in _ORDERS for wave in (np.cos, np.sin)]
     design = np.column_stack([*waves, np.ones(time.size), time])
     fitted = np.linalg.solve(design.T @ design, design.T @ part)
     rest = part - design[:, 2:] @ fitted[2:]
+    borders = np.searchsorted(time, np.arange(sine.periods + 1) / sine.frequency_hz - 1e-9)
     found = np.empty(sine.periods, dtype=np.complex128)
     for k in range(sine.periods):
-        inside = slice(samples[k] - samples[0], samples[k + 1] - samples[0])
+        inside = slice(borders[k], borders[k + 1])
         pair = design[inside, :2]
         cosine, sinus = np.linalg.solve(pair.T @ pair, pair.T @ rest[inside])
         found[k] = cosine - 1j * sinus
