@@ -77,7 +77,7 @@ def _print_quantities(title: str, quantities: Sequence[Quantity], truth: Mapping
         row += [_interval(quantity)] * profiled
         row += [_expected(quantity)] * expected + _against(quantity, truth) * known + [quantity.meaning]
         rows.append(row)
-    print_table(title, columns, rows, numbers=range(2, len(columns) - 1))
+    print_table(title, columns, rows, numbers=range(2, len(columns) - 1), spare=True)
 
 
 def _value(quantity: Quantity) -> str:

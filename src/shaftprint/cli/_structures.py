@@ -19,6 +19,7 @@ def command(names: tuple[str, ...]) -> None:
             ("parameter", "unit", "lower", "upper", "value", "meaning"),
             [_row(parameter) for parameter in chosen.parameters],
             numbers=(2, 3, 4),
+            spare=True,
         )
         _print_combinations(chosen)
 
