@@ -8,9 +8,10 @@ import pytest
 from shaftprint.campaign import Campaign
 from shaftprint.identify import identify
 from shaftprint.models import structure
-from shaftprint.signals import SetPointCalibration, Signals, SpeedSignal, WorkingPoint
+from shaftprint.recording import read_recording
+from shaftprint.signals import SetPointCalibration, Signals, SpeedSignal, WorkingPoint, prepare_signals
 from shaftprint.spectra import estimate_response
-from shaftprint.tug import Tug, linearised_response, simulate_signals
+from shaftprint.tug import Noise, Tug, linearised_response, sail, simulate_signals
 
 FREQUENCIES_HZ = (0.02, 0.05, 0.1, 0.2, 0.35, 0.6, 0.9, 1.3, 1.9, 3.0)
 # 0.2 % of the speed: the square of the propeller law is 1e-6 of the torque there
@@ -137,3 +138,23 @@ def test_parameters_are_the_truth(sailed):
     for name, value in delays.items():
         assert found[name] == pytest.approx(value, rel=5e-3), name
     assert all(percent > 99.999 for percent in fit.fit_percent.values())
+
+
+def test_whole_measurement_chain_adds_nothing(vessel, short_campaign, tmp_path):
+    """Pulses, telemetry, set-point line and all, but no noise: the response is that of the linearised tug.
+
+    At the test's amplitude of 13 % of the speed the square of the propeller law bends it by some 0.05 %.
+    """
+    still = Tug(noise=Noise().without(process=True, measurement=True, faults=True))
+    path = tmp_path / "still.nc"
+    sail(vessel, short_campaign, path, tug=still, seed=1)
+    with read_recording(path) as recording:
+        signals = prepare_signals(recording, vessel, short_campaign)
+    response = estimate_response(signals, short_campaign)
+    ratio = response.response / linearised_response(still, vessel, response.frequency_hz)
+    assert signals.dc_scale == pytest.approx(1.0, abs=1e-4)
+    assert np.abs(np.abs(ratio) - 1.0).max() < 1e-3
+    assert np.abs(np.degrees(np.angle(ratio))).max() < 0.05
+    # no step of the chain is late: 10 microseconds between torque and speed at 2 and 3.3 Hz
+    late = -np.angle(ratio[1, 0] / ratio[0, 0]) / (2.0 * np.pi * response.frequency_hz)
+    assert np.abs(late[-2:]).max() < 1e-5
