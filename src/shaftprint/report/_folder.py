@@ -20,7 +20,7 @@ def report_written_whole(directory: Path, *, overwrite: bool) -> Iterator[Path]:
     Parameters
     ----------
     directory
-        Where the report belongs; made if it does not exist, its parent must.
+        Where the report belongs; made if it does not exist.
     overwrite
         Whether page and figures of an earlier report may be replaced.
 

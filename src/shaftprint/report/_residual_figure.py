@@ -20,6 +20,7 @@ from shaftprint.report._symbols import mathtext
 from shaftprint.report._uncertainty import COVERAGE, NORMAL_95
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
     from shaftprint.identify import Identification
@@ -58,53 +59,59 @@ def plot_residuals(identification: "Identification") -> "Figure":
     Of a model that explains the data 95 % of the residuals lie within 1.96 standard deviations, and 95 % of the lines
     below the drawn limit.
     """
-    data = identification.response
-    residuals = normalised_residuals(identification)
-    chi_square = line_chi_square(identification)
-    size = residuals.shape[0]
     with house_style():
         figure = new_figure(10.5)
         top, bottom = figure.subplots(2, 1, sharex=True)
-        top.axhspan(-NORMAL_95, NORMAL_95, color="#dddddd", linewidth=0.0, label="95 % of a model that explains all")
-        for row in range(size):
-            part, output = divmod(row, len(data.outputs))
-            style = look(row)
-            label = f"{'imaginary' if part else 'real'} part of {mathtext(data.outputs[output])}"
-            top.plot(
-                data.omega_rad_s[identification.fitted],
-                residuals[row, identification.fitted],
-                linestyle="none",
-                marker=style.marker,
-                markersize=4.0,
-                color=style.colour,
-                label=label,
-            )
-        for chosen, fill, text in (
-            (identification.fitted, "black", "fitted line"),
-            (~identification.fitted, "white", "line not fitted"),
-        ):
-            if chosen.any():
-                bottom.plot(
-                    data.omega_rad_s[chosen],
-                    chi_square[chosen],
-                    linestyle="none",
-                    marker="o",
-                    markersize=4.0,
-                    color="black",
-                    markerfacecolor=fill,
-                    label=text,
-                )
-        limit = float(chdtri(size, 1.0 - COVERAGE))
-        bottom.axhline(limit, color=REFERENCE, label=f"95 % limit, {limit:.1f} for {size} numbers")
-        bottom.set_ylabel("chi-square of the line [-]")
-        largest = max(LEAST_STD, 1.1 * float(np.abs(residuals[:, identification.fitted]).max()))
-        top.set_ylim(-largest, largest)
-        top.set_ylabel("residual over\nstandard deviation [-]")
-        plain_log_axis(bottom, "y")
+        _draw_residuals(top, identification)
+        _draw_chi_square(bottom, identification)
         plain_log_axis(bottom)
         bottom.set_xlabel("frequency [rad/s]")
-        letter_panels(
-            (top, bottom), (f"residuals of {identification.structure.name}", "all numbers of a line together")
-        )
+        titles = (f"residuals of {identification.structure.name}", "all numbers of a line together")
+        letter_panels((top, bottom), titles)
         legend_below(figure, legend_entries((top, bottom)))
         return figure
+
+
+def _draw_residuals(axes: "Axes", identification: "Identification") -> None:
+    data, fitted = identification.response, identification.fitted
+    residuals = normalised_residuals(identification)
+    axes.axhspan(-NORMAL_95, NORMAL_95, color="#dddddd", linewidth=0.0, label="95 % of a model that explains all")
+    for row in range(residuals.shape[0]):
+        part, output = divmod(row, len(data.outputs))
+        style = look(row)
+        axes.plot(
+            data.omega_rad_s[fitted],
+            residuals[row, fitted],
+            linestyle="none",
+            marker=style.marker,
+            markersize=4.0,
+            color=style.colour,
+            label=f"{'imaginary' if part else 'real'} part of {mathtext(data.outputs[output])}",
+        )
+    largest = max(LEAST_STD, 1.1 * float(np.abs(residuals[:, fitted]).max()))
+    axes.set_ylim(-largest, largest)
+    axes.set_ylabel("residual over\nstandard deviation [-]")
+
+
+def _draw_chi_square(axes: "Axes", identification: "Identification") -> None:
+    chi_square = line_chi_square(identification)
+    size = 2 * len(identification.response.outputs)
+    for chosen, fill, text in (
+        (identification.fitted, "black", "fitted line"),
+        (~identification.fitted, "white", "line not fitted"),
+    ):
+        if chosen.any():
+            axes.plot(
+                identification.response.omega_rad_s[chosen],
+                chi_square[chosen],
+                linestyle="none",
+                marker="o",
+                markersize=4.0,
+                color="black",
+                markerfacecolor=fill,
+                label=text,
+            )
+    limit = float(chdtri(size, 1.0 - COVERAGE))
+    axes.axhline(limit, color=REFERENCE, label=f"95 % limit, {limit:.1f} for {size} numbers")
+    axes.set_ylabel("chi-square of the line [-]")
+    plain_log_axis(axes, "y")

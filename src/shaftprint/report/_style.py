@@ -26,6 +26,7 @@ PNG_DPI = 200
 MOST_COLUMNS = 4
 LEGEND_SHARE = 0.98
 FEW_DECADES = 30.0
+LABELLED = (2.0, 5.0)
 GRID = "#d9d9d9"
 REFERENCE = "#7a7a7a"
 DATA = "#000000"
@@ -159,6 +160,8 @@ def plain_log_axis(axes: Axes, which: Literal["x", "y"] = "x") -> None:
     axis = axes.xaxis if which == "x" else axes.yaxis
     axis.set_major_locator(LogLocator(base=10.0))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    # All eight of a decade would cost a third of the time that a figure takes.
+    axis.set_minor_locator(LogLocator(base=10.0, subs=LABELLED))
     axis.set_minor_formatter(FuncFormatter(lambda value, _: _minor_label(axis, value)))
 
 
@@ -166,7 +169,7 @@ def _minor_label(axis: Axis, value: float) -> str:
     """Return a label at 2 and 5 of a decade on an axis that shows little more than one decade."""
     low, high = axis.get_view_interval()
     mantissa = round(value / 10.0 ** np.floor(np.log10(value)), 6)
-    return f"{value:g}" if high < FEW_DECADES * low and mantissa in (2.0, 5.0) else ""
+    return f"{value:g}" if high < FEW_DECADES * low and mantissa in LABELLED else ""
 
 
 def save_figure(figure: Figure, path: str | Path) -> None:
