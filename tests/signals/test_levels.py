@@ -269,6 +269,14 @@ def test_set_point_that_stands_still_in_one_test_only(steps):
     assert "during C" in finding
 
 
+def test_recording_that_begins_after_a_test(steps):
+    volts = setpoint(steps, 270.0 + np.arange(6500) / RATE_HZ)
+    (finding,) = expect_campaign(volts, steps, rate_hz=RATE_HZ, start_s=270.0, channel="U")
+    assert "during St" in finding
+    sensor = SimpleNamespace(channel="M_s", full_scale_nm=5000.0)
+    assert expect_moving_torque(100.0 * volts, steps, sensor, rate_hz=RATE_HZ, start_s=270.0) is None
+
+
 def test_two_sensors_of_one_shaft_have_no_gear_ratio_to_blame():
     sensors = [SimpleNamespace(name=name, shaft="engine") for name in ("a", "b")]
     vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=3.82))

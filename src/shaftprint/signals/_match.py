@@ -3,7 +3,7 @@
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Campaign, Excitation, Sine, setpoint
+from shaftprint.campaign import Campaign, Excitation, Sine, Staircase, setpoint
 from shaftprint.errors import SignalError
 
 # Slow excitations only: a second of clock error must not look like another campaign.
@@ -47,17 +47,9 @@ def expect_campaign(
     SignalError
         If the set point never moves, or if it does not follow any of the slow tests.
     """
-    levels = [
-        level
-        for item in campaign.excitations
-        for level in (
-            (campaign.offset_v - item.amplitude_v, campaign.offset_v + item.amplitude_v)
-            if hasattr(item, "amplitude_v")
-            else item.levels_v
-        )
-    ]
+    levels = [campaign.offset_v, *(level for item in campaign.excitations for level in _extremes(item, campaign))]
     lowest, highest = float(np.min(set_point_v)), float(np.max(set_point_v))
-    expected = max(*levels, campaign.offset_v) - min(*levels, campaign.offset_v)
+    expected = max(levels) - min(levels)
     if highest - lowest < _LEAST_MOVEMENT * expected:
         raise SignalError(
             f"channel {channel}: expected a set point that moves by {expected:g} V, found it between "
@@ -77,6 +69,12 @@ def expect_campaign(
     return tuple(f"the set point does not follow the campaign during {name}; check its times" for name in foreign)
 
 
+def _extremes(item: Excitation, campaign: Campaign) -> tuple[float, ...]:
+    if isinstance(item, Staircase):
+        return item.levels_v
+    return campaign.offset_v - item.amplitude_v, campaign.offset_v + item.amplitude_v
+
+
 def _is_fast(item: Excitation) -> bool:
     return isinstance(item, Sine) and item.frequency_hz > _SLOW_HZ
 
@@ -94,6 +92,6 @@ def _explained(
     # every so many samples: enough for what is slow
     places = np.arange(first, stop, max(int(rate_hz / _LOOKS_PER_S), 1))
     planned, measured = setpoint(campaign, start_s + places / rate_hz), set_point_v[places]
-    if np.ptp(planned) == 0.0 or np.ptp(measured) == 0.0:
+    if places.size == 0 or np.ptp(planned) == 0.0 or np.ptp(measured) == 0.0:
         return 0.0
     return max(float(np.corrcoef(planned, measured)[0, 1]), 0.0) ** 2

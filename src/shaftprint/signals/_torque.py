@@ -76,6 +76,8 @@ def expect_moving_torque(
             continue
         first = max(round((excitation.start_s - start_s) * rate_hz), 0)
         stop = round((excitation.stop_s - start_s) * rate_hz)
+        if stop <= first:
+            continue
         spread = float(np.std(torque_nm[first:stop]))
         if spread < _LEAST_MOVEMENT * sensor.full_scale_nm:
             raise SignalError(
