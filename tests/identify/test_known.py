@@ -1,0 +1,46 @@
+"""What is known before a test: inertia from the vessel file, engine slope, latency of the telemetry."""
+
+from types import SimpleNamespace
+
+import pytest
+
+from shaftprint.identify import PRIOR_OF_G, Prior, priors_from_vessel
+from shaftprint.models import structure
+
+
+def vessel(inertia_std=2.7, scale_std=0.02, latency_std=0.002):
+    return SimpleNamespace(
+        inertia_upstream_kg_m2=54.006,
+        inertia_upstream_std_kg_m2=inertia_std,
+        gearbox=SimpleNamespace(ratio=3.82),
+        sensors=SimpleNamespace(shaft_torque=SimpleNamespace(scale_std_fraction=scale_std, latency_std_s=latency_std)),
+    )
+
+
+WORKING_POINT = SimpleNamespace(engine_speed_rev_s=19.73, shaft_torque_nm=1725.0, shaft_torque_std_nm=17.25)
+
+
+def test_inertia_time_is_the_thesis_number_with_the_deviations_of_all_three_sources():
+    """Eq. 5.1: 54.006 kg m2 at 1183.8 rpm and 1725 N m is 1.016 s; 5 %, 1 % and 2 % make 5.48 %."""
+    known = priors_from_vessel(structure("GAUGE-CLOSED"), vessel(), WORKING_POINT)
+    assert known["tau_up"].mean == pytest.approx(1.0160, abs=0.00005)
+    assert known["tau_up"].std / known["tau_up"].mean == pytest.approx(
+        (0.04999**2 + 0.01**2 + 0.02**2) ** 0.5, rel=1e-4
+    )
+    assert known["g"] == PRIOR_OF_G == Prior(mean=0.0, std=0.1)
+    assert known["t_gauge"] == Prior(mean=0.0, std=0.002)
+
+
+def test_what_the_vessel_file_does_not_tell_is_no_prior():
+    known = priors_from_vessel(structure("GAUGE-CLOSED"), vessel(inertia_std=0.0, latency_std=None), WORKING_POINT)
+    assert set(known) == {"g"}
+    certain = priors_from_vessel(structure("GAUGE-CLOSED"), vessel(scale_std=None), WORKING_POINT)
+    assert certain["tau_up"].std / certain["tau_up"].mean == pytest.approx((0.04999**2 + 0.01**2) ** 0.5, rel=1e-4)
+
+
+def test_only_free_parameters_of_gauge_aware_structures_have_priors():
+    assert priors_from_vessel(structure("CL4"), vessel(), WORKING_POINT) == {}
+    assert priors_from_vessel(structure("BENCHMARK"), vessel(), WORKING_POINT) == {}
+    held = structure("GAUGE-CLOSED").held_at(tau_up=1.016, t_gauge=0.0)
+    assert priors_from_vessel(held, vessel(), WORKING_POINT) == {}
+    assert set(priors_from_vessel(structure("GAUGE-CORE"), vessel(), WORKING_POINT)) == {"t_gauge"}

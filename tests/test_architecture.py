@@ -1,0 +1,143 @@
+"""The rooms: imports point one way, heavy ones stay off the fast paths, everything public is named and described."""
+
+import ast
+import importlib
+import inspect
+import os
+import pkgutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import shaftprint
+
+SOURCE = Path(shaftprint.__file__).parent
+ROOT = SOURCE.parents[1]
+FILES = sorted(SOURCE.rglob("*.py"))
+ROOMS = sorted(
+    path.parent.relative_to(SOURCE).as_posix() for path in SOURCE.rglob("__init__.py") if path.parent != SOURCE
+)
+LEAVES = sorted(path.stem for path in SOURCE.glob("*.py") if not path.stem.startswith("_"))
+# A launcher and the command line decide what to load when a command is called, so that --help is fast.
+LAZY = {"cli", "__main__.py"}
+
+
+def run(*arguments):
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("COV")}
+    return subprocess.run(arguments, cwd=ROOT, env=environment, capture_output=True, text=True, check=False)
+
+
+def room(name):
+    return importlib.import_module(f"shaftprint.{name.replace('/', '.')}")
+
+
+# ---- imports ----
+
+
+@pytest.mark.skipif(not (ROOT / "pyproject.toml").exists(), reason="the contract is in the source tree")
+def test_import_contract_is_kept():
+    pytest.importorskip("importlinter", reason="import-linter belongs to the lints")
+    code = "import sys; from importlinter.cli import lint_imports; sys.exit(lint_imports())"
+    found = run(sys.executable, "-c", code)
+    assert found.returncode == 0, found.stdout + found.stderr
+
+
+@pytest.mark.parametrize("name", ["identify", "models", "spectra"])
+def test_fits_need_numpy_only(name):
+    heavy = {"scipy", "numba", "pydantic", "matplotlib", "h5py", "h5netcdf", "pandas", "click", "rich", "jinja2"}
+    code = f"import sys, shaftprint.{name}; print(*sorted({heavy!r} & set(sys.modules)))"
+    found = run(sys.executable, "-c", code)
+    assert found.returncode == 0, found.stderr
+    assert found.stdout.split() == []
+
+
+def function_level_imports(path):
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    for function in ast.walk(tree):
+        if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef):
+            for node in ast.walk(function):
+                names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+                names += [node.module or "."] if isinstance(node, ast.ImportFrom) else []
+                yield from (f"{path.relative_to(SOURCE)}:{node.lineno} {name}" for name in names)
+
+
+@pytest.mark.parametrize(
+    "path",
+    [p for p in FILES if not LAZY & set(p.relative_to(SOURCE).parts)],
+    ids=lambda p: p.relative_to(SOURCE).as_posix(),
+)
+def test_imports_stand_at_the_top(path):
+    assert list(function_level_imports(path)) == []
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.relative_to(SOURCE).as_posix())
+def test_rooms_are_entered_by_their_door(path):
+    """Outside its own room nobody imports a file that starts with ``_``."""
+    own = path.relative_to(SOURCE).parts[0]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("shaftprint."):
+            _, other, *inside = node.module.split(".")
+            if other != own:
+                assert not any(part.startswith("_") for part in inside), f"line {node.lineno}: {node.module}"
+
+
+# ---- names and descriptions ----
+
+
+def public_names(module):
+    """Names that a file gives to its room: what it defines, not what it imports for itself."""
+    return {
+        name
+        for name, value in vars(module).items()
+        if not name.startswith("_") and not inspect.ismodule(value) and name != "annotations"
+    }
+
+
+@pytest.mark.parametrize("name", ROOMS)
+def test_all_of_a_room_is_its_public_names(name):
+    module = room(name)
+    if not hasattr(module, "__all__"):
+        assert public_names(module) == set()
+        return
+    assert len(set(module.__all__)) == len(module.__all__)
+    assert set(module.__all__) == public_names(module)
+
+
+def described(value):
+    """Whether a class or function has a docstring of its own, not the one that a dataclass makes up."""
+    text = inspect.getdoc(value) or ""
+    made_up = inspect.isclass(value) and text.startswith(f"{value.__name__}(")
+    return bool(text) and not made_up
+
+
+@pytest.mark.parametrize("name", [*ROOMS, *LEAVES])
+def test_public_things_are_described(name):
+    module = room(name)
+    assert module.__doc__
+    for public in getattr(module, "__all__", sorted(public_names(module))):
+        value = getattr(module, public)
+        if not (inspect.isclass(value) or inspect.isfunction(value)):
+            continue
+        if not value.__module__.startswith("shaftprint"):
+            continue
+        assert described(value), f"{name}.{public} has no docstring"
+        if inspect.isclass(value):
+            for member, inner in vars(value).items():
+                function = inner.fget if isinstance(inner, property) else getattr(inner, "__func__", inner)
+                if not member.startswith("_") and inspect.isfunction(function):
+                    assert inspect.getdoc(getattr(value, member)), f"{name}.{public}.{member} has no docstring"
+
+
+@pytest.mark.parametrize("name", [n for n in ROOMS if n not in {"cli"}])
+def test_files_in_a_room_are_private(name):
+    for found in pkgutil.iter_modules(room(name).__path__):
+        assert found.name.startswith("_") or found.ispkg
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.relative_to(SOURCE).as_posix())
+def test_every_file_is_described_and_short(path):
+    text = path.read_text(encoding="utf-8")
+    assert ast.get_docstring(ast.parse(text))
+    assert text.count("\n") <= 400
