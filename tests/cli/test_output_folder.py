@@ -1,5 +1,7 @@
 """A folder of results is written whole or not at all, and nobody's files are lost."""
 
+from pathlib import Path
+
 import click
 import pytest
 
@@ -70,6 +72,21 @@ def test_empty_folder_is_used(tmp_path):
     (tmp_path / "out").mkdir()
     _write(tmp_path / "out", ["x.txt"])
     assert (tmp_path / "out" / "x.txt").exists()
+
+
+@pytest.mark.parametrize("place", [".", "sub/.."])
+def test_working_folder_itself(tmp_path, monkeypatch, place):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "sub").mkdir()
+    monkeypatch.chdir(tmp_path / "out")
+    _write(Path(place), ["x.txt"], force=True)
+    assert (tmp_path / "out" / "x.txt").exists()
+    assert [entry.name for entry in tmp_path.iterdir()] == ["out"]
+
+
+def test_root_of_the_disk():
+    with pytest.raises(click.ClickException, match="expected a folder below the root of the disk"):
+        _write(Path(Path.cwd().anchor), ["x.txt"], force=True)
 
 
 def test_file_in_the_place_of_the_folder(tmp_path):

@@ -57,6 +57,14 @@ def test_existing_recording_is_kept_unless_forced(run, tmp_path, campaign):
     assert path.read_bytes()[:4] == b"\x89HDF"
 
 
+@pytest.mark.parametrize("place", [".", "", ".."])
+def test_folder_in_the_place_of_the_recording(run, tmp_path, campaign, monkeypatch, place):
+    monkeypatch.chdir(tmp_path)
+    result = run("sail", "stan-tug-1205", campaign, "-o", place)
+    assert result.exit_code == 1
+    assert "expected a file for the recording, found a folder; add a file name" in result.stderr
+
+
 @pytest.mark.parametrize("name", ["vessel.toml", "stan-tug-1206"])
 def test_vessel_that_is_not_there(run, tmp_path, campaign, name):
     result = run("sail", name, campaign, "-o", tmp_path / "test.nc")

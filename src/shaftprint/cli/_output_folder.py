@@ -37,6 +37,7 @@ def output_folder(path: Path, *, force: bool) -> Iterator[Path]:
         If ``path`` is a file, or a folder with files that are not from shaftprint and ``force`` is false.
     """
     _expect_ours(path, force=force)
+    path = path.resolve()
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
     part.mkdir()
@@ -48,6 +49,8 @@ def output_folder(path: Path, *, force: bool) -> Iterator[Path]:
 
 
 def _expect_ours(path: Path, *, force: bool) -> None:
+    if not path.resolve().name:
+        raise click.ClickException(f"{path}: expected a folder below the root of the disk; add a name.")
     if path.exists() and not path.is_dir():
         raise click.ClickException(f"{path}: expected a folder for the results, found a file; choose another name.")
     if force or not path.is_dir() or (path / MARKER).is_file():

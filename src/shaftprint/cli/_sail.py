@@ -22,6 +22,8 @@ def command(vessel: str, campaign: str, output: Path, seed: int, force: bool, no
     VESSEL and CAMPAIGN are files, or names of shipped ones such as stan-tug-1205 and thesis. What was put
     into the recording goes to a file of its own beside it, which nothing that identifies will open.
     """
+    if output.is_dir():
+        raise click.ClickException(f"{output}: expected a file for the recording, found a folder; add a file name.")
     trial = load_trial(vessel, campaign)
     with progress(hidden=no_progress) as steps:
         steps.begin("Sailing", total=1.0)
