@@ -95,7 +95,7 @@ class PIGovernor(Block):
     def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
         """Return ``K_p + K_i / s``."""
         k_p, k_i = values
-        return k_p + k_i / s
+        return k_p + k_i * (1.0 / s)
 
     def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
         """Return ``1`` and ``1 / s``."""
@@ -152,7 +152,8 @@ class SecondOrderLag(Block):
     def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
         """Return the lag."""
         omega_n, zeta = values
-        return omega_n**2 / (s * (s + 2.0 * zeta * omega_n) + omega_n**2)
+        square = omega_n * omega_n
+        return square / (s * s + (2.0 * zeta * omega_n) * s + square)
 
     def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
         """Return the derivatives to ``omega_n`` and ``zeta``.
@@ -161,8 +162,8 @@ class SecondOrderLag(Block):
         ``dH/dzeta = -2 s H^2 / omega_n``.
         """
         omega_n, zeta = values
-        square = response * response * (2.0 * s)
-        return square * ((s + zeta * omega_n) / omega_n**3), square * (-1.0 / omega_n)
+        to_zeta = response * response * s * (-2.0 / omega_n)
+        return to_zeta * (s * (-1.0 / (omega_n * omega_n)) - zeta / omega_n), to_zeta
 
     def ratio(self, *values: float) -> Polynomials:
         """Return numerator and denominator."""

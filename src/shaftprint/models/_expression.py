@@ -7,6 +7,7 @@ parameters are found in one walk (forward differentiation)::
     parallel    d(G + H)    = dG + dH
     inverse     d(1 / G)    = -dG / G^2
     feedback    S = 1 / (1 + L),   dS = -S^2 dL
+    closed loop T = G / (1 + G H), dT = S^2 dG - T^2 dH
 
 A parameter that occurs in several blocks is one parameter: its derivatives add up. A block that occurs in several
 places
@@ -147,7 +148,11 @@ class Series(Expression):
     second: Expression
 
     def evaluate(self, walk: Walk) -> Dual:
-        """Apply the product rule."""
+        """Apply the product rule, or that of a closed loop where the second expression closes one around the first."""
+        if isinstance(self.second, Sensitivity):
+            back = self.second.behind(self.first)
+            if back is not None:
+                return self._closed(walk, back)
         g, dg = walk.dual(self.first)
         h, dh = walk.dual(self.second)
         gradient = {name: derivative * h for name, derivative in dg.items()}
@@ -155,6 +160,23 @@ class Series(Expression):
             term = g * derivative
             gradient[name] = gradient[name] + term if name in gradient else term
         return g * h, gradient
+
+    def _closed(self, walk: Walk, back: "tuple[Expression, ...]") -> Dual:
+        """Return ``T = G / (1 + G H)`` and ``dT = S^2 dG - T^2 dH``: half the products of the rules one by one."""
+        g, dg = walk.dual(self.first)
+        loop, dh = g, Gradient()
+        if back:
+            h, dh = walk.dual(back[0])
+            loop = g * h
+        sensitivity = 1.0 / (1.0 + loop)
+        closed = g * sensitivity
+        square = sensitivity * sensitivity
+        gradient = {name: square * derivative for name, derivative in dg.items()}
+        square = -closed * closed
+        for name, derivative in dh.items():
+            term = square * derivative
+            gradient[name] = gradient[name] + term if name in gradient else term
+        return closed, gradient
 
     def children(self) -> tuple[Expression, ...]:
         """Return both expressions."""
@@ -232,6 +254,14 @@ class Sensitivity(Expression):
         response = 1.0 / (1.0 + gain)
         square = -response * response
         return response, {name: square * derivative for name, derivative in dgain.items()}
+
+    def behind(self, forward: Expression) -> tuple[Expression, ...] | None:
+        """Return what follows an expression in the loop: nothing where it is all of it; None where it does not lead."""
+        if self.loop is forward:
+            return ()
+        if isinstance(self.loop, Series) and self.loop.first is forward:
+            return (self.loop.second,)
+        return None
 
     def children(self) -> tuple[Expression, ...]:
         """Return the loop gain."""
