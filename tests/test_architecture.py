@@ -20,8 +20,6 @@ ROOMS = sorted(
     path.parent.relative_to(SOURCE).as_posix() for path in SOURCE.rglob("__init__.py") if path.parent != SOURCE
 )
 LEAVES = sorted(path.stem for path in SOURCE.glob("*.py") if not path.stem.startswith("_"))
-# A launcher and the command line decide what to load when a command is called, so that --help is fast.
-LAZY = {"cli", "__main__.py"}
 
 
 def run(*arguments):
@@ -63,11 +61,7 @@ def function_level_imports(path):
                 yield from (f"{path.relative_to(SOURCE)}:{node.lineno} {name}" for name in names)
 
 
-@pytest.mark.parametrize(
-    "path",
-    [p for p in FILES if not LAZY & set(p.relative_to(SOURCE).parts)],
-    ids=lambda p: p.relative_to(SOURCE).as_posix(),
-)
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.relative_to(SOURCE).as_posix())
 def test_imports_stand_at_the_top(path):
     assert list(function_level_imports(path)) == []
 

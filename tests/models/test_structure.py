@@ -193,6 +193,25 @@ def test_feedback_through_a_second_path():
     assert found[0] == pytest.approx(2.0 * S / (S + 2.0))
 
 
+@pytest.mark.parametrize("order", ["filter before the loop", "loop written backwards", "loop inside out"])
+def test_closed_loops_written_another_way_have_the_same_derivatives(order):
+    """``a k s / (s + k b)`` for a filter ``a``, forward gain ``k`` and back path ``b / s``, written in three ways."""
+    a, k, b = (Gain(parameter(name)) for name in "akb")
+    back = b * Integrator()
+    own = {
+        "filter before the loop": of(y=a * (k * Sensitivity(k * back))),
+        "loop written backwards": of(y=(a * k) * Sensitivity(back * k)),
+        "loop inside out": of(y=a * Sensitivity(k * back) * k),
+    }[order]
+    values = {"a": 0.7, "k": 2.0, "b": 3.0}
+    response, slopes = own.gradient(own.vector(values), S, ["a", "k", "b"])
+    below = S + 6.0
+    assert response[0] == pytest.approx(0.7 * 2.0 * S / below)
+    assert slopes[0, 0] == pytest.approx(2.0 * S / below)
+    assert slopes[1, 0] == pytest.approx(0.7 * S**2 / below**2)
+    assert slopes[2, 0] == pytest.approx(-0.7 * 4.0 * S / below**2)
+
+
 def test_difference_and_inverse():
     """``1 / (1 - k)`` and its derivative ``1 / (1 - k)^2``."""
     k = parameter("k")
