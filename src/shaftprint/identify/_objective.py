@@ -98,6 +98,8 @@ class Objective:
     """Factor on a parameter at each used line: the propeller load of its window acts on ``k_q``."""
     data: FloatArray
     """[Re, Im] of the used lines, shape (lines, size)."""
+    measured: ComplexArray
+    """The same as complex numbers, shape (outputs, lines)."""
     covariance: FloatArray
     """Covariance of the data, shape (lines, size, size)."""
     weights: FloatArray
@@ -147,7 +149,7 @@ class Objective:
         """
         stacked = self.structure.stacked(self.complete(theta), self.s, factors=self.factors)
         starts, count, outputs, lines = stacked.shape
-        stacked[:, 0] -= self.data.T[:outputs] + 1j * self.data.T[outputs:]
+        stacked[:, 0] -= self.measured
         table = self._weighted(stacked).reshape(starts, count, 2 * outputs * lines)
         if not self.prior_rows.size:
             return table[:, 0], table[:, 1:]
@@ -216,6 +218,7 @@ def build_objective(
         factors=load_factors(response, chosen),
         s=np.asarray(1j * response.omega_rad_s[chosen], dtype=np.complex128),
         data=data,
+        measured=response.response[:, 0, chosen],
         covariance=covariance,
         weights=weights,
         terms=_terms(weights),

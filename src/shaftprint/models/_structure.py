@@ -184,8 +184,9 @@ class Structure:
                 f"structure {self.name}: expected {len(self.parameters)} parameter values "
                 f"({', '.join(self.names)}), found an array of shape {table.shape}."
             )
-        names = [p.name for p in self.free] if wanted is None else wanted
-        self._expect_names(names)
+        names = [p.name for p in self.parameters if not p.held] if wanted is None else wanted
+        if wanted is not None:
+            self._expect_names(wanted)
         laplace = np.atleast_1d(np.asarray(s, dtype=np.complex128))
         columns = {p.name: table[..., i : i + 1] for i, p in enumerate(self.parameters)}
         known = {name: factor for name, factor in (factors or {}).items() if name in columns}
