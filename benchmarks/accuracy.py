@@ -1,7 +1,8 @@
 """Errors and coverage of the fingerprint over many simulated campaigns: the table of docs/accuracy.md.
 
 Every seed sails the whole thesis campaign with the simulated tug, writes the raw recording, and identifies from that
-file alone. Errors are relative to the truth, those of ``g`` and ``t_gauge`` [s], whose truth is 0, absolute. Run ``python benchmarks/accuracy.py --seeds 20``; it takes about half a minute a seed on two cores.
+file alone. Errors are relative to the truth; those of ``g`` and ``t_gauge`` [s], whose truth is 0, are absolute. Run
+``python benchmarks/accuracy.py --seeds 20``; it takes about half a minute a seed on two cores.
 """
 
 import argparse

@@ -3,8 +3,7 @@
 A test of set point, speed and shaft torque finds ``v K_p / tau``, ``v K_i / tau`` and ``(k_q - g) / tau`` with ``tau
 = tau_up + tau_dn``,
 but neither ``tau_up`` nor ``g`` alone. The torsional vibration calculation (TVC) knows the inertia upstream of the
-gauge
-to a few percent, and brake torque over speed at constant rack is nearly flat in the middle of the range.
+gauge to a few percent, and brake torque over speed at constant rack is nearly flat in the middle of the range.
 """
 
 from typing import TYPE_CHECKING

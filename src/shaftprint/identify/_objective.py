@@ -1,10 +1,9 @@
 """What a fit minimises: weighted residuals of all lines and outputs, and rows for what is known beforehand.
 
-With the residual vector ``r = W (y - f(theta))`` over ``[Re, Im]`` of every used line and output, the cost is
-``r^T r / 2``. For maximum likelihood ``W^T W`` is the inverse of the full covariance of each line, so ``2 cost`` is a
+With the residual vector ``r = W (y - f(theta))`` over ``[Re, Im]`` of every used line and output, the cost is ``r^T
+r / 2``. For maximum likelihood ``W^T W`` is the inverse of the full covariance of each line, so ``2 cost`` is a
 chi-square; unweighted (the thesis' way) ``W`` holds output weights only. A prior ``mean +/- std`` of a parameter is
-one more
-row, ``(theta - mean) / std``.
+one more row, ``(theta - mean) / std``.
 """
 
 from abc import ABC, abstractmethod
@@ -240,8 +239,7 @@ def load_factors(response: FrequencyResponse, chosen: BoolArray | None = None) -
     """Return what the propeller load of each line's window does to the parameters of a structure.
 
     A propeller whose torque is ``M_s0 (1 + delta) (n / n_0)^2`` has the slope ``k_q (1 + delta)`` in values
-    normalised with one
-    working point, and nothing else changes.
+    normalised with one working point, and nothing else changes.
     """
     load = response.load if chosen is None else response.load[chosen]
     return {} if np.all(load == 1.0) else {"k_q": load}

@@ -1,16 +1,12 @@
 """Profile-likelihood intervals: right also where the standard deviation is not, because the cost is no parabola.
 
-The profile of a number ``c(theta)`` is the lowest cost at each of its values. The 95 % interval are the values whose
-profile
-exceeds the lowest cost by less than 1.92, half the 95 % point of chi-square with one degree of freedom (Venzon and
-Moolgavkar, A
-method for computing profile-likelihood-based confidence intervals, 1988).
+The profile of a number ``c(theta)`` is the lowest cost at each of its values. The 95 % interval are the values
+whose profile exceeds the lowest cost by less than 1.92, half the 95 % point of chi-square with one degree of
+freedom (Venzon and Moolgavkar, A method for computing profile-likelihood-based confidence intervals, 1988).
 
 A point of the profile is found by pulling at the number: minimise ``cost + ((c - x) / w)^2 / 2``. Wherever ``c``
-ends, no other
-parameters give that ``c`` at a lower cost, so (c, cost) there is a point of the profile, whatever ``x`` and ``w``
-were. All
-numbers and both sides are pulled at in one batch; ``x`` is moved until the cost is right.
+ends, no other parameters give that ``c`` at a lower cost, so (c, cost) there is a point of the profile, whatever
+``x`` and ``w`` were. All numbers and both sides are pulled at in one batch; ``x`` is moved until the cost is right.
 """
 
 from collections.abc import Callable, Mapping

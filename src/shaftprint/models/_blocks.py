@@ -275,11 +275,10 @@ class Shaft(Block):
 class SpeedSensor(Block):
     """A pulse pick-up: mean over a window, hold until the next pulse, delay of the time stamp.
 
-    ``sinhc(s T_average / 2) sinhc(s T_hold / 2) exp(-s t_pickup)`` with ``sinhc(x) = sinh(x) / x``; on the frequency
-    axis
-    these are the ``sinc`` of the one-revolution mean and of the hold. ``t_pickup`` is the whole delay of the value
-    behind the
-    true speed, half the window and half the hold included; it is zero for values stamped at mid-period.
+    ``sinhc(s T_average / 2) sinhc(s T_hold / 2) exp(-s t_pickup)`` with ``sinhc(x) = sinh(x) / x``; on the
+    frequency axis these are the ``sinc`` of the one-revolution mean and of the hold. ``t_pickup`` is the whole
+    delay of the value behind the true speed, half the window and half the hold included; it is zero for values
+    stamped at mid-period.
     """
 
     averaging: Parameter

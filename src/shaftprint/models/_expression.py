@@ -10,8 +10,7 @@ parameters are found in one walk (forward differentiation)::
     closed loop T = G / (1 + G H), dT = S^2 dG - T^2 dH
 
 A parameter that occurs in several blocks is one parameter: its derivatives add up. A block that occurs in several
-places
-of one walk is evaluated once.
+places of one walk is evaluated once.
 """
 
 from abc import ABC, abstractmethod

@@ -1,10 +1,9 @@
 """Stability of a feedback loop with exact delays: Nyquist count, poles and margins.
 
-The closed loop is stable when ``f(s) = 1 + L(s)`` has no zero with positive real part. By the argument principle the
-number
-of such zeros is the number of unstable open-loop poles minus the turns of ``f`` about the origin along the imaginary
-axis,
-indented to the right of a pole at the origin. The delay is exact, so nothing is lost to a Pade approximation.
+The closed loop is stable when ``f(s) = 1 + L(s)`` has no zero with positive real part. By the argument principle
+the number of such zeros is the number of unstable open-loop poles minus the turns of ``f`` about the origin along
+the imaginary axis, indented to the right of a pole at the origin. The delay is exact, so nothing is lost to a Pade
+approximation.
 """
 
 from collections.abc import Callable, Mapping
