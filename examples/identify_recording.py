@@ -23,11 +23,15 @@ for line, frequency, used in zip(
 ):
     print(f"{line:4} {frequency:8.4f} Hz {'' if used else measured.remarks[line]}")
 
-# A test of speed and shaft torque cannot tell the slope of the engine torque, g, from the inertia of the engine:
-# something must be known of one of them.
-known = identify.Settings(priors={"g": identify.Prior(mean=0.0, std=0.1)})
-closed = models.structure("GAUGE-CLOSED")
-found = identify.identify(closed, measured.response, rng=np.random.default_rng(1), settings=known)
+# A test of speed and shaft torque cannot tell the slope g of the engine torque from the inertia time tau_up of the
+# engine: something must be known of both, and the vessel file knows it from the torsional vibration calculation.
+gauge = models.structure("GAUGE-CLOSED")
+priors = identify.priors_from_vessel(gauge, tug, point)
+for name, prior in priors.items():
+    print(f"known beforehand: {name} = {prior.mean:.4f} +/- {prior.std:.4f}")
+
+settings = identify.Settings(priors=priors)
+found = identify.identify(gauge, measured.response, rng=np.random.default_rng(1), settings=settings)
 intervals = identify.profile_intervals(found)
 for number in (*found.parameters, *found.combinations):
     interval = intervals[number.name]

@@ -1,5 +1,7 @@
 """``shaftprint identify``: from a recording to a fingerprint in a folder."""
 
+import math
+
 import pytest
 
 from shaftprint.fingerprint import read_fingerprint
@@ -26,7 +28,10 @@ def test_default_is_the_gauge_aware_closed_loop(run, identified):
     assert found.quality.starts == 50
     assert found.priors["g"].mean == 0.0
     assert found.priors["g"].std == 0.1
-    assert found.priors["c_set"].mean == 1.0
+    # table E.1 of the thesis: 54.006 kg m2 upstream of the gauge; 2 pi 54.006 n_s0 / M_s0 at the measured working point
+    torque, speed = found.conditions.shaft_torque.value, found.conditions.engine_speed.value
+    tau_up = 2.0 * math.pi * 54.006 * speed / 60.0 / 3.82 / torque
+    assert found.priors["tau_up"].mean == pytest.approx(tau_up, rel=1e-3)
     assert [source.role for source in found.sources] == ["recording", "vessel", "campaign"]
     assert [source.name for source in found.sources] == ["recording.nc", "stan-tug-1205", "short"]
     # the truth of the simulated tug: 17.0 kg m2 of propeller, shaft and water; 0.0703 + 0.0518 s
@@ -54,12 +59,12 @@ def test_structures_beside_each_other(run, recording, tmp_path):
 
 
 def test_hold_and_prior(run, recording, tmp_path):
-    options = ("--hold", "tau_up=1.016", "--prior", "g=-0.1+-0.05", "--prior", "k_q=2+-0.01")
+    options = ("--hold", "tau_up=1.016", "--prior", "g=-0.1+-0.05", "--prior", "k_q=2+-0.01", "--free", "t_gauge")
     result = run("identify", recording, *GIVEN, *options, "-o", tmp_path / "out")
     assert result.exit_code == 0
     found = read_fingerprint(tmp_path / "out" / "fingerprint.json")
     assert found.held["tau_up"] == 1.016
-    assert {name: (prior.mean, prior.std) for name, prior in found.priors.items() if name != "c_set"} == {
+    assert {name: (prior.mean, prior.std) for name, prior in found.priors.items()} == {
         "g": (-0.1, 0.05),
         "k_q": (2.0, 0.01),
     }
@@ -77,12 +82,6 @@ def test_the_way_of_the_thesis(run, recording, tmp_path):
     assert 0.37 < found.quantity("tau_n").value < 0.47
 
 
-def test_gauge_aware_structure_in_thesis_mode_has_no_prior_of_the_scale(run, recording, tmp_path):
-    result = run("identify", recording, *GIVEN, "--mode", "thesis", "-o", tmp_path / "out")
-    assert result.exit_code == 0
-    assert list(read_fingerprint(tmp_path / "out" / "fingerprint.json").priors) == ["g"]
-
-
 def test_recording_of_another_format(run, recording, identified, tmp_path):
     path = tmp_path / "short.csv"
     with read_recording(recording) as opened:
@@ -98,6 +97,7 @@ def test_recording_of_another_format(run, recording, identified, tmp_path):
     [
         (("--structure", "CL9"), 1, "there is no structure 'CL9'; the shipped ones are OL1"),
         (("--hold", "mass=1"), 1, "--hold mass: expected a parameter of GAUGE-CLOSED"),
+        (("--free", "mass"), 1, "--free mass: expected a free parameter, one of K_i, K_p"),
         (("--prior", "mass=1+-1"), 1, "prior of mass: structure GAUGE-CLOSED has the free parameters K_p"),
         (("--hold", "k_q=2", "--prior", "k_q=2+-1"), 1, "prior of k_q"),
         (("--hold", "v"), 2, "expected a parameter and its value such as v=1, found 'v'"),

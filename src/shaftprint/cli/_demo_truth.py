@@ -3,7 +3,7 @@
 import numpy as np
 
 from shaftprint.models import Structure, margins
-from shaftprint.signals import Signals, StripAngles, WorkingPoint
+from shaftprint.signals import Signals, StripAngles
 from shaftprint.tug import StripTruth, Truth
 from shaftprint.units import rpm_from_rev_s
 
@@ -24,7 +24,7 @@ def fingerprint_truth(truth: Truth, structure: Structure, signals: Signals) -> d
     signals
         Their working point is the one at which the estimates are normalised.
     """
-    values = structure.vector(_parameters(truth, structure, signals.working_point))
+    values = structure.vector(_parameters(truth, structure, signals))
     named = dict(zip(structure.names, values.tolist(), strict=True))
     arrays = {name: np.asarray(value) for name, value in named.items()}
     combinations = {combination.name: float(combination.of(arrays)) for combination in structure.combinations}
@@ -44,16 +44,21 @@ def fingerprint_truth(truth: Truth, structure: Structure, signals: Signals) -> d
     }
 
 
-def _parameters(truth: Truth, structure: Structure, point: WorkingPoint) -> dict[str, float]:
+def _parameters(truth: Truth, structure: Structure, signals: Signals) -> dict[str, float]:
     """Return the true parameters, normalised at the working point that was measured.
 
     The load of the propeller drifts, so the line was tested at a torque that is up to a per cent off the nominal one.
+    ``c_set`` is the true slope of the set point over the one that the signals have. The latency of the simulated
+    torque telemetry is exactly that of the vessel file, which ``t_gauge = 0`` says.
     """
+    point, line = signals.working_point, signals.calibration
     moved = rpm_from_rev_s(point.engine_speed_rev_s) / truth.engine_speed_rpm
     moved *= truth.shaft_torque_nm / point.shaft_torque_nm
+    slope = rpm_from_rev_s(line.slope_rev_s_per_v) * signals.dc_scale
+    known = {**truth.normalised, "c_set": truth.set_point_slope_rpm_per_v / slope, "t_gauge": 0.0}
     return {
         name: value * moved if name in SPEED_OVER_TORQUE else value
-        for name, value in truth.normalised.items()
+        for name, value in known.items()
         if name in structure.names
     }
 
