@@ -69,6 +69,7 @@ def identify(
         objective.upper,
         tolerance=chosen.tolerance,
         max_iterations=chosen.max_iterations,
+        leader_tolerance=POLISH_TOLERANCE,
     )
     clusters, winner = _judged(objective, _clustered(objective, descent), chosen)
     theta = winner.values[list(objective.free)]

@@ -61,6 +61,7 @@ def descend(
     *,
     tolerance: float,
     max_iterations: int,
+    leader_tolerance: float | None = None,
 ) -> Descent:
     """Minimise half the sum of squared residuals from every start.
 
@@ -77,6 +78,8 @@ def descend(
         A start has converged when a step is expected to lower its cost by less than this share of it.
     max_iterations
         Limit of steps for each start.
+    leader_tolerance
+        The same for the start of lowest cost, which polishes its optimum while others are still on their way.
     """
     theta = np.clip(start, lower, upper)
     starts = np.arange(theta.shape[0])
@@ -84,14 +87,19 @@ def descend(
     cost, converged = np.empty(starts.size), np.zeros(starts.size, dtype=np.bool_)
     # The old Jacobian lives until the new one is there: freed before, its memory would go back and be faulted in again.
     r, jacobian = residuals(theta, starts)
-    at = _Position.at_start(theta, r, jacobian)
+    at, lowest = _Position.at_start(theta, r, jacobian), np.inf
     for iteration in range(1, max_iterations + 1):
         step, settled = _bounded_step(at, lower, upper)
         predicted = -np.vecdot(step, at.gradient + 0.5 * _times(at.hessian, step))
         # A step cut short, by a refusal or by bounds that found no peace, promises little without an optimum near.
         trusted = ((at.growth == FIRST_GROWTH) & settled) | (at.damping > LARGEST_DAMPING)
-        flat = trusted & (predicted <= max(tolerance, ROUNDING) * at.cost)
+        small = max(tolerance, ROUNDING) * at.cost
+        leader = np.argmin(at.cost)
+        if leader_tolerance is not None and at.cost[leader] <= lowest:
+            small[leader] = max(leader_tolerance, ROUNDING) * at.cost[leader]
+        flat = trusted & (predicted <= small)
         if flat.any():
+            lowest = min(lowest, at.cost[flat].min())
             done, moving = at.starts[flat], ~flat
             theta[done], cost[done] = at.theta[flat], at.cost[flat]
             iterations[done], converged[done] = iteration, True
