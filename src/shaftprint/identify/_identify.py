@@ -71,7 +71,8 @@ def identify(
         max_iterations=chosen.max_iterations,
         leader_tolerance=POLISH_TOLERANCE,
     )
-    clusters, winner = _judged(objective, _clustered(objective, descent), chosen)
+    sharp = bool(descent.converged[np.argmin(descent.cost)])
+    clusters, winner = _judged(objective, _clustered(objective, descent), chosen, sharp=sharp)
     theta = winner.values[list(objective.free)]
     fitted = np.isin(response.omega_rad_s, objective.s.imag)
     model = sensed.response(winner.values, 1j * response.omega_rad_s, factors=load_factors(response))
@@ -126,9 +127,12 @@ def _clustered(objective: Objective, descent: Descent) -> list[tuple[FloatArray,
 
 
 def _judged(
-    objective: Objective, found: list[tuple[FloatArray, float, int]], settings: Settings
+    objective: Objective, found: list[tuple[FloatArray, float, int]], settings: Settings, *, sharp: bool
 ) -> tuple[tuple[Cluster, ...], Cluster]:
-    """Return all optima and the winner: the lowest cost that is stable, polished to the last digit."""
+    """Return all optima and the winner: the lowest cost that is stable, polished to the last digit.
+
+    ``sharp`` says whether the first optimum already is.
+    """
     clusters: list[Cluster] = []
     winner: Cluster | None = None
     for theta, cost, starts in found:
@@ -136,17 +140,20 @@ def _judged(
             values = frozen_float(objective.complete(theta))
             clusters.append(Cluster(values=values, cost=cost, starts=starts, stable=None))
             continue
-        polished = descend(
-            objective.of_starts,
-            theta[None, :],
-            objective.lower,
-            objective.upper,
-            tolerance=POLISH_TOLERANCE,
-            max_iterations=settings.max_iterations,
-        )
-        values = frozen_float(objective.complete(polished.theta[0]))
+        place, lowest = theta, cost
+        if clusters or not sharp:
+            polished = descend(
+                objective.of_starts,
+                theta[None, :],
+                objective.lower,
+                objective.upper,
+                tolerance=POLISH_TOLERANCE,
+                max_iterations=settings.max_iterations,
+            )
+            place, lowest = polished.theta[0], float(polished.cost[0])
+        values = frozen_float(objective.complete(place))
         stable = is_stable(objective.structure, values)
-        cluster = Cluster(values=values, cost=float(polished.cost[0]), starts=starts, stable=stable)
+        cluster = Cluster(values=values, cost=lowest, starts=starts, stable=stable)
         clusters.append(cluster)
         if stable or not settings.require_stable:
             winner = cluster

@@ -37,6 +37,7 @@ BOUND_PASSES = 16
 SINGLE_PASSES = 13
 # 64 ulp of the cost: below it a gain cannot be told from rounding.
 ROUNDING = 1.5e-14
+TINY = 1e-300
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -151,15 +152,15 @@ class _Position:
         """Take the trials that lower the cost; change damping and stretch by how well their gain was predicted."""
         cost, gradient, hessian = _quadratic(r, jacobian)
         good = (cost < self.cost) & (predicted > 0.0)
-        gain = np.divide(self.cost - cost, predicted * self.stretch, out=np.zeros_like(cost), where=good)
+        gain = np.where(good, (self.cost - cost) / np.maximum(predicted * self.stretch, TINY), 0.0)
         # A stretched step that fails says nothing against the step itself.
         failed = ~good & (self.stretch == 1.0)
-        fitting = np.where(good, np.minimum(np.maximum(1.0 - (2.0 * gain - 1.0) ** 3, 1.0 / 3.0), 2.0), 1.0)
+        surplus = 2.0 * gain - 1.0
+        fitting = np.where(good, np.minimum(np.maximum(1.0 - surplus * surplus * surplus, 1.0 / 3.0), 2.0), 1.0)
         self.damping = np.maximum(self.damping * np.where(failed, self.growth, fitting), SMALLEST_DAMPING)
         self.growth = np.where(failed, 2.0 * self.growth, FIRST_GROWTH)
-        longer = np.minimum(2.0 * self.stretch, LARGEST_STRETCH)
-        shorter = np.where(gain < UNSTRETCH_BELOW_GAIN, 1.0, self.stretch)
-        self.stretch = np.where(gain > STRETCH_ABOVE_GAIN, longer, shorter)
+        longer = np.where(gain > STRETCH_ABOVE_GAIN, np.minimum(2.0 * self.stretch, LARGEST_STRETCH), self.stretch)
+        self.stretch = np.where(gain < UNSTRETCH_BELOW_GAIN, 1.0, longer)
         if good.all():
             self.theta, self.cost, self.gradient, self.hessian = trial, cost, gradient, hessian
         else:
@@ -192,8 +193,9 @@ def _bounded_step(at: _Position, lower: FloatArray, upper: FloatArray) -> tuple[
     to_lower, to_upper = lower - at.theta, upper - at.theta
     damped = at.hessian.copy()
     _diagonal(damped)[...] += at.damping[:, None] * at.scale
-    low = (to_lower >= 0.0) & (at.gradient > 0.0)
-    high = (to_upper <= 0.0) & (at.gradient < 0.0)
+    low, high = to_lower >= 0.0, to_upper <= 0.0
+    if low.any() or high.any():
+        low, high = low & (at.gradient > 0.0), high & (at.gradient < 0.0)
     return _held_step(damped, at.gradient, to_lower, to_upper, low, high, BOUND_PASSES)
 
 
@@ -216,7 +218,9 @@ def _held_step(
         back_up, back_down = low & (slope < 0.0), high & (slope > 0.0)
         change |= back_up | back_down
     settled: BoolArray = np.logical_not(change.any(axis=1))
-    if settled.all() or passes == 1:
+    if settled.all():
+        return step, settled
+    if passes == 1:
         return np.minimum(np.maximum(step, to_lower), to_upper), settled
     if passes <= SINGLE_PASSES:
         change &= np.cumsum(change, axis=1) == 1
