@@ -7,7 +7,7 @@ then points back inside is let go. Clipping the step instead stops early, and so
 damping follows Nielsen (Damping parameter in Marquardt's method, 1999).
 
 Where a step gains much more than ``A`` foretells, the cost is flatter than ``A`` says: the next step is stretched, each
-time twice as far, until one gains less than foretold. Without it a model that cannot follow the data creeps, such as a
+time four times as far, until one gains less than foretold. Without it a model that cannot follow the data creeps, such as a
 pure delay between two wraps of the fast lines' phase.
 
 All starts go through the same array operations; those that have converged are left out of the next step.
@@ -28,7 +28,7 @@ LARGEST_DAMPING = 1e12
 SMALLEST_DAMPING = 1e-12
 STRETCH_ABOVE_GAIN = 1.5
 UNSTRETCH_BELOW_GAIN = 1.0
-LARGEST_STRETCH = 64.0
+LARGEST_STRETCH = 256.0
 # Curvature of a parameter without influence: the system stays solvable and its step stays zero.
 SMALLEST_SCALE = 1e-100
 BOUND_PASSES = 16
@@ -159,7 +159,7 @@ class _Position:
         fitting = np.where(good, np.minimum(np.maximum(1.0 - surplus * surplus * surplus, 1.0 / 3.0), 2.0), 1.0)
         self.damping = np.maximum(self.damping * np.where(failed, self.growth, fitting), SMALLEST_DAMPING)
         self.growth = np.where(failed, 2.0 * self.growth, FIRST_GROWTH)
-        longer = np.where(gain > STRETCH_ABOVE_GAIN, np.minimum(2.0 * self.stretch, LARGEST_STRETCH), self.stretch)
+        longer = np.where(gain > STRETCH_ABOVE_GAIN, np.minimum(4.0 * self.stretch, LARGEST_STRETCH), self.stretch)
         self.stretch = np.where(gain < UNSTRETCH_BELOW_GAIN, 1.0, longer)
         if good.all():
             self.theta, self.cost, self.gradient, self.hessian = trial, cost, gradient, hessian
