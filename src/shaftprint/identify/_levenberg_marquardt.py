@@ -7,8 +7,8 @@ then points back inside is let go. Clipping the step instead stops early, and so
 damping follows Nielsen (Damping parameter in Marquardt's method, 1999).
 
 Where a step gains much more than ``A`` foretells, the cost is flatter than ``A`` says: the next step is stretched, each
-time four times as far, until one gains less than foretold. Without it a model that cannot follow the data creeps, such as a
-pure delay between two wraps of the fast lines' phase.
+time four times as far, until one gains less than foretold. Without it a model that cannot follow the data creeps, such
+as a pure delay between two wraps of the fast lines' phase.
 
 All starts go through the same array operations; those that have converged are left out of the next step.
 """
