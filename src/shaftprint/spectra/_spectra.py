@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.errors import ResponseError
+from shaftprint.spectra._cross_term import without_cross_term
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._harmonics import Harmonics, collect_harmonics
 from shaftprint.spectra._line_fit import SineMethod, WindowSamples, cut_window
@@ -116,13 +117,15 @@ def estimate_spectra(
     )
     remarks, usable = _judge(signals, campaign, measurements, sensor, ratios.local_db[:, 0])
     drift = load_drift(measurements, speed=used_channels[1], torque=used_channels[2])
-    used = np.ones_like(usable) if signals.mode == "thesis" else usable
+    thesis = signals.mode == "thesis"
+    used = np.ones_like(usable) if thesis else usable
+    load = np.ones(len(measurements)) if thesis else 1.0 + drift.delta
     return Spectra(
         response=replace(
-            _response(signals, measurements, used_channels, sensor),
+            _response(signals, measurements, used_channels, sensor, load),
             used=used,
             remarks=remarks,
-            load=1.0 + drift.delta,
+            load=load,
             averaging_s=sensor.averaging_s,
             hold_s=sensor.hold_s,
             pick_up_delay_s=sensor.delay_s,
@@ -249,17 +252,27 @@ def _judge(
 
 
 def _response(
-    signals: "Signals", measurements: Sequence[LineMeasurement], channels: list[int], sensor: "SpeedSignal"
+    signals: "Signals",
+    measurements: Sequence[LineMeasurement],
+    channels: list[int],
+    sensor: "SpeedSignal",
+    load: "FloatArray",
 ) -> FrequencyResponse:
     response = np.empty((2, 1, len(measurements)), dtype=np.complex128)
     covariance = np.empty((len(measurements), 4, 4))
     for place, line in enumerate(measurements):
         scale = np.array([1.0, 1.0 / pick_up_gain(sensor, line.window.frequency_hz), 1.0])
-        values, spread = response_of_line(
-            scale * line.amplitude[channels],
-            scale[:, np.newaxis] * line.noise.covariance[np.ix_(channels, channels)] * scale,
-            complex_samples=line.noise.complex_samples,
-        )
+        amplitude = scale * line.amplitude[channels]
+        noise = scale[:, np.newaxis] * line.noise.covariance[np.ix_(channels, channels)] * scale
+        if signals.mode != "thesis":
+            amplitude, noise = without_cross_term(
+                amplitude,
+                noise,
+                harmonic=line.harmonic[0, channels[1]],
+                variance=line.harmonic_variance[0, channels[1]],
+                load=load[place],
+            )
+        values, spread = response_of_line(amplitude, noise, complex_samples=line.noise.complex_samples)
         response[:, 0, place] = values
         covariance[place] = with_common_error(spread, values, signals.dc_scale_std / signals.dc_scale)
     return FrequencyResponse(
