@@ -7,8 +7,9 @@ With the working point ``n_s0`` [rev/s] of the propeller shaft and ``M_s0`` [N m
     dM/dn  = v K_p M_s0 / n_e0                          proportional governor action on the shaft torque
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -70,63 +71,45 @@ def physical_quantities(
 
 
 def _catalogue(working_point: "WorkingPoint", vessel: "Vessel") -> tuple[_Physical, ...]:
-    engine_rev_s, torque = working_point.engine_speed_rev_s, working_point.shaft_torque_nm
-    shaft_rev_s = engine_rev_s / vessel.gearbox.ratio
-    inertia = torque / (2.0 * np.pi * shaft_rev_s)
-    per_rpm = torque / (engine_rev_s * SECONDS_PER_MINUTE)
-    return (
-        _Physical(
-            name="I_dn",
+    return (*_inertias(working_point, vessel), *_governor_actions(working_point))
+
+
+def _inertias(working_point: "WorkingPoint", vessel: "Vessel") -> Iterator[_Physical]:
+    shaft_rev_s = working_point.engine_speed_rev_s / vessel.gearbox.ratio
+    upstream = (vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2)
+    downstream = (vessel.inertia_downstream_kg_m2, vessel.inertia_downstream_std_kg_m2)
+    for name, tau, (expected, expected_std), meaning in (
+        ("I_dn", "tau_dn", downstream, "inertia downstream of the torque gauge, at the propeller shaft"),
+        ("I_up", "tau_up", upstream, "inertia upstream of the torque gauge, at the propeller shaft"),
+        ("I", "tau_n", upstream, "inertia that the thesis' shaft loop implies, at the propeller shaft"),
+    ):
+        yield _Physical(
+            name=name,
             unit="kg m2",
-            needs=("tau_dn",),
-            factor=inertia,
+            needs=(tau,),
+            factor=working_point.shaft_torque_nm / (2.0 * np.pi * shaft_rev_s),
             torque_power=1.0,
-            of=lambda p: p["tau_dn"],
-            meaning="inertia downstream of the torque gauge, at the propeller shaft",
-            expected=vessel.inertia_downstream_kg_m2,
-            expected_std=vessel.inertia_downstream_std_kg_m2,
-        ),
-        _Physical(
-            name="I_up",
-            unit="kg m2",
-            needs=("tau_up",),
-            factor=inertia,
+            of=itemgetter(tau),
+            meaning=meaning,
+            expected=expected,
+            expected_std=expected_std,
+        )
+
+
+def _governor_actions(working_point: "WorkingPoint") -> Iterator[_Physical]:
+    for name, unit, gain, meaning in (
+        ("governor proportional action", "N m/rpm", "K_p", "change of torque"),
+        ("governor integral action", "N m/(rpm s)", "K_i", "rate of change of torque"),
+    ):
+        yield _Physical(
+            name=name,
+            unit=unit,
+            needs=(gain, "v"),
+            factor=working_point.shaft_torque_nm / (working_point.engine_speed_rev_s * SECONDS_PER_MINUTE),
             torque_power=1.0,
-            of=lambda p: p["tau_up"],
-            meaning="inertia upstream of the torque gauge, at the propeller shaft",
-            expected=vessel.inertia_upstream_kg_m2,
-            expected_std=vessel.inertia_upstream_std_kg_m2,
-        ),
-        _Physical(
-            name="I",
-            unit="kg m2",
-            needs=("tau_n",),
-            factor=inertia,
-            torque_power=1.0,
-            of=lambda p: p["tau_n"],
-            meaning="inertia that the thesis' shaft loop implies, at the propeller shaft",
-            expected=vessel.inertia_upstream_kg_m2,
-            expected_std=vessel.inertia_upstream_std_kg_m2,
-        ),
-        _Physical(
-            name="governor proportional action",
-            unit="N m/rpm",
-            needs=("K_p", "v"),
-            factor=per_rpm,
-            torque_power=1.0,
-            of=lambda p: p["v"] * p["K_p"],
-            meaning="change of torque, at the propeller shaft, for one rpm of engine-speed error",
-        ),
-        _Physical(
-            name="governor integral action",
-            unit="N m/(rpm s)",
-            needs=("K_i", "v"),
-            factor=per_rpm,
-            torque_power=1.0,
-            of=lambda p: p["v"] * p["K_i"],
-            meaning="rate of change of torque, at the propeller shaft, for one rpm of engine-speed error",
-        ),
-    )
+            of=lambda p, gain=gain: p["v"] * p[gain],  # type: ignore[misc]
+            meaning=f"{meaning}, at the propeller shaft, for one rpm of engine-speed error",
+        )
 
 
 def _torque_coefficient(working_point: "WorkingPoint", vessel: "Vessel", torque_share: float) -> Quantity:

@@ -73,22 +73,34 @@ def identify(
     )
     sharp = bool(descent.converged[np.argmin(descent.cost)])
     clusters, winner = _judged(objective, _clustered(objective, descent), chosen, sharp=sharp)
+    return _outcome(response, objective, clusters, winner, chosen)
+
+
+def _outcome(
+    response: FrequencyResponse,
+    objective: Objective,
+    clusters: tuple[Cluster, ...],
+    winner: Cluster,
+    settings: Settings,
+) -> Identification:
+    """Return what was found, with its covariance and how well it fits."""
+    structure = objective.structure
     theta = winner.values[list(objective.free)]
     fitted = np.isin(response.omega_rad_s, objective.s.imag)
-    model = sensed.response(winner.values, 1j * response.omega_rad_s, factors=load_factors(response))
+    model = structure.response(winner.values, 1j * response.omega_rad_s, factors=load_factors(response))
     outputs = {name: i for i, name in enumerate(response.outputs)}
     measured = response.response[:, 0]
     variance = np.diagonal(response.covariance, axis1=1, axis2=2).T
     return Identification(
-        structure=sensed,
+        structure=structure,
         response=response,
         fitted=frozen_bool(fitted),
         objective=objective,
-        settings=chosen,
+        settings=settings,
         values=winner.values,
         covariance=frozen_float(estimate_covariance(objective, theta)),
         cost=winner.cost,
-        degrees_of_freedom=objective.data.size + len(chosen.priors) - theta.size,
+        degrees_of_freedom=objective.data.size + len(settings.priors) - theta.size,
         data_count=objective.data.size,
         fit_percent={n: fit_percent(measured[i, fitted], model[i, fitted]) for n, i in outputs.items()},
         fit_ceiling={

@@ -20,18 +20,16 @@ Feedback is negative: the closed loop of forward ``G`` and back ``H`` is ``G / (
 
 from shaftprint.models._blocks import (
     Constant,
-    Delay,
     FilteredDerivative,
     Gain,
     Integrator,
-    PadeDelay,
     PIGovernor,
     SecondOrderLag,
     Shaft,
-    SpeedSensor,
     TorqueBalance,
 )
 from shaftprint.models._catalogue import STRUCTURES, structure
+from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor
 from shaftprint.models._expression import Block, Expression, Inverse, Sensitivity, feedback
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._stability import (

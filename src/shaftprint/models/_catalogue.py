@@ -9,17 +9,15 @@ from collections.abc import Callable, Mapping
 from shaftprint.errors import StructureError
 from shaftprint.models._blocks import (
     Constant,
-    Delay,
     FilteredDerivative,
     Gain,
     Integrator,
-    PadeDelay,
     PIGovernor,
     SecondOrderLag,
     Shaft,
-    SpeedSensor,
     TorqueBalance,
 )
+from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor
 from shaftprint.models._expression import Expression, Inverse, Sensitivity
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._structure import Combination, Structure

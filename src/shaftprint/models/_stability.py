@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_complex
 from shaftprint.errors import StructureError
-from shaftprint.models._blocks import Delay
+from shaftprint.models._delays import Delay
 from shaftprint.models._expression import Block, Expression, Walk
 from shaftprint.models._structure import Structure
 

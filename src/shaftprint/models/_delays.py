@@ -1,0 +1,127 @@
+"""Blocks that are late: exact delay, its Pade approximation, and the pick-up that gives a mean too late."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.models._expression import Block, Polynomials
+from shaftprint.models._parameter import Parameter
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Delay(Block):
+    """Exact transport delay ``exp(-s t)`` (thesis eq. 4.20), wherever it sits."""
+
+    time: Parameter
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The delay."""
+        return (self.time,)
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return ``exp(-s t)``."""
+        (t,) = values
+        return np.exp(-s * t)
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return ``-s exp(-s t)``."""
+        return (-s * response,)
+
+
+PADE_5 = (30240.0, 15120.0, 3360.0, 420.0, 30.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PadeDelay(Block):
+    """Fifth-order Pade approximation of a delay, to compare with the exact one only.
+
+    Thesis eq. 4.24 lacks the powers of ``s``: its terms are ``c_k (s t)^k``. Accurate for ``omega t`` below about 4.
+    """
+
+    time: Parameter
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The delay."""
+        return (self.time,)
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return ``P(-s t) / P(s t)``."""
+        (t,) = values
+        x = s * t
+        return np.asarray(np.polyval(PADE_5[::-1], -x) / np.polyval(PADE_5[::-1], x))
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return ``-s (P'(-x) + H P'(x)) / P(x)`` at ``x = s t``."""
+        (t,) = values
+        x = s * t
+        slope = np.polyder(np.array(PADE_5[::-1]))
+        change = np.polyval(slope, -x) + response * np.polyval(slope, x)
+        return (np.asarray(-s * change / np.polyval(PADE_5[::-1], x)),)
+
+    def ratio(self, *values: float) -> Polynomials:
+        """Return numerator and denominator in ``s``."""
+        powers = np.array(PADE_5) * values[0] ** np.arange(6)
+        return (powers * (-1.0) ** np.arange(6))[::-1], powers[::-1]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SpeedSensor(Block):
+    """A pulse pick-up: mean over a window, hold until the next pulse, delay of the time stamp.
+
+    ``sinhc(s T_average / 2) sinhc(s T_hold / 2) exp(-s t_pickup)`` with ``sinhc(x) = sinh(x) / x``; on the
+    frequency axis these are the ``sinc`` of the one-revolution mean and of the hold. ``t_pickup`` is the whole
+    delay of the value behind the true speed, half the window and half the hold included; it is zero for values
+    stamped at mid-period.
+    """
+
+    averaging: Parameter
+    hold: Parameter
+    delay: Parameter
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """``T_average``, ``T_hold``, ``t_pickup``."""
+        return (self.averaging, self.hold, self.delay)
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return the sensor's response."""
+        averaging, hold, delay = values
+        return _sinhc(s * averaging / 2.0) * _sinhc(s * hold / 2.0) * np.exp(-s * delay)
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return the derivatives to both windows and to the delay."""
+        averaging, hold, delay = values
+        lagged = np.exp(-s * delay) * (s / 2.0)
+        mean, held = s * averaging / 2.0, s * hold / 2.0
+        return (
+            lagged * _sinhc_slope(mean) * _sinhc(held),
+            lagged * _sinhc(mean) * _sinhc_slope(held),
+            -s * response,
+        )
+
+
+SERIES_BELOW = 0.02
+
+
+def _sinhc(x: ComplexArray) -> ComplexArray:
+    """Return ``sinh(x) / x``; by its series near zero, where the quotient is 0 / 0."""
+    small = np.abs(x) < SERIES_BELOW
+    safe = np.where(small, 1.0, x)
+    square = x * x
+    return np.where(
+        small,
+        1.0 + square / 6.0 * (1.0 + square / 20.0 * (1.0 + square / 42.0)),
+        np.sinh(safe) / safe,
+    )
+
+
+def _sinhc_slope(x: ComplexArray) -> ComplexArray:
+    """Return the derivative of ``sinh(x) / x``."""
+    small = np.abs(x) < SERIES_BELOW
+    safe = np.where(small, 1.0, x)
+    square = x * x
+    series = x / 3.0 * (1.0 + square / 10.0 * (1.0 + square / 28.0 * (1.0 + square / 54.0)))
+    return np.where(small, series, (np.cosh(safe) - np.sinh(safe) / safe) / safe)
