@@ -53,10 +53,12 @@ def drawn_tug(seed: int) -> Tug:
     return Tug(g=float(rng.normal(0.0, 0.1)), inertia_upstream_kg_m2=float(inertia))
 
 
-def gauge_aware(signals: Signals, rng: np.random.Generator) -> Identification:
-    """Fit the gauge-aware closed loop to one recording."""
+def gauge_aware(signals: Signals, rng: np.random.Generator, *, with_tvc: bool = True) -> Identification:
+    """Fit the gauge-aware closed loop to one recording, with the inertia of the TVC known beforehand or not."""
     gauge = structure("GAUGE-CLOSED")
     priors = priors_from_vessel(gauge, VESSEL, signals.working_point)
+    if not with_tvc:
+        del priors["tau_up"]
     return identify(gauge, estimate_response(signals, CAMPAIGN), rng=rng, settings=Settings(priors=priors))
 
 
@@ -72,7 +74,9 @@ def thesis_results(signals: Signals, rng: np.random.Generator) -> dict[str, floa
     return found
 
 
-def one_seed(seed: int, folder: Path, tug: Tug) -> tuple[dict[str, tuple[float, float, bool]], dict[str, float]]:
+def one_seed(
+    seed: int, folder: Path, tug: Tug, *, with_tvc: bool
+) -> tuple[dict[str, tuple[float, float, bool]], dict[str, float]]:
     """Return (relative error, relative half width, inside) by name, and what the thesis' way gives."""
     path = folder / f"{seed}.h5"
     truth = sail(VESSEL, CAMPAIGN, path, seed=seed, tug=tug)
@@ -81,7 +85,7 @@ def one_seed(seed: int, folder: Path, tug: Tug) -> tuple[dict[str, tuple[float, 
         thesis = prepare_signals(recording, VESSEL, CAMPAIGN, mode="thesis")
     path.unlink()
     rng = np.random.default_rng(seed)
-    fit = gauge_aware(signals, rng)
+    fit = gauge_aware(signals, rng, with_tvc=with_tvc)
     other = thesis_results(thesis, rng) | setting_up(signals, truth)
     other["chi-square / dof"] = 2.0 * fit.cost / fit.degrees_of_freedom
     other["starts at optimum"] = fit.reached
@@ -126,16 +130,19 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--first", type=int, default=1)
     parser.add_argument("--draw-truth", action="store_true", help="another g and upstream inertia for every seed")
+    parser.add_argument("--without-tvc", action="store_true", help="take the upstream inertia as unknown")
     options = parser.parse_args()
     rows, others = defaultdict(list), defaultdict(list)
     with tempfile.TemporaryDirectory() as folder:
         for seed in range(options.first, options.first + options.seeds):
-            found, other = one_seed(seed, Path(folder), drawn_tug(seed) if options.draw_truth else Tug())
+            tug = drawn_tug(seed) if options.draw_truth else Tug()
+            found, other = one_seed(seed, Path(folder), tug, with_tvc=not options.without_tvc)
             for name, row in found.items():
                 rows[name].append(row)
             for name, value in other.items():
                 others[name].append(value)
-            print(f"seed {seed}: " + ", ".join(f"{n} {v:.3g}" for n, v in other.items()), flush=True)
+            missed = [name for name, (_, _, inside) in found.items() if not inside]
+            print(f"seed {seed}: g {tug.g:+.3f}, outside: {', '.join(missed) or 'nothing'}", flush=True)
     print("\n| quantity | median error | largest error | median half width of the 95 % interval | truth inside |")
     print("|---|---|---|---|---|")
     for name, found in rows.items():

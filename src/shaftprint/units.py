@@ -33,4 +33,5 @@ def rpm_from_rev_s(speed_rev_s: _Number) -> _Number:
 
 def decibel(magnitude: _Number) -> _Number:
     """Convert an amplitude ratio to decibel, ``20 log10``."""
-    return 20.0 * np.log10(magnitude)
+    level: _Number = 20.0 * np.log10(magnitude)
+    return level

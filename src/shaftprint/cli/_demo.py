@@ -25,7 +25,7 @@ from shaftprint.tug import Truth, sail
 VESSEL = "stan-tug-1205"
 FULL, SHORT = "thesis", "short"
 IDENTIFIED = "GAUGE-CLOSED"
-OF_THE_THESIS = ("OL1", "OL2", "OL3", "OL4", "OL5", "CL1", "CL3", "CL4")
+OF_THE_THESIS = ("OL1", "OL2", "OL3", "OL4", "OL5", "BENCHMARK", "CL1", "CL3", "CL4")
 RECORDING = "recording.nc"
 
 

@@ -22,8 +22,8 @@ class Draw(ABC):
 class LatinHypercube(Draw):
     """Each parameter's range is cut into as many cells as there are starts; every cell is met once.
 
-    The delay of a structure without lag has a local optimum every turn of the fast lines' phase; 50 uniform starts
-    miss the global one in one of eight noise draws, 50 stratified ones in none of forty (``docs/benchmarks.md``).
+    The delay of a structure without lag has a local optimum for every turn of the fast lines' phase, so that its starts
+    must be spread over its whole range; independent draws leave gaps (``docs/benchmarks.md``).
     """
 
     def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
