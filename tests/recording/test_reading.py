@@ -43,7 +43,7 @@ def test_a_file_that_two_claim_is_refused_with_both(path):
 def test_a_missing_file_a_folder_and_an_empty_file_are_told(tmp_path):
     with pytest.raises(RecordingError, match=r"none\.nc: expected a logger file, found none there"):
         read_recording(tmp_path / "none.nc")
-    with pytest.raises(RecordingError, match="expected a logger file, found none there"):
+    with pytest.raises(RecordingError, match="expected a logger file, found a folder; name the file in it"):
         read_recording(tmp_path)
     (tmp_path / "empty.csv").touch()
     with pytest.raises(RecordingError, match=r"empty\.csv: expected a logger file, found an empty one"):

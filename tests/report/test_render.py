@@ -163,9 +163,17 @@ def test_headings_and_anchors(page):
 def test_summary_comes_first_and_in_words(page, fingerprint):
     summary = page.text[page.text.index("Summary", page.text.index("Sensitivity")) :]
     assert "within their noise" in summary[:1200]
-    assert "Known to better than 3 %" in summary[:2000]
+    assert "This test knows to better than 3 %" in summary[:2000]
     assert "vessel file 17.0 ± 1.6" in page.text
     assert "The governed line is stable" in page.text
+    assert "+/-" not in page.text
+
+
+def test_what_was_known_beforehand_is_not_called_found(page, fingerprint):
+    summary = page.text[page.text.index("Summary", page.text.index("Sensitivity")) :]
+    known = summary[summary.index("This test knows") : summary.index("Physical values")]
+    assert "τup" not in known
+    assert ("Known beforehand" in page.text) == bool(fingerprint.priors)
 
 
 def test_truth_stands_beside_the_estimate(page):

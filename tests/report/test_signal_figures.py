@@ -133,6 +133,15 @@ def test_strip_angles_against_an_even_spacing(signals, vessel):
     assert len(plot_strip_angles(signals.strips).axes[0].get_lines()) < len(axes.get_lines())
 
 
+def test_strips_counted_from_another_one_are_turned_to_those_of_the_vessel_file(signals, vessel):
+    """A recording that begins two strips later must not look like a shaft with other strips."""
+    strips = signals.strips[0]
+    later = replace(strips, angle_rev=np.roll(strips.angle_rev, 2))
+    first, second = (plot_strip_angles((one,), vessel).axes[0].get_lines() for one in (strips, later))
+    earlier = [next(line for line in lines if line.get_label() == "vessel file") for lines in (first, second)]
+    np.testing.assert_allclose(np.roll(earlier[0].get_ydata(), 2), earlier[1].get_ydata())
+
+
 def test_angles_of_a_single_strip_are_refused(signals):
     single = replace(signals.strips[0], angle_rev=np.ones(1), std_rev=np.zeros(1))
     with pytest.raises(ValueError, match="more than one pulse"):

@@ -15,7 +15,8 @@ def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], core: Id
     for name, words in SENTENCES.items():
         quantity = fingerprint.quantity(name)
         unit = "" if quantity.unit == "-" else f" {quantity.unit}"
-        click.echo(f"  * {words}: {_value(quantity)}{unit}; in truth {plain(truth[name])}{unit}.")
+        given = _given(quantity, fingerprint)
+        click.echo(f"  * {words}: {_value(quantity)}{unit}{given}; in truth {plain(truth[name])}{unit}.")
     for sentence in _of_the_thesis(fingerprint, core):
         click.echo(f"  * {sentence}")
     click.echo()
@@ -29,6 +30,14 @@ def _value(quantity: Quantity) -> str:
     return f"{plain(quantity.value)}, 95 % between {plain(lower)} and {plain(upper)}"
 
 
+def _given(quantity: Quantity, fingerprint: Fingerprint) -> str:
+    """Return that a physical value was known beforehand, if its parameter was: then the test did not find it."""
+    if FOLLOWS_FROM.get(quantity.name) not in fingerprint.priors or quantity.expected is None:
+        return ""
+    return f", known from the vessel file as {with_uncertainty(quantity.expected, quantity.expected_std or 0.0)}"
+
+
+FOLLOWS_FROM = {"I_up": "tau_up", "I_dn": "tau_dn"}
 SENTENCES = {
     "I_dn": "Propeller, shaft and entrained water, the inertia behind the torque gauge",
     "I_up": "Engine, coupling and gearbox, the inertia before the torque gauge",

@@ -117,9 +117,7 @@ def _print_quality(fingerprint: Fingerprint) -> None:
         (output, f"{percent:.2f}", f"{quality.fit_ceiling[output]:.2f}")
         for output, percent in quality.fit_percent.items()
     ]
-    print_table(
-        "How well the model explains the data", ("output", "FitPercent", "ceiling by noise"), rows, numbers=(1, 2)
-    )
+    print_table("How well the model explains the data", ("output", "FitPercent", "perfect model"), rows, numbers=(1, 2))
     square = "" if quality.chi_square is None else f"chi-square {quality.chi_square:.1f} for "
     click.echo(
         f"  {square}{quality.degrees_of_freedom} degrees of freedom; "

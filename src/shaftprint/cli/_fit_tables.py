@@ -10,7 +10,7 @@ from shaftprint.identify import Identification
 def print_fits(title: str, identifications: Sequence[Identification]) -> None:
     """Print FitPercent, starts, stability and parameters of each fit."""
     rows = [_row(identification) for identification in identifications]
-    columns = ("structure", "FitPercent", "ceiling", "starts", "gain margin", "parameters +/- 1 std")
+    columns = ("structure", "FitPercent", "perfect model", "starts", "gain margin", "parameters +/- 1 std")
     print_table(title, columns, rows, numbers=(3, 4))
 
 

@@ -80,6 +80,7 @@ def command(
     """Identify the fingerprint from a recording.
 
     Writes the fingerprint as JSON, the figures and a report into a folder, and prints the tables.
+    --structure, --prior, --free and --hold may be repeated.
     """
     structures = _structures(names, dict(held))
     _expect_free(freed, structures)

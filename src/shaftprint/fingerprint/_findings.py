@@ -72,7 +72,8 @@ def _misfit(identification: Identification) -> list[str]:
 
 def _bounds(identification: Identification) -> list[str]:
     return [
-        f"{e.name} stopped at its bound {e.value:g} {e.unit}: widen the bound or doubt the structure."
+        f"{e.name} stopped at its bound {e.value:g} {e.unit}: go by the 95 % intervals, for a standard "
+        "deviation says little there; the test cannot tell it, or the structure does not fit."
         for e in identification.parameters
         if e.at_bound
     ]

@@ -27,6 +27,8 @@ def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **h
         read.
     """
     path = Path(path)
+    if path.is_dir():
+        raise RecordingError(f"{path}: expected a logger file, found a folder; name the file in it.")
     if not path.is_file():
         raise RecordingError(f"{path}: expected a logger file, found none there.")
     try:

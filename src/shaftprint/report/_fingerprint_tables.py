@@ -127,17 +127,20 @@ def margin_table(fingerprint: "Fingerprint", truth: Mapping[str, float]) -> Tabl
 
 
 def fit_table(fingerprint: "Fingerprint") -> Table:
-    """Return FitPercent of each output beside the ceiling that the noise allows."""
+    """Return FitPercent of each output beside that of a model without error, which only the noise is in the way of."""
     quality = fingerprint.quality
     rows: tuple[tuple[Cell, ...], ...] = tuple(
         (symbol_html(name), f"{plain(value, 2)} %", f"{plain(quality.fit_ceiling[name], 2)} %")
         for name, value in quality.fit_percent.items()
     )
     return Table(
-        caption="FitPercent (thesis eq. 2.41) and what the noise allows",
-        header=("output", "FitPercent", "noise ceiling"),
+        caption="FitPercent (thesis eq. 2.41)",
+        header=("output", "FitPercent", "a perfect model, on average"),
         rows=rows,
-        note=(f"{_chi_square(quality)}{quality.starts_at_optimum} of {quality.starts} starts reached the result."),
+        note=(
+            "A fitted model follows some of the noise, so it may come out a little above a perfect one. "
+            f"{_chi_square(quality)}{quality.starts_at_optimum} of {quality.starts} starts reached the result."
+        ),
     )
 
 

@@ -45,7 +45,10 @@ def signal_section(inputs: Inputs) -> Section:
         pictures.append(
             Picture(
                 name="strips",
-                caption="Angles between the reflection strips against an even spacing (values of table 3.4).",
+                caption=(
+                    "Angles between the reflection strips against an even spacing (values of table 3.4). Which strip "
+                    "is counted first differs between recordings: the angles of the vessel file are turned to fit."
+                ),
                 alt="Bars of the deviation of each strip angle from an even spacing.",
                 draw=partial(plot_strip_angles, signals.strips, inputs.vessel),
             )

@@ -56,8 +56,8 @@ def _conditions(fingerprint: "Fingerprint") -> str:
 
 def _explained(fingerprint: "Fingerprint") -> str:
     quality = fingerprint.quality
-    fit = ", ".join(
-        f"{name} {plain(value, 1)} % of at most {plain(quality.fit_ceiling[name], 1)} %"
+    fit = "; ".join(
+        f"{name} {plain(value, 1)} %, a perfect model {plain(quality.fit_ceiling[name], 1)} %"
         for name, value in quality.fit_percent.items()
     )
     if quality.chi_square is None:
@@ -71,11 +71,12 @@ def _explained(fingerprint: "Fingerprint") -> str:
 
 
 def _well_known(fingerprint: "Fingerprint") -> list[str]:
-    known = [q for q in (*fingerprint.parameters, *fingerprint.combinations) if _share(q) <= WELL_KNOWN]
+    found = (*(q for q in fingerprint.parameters if q.name not in fingerprint.priors), *fingerprint.combinations)
+    known = [q for q in found if _share(q) <= WELL_KNOWN]
     if not known:
         return []
     listed = "; ".join(f"{q.name} = {with_deviation(q.value, q.std)} {unit_text(q.unit)}".strip() for q in known)
-    return [f"Known to better than {plain(100.0 * WELL_KNOWN, 0)} % (one standard deviation): {listed}."]
+    return [f"This test knows to better than {plain(100.0 * WELL_KNOWN, 0)} % (one standard deviation): {listed}."]
 
 
 def _share(quantity: "Quantity") -> float:
@@ -102,11 +103,10 @@ def parameter_section(inputs: Inputs) -> Section:
         combination_table(inputs.fingerprint, truth),
         physical_table(inputs.fingerprint, truth),
     ]
-    held = ", ".join(f"{name} = {value:g}" for name, value in inputs.fingerprint.held.items())
     return Section(
         key="parameters",
         title="Parameters",
-        paragraphs=(f"Held during the fit: {held}.",) if held else (),
+        paragraphs=_given(inputs.fingerprint),
         tables=[table for table in tables if table.rows],
         pictures=(
             Picture(
@@ -120,6 +120,21 @@ def parameter_section(inputs: Inputs) -> Section:
             ),
         ),
     )
+
+
+def _given(fingerprint: "Fingerprint") -> tuple[str, ...]:
+    """Return what the fit was told instead of finding it."""
+    known = "; ".join(f"{name} = {with_deviation(p.mean, p.std)}" for name, p in fingerprint.priors.items())
+    held = ", ".join(f"{name} = {value:g}" for name, value in fingerprint.held.items())
+    sentences = []
+    if known:
+        sentences.append(
+            f"Known beforehand, from the vessel file or as given: {known}. Where the standard deviation below is "
+            "hardly smaller than this one, the test adds nothing to what was known."
+        )
+    if held:
+        sentences.append(f"Held during the fit: {held}.")
+    return tuple(sentences)
 
 
 def fit_section(inputs: Inputs) -> Section:

@@ -1,5 +1,6 @@
 """Sensitivity of a structure: Bode families with one parameter varied at a time."""
 
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -23,6 +24,8 @@ if TYPE_CHECKING:
     from shaftprint.spectra import FrequencyResponse
 
 STEPS = 5
+# What a meaning explains after its first words: too long for a title.
+_TAIL = re.compile(r"[,:;].*")
 GRID_POINTS = 500
 SPAN_RAD_S = (0.01, 300.0)
 ROW_CM = 3.9
@@ -83,7 +86,7 @@ def plot_sensitivity(
         for row, parameter in enumerate(varied):
             _draw_row((grid[row, 0], grid[row, 1]), structure, name, parameter, base, data, span_rad_s)
             letter = f"({chr(ord('a') + row)}) " if count > 1 else ""
-            grid[row, 0].set_title(f"{letter}{mathtext(parameter.name)}: {parameter.meaning.partition(', ')[0]}")
+            grid[row, 0].set_title(f"{letter}{mathtext(parameter.name)}: {_TAIL.sub('', parameter.meaning)}")
             grid[row, 0].set_ylabel("magnitude [dB re 1 s]" if name == "E_n" else "magnitude [dB]")
             grid[row, 1].set_ylabel("phase [deg]")
         for axes in grid[-1]:

@@ -78,5 +78,13 @@ def _earlier_deg(strip: "StripAngles", vessel: "Vessel | None") -> "FloatArray |
     for sensor in vessel.sensors.speed:
         if sensor.channel == strip.channel and sensor.strip_angles_deg is not None:
             angles = np.array(sensor.strip_angles_deg)
-            return np.asarray(angles * (DEGREES_PER_REV / angles.sum()))
+            return _turned(angles * (DEGREES_PER_REV / angles.sum()), DEGREES_PER_REV * strip.angle_rev)
     return None
+
+
+def _turned(earlier: "FloatArray", found: "FloatArray") -> "FloatArray":
+    """Return the earlier angles from the strip on that was counted first now, which no recording shows."""
+    if earlier.size != found.size:
+        return earlier
+    turns = [np.roll(earlier, shift) for shift in range(earlier.size)]
+    return min(turns, key=lambda angles: float(np.abs(angles - found).max()))

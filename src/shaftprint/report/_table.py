@@ -41,7 +41,8 @@ class Table:
 
 
 def sentence_html(text: str) -> Markup:
-    """Return a sentence as HTML, symbols with an index or a Greek name set as such, all else as it is."""
+    """Return a sentence as HTML, symbols with an index or a Greek name set as such and +/- as ±, all else as it is."""
+    text = text.replace("+/-", "±")
     parts, end = Markup(), 0
     for found in _SYMBOL.finditer(text):
         parts += escape(text[end : found.start()]) + symbol_html(found.group())
