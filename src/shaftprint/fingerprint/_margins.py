@@ -1,4 +1,4 @@
-"""Stability margins with their standard deviations."""
+"""Stability margins with their standard deviations and intervals."""
 
 from collections.abc import Callable, Mapping
 from functools import cache
@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from shaftprint.fingerprint._fingerprint import Quantity
-from shaftprint.identify import Identification
+from shaftprint.identify import Identification, Profile
 from shaftprint.models import Margins, margins
 
 MARGINS: tuple[tuple[str, str, Callable[[Margins], float], str], ...] = (
@@ -21,10 +21,18 @@ MARGINS: tuple[tuple[str, str, Callable[[Margins], float], str], ...] = (
 )
 
 
-def margin_quantities(identification: Identification) -> tuple[Quantity, ...]:
+def margin_quantities(identification: Identification, profile: Profile | None = None) -> tuple[Quantity, ...]:
     """Return gain, phase and delay margin with standard deviations to first order; nothing without feedback.
 
     A margin that does not exist, because no gain or delay reaches instability, is left out.
+
+    Parameters
+    ----------
+    identification
+        The fit.
+    profile
+        Its profile likelihood. The 95 % interval of a margin is its range over the parameter sets at the ends of all
+        intervals: a margin follows the valley in which the parameters trade, where a standard deviation does not.
     """
     if identification.structure.loop is None:
         return ()
@@ -37,11 +45,16 @@ def margin_quantities(identification: Identification) -> tuple[Quantity, ...]:
     def follow(number: Callable[[Margins], float]) -> Callable[[Mapping[str, float]], float]:
         return lambda named: number(at(tuple(float(value) for value in named.values())))
 
-    estimates = (
-        (identification.derived(name, unit, follow(number)), meaning) for name, unit, number, meaning in MARGINS
-    )
-    return tuple(
-        Quantity(name=found.name, unit=found.unit, value=found.value, std=found.std, meaning=meaning)
-        for found, meaning in estimates
-        if np.isfinite(found.value)
-    )
+    found = []
+    for name, unit, number, meaning in MARGINS:
+        estimate = identification.derived(name, unit, follow(number))
+        if not np.isfinite(estimate.value):
+            continue
+        reached = [] if profile is None else [number(at(tuple(point))) for point in profile.points.tolist()]
+        interval = (min(*reached, estimate.value), max(*reached, estimate.value)) if reached else None
+        found.append(
+            Quantity(
+                name=name, unit=unit, value=estimate.value, std=estimate.std, interval_95=interval, meaning=meaning
+            )
+        )
+    return tuple(found)

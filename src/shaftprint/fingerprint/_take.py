@@ -19,7 +19,7 @@ from shaftprint.fingerprint._fingerprint import (
 )
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._physical import physical_quantities
-from shaftprint.identify import Estimate, Identification, Interval, profile_intervals
+from shaftprint.identify import Estimate, Identification, Interval, profile
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
@@ -62,7 +62,8 @@ def take_fingerprint(
     physical = physical_quantities(identification, signals.working_point, vessel)
     left_out = _left_out(identification)
     meanings = _meanings(identification)
-    intervals = profile_intervals(identification) if identification.is_likelihood else {}
+    profiled = profile(identification) if identification.is_likelihood else None
+    intervals = {} if profiled is None else profiled.intervals
     return Fingerprint(
         shaftprint_version=shaftprint.__version__,
         created=now,
@@ -78,7 +79,7 @@ def take_fingerprint(
         covariance=tuple(tuple(row) for row in identification.covariance.tolist()),
         combinations=tuple(_quantity(e, meanings, intervals) for e in identification.combinations),
         physical=physical,
-        margins=margin_quantities(identification),
+        margins=margin_quantities(identification, profiled),
         calibration=calibration_quantities(signals),
         quality=_quality(identification, signals, signal_to_noise),
         findings=findings_of(identification, physical, left_out),

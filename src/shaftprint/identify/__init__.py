@@ -17,7 +17,7 @@ from shaftprint.identify._identification import Cluster, Estimate, Identificatio
 from shaftprint.identify._identify import identify
 from shaftprint.identify._known import PRIOR_OF_G, priors_from_vessel
 from shaftprint.identify._objective import MaximumLikelihood, Prior, Unweighted, Weighting
-from shaftprint.identify._profile import Interval, profile_intervals
+from shaftprint.identify._profile import Interval, Profile, profile, profile_intervals
 from shaftprint.identify._refit import Refits, refit
 from shaftprint.identify._starts import Draw, LatinHypercube, Uniform
 
@@ -31,6 +31,7 @@ __all__ = [
     "LatinHypercube",
     "MaximumLikelihood",
     "Prior",
+    "Profile",
     "Refits",
     "Settings",
     "Uniform",
@@ -41,6 +42,7 @@ __all__ = [
     "fit_percent",
     "identify",
     "priors_from_vessel",
+    "profile",
     "profile_intervals",
     "refit",
 ]

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray, IntArray
+from shaftprint.arrays import BoolArray, FloatArray, IntArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify._identification import NORMAL_95, Identification
 from shaftprint.identify._levenberg_marquardt import descend
@@ -84,10 +84,35 @@ class _Pulls:
         return found
 
 
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Profile:
+    """Profile-likelihood intervals, and the parameter sets at their ends."""
+
+    intervals: Mapping[str, Interval]
+    """95 % interval of every free parameter and combination, by name."""
+    points: FloatArray
+    """All parameters at the end of each interval, shape (points, parameters): sets that the data allow at 95 %."""
+
+
 def profile_intervals(identification: Identification) -> dict[str, Interval]:
     """Return the 95 % profile-likelihood interval of every free parameter and combination, by name.
 
     A combination that is infinite at the estimate, as a quotient by a parameter at 0, has the whole axis.
+
+    Raises
+    ------
+    IdentificationError
+        If the fit was not weighted by the covariance: its cost is no likelihood.
+    """
+    return dict(profile(identification).intervals)
+
+
+def profile(identification: Identification) -> Profile:
+    """Return the profile-likelihood intervals with the parameter sets at their ends.
+
+    The sets lie on the contour of the likelihood that the intervals belong to, at its extremes along every parameter
+    and combination. The smallest and largest value of any other number over them is its interval as far as these
+    directions reach.
 
     Raises
     ------
@@ -117,11 +142,13 @@ def profile_intervals(identification: Identification) -> dict[str, Interval]:
         )
         for i, name in enumerate(names)
     }
-    return {
-        e.name: found.get(e.name)
-        or Interval(name=e.name, lower=-np.inf, upper=np.inf, lower_open=True, upper_open=True)
-        for e in (*identification.parameters, *identification.combinations)
-    }
+    for estimate in (*identification.parameters, *identification.combinations):
+        whole = Interval(name=estimate.name, lower=-np.inf, upper=np.inf, lower_open=True, upper_open=True)
+        found.setdefault(estimate.name, whole)
+    return Profile(
+        intervals=found,
+        points=frozen_float(objective.complete(search.theta)),
+    )
 
 
 @dataclass(slots=True, eq=False)
