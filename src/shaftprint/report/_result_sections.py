@@ -20,6 +20,7 @@ from shaftprint.report._nyquist import plot_nyquist
 from shaftprint.report._residual_figure import plot_residuals
 from shaftprint.report._sections import Inputs, Picture, Section
 from shaftprint.report._symbols import unit_text
+from shaftprint.report._uncertainty import NORMAL_95
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quantity
@@ -80,7 +81,10 @@ def _well_known(fingerprint: "Fingerprint") -> list[str]:
 
 
 def _share(quantity: "Quantity") -> float:
-    return quantity.std / abs(quantity.value) if quantity.value != 0.0 else math.inf
+    """Return the relative deviation: the larger of the first-order one and the wider side of the interval over 1.96."""
+    sides = () if quantity.interval_95 is None else (abs(end - quantity.value) for end in quantity.interval_95)
+    deviation = max((quantity.std, *(side / NORMAL_95 for side in sides)))
+    return deviation / abs(quantity.value) if quantity.value != 0.0 else math.inf
 
 
 def _against_vessel(fingerprint: "Fingerprint") -> list[str]:
