@@ -140,8 +140,8 @@ def local_ratio_table(spectra: "Spectra") -> Table:
         caption="Local signal-to-noise ratio [dB], 20 bins on each side (as table 3.7)",
         header=("line", *(symbol_html(channel) for channel in ratios.channels)),
         rows=rows,
-        note="0 dB means as much noise as signal; the thesis asks for 3 dB. A line below it stays in a fit that is weighted "
-        "by the noise: there it counts for as little as it knows.",
+        note="0 dB means as much noise as signal; the thesis asks for 3 dB. A line below it stays in a fit that is "
+        "weighted by the noise: there it counts for as little as it knows.",
     )
 
 
