@@ -233,6 +233,17 @@ def test_delay_of_a_pure_delay_and_steps_that_are_missing(steps):
     assert "expected the set point to cross" in findings[1]
 
 
+@pytest.mark.parametrize("start_s", [139.9, 160.0, 399.0])
+def test_step_whose_first_level_was_not_recorded_has_no_delay(steps, start_s):
+    """Without the level before a step its middle is not known, and no other part of the record may stand in."""
+    time = start_s + np.arange(2_000) / RATE_HZ
+    asked = -4.18 * setpoint(steps, time) - 1.4
+    followed = -4.18 * setpoint(steps, time - 0.36) - 1.4
+    delays, findings = find_step_delays(asked, followed, steps, rate_hz=RATE_HZ, start_s=start_s)
+    assert all(delay.set_point_time_s > 175.0 for delay in delays)
+    assert findings[0].startswith("step 1 of St near 140 s: expected the set point to cross the middle")
+
+
 def test_fast_test_stands_in_where_there_is_no_slow_one():
     campaign = Campaign.model_validate(
         {

@@ -71,7 +71,10 @@ def find_step_delays(
 def _crossing(
     values: FloatArray, staircase: Staircase, step: int, rate_hz: float, start_s: float
 ) -> tuple[float, bool] | None:
-    """Return when the values cross the middle between their levels before and after a step."""
+    """Return when the values cross the middle between their levels before and after a step.
+
+    Nothing is returned where a crossing is not found, or the values do not show both levels.
+    """
     dwell = staircase.dwell_s
     instant = staircase.start_s + step * dwell
     places = [
@@ -80,6 +83,8 @@ def _crossing(
     rest, jump, settled, end = (min(max(place, 0), values.size) for place in places)
     # a little before the next step: the filter makes it visible ahead of time
     ahead = round(0.02 * dwell * rate_hz)
+    if jump - ahead <= rest or end - ahead <= settled:
+        return None
     before = float(np.median(values[rest : jump - ahead]))
     after = float(np.median(values[settled : end - ahead]))
     rising = after > before
