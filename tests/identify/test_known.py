@@ -13,7 +13,9 @@ def vessel(inertia_std=2.7, scale_std=0.02, latency_std=0.002):
         inertia_upstream_kg_m2=54.006,
         inertia_upstream_std_kg_m2=inertia_std,
         gearbox=SimpleNamespace(ratio=3.82),
-        sensors=SimpleNamespace(shaft_torque=SimpleNamespace(scale_std_fraction=scale_std, latency_std_s=latency_std)),
+        sensors=SimpleNamespace(
+            shaft_torque=SimpleNamespace(scale_std_fraction=scale_std, latency_s=0.005, latency_std_s=latency_std)
+        ),
     )
 
 
@@ -29,6 +31,11 @@ def test_inertia_time_is_the_thesis_number_with_the_deviations_of_all_three_sour
     )
     assert known["g"] == PRIOR_OF_G == Prior(mean=0.0, std=0.1)
     assert known["t_gauge"] == Prior(mean=0.0, std=0.002)
+
+
+def test_thesis_mode_leaves_the_latency_of_the_telemetry_in_the_torque():
+    known = priors_from_vessel(structure("GAUGE-CLOSED"), vessel(), WORKING_POINT, mode="thesis")
+    assert known["t_gauge"] == Prior(mean=0.005, std=0.002)
 
 
 def test_what_the_vessel_file_does_not_tell_is_no_prior():

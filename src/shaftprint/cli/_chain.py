@@ -53,7 +53,7 @@ def known_beforehand(
     structure: Structure, vessel: Vessel, signals: Signals, given: Mapping[str, Prior]
 ) -> dict[str, Prior]:
     """Return the priors of a structure: what the vessel file knows, and what the user states instead or besides."""
-    return priors_from_vessel(structure, vessel, signals.working_point) | dict(given)
+    return priors_from_vessel(structure, vessel, signals.working_point, mode=signals.mode) | dict(given)
 
 
 def fit(

@@ -1,9 +1,9 @@
 """What is known of a line before any test: the priors of the gauge-aware structures.
 
-A test of set point, speed and shaft torque finds ``v K_p / tau``, ``v K_i / tau`` and ``(k_q - g) / tau`` with ``tau
-= tau_up + tau_dn``,
-but neither ``tau_up`` nor ``g`` alone. The torsional vibration calculation (TVC) knows the inertia upstream of the
-gauge to a few percent, and brake torque over speed at constant rack is nearly flat in the middle of the range.
+A test of set point, speed and shaft torque finds ``v K_p / tau``, ``v K_i / tau`` and ``(k_q - g) / tau`` with
+``tau = tau_up + tau_dn``, but neither ``tau_up`` nor ``g`` alone. The torsional vibration calculation (TVC) knows the
+inertia upstream of the gauge to a few percent, and brake torque over speed at constant rack is nearly flat in the
+middle of the range.
 """
 
 from typing import TYPE_CHECKING
@@ -14,17 +14,29 @@ from shaftprint.identify._objective import Prior
 from shaftprint.models import Structure
 
 if TYPE_CHECKING:
-    from shaftprint.signals import WorkingPoint
+    from shaftprint.signals import Mode, WorkingPoint
     from shaftprint.vessel import Vessel
 
 PRIOR_OF_G = Prior(mean=0.0, std=0.1)
+"""Slope of the engine torque with speed, before any test: flat to a tenth."""
 
 
-def priors_from_vessel(structure: Structure, vessel: "Vessel", working_point: "WorkingPoint") -> dict[str, Prior]:
+def priors_from_vessel(
+    structure: Structure, vessel: "Vessel", working_point: "WorkingPoint", *, mode: "Mode" = "shaftprint"
+) -> dict[str, Prior]:
     """Return what is known of a structure's ``g``, ``tau_up`` and ``t_gauge``, those of them that are free.
 
     The inertia time is ``tau_up = 2 pi I_up n_s0 / M_s0`` (thesis eq. 2.23). Its standard deviation holds that of
     the TVC, of the working-point torque and of the gauge's scale.
+
+    Parameters
+    ----------
+    structure
+        Its free parameters are asked for.
+    vessel, working_point
+        What was tested, and where.
+    mode
+        How the signals were prepared: in thesis mode the whole latency of the torque is still in them.
     """
     names = {parameter.name for parameter in structure.free}
     gauge = vessel.sensors.shaft_torque
@@ -40,5 +52,5 @@ def priors_from_vessel(structure: Structure, vessel: "Vessel", working_point: "W
         )
         found["tau_up"] = Prior(mean=float(tau), std=float(tau * np.sqrt(sum(share**2 for share in shares))))
     if "t_gauge" in names and gauge.latency_std_s:
-        found["t_gauge"] = Prior(mean=0.0, std=gauge.latency_std_s)
+        found["t_gauge"] = Prior(mean=gauge.latency_s if mode == "thesis" else 0.0, std=gauge.latency_std_s)
     return found
