@@ -39,6 +39,7 @@ def test_an_impossible_sine_is_refused(changed, expected):
     [
         ({"stop_s": 60.0}, "start_s < stop_s, found 60, 60"),
         ({"stop_frequency_hz": 0.01}, "two different frequencies, found 0.01 Hz twice"),
+        ({"stop_s": 60.0, "stop_frequency_hz": 0.01}, "start_s < stop_s, found 60, 60. expected two different"),
     ],
 )
 def test_an_impossible_chirp_is_refused(changed, expected):

@@ -1,10 +1,11 @@
 """What cannot be a ship is refused with a message that says why."""
 
 import pytest
+from pydantic import ValidationError
 
 from shaftprint.errors import SettingsError
 from shaftprint.settings import write_template
-from shaftprint.vessel import ShaftTorqueSensor, load_vessel
+from shaftprint.vessel import ShaftTorqueSensor, SpeedSensor, load_vessel
 
 
 @pytest.mark.parametrize(
@@ -69,6 +70,25 @@ def test_both_sides_of_the_gauge_need_inertia(tmp_path):
     path.write_text(path.read_text().replace('gauge = "downstream"', 'gauge = "upstream"'))
     with pytest.raises(SettingsError, match="expected some inertia downstream of the torque gauge, found none"):
         load_vessel(path)
+
+
+def test_all_that_is_wrong_with_a_table_is_told_at_once(tmp_path):
+    path = tmp_path / "ship.toml"
+    write_template("vessel", path)
+    text = path.read_text().replace('gauge = "downstream"', 'gauge = "upstream"')
+    path.write_text(text.replace('name = "Entrained water"', 'name = "Propeller, dry"'))
+    with pytest.raises(SettingsError, match=r"found Propeller, dry twice.*some inertia downstream .*, found none"):
+        load_vessel(path)
+    with pytest.raises(ValidationError, match=r"below 90 for 4 strips, found 95.*add up to 360, found 4 that .* 350"):
+        SpeedSensor(
+            name="n",
+            channel="P",
+            shaft="engine",
+            pulses_per_revolution=4,
+            unit="V",
+            pulse_width_deg=95.0,
+            strip_angles_deg=(90.0, 90.0, 90.0, 80.0),
+        )
 
 
 def test_rows_without_standard_deviation_count_as_exact(tmp_path):

@@ -41,19 +41,22 @@ class SpeedSensor(Settings):
 
     @model_validator(mode="after")
     def _strips_fit_on_the_shaft(self) -> Self:
+        found = []
         strips = self.pulses_per_revolution
         if self.pulse_width_deg is not None and self.pulse_width_deg * strips >= 360.0:
-            raise ValueError(
+            found.append(
                 f"expected pulse_width_deg below {360.0 / strips:g} for {strips} strips, "
                 f"found {self.pulse_width_deg:g}."
             )
         angles = self.strip_angles_deg
         # 0.1 deg: printed tables are rounded (table 3.4 of the thesis adds up to 360.02 deg)
         if angles is not None and (len(angles) != strips or abs(sum(angles) - 360.0) > 0.1):
-            raise ValueError(
+            found.append(
                 f"expected strip_angles_deg to hold {strips} angles that add up to 360, "
                 f"found {len(angles)} that add up to {sum(angles):g}."
             )
+        if found:
+            raise ValueError(" ".join(found))
         return self
 
 

@@ -39,14 +39,17 @@ class Vessel(Settings):
     def _inertia_on_both_sides(self) -> Self:
         names = [row.name for row in self.inertia]
         twice = sorted({name for name in names if names.count(name) > 1})
+        found = []
         if twice:
-            raise ValueError(f"expected every inertia row to have its own name, found {', '.join(twice)} twice.")
+            found.append(f"expected every inertia row to have its own name, found {', '.join(twice)} twice.")
         for side, value in (
             ("upstream", self.inertia_upstream_kg_m2),
             ("downstream", self.inertia_downstream_kg_m2),
         ):
             if value <= 0.0:
-                raise ValueError(f"expected some inertia {side} of the torque gauge, found none.")
+                found.append(f"expected some inertia {side} of the torque gauge, found none.")
+        if found:
+            raise ValueError(" ".join(found))
         return self
 
     @property
