@@ -1,6 +1,7 @@
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
+from types import SimpleNamespace
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -10,6 +11,7 @@ from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.models import structure
 from shaftprint.report import ThesisMode, render_report
 from shaftprint.report import _render as render_module
+from shaftprint.report._measurement_sections import time_section
 
 VOID = {"meta", "img", "br", "link"}
 
@@ -215,6 +217,15 @@ def test_a_report_of_the_bare_nouns(tmp_path, nouns):
     assert "thesis-mode" not in page.ids
     assert "time" not in page.ids
     assert not any("campaign" in image["src"] for image in page.all("img"))
+
+
+def test_tests_that_ended_before_the_recording_began_are_not_drawn(campaign, signals):
+    """St1 ends at 310 s and C11 at 450 s; a figure of either would be empty."""
+    late = replace(signals, start_s=455.0)
+    (section,) = time_section(SimpleNamespace(campaign=campaign, signals=late))
+    assert [picture.name for picture in section.pictures] == ["chirp_c2"]
+    assert section.pictures[0].draw().axes
+    assert time_section(SimpleNamespace(campaign=campaign, signals=replace(signals, start_s=700.0))) == []
 
 
 def test_names_of_users_are_escaped(tmp_path, nouns, monkeypatch):

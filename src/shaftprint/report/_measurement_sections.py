@@ -2,6 +2,7 @@
 
 from functools import partial
 from itertools import groupby
+from typing import TYPE_CHECKING
 
 from shaftprint.report._calibration_figure import plot_calibration
 from shaftprint.report._campaign_figure import plot_campaign
@@ -26,6 +27,10 @@ from shaftprint.report._step_figure import plot_step_delays
 from shaftprint.report._strip_figure import plot_strip_angles
 from shaftprint.report._time_series import plot_excitation, plot_staircase
 from shaftprint.spectra import open_loop
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Excitation
+    from shaftprint.signals import Signals
 
 
 def signal_section(inputs: Inputs) -> Section:
@@ -139,9 +144,10 @@ def response_section(inputs: Inputs) -> Section:
 
 
 def time_section(inputs: Inputs) -> list[Section]:
-    """Return chirps, neighbours of one name put end to end, and the last staircase; nothing where there are none."""
+    """Return chirps, neighbours of one name put end to end, and the last staircase, as far as they were recorded."""
     pictures = []
-    for name, group in groupby(inputs.campaign.chirps, key=lambda chirp: chirp.name[:-1]):
+    recorded = [chirp for chirp in inputs.campaign.chirps if _is_recorded(chirp, inputs.signals)]
+    for name, group in groupby(recorded, key=lambda chirp: chirp.name[:-1]):
         chirps = list(group)
         listed = ", ".join(chirp.name for chirp in chirps)
         pictures.append(
@@ -152,14 +158,21 @@ def time_section(inputs: Inputs) -> list[Section]:
                 draw=partial(plot_excitation, inputs.signals, chirps),
             )
         )
-    if inputs.campaign.staircases:
-        last = inputs.campaign.staircases[-1].name
+    staircases = [stairs for stairs in inputs.campaign.staircases if _is_recorded(stairs, inputs.signals)]
+    if staircases:
+        last = staircases[-1].name
         pictures.append(
             Picture(
                 name="staircase",
                 caption=f"Staircase {last}: smallest and largest sample of each stretch (as figure 3.11).",
                 alt=f"Engine speed and shaft torque over time with the set point, staircase {last}.",
-                draw=partial(plot_staircase, inputs.signals, inputs.campaign),
+                draw=partial(plot_staircase, inputs.signals, inputs.campaign, name=last),
             )
         )
     return [Section(key="time", title="Time signals", pictures=pictures)] if pictures else []
+
+
+def _is_recorded(test: "Excitation", signals: "Signals") -> bool:
+    """Return whether the signals hold more than a second of a test: a recording may begin after it."""
+    stop_s = signals.start_s + signals.samples / signals.rate_hz
+    return min(test.stop_s, stop_s) - max(test.start_s, signals.start_s) > 1.0
