@@ -57,6 +57,10 @@ def test_whole_test_with_a_campaign_file(run, recording):
         "Findings on the signals",
     ):  # fmt: skip
         assert heading in result.output
+    # on a rigid line all three speeds have one mean
+    means = [float(_cells(result.output, name)[2]) for name in ("n_e", "n_e1", "n_e4")]
+    assert means == pytest.approx([means[0]] * 3, rel=1e-4)
+    assert _cells(result.output, "n_e")[3] == "+0.000"
     assert result.output.rstrip().endswith("Good enough: 10 of 10 lines are usable and above 0 dB, 4 of them between 1 "
                                            "and 12 rad/s, where the loop crosses over.")  # fmt: skip
 

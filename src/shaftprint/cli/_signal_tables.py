@@ -56,15 +56,21 @@ def _print_steady_state(signals: Signals) -> None:
 
 
 def _print_speeds(signals: Signals) -> None:
-    columns = ("sensor", "channel", "pulses [1/s]", "aliased above [Hz]", "mean over [ms]", "delay [ms]")
-    rows = [_speed_row(speed) for speed in signals.speeds.values()]
+    columns = (
+        "sensor", "channel", "mean [rpm]", "off the first [%]", "pulses [1/s]", "aliased above [Hz]", "mean over [ms]",
+        "delay [ms]",
+    )  # fmt: skip
+    rows = [_speed_row(speed, signals.engine_speed) for speed in signals.speeds.values()]
     print_table("Engine-speed channels; the first is identified", columns, rows, numbers=range(2, len(columns)))
 
 
-def _speed_row(speed: SpeedSignal) -> tuple[str, ...]:
+def _speed_row(speed: SpeedSignal, first: SpeedSignal) -> tuple[str, ...]:
+    mean = float(np.mean(speed.speed_rev_s))
     return (
         speed.name,
         speed.channel,
+        f"{rpm_from_rev_s(mean):.2f}",
+        f"{100.0 * (mean / float(np.mean(first.speed_rev_s)) - 1.0):+.3f}",
         f"{speed.pulse_rate_hz:.2f}",
         f"{speed.nyquist_hz:.2f}",
         f"{1000.0 * speed.averaging_s:.1f}",
