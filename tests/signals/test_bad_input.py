@@ -1,4 +1,4 @@
-"""What design.md calls bad input: one clear sentence, or a result with a finding."""
+"""Recordings that cannot be right: one clear sentence, or a result with a finding."""
 
 from dataclasses import replace
 

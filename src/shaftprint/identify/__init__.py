@@ -4,7 +4,7 @@
 quantity            unit    meaning
 =================== ======= ==========================================================================================
 cost                -       half the sum of squared weighted residuals; for maximum likelihood ``2 cost`` is a
-chi-square
+                            chi-square
 ``fit_percent``     %       ``100 (1 - |y - yh| / |y - mean y|)`` of one output (thesis eq. 2.41)
 ``fit_ceiling``     %       the same for the true model: what the noise allows
 covariance          mixed   of the free parameters, each in its own unit

@@ -1,7 +1,7 @@
 """What a fit minimises: weighted residuals of all lines and outputs, and rows for what is known beforehand.
 
-With the residual vector ``r = W (y - f(theta))`` over ``[Re, Im]`` of every used line and output, the cost is ``r^T
-r / 2``. For maximum likelihood ``W^T W`` is the inverse of the full covariance of each line, so ``2 cost`` is a
+With the residual vector ``r = W (y - f(theta))`` over ``[Re, Im]`` of every used line and output, the cost is
+``r^T r / 2``. For maximum likelihood ``W^T W`` is the inverse of the full covariance of each line, so ``2 cost`` is a
 chi-square; unweighted (the thesis' way) ``W`` holds output weights only. A prior ``mean +/- std`` of a parameter is
 one more row, ``(theta - mean) / std``.
 """

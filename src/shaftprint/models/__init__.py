@@ -9,8 +9,8 @@ quantity        unit    meaning and sign
 ``n_set``       -       deviation of the engine-speed set point over the same working-point speed
 ``e``           -       ``n_set - n``: positive when the engine is too slow
 ``E_n``         s       integral of ``e``
-``M_s``         -       deviation of shaft torque at the gauge over its working-point value; positive driving the
-propeller
+``M_s``         -       deviation of shaft torque at the gauge over its working-point value; positive when the engine
+                        drives the propeller
 ``s``           rad/s   Laplace variable, ``1j omega`` on the frequency axis
 ``tau``         s       inertia time ``2 pi I n_s0 / M_s0``, of the inertia that the index names
 =============== ======= ==============================================================================================

@@ -184,8 +184,8 @@ def gauge_open() -> Structure:
     """Return the gauge-aware governor and engine, ``M_s / e`` with ``e = n_set - n`` as it is measured.
 
     ``M_s / e = v C exp(-s t_d) F (tau_dn s + k_q) / ((tau_up + tau_dn) s + k_q - g)`` inside the ship; the latency
-    of the set point and the pick-up enter through ``e``, so the measured ratio is ``(M_s / n_set) / (1 - n /
-    n_set)``.
+    of the set point and the pick-up enter through ``e``, so the measured ratio is
+    ``(M_s / n_set) / (1 - n / n_set)``.
     """
     speed, torque = _gauge_outputs()
     error = Constant(1.0) + Constant(-1.0) * speed

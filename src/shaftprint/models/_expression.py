@@ -94,8 +94,8 @@ def _nodes(node: Expression, seen: set[int]) -> Iterator[Expression]:
 class Block(Expression):
     """A building block: a transfer function of a few parameters, with its derivatives.
 
-    A block of one's own is a frozen dataclass with :class:`Parameter` fields and the two methods ``transfer`` and
-    ``derivatives``; ``ratio`` too if it is rational in ``s``.
+    A block of one's own is a frozen dataclass with :class:`Parameter` fields, the property ``parameters`` and the two
+    methods ``transfer`` and ``derivatives``; ``ratio`` too if it is rational in ``s``.
     """
 
     __slots__ = ()

@@ -10,10 +10,9 @@ def without_cross_term(
 ) -> tuple[ComplexArray, ComplexArray]:
     """Take out of the torque's line what a quadratic propeller makes of the line and its second harmonic.
 
-    A propeller that takes ``load (1 + n)^2`` sees ``n = Re(a e^jx + b e^2jx)``; its square holds ``Re(conj(a) b
-    e^jx)``, so the torque's line is larger than that of the linear propeller by ``load conj(a) b``. At the peak of
-    a closed loop that is
-    0.05 % of the line, as much as its noise.
+    A propeller that takes ``load (1 + n)^2`` sees ``n = Re(a e^jx + b e^2jx)``; its square holds
+    ``Re(conj(a) b e^jx)``, so the torque's line is larger than that of the linear propeller by ``load conj(a) b``. At
+    the peak of a closed loop that is 0.05 % of the line, as much as its noise.
 
     Parameters
     ----------
