@@ -16,7 +16,8 @@ from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify._identification import Cluster, Estimate, Identification, Settings
 from shaftprint.identify._identify import identify
 from shaftprint.identify._known import PRIOR_OF_G, priors_from_vessel
-from shaftprint.identify._objective import MaximumLikelihood, Prior, Unweighted, Weighting
+from shaftprint.identify._objective import MaximumLikelihood, Unweighted, Weighting
+from shaftprint.identify._prior import Prior
 from shaftprint.identify._profile import Interval, Profile, profile, profile_intervals
 from shaftprint.identify._refit import Refits, refit
 from shaftprint.identify._starts import Draw, LatinHypercube, Uniform

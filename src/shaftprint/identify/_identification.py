@@ -8,7 +8,8 @@ import numpy as np
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.errors import IdentificationError
 from shaftprint.identify._covariance import variance_along
-from shaftprint.identify._objective import MaximumLikelihood, Objective, Prior, Weighting
+from shaftprint.identify._objective import MaximumLikelihood, Objective, Weighting
+from shaftprint.identify._prior import Prior
 from shaftprint.identify._starts import Draw, LatinHypercube
 from shaftprint.models import Margins, Structure, margins
 from shaftprint.spectra import FrequencyResponse

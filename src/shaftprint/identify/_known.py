@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.identify._objective import Prior
+from shaftprint.identify._prior import Prior
 from shaftprint.models import Structure
 
 if TYPE_CHECKING:
@@ -45,12 +45,13 @@ def priors_from_vessel(
         inertia, torque = vessel.inertia_upstream_kg_m2, working_point.shaft_torque_nm
         shaft_rev_s = working_point.engine_speed_rev_s / vessel.gearbox.ratio
         tau = 2.0 * np.pi * inertia * shaft_rev_s / torque
-        shares = (
-            vessel.inertia_upstream_std_kg_m2 / inertia,
-            working_point.shaft_torque_std_nm / torque,
-            gauge.scale_std_fraction or 0.0,
-        )
-        found["tau_up"] = Prior(mean=float(tau), std=float(tau * np.sqrt(sum(share**2 for share in shares))))
+        sources = {
+            "TVC": tau * vessel.inertia_upstream_std_kg_m2 / inertia,
+            "working-point torque": -tau * working_point.shaft_torque_std_nm / torque,
+            "gauge scale": -tau * (gauge.scale_std_fraction or 0.0),
+        }
+        sources = {name: float(part) for name, part in sources.items() if part}
+        found["tau_up"] = Prior(mean=float(tau), std=float(np.linalg.norm(list(sources.values()))), sources=sources)
     if "t_gauge" in names and gauge.latency_std_s:
         found["t_gauge"] = Prior(mean=gauge.latency_s if mode == "thesis" else 0.0, std=gauge.latency_std_s)
     return found

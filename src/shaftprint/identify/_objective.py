@@ -14,31 +14,9 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from shaftprint.errors import IdentificationError
+from shaftprint.identify._prior import Prior
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
-
-
-@dataclass(frozen=True, slots=True)
-class Prior:
-    """What is known of a parameter before the fit, as a normal distribution."""
-
-    mean: float
-    """Expected value, in the parameter's unit."""
-    std: float
-    """Standard deviation, in the parameter's unit."""
-
-    def __post_init__(self) -> None:
-        """Check the standard deviation.
-
-        Raises
-        ------
-        IdentificationError
-            If it is not positive.
-        """
-        if not self.std > 0.0:
-            raise IdentificationError(
-                f"prior {self.mean} +/- {self.std}: expected a positive standard deviation; hold the parameter instead."
-            )
 
 
 class Weighting(ABC):
