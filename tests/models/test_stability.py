@@ -263,5 +263,5 @@ def test_structure_of_delays_only_has_no_poles():
 def test_two_feedback_loops_in_one_structure_are_refused():
     governor = PIGovernor(free("K_p"), free("K_i"))
     lag = SecondOrderLag(free("omega_n"), free("zeta"))
-    with pytest.raises(StructureError, match="expected one feedback loop, found 2"):
+    with pytest.raises(StructureError, match="expected one outermost feedback loop, found 2"):
         Structure(name="two", title="", input="r", outputs={"a": feedback(governor), "b": feedback(lag)})

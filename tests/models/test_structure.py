@@ -60,10 +60,11 @@ def test_value_outside_its_bounds_is_refused(value):
         parameter("K_p", value)
 
 
-def test_holding_a_parameter_widens_its_bounds_when_needed():
-    held = parameter("K_p").held_at(12.0)
-    assert (held.lower, held.upper, held.value, held.held) == (0.0, 12.0, 12.0, True)
-    assert parameter("K_p").held_at(-1.0).lower == -1.0
+def test_a_parameter_is_held_within_its_bounds_only():
+    held = parameter("K_p").held_at(8.0)
+    assert (held.lower, held.upper, held.value, held.held) == (0.0, 10.0, 8.0, True)
+    with pytest.raises(StructureError, match=r"K_p: expected a value from 0\.0 to 10\.0 -, found 12\.0"):
+        parameter("K_p").held_at(12.0)
 
 
 @pytest.mark.parametrize(("bounds", "value"), [((2.0, 3.0), 2.0), ((0.0, 0.5), 0.5), ((0.5, 3.0), 1.0)])

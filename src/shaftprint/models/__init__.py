@@ -29,18 +29,15 @@ from shaftprint.models._blocks import (
     TorqueBalance,
 )
 from shaftprint.models._catalogue import STRUCTURES, structure
+from shaftprint.models._combination import Combination
 from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor
 from shaftprint.models._expression import Block, Expression, Inverse, Sensitivity, feedback
+from shaftprint.models._margins import Margins, margins, poles
+from shaftprint.models._nyquist import is_stable, loop_gain, stable_rows, unstable_poles
+from shaftprint.models._own_blocks import FunctionBlock, RationalBlock
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._stability import (
-    Margins,
-    is_stable,
-    loop_gain,
-    margins,
-    poles,
-    unstable_poles,
-)
-from shaftprint.models._structure import Combination, Structure
+from shaftprint.models._structure import Structure
+from shaftprint.models._tie import Tie
 
 __all__ = [
     "STRUCTURES",
@@ -50,6 +47,7 @@ __all__ = [
     "Delay",
     "Expression",
     "FilteredDerivative",
+    "FunctionBlock",
     "Gain",
     "Integrator",
     "Inverse",
@@ -57,17 +55,20 @@ __all__ = [
     "PIGovernor",
     "PadeDelay",
     "Parameter",
+    "RationalBlock",
     "SecondOrderLag",
     "Sensitivity",
     "Shaft",
     "SpeedSensor",
     "Structure",
+    "Tie",
     "TorqueBalance",
     "feedback",
     "is_stable",
     "loop_gain",
     "margins",
     "poles",
+    "stable_rows",
     "structure",
     "unstable_poles",
 ]

@@ -17,10 +17,11 @@ from shaftprint.models._blocks import (
     Shaft,
     TorqueBalance,
 )
+from shaftprint.models._combination import Combination
 from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor
 from shaftprint.models._expression import Expression, Inverse, Sensitivity
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._structure import Combination, Structure
+from shaftprint.models._structure import Structure
 
 TAU_N = Parameter("tau_n", "s", 0.0, 5.0, 0.39, "inertia time of the line, 2 pi I n_s0 / M_s0")
 K_P = Parameter("K_p", "-", 0.0, 10.0, 3.0, "proportional gain of the governor")

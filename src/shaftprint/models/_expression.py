@@ -29,6 +29,9 @@ Gradient: TypeAlias = dict[str, ComplexArray]
 Dual: TypeAlias = tuple[ComplexArray, Gradient]
 Polynomials: TypeAlias = tuple[NDArray[np.floating], NDArray[np.floating]]
 
+# Share of a parameter by which it is moved to find a derivative: errors of rounding and of the formula are alike.
+STEP = 1e-3
+
 
 @dataclass(slots=True)
 class Walk:
@@ -94,8 +97,9 @@ def _nodes(node: Expression, seen: set[int]) -> Iterator[Expression]:
 class Block(Expression):
     """A building block: a transfer function of a few parameters, with its derivatives.
 
-    A block of one's own is a frozen dataclass with :class:`Parameter` fields, the property ``parameters`` and the two
-    methods ``transfer`` and ``derivatives``; ``ratio`` too if it is rational in ``s``.
+    A block of one's own is a frozen dataclass with :class:`Parameter` fields, the property ``parameters`` and the
+    method ``transfer``; ``derivatives`` too where exact ones are wanted instead of numerical ones, and ``ratio`` if it
+    is rational in ``s``. ``RationalBlock`` and ``FunctionBlock`` make one from a function.
     """
 
     __slots__ = ()
@@ -109,9 +113,22 @@ class Block(Expression):
     def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
         """Return the transfer function at ``s``; values have shape (..., 1), the result (..., frequencies)."""
 
-    @abstractmethod
     def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
-        """Return the derivative of ``transfer`` to each parameter; ``response`` is its value."""
+        """Return the derivative of ``transfer`` to each parameter; ``response`` is its value.
+
+        Central differences of fourth order where a block has no formula of its own: right to about eleven digits. They
+        ask for values a thousandth outside the bounds.
+        """
+        return tuple(self._difference(s, values, place) for place in range(len(values)))
+
+    def _difference(self, s: ComplexArray, values: tuple[FloatArray, ...], place: int) -> ComplexArray:
+        parameter, value = self.parameters[place], values[place]
+        step = STEP * np.maximum(np.abs(value), STEP * (parameter.upper - parameter.lower))
+
+        def at(steps: float) -> ComplexArray:
+            return self.transfer(s, *values[:place], value + steps * step, *values[place + 1 :])
+
+        return np.asarray((8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * step))
 
     def ratio(self, *values: float) -> Polynomials | None:
         """Return numerator and denominator in ``s``, highest power first, or None where it is not rational."""
@@ -182,11 +199,23 @@ class Series(Expression):
         return (self.first, self.second)
 
     def polynomials(self, values: Mapping[str, float]) -> Polynomials | None:
-        """Multiply numerators and denominators."""
+        """Multiply numerators and denominators; of a closed loop ``N_G D_H / (D_G D_H + N_G N_H)`` is left."""
         one, two = self.first.polynomials(values), self.second.polynomials(values)
         if one is None or two is None:
             return None
+        back = self.second.behind(self.first) if isinstance(self.second, Sensitivity) else None
+        if back is not None:
+            after = back[0].polynomials(values) if back else (np.array([1.0]), np.array([1.0]))
+            if after is None:
+                return None
+            return np.polymul(one[0], after[1]), _sum_of_products(one[1], after[1], one[0], after[0])
         return np.polymul(one[0], two[0]), np.polymul(one[1], two[1])
+
+
+def _sum_of_products(
+    a: NDArray[np.floating], b: NDArray[np.floating], c: NDArray[np.floating], d: NDArray[np.floating]
+) -> NDArray[np.floating]:
+    return np.asarray(np.polyadd(np.polymul(a, b), np.polymul(c, d)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -214,8 +243,7 @@ class Parallel(Expression):
         one, two = self.first.polynomials(values), self.second.polynomials(values)
         if one is None or two is None:
             return None
-        numerator = np.polyadd(np.polymul(one[0], two[1]), np.polymul(two[0], one[1]))
-        return numerator, np.polymul(one[1], two[1])
+        return _sum_of_products(one[0], two[1], two[0], one[1]), np.polymul(one[1], two[1])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

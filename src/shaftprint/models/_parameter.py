@@ -43,8 +43,14 @@ class Parameter:
             )
 
     def held_at(self, value: float) -> "Parameter":
-        """Return the parameter held at a value; its bounds are widened to include the value."""
-        return replace(self, value=value, held=True, lower=min(self.lower, value), upper=max(self.upper, value))
+        """Return the parameter held at a value within its bounds.
+
+        Raises
+        ------
+        StructureError
+            If the value lies outside them.
+        """
+        return replace(self, value=value, held=True)
 
     def free_between(self, lower: float, upper: float) -> "Parameter":
         """Return the parameter free between two bounds, its value moved inside them."""

@@ -1,4 +1,4 @@
-"""A structure: the responses from one input to one or more outputs, made of blocks."""
+"""A structure: the responses from its inputs to its outputs, made of blocks."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -8,75 +8,71 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.models._expression import Block, Expression, Sensitivity, Walk
+from shaftprint.models._assembly import block_parameters, channel_paths, outermost_loop
+from shaftprint.models._combination import Combination
+from shaftprint.models._expression import Block, Expression, Gradient, Walk
 from shaftprint.models._parameter import Parameter
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Combination:
-    """A combination of parameters that a test can find where the parameters alone it cannot."""
-
-    name: str
-    """Formula in the parameters' names, such as ``t_d + t_sp``."""
-    unit: str
-    """Unit, ``-`` where there is none."""
-    of: Callable[[Mapping[str, FloatArray]], FloatArray]
-    """Its value from the parameters' values."""
-    meaning: str
-    """What it stands for, in a few words."""
+from shaftprint.models._tie import Tie
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Structure:
-    """A grey-box model structure with one input and one or more outputs, and its parameters."""
+    """A grey-box model structure with one or more inputs and outputs, and its parameters."""
 
     name: str
     """Short name, such as ``CL4``."""
     title: str
     """What it is, in one line."""
-    input: str
-    """Name of the input."""
-    outputs: Mapping[str, Expression]
-    """Response of each output to the input, by name of the output."""
+    outputs: Mapping[str, Expression | Mapping[str, Expression]]
+    """Response of each output by its name: an expression, or with several inputs one for each input by its name."""
+    input: str = ""
+    """Name of the input; the first of several."""
+    inputs: tuple[str, ...] = ()
+    """Names of all inputs; the one ``input`` when not given."""
     combinations: tuple[Combination, ...] = ()
     """Combinations of parameters worth reporting."""
-    parameters: tuple[Parameter, ...] = field(default=())
-    """All parameters, in the order in which the outputs mention them; found from the blocks where not given."""
+    parameters: tuple[Parameter, ...] = ()
+    """All independent parameters, in the order in which the outputs mention them; from the blocks if not given."""
+    ties: tuple[Tie, ...] = ()
+    """Parameters of the blocks that follow from independent ones."""
+    factors: Mapping[str, float] = field(default_factory=dict)
+    """Factor on a parameter of the blocks, by name: what another working point makes of it."""
+    channels: tuple[tuple[str, str], ...] = field(init=False)
+    """Output and input of each response, outputs slowest."""
+    paths: tuple[Expression, ...] = field(init=False)
+    """Expression of each channel."""
     blocks: tuple[Block, ...] = field(init=False)
     """All blocks, each once."""
     loop: Expression | None = field(init=False)
-    """Loop gain of the feedback in this structure; None where there is none."""
+    """Loop gain of the outermost feedback in this structure; None where there is none."""
 
     def __post_init__(self) -> None:
-        """Collect the blocks, their parameters and the feedback loop.
+        """Collect channels, blocks, their parameters and the feedback loop.
 
         Raises
         ------
         StructureError
-            If two blocks describe a parameter of one name differently, or there is more than one feedback loop.
+            If two blocks describe a parameter of one name differently, an input has no expression, a tie names an
+            unknown parameter, or there is more than one outermost feedback loop.
         """
+        object.__setattr__(self, "inputs", self.inputs or (self.input,))
+        object.__setattr__(self, "input", self.inputs[0])
+        paths = channel_paths(self.name, self.outputs, self.inputs)
+        object.__setattr__(self, "channels", tuple(paths))
+        object.__setattr__(self, "paths", tuple(paths.values()))
         nodes = self._nodes()
         object.__setattr__(self, "blocks", tuple(node for node in nodes if isinstance(node, Block)))
-        found: dict[str, Parameter] = {}
-        for parameter in (p for block in self.blocks for p in block.parameters):
-            if found.setdefault(parameter.name, parameter) != parameter:
-                raise StructureError(
-                    f"structure {self.name}: parameter {parameter.name} occurs twice with different "
-                    "bounds, values or units; use one Parameter for both."
-                )
+        found = block_parameters(self.name, self.blocks)
+        tied = {tie.name for tie in self.ties}
         if not self.parameters:
-            object.__setattr__(self, "parameters", tuple(found.values()))
-        loops = [node.loop for node in nodes if isinstance(node, Sensitivity)]
-        if len(loops) > 1:
-            raise StructureError(
-                f"structure {self.name}: expected one feedback loop, found {len(loops)}; use one Sensitivity object "
-                "for all outputs."
-            )
-        object.__setattr__(self, "loop", loops[0] if loops else None)
+            object.__setattr__(self, "parameters", tuple(p for p in found.values() if p.name not in tied))
+        for tie in self.ties:
+            self._expect_names(tie.arguments)
+        object.__setattr__(self, "loop", outermost_loop(self.name, nodes))
 
     def _nodes(self) -> list[Expression]:
         seen: dict[int, Expression] = {}
-        for expression in self.outputs.values():
+        for expression in self.paths:
             for node in expression.nodes():
                 seen.setdefault(id(node), node)
         return list(seen.values())
@@ -115,6 +111,99 @@ class Structure:
         changed = (p.free_between(*bounds[p.name]) if p.name in bounds else p for p in self.parameters)
         return replace(self, parameters=tuple(changed))
 
+    def tied(self, name: str, formula: Callable[..., FloatArray], *new: Parameter) -> "Structure":
+        """Return the structure with one parameter following from others.
+
+        Parameters
+        ----------
+        name
+            The parameter; it is reported as a combination from now on.
+        formula
+            Its value; the names of the arguments are names of parameters, as in ``lambda K_p, T_i: K_p / T_i``. It is
+            made of arithmetic and NumPy functions.
+        new
+            Parameters that the structure does not have yet.
+
+        Raises
+        ------
+        StructureError
+            If a name is not a parameter, or a new parameter is there already.
+        """
+        self._expect_names([name])
+        known = [parameter.name for parameter in new if parameter.name in self.names]
+        if known:
+            raise StructureError(f"structure {self.name} has a parameter {', '.join(known)} already; use another name.")
+        before = self.parameters[self.names.index(name)]
+        tie = Tie.from_formula(name, formula)
+        followed = Combination(name=name, unit=before.unit, of=tie.value, meaning=before.meaning)
+        return replace(
+            self,
+            parameters=(*(p for p in self.parameters if p.name != name), *new),
+            ties=(*self.ties, tie),
+            combinations=(followed, *self.combinations),
+        )
+
+    def scaled(self, **factors: float) -> "Structure":
+        """Return the structure with factors on some parameters: the same line at another working point.
+
+        The parameters keep their meaning at the first working point. In bollard pull ``tau``, ``K_p`` and ``K_i`` go
+        with ``1 / n_0`` for one inertia and one governor (thesis eqs 2.14-2.25).
+
+        Raises
+        ------
+        StructureError
+            If a name is not a parameter of the blocks.
+        """
+        self._expect_names(factors, tied=True)
+        return replace(self, factors={**self.factors, **factors})
+
+    def of_outputs(self, *names: str) -> "Structure":
+        """Return the structure with some of its outputs; parameters that they do not show are left out.
+
+        Raises
+        ------
+        StructureError
+            If a name is not an output.
+        """
+        unknown = [name for name in names if name not in self.outputs]
+        if unknown or not names:
+            raise StructureError(
+                f"structure {self.name} has no output {', '.join(unknown)}; it has {', '.join(self.outputs)}."
+            )
+        paths = [path for (output, _), path in zip(self.channels, self.paths, strict=True) if output in names]
+        shown = {p.name for path in paths for node in path.nodes() if isinstance(node, Block) for p in node.parameters}
+        ties = tuple(tie for tie in self.ties if tie.name in shown)
+        shown |= {argument for tie in ties for argument in tie.arguments}
+        kept = tuple(p for p in self.parameters if p.name in shown)
+        return replace(
+            self,
+            outputs={name: self.outputs[name] for name in names},
+            parameters=kept,
+            ties=ties,
+            combinations=tuple(c for c in self.combinations if c.is_defined_by({p.name: p.value for p in kept})),
+        )
+
+    def named(self, values: ArrayLike) -> dict[str, FloatArray]:
+        """Return every parameter by name, tied ones included.
+
+        Parameters
+        ----------
+        values
+            Values of the independent parameters, shape (..., parameters).
+
+        Returns
+        -------
+            Each of shape (...).
+        """
+        table = np.asarray(values, dtype=np.float64)
+        found = {name: table[..., place] for place, name in enumerate(self.names)}
+        return found | {tie.name: tie.value(found) for tie in self.ties}
+
+    def columns(self, table: FloatArray) -> dict[str, FloatArray]:
+        """Return every parameter with its factor, as the blocks take it: shape (..., 1), from (..., parameters)."""
+        found = {name: np.asarray(value)[..., None] for name, value in self.named(table).items()}
+        return found | {name: found[name] * factor for name, factor in self.factors.items()}
+
     def vector(self, values: Mapping[str, float]) -> FloatArray:
         """Return all parameter values in order, shape (parameters,); those not named take their default.
 
@@ -143,7 +232,7 @@ class Structure:
 
         Returns
         -------
-            Response, shape (..., outputs, frequencies).
+            Response, shape (..., channels, frequencies); with one input the channels are the outputs.
         """
         return self.stacked(values, s, (), factors=factors)[..., 0, :, :]
 
@@ -159,7 +248,7 @@ class Structure:
 
         Returns
         -------
-            Response, shape (..., outputs, frequencies), and derivatives, shape (..., wanted, outputs, frequencies).
+            Response, shape (..., channels, frequencies), and derivatives, shape (..., wanted, channels, frequencies).
         """
         stacked = self.stacked(values, s, wanted, factors=factors)
         return stacked[..., 0, :, :], stacked[..., 1:, :, :]
@@ -176,7 +265,7 @@ class Structure:
 
         Returns
         -------
-            Shape (..., 1 + wanted, outputs, frequencies).
+            Shape (..., 1 + wanted, channels, frequencies).
         """
         table = np.asarray(values, dtype=np.float64)
         if table.shape[-1:] != (len(self.parameters),):
@@ -188,21 +277,39 @@ class Structure:
         if wanted is not None:
             self._expect_names(wanted)
         laplace = np.atleast_1d(np.asarray(s, dtype=np.complex128))
-        columns = {p.name: table[..., i : i + 1] for i, p in enumerate(self.parameters)}
-        known = {name: factor for name, factor in (factors or {}).items() if name in columns}
-        columns |= {name: columns[name] * factor for name, factor in known.items()}
-        walk = Walk(laplace, columns, frozenset(names))
-        stacked = np.empty((*table.shape[:-1], 1 + len(names), len(self.outputs), laplace.size), dtype=np.complex128)
-        for i, expression in enumerate(self.outputs.values()):
+        columns = self.columns(table)
+        known: dict[str, FloatArray | float] = dict(self.factors)
+        for name, factor in (factors or {}).items():
+            if name in columns:
+                columns[name] = columns[name] * factor
+                known[name] = known[name] * factor if name in known else factor
+        ties = [tie for tie in self.ties if any(argument in names for argument in tie.arguments)]
+        walk = Walk(laplace, columns, frozenset([*names, *(tie.name for tie in ties)]))
+        stacked = np.empty((*table.shape[:-1], 1 + len(names), len(self.paths), laplace.size), dtype=np.complex128)
+        for i, expression in enumerate(self.paths):
             stacked[..., 0, i, :], slopes = walk.dual(expression)
+            slopes = {name: slope * known[name] if name in known else slope for name, slope in slopes.items()}
+            if ties:
+                slopes = self._through_ties(ties, slopes, table)
             for j, name in enumerate(names, start=1):
-                slope = slopes.get(name, 0.0)
-                stacked[..., j, i, :] = slope * known[name] if name in known else slope
+                stacked[..., j, i, :] = slopes.get(name, 0.0)
         return stacked
 
-    def _expect_names(self, names: Mapping[str, object] | Sequence[str]) -> None:
-        unknown = [name for name in names if name not in self.names]
+    def _through_ties(self, ties: Sequence[Tie], slopes: Gradient, table: FloatArray) -> Gradient:
+        """Return derivatives to independent parameters, those that reach the response through a tie added."""
+        values = {name: table[..., place : place + 1] for place, name in enumerate(self.names)}
+        found = dict(slopes)
+        for tie in ties:
+            for argument in tie.arguments:
+                if tie.name in slopes:
+                    through = slopes[tie.name] * tie.slope(values, argument)
+                    found[argument] = found[argument] + through if argument in found else through
+        return found
+
+    def _expect_names(self, names: Mapping[str, object] | Sequence[str], *, tied: bool = False) -> None:
+        allowed = (*self.names, *(tie.name for tie in self.ties)) if tied else self.names
+        unknown = [name for name in names if name not in allowed]
         if unknown:
             raise StructureError(
-                f"structure {self.name} has no parameter {', '.join(unknown)}; it has {', '.join(self.names)}."
+                f"structure {self.name} has no parameter {', '.join(unknown)}; it has {', '.join(allowed)}."
             )

@@ -1,0 +1,31 @@
+"""A combination of parameters that means something of its own."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Combination:
+    """A combination of parameters that a test can find where the parameters alone it cannot."""
+
+    name: str
+    """Formula in the parameters' names, such as ``t_d + t_sp``."""
+    unit: str
+    """Unit, ``-`` where there is none."""
+    of: Callable[[Mapping[str, FloatArray]], FloatArray]
+    """Its value from the parameters' values."""
+    meaning: str
+    """What it stands for, in a few words."""
+
+    def is_defined_by(self, values: Mapping[str, float]) -> bool:
+        """Return whether the values name every parameter that the combination is made of."""
+        try:
+            with np.errstate(all="ignore"):
+                self.of({name: np.asarray(value) for name, value in values.items()})
+        except KeyError:
+            return False
+        return True

@@ -1,0 +1,105 @@
+"""Blocks that a user makes from a function, without a class."""
+
+import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.errors import StructureError
+from shaftprint.models._expression import Block, Polynomials
+from shaftprint.models._parameter import Parameter
+
+Coefficients: TypeAlias = Callable[..., tuple[Sequence[ArrayLike], Sequence[ArrayLike]]]
+
+# Imaginary step on a real coefficient: its square is lost beside 1, so that no digit of the derivative is.
+IMAGINARY_STEP = 1e-30
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FunctionBlock(Block):
+    """Any response ``H(s, *values)``, with numerical derivatives.
+
+    On its own it is taken as stable; a block with poles in the right half plane is a :class:`RationalBlock`.
+    """
+
+    function: Callable[..., ArrayLike]
+    """Takes ``s``, shape (frequencies,), and each parameter, shape (..., 1); gives the response (..., frequencies)."""
+    of: tuple[Parameter, ...]
+    """Its parameters, in the order in which the function takes them."""
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The parameters."""
+        return self.of
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return what the function gives."""
+        return np.asarray(self.function(s, *values), dtype=np.complex128)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RationalBlock(Block):
+    """A transfer function ``N(s) / D(s)`` whose coefficients are formulas of physical parameters.
+
+    From the formulas come the response, its exact derivatives and its poles. Derivatives of the coefficients are taken
+    by an imaginary step, which is exact for real formulas (Squire and Trapp, Using complex variables to estimate
+    derivatives of real functions, 1998). They use arithmetic and NumPy functions, but no ``abs``, ``min`` or ``if``.
+    """
+
+    coefficients: Coefficients
+    """Takes the parameters, gives the coefficients of numerator and denominator, highest power first."""
+    of: tuple[Parameter, ...]
+    """Its parameters, in the order in which ``coefficients`` takes them."""
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The parameters."""
+        return self.of
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return ``N(s) / D(s)``."""
+        numerator, denominator = self.coefficients(*values)
+        return _polynomial(numerator, s) / _polynomial(denominator, s)
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return ``(dN - H dD) / D`` for each parameter."""
+        _, denominator = self.coefficients(*values)
+        inverse = 1.0 / _polynomial(denominator, s)
+        found = []
+        for place, value in enumerate(values):
+            moved = (*values[:place], value + 1j * IMAGINARY_STEP, *values[place + 1 :])
+            top, bottom = (_slopes(part) for part in self._moved(place, moved))
+            found.append((_polynomial(top, s) - response * _polynomial(bottom, s)) * inverse)
+        return tuple(found)
+
+    def ratio(self, *values: float) -> Polynomials:
+        """Return the coefficients."""
+        numerator, denominator = self.coefficients(*values)
+        return np.array(numerator, dtype=np.float64), np.array(denominator, dtype=np.float64)
+
+    def _moved(self, place: int, values: tuple[ArrayLike, ...]) -> tuple[Sequence[ArrayLike], Sequence[ArrayLike]]:
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("error", np.exceptions.ComplexWarning)
+                return self.coefficients(*values)
+        except (TypeError, np.exceptions.ComplexWarning) as error:
+            raise StructureError(
+                f"block of {', '.join(p.name for p in self.of)}: the coefficients could not be differentiated to "
+                f"{self.of[place].name} ({error}): use arithmetic and NumPy functions only, or a FunctionBlock."
+            ) from None
+
+
+def _polynomial(coefficients: Sequence[ArrayLike], s: ComplexArray) -> ComplexArray:
+    """Return the value of a polynomial with coefficients of shape (..., 1) at every ``s``, by Horner's rule."""
+    value = np.zeros_like(s)
+    for coefficient in coefficients:
+        value = value * s + np.asarray(coefficient)
+    return value
+
+
+def _slopes(coefficients: Sequence[ArrayLike]) -> list[FloatArray]:
+    return [np.imag(coefficient) / IMAGINARY_STEP for coefficient in coefficients]
