@@ -22,6 +22,7 @@ from shaftprint.spectra._harmonics import Harmonics
 from shaftprint.spectra._line_fit import LineFit, SineMethod, WindowSamples
 from shaftprint.spectra._load_drift import LoadDrift
 from shaftprint.spectra._open_loop import open_loop
+from shaftprint.spectra._plain_covariance import circular_covariance, coherence_covariance
 from shaftprint.spectra._signal_to_noise import SignalToNoise
 from shaftprint.spectra._sine_fit import WholePeriodSine
 from shaftprint.spectra._spectra import Spectra, estimate_response, estimate_spectra
@@ -40,6 +41,8 @@ __all__ = [
     "WholePeriodSine",
     "Window",
     "WindowSamples",
+    "circular_covariance",
+    "coherence_covariance",
     "estimate_response",
     "estimate_spectra",
     "open_loop",

@@ -1,7 +1,7 @@
 """The noun of the room: a measured frequency response with its covariance."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +15,7 @@ from shaftprint.arrays import (
     frozen_float,
 )
 from shaftprint.errors import ResponseError
+from shaftprint.spectra._response_covariance import weight_change
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -23,14 +24,21 @@ class FrequencyResponse:
 
     The covariance of a line is that of the real vector ``[Re H, Im H]``, where ``H`` runs over the outputs (and, for
     several inputs, over outputs times inputs in C order). Lines are taken as independent of each other.
+
+    Frequency, response, covariance and the names of inputs and outputs are enough, from any source and in any units.
+    Where only a standard deviation or a coherence is known, ``circular_covariance`` and ``coherence_covariance`` make
+    the covariance; from time series, ``response_from_arrays`` makes all of it.
     """
 
     frequency_hz: FloatArray
     """Frequency of each line [Hz], ascending, shape (lines,)."""
     response: ComplexArray
-    """Response, normalised values over normalised values [-], shape (outputs, inputs, lines)."""
+    """Response, output over input: of a ship normalised values over normalised values [-], of another drive in the
+    units of its data; shape (outputs, inputs, lines)."""
     covariance: FloatArray
-    """Covariance of [Re, Im], shape (lines, 2 outputs inputs, 2 outputs inputs)."""
+    """Covariance of [Re, Im], shape (lines, 2 outputs inputs, 2 outputs inputs). It is right as a weight: the errors
+    ``r`` of a line give ``r^T C^-1 r`` the mean ``2 outputs inputs``. One estimated from ``n`` complex samples is
+    therefore larger than the mean square of the errors, by ``n / (n - outputs)``."""
     inputs: tuple[str, ...]
     """Names of the inputs, such as ``("n_set",)``."""
     outputs: tuple[str, ...]
@@ -58,52 +66,167 @@ class FrequencyResponse:
         Raises
         ------
         ResponseError
-            If a shape does not fit, a frequency is not positive and ascending, a value is not finite, or a
-            covariance is not symmetric and positive definite.
+            If names are missing or double, a shape does not fit, a frequency is not positive and ascending, a value is
+            not finite, a number of degrees of freedom is not positive, or a covariance is not symmetric and positive
+            definite.
         """
+        for kind in ("inputs", "outputs", "lines"):
+            object.__setattr__(self, kind, _distinct(kind, getattr(self, kind)))
         count = np.size(self.frequency_hz)
-        outputs, inputs = len(self.outputs), len(self.inputs)
-        size = 2 * outputs * inputs
-        _expect_shape("frequency_hz", self.frequency_hz, (count,))
-        _expect_shape("response", self.response, (outputs, inputs, count))
-        _expect_shape("covariance", self.covariance, (count, size, size))
-        names = self.lines or tuple(f"line {number}" for number in range(1, count + 1))
-        if len(names) != count:
-            raise ResponseError(f"lines: expected {count} names, one a frequency, found {len(names)}.")
+        if not self.lines:
+            object.__setattr__(self, "lines", tuple(f"line {number}" for number in range(1, count + 1)))
+        if len(self.lines) != count:
+            raise ResponseError(f"lines: expected {count} names, one a frequency, found {len(self.lines)}.")
+        channels = len(self.outputs) * len(self.inputs)
+        one_a_line = (count,)
         dof = self.degrees_of_freedom if np.size(self.degrees_of_freedom) else np.full(count, np.inf)
         used = self.used if np.size(self.used) else np.ones(count, dtype=np.bool_)
         load = self.load if np.size(self.load) else np.ones(count)
-        _expect_shape("load", load, (count,))
-        _expect_shape("degrees_of_freedom", dof, (count,))
-        _expect_shape("used", used, (count,))
-        frequency = frozen_float(self.frequency_hz)
-        if count == 0 or not np.all(frequency > 0.0) or not np.all(np.diff(frequency) > 0.0):
+        for name, array, shape in (
+            ("frequency_hz", frozen_float(self.frequency_hz), one_a_line),
+            ("response", frozen_complex(self.response), (len(self.outputs), len(self.inputs), count)),
+            ("covariance", frozen_float(self.covariance), (count, 2 * channels, 2 * channels)),
+            ("degrees_of_freedom", frozen_float(dof), one_a_line),
+            ("used", frozen_bool(used), one_a_line),
+            ("load", frozen_float(load), one_a_line),
+        ):
+            _expect_shape(name, array, shape)
+            object.__setattr__(self, name, array)
+        self._check_values()
+
+    def _check_values(self) -> None:
+        frequency = self.frequency_hz
+        if frequency.size == 0 or not np.all(frequency > 0.0) or not np.all(np.diff(frequency) > 0.0):
             raise ResponseError("frequency_hz: expected positive, ascending frequencies in Hz.")
-        for name, values in (("response", self.response), ("covariance", self.covariance)):
-            if not np.all(np.isfinite(values)):
+        for name in ("response", "covariance"):
+            if not np.all(np.isfinite(getattr(self, name))):
                 raise ResponseError(f"{name}: found values that are not finite.")
-        covariance = frozen_float(self.covariance)
-        scale = np.abs(covariance).max(axis=(1, 2), keepdims=True)
-        if np.any(np.abs(covariance - np.swapaxes(covariance, 1, 2)) > 1e-9 * scale):
+        if not np.all(self.degrees_of_freedom > 0.0):
+            raise ResponseError("degrees_of_freedom: expected positive numbers, infinite for a known covariance.")
+        scale = np.abs(self.covariance).max(axis=(1, 2), keepdims=True)
+        if np.any(np.abs(self.covariance - np.swapaxes(self.covariance, 1, 2)) > 1e-9 * scale):
             raise ResponseError("covariance: expected symmetric matrices of [Re, Im].")
-        for name, matrix in zip(names, covariance, strict=True):
-            if np.linalg.eigvalsh(matrix)[0] <= 0.0:
-                raise ResponseError(f"covariance of {name}: expected a positive definite matrix.")
-        object.__setattr__(self, "frequency_hz", frequency)
-        object.__setattr__(self, "response", frozen_complex(self.response))
-        object.__setattr__(self, "covariance", covariance)
-        object.__setattr__(self, "lines", names)
-        object.__setattr__(self, "degrees_of_freedom", frozen_float(dof))
-        object.__setattr__(self, "used", frozen_bool(used))
-        object.__setattr__(self, "load", frozen_float(load))
+        lost = np.linalg.eigvalsh(self.covariance)[:, 0] <= 0.0
+        if lost.any():
+            name = self.lines[int(np.argmax(lost))]
+            raise ResponseError(f"covariance of {name}: expected a positive definite matrix.")
 
     @property
     def omega_rad_s(self) -> FloatArray:
         """Angular frequency of each line [rad/s], shape (lines,)."""
         return 2.0 * np.pi * self.frequency_hz
 
+    def of_outputs(self, *names: str) -> "FrequencyResponse":
+        """Return the response of some of the outputs, in the given order.
+
+        Their rows and columns of the covariance are taken, those of every input. A covariance estimated from few
+        samples becomes a little smaller, since fewer outputs are then weighted together (see ``weight_change``).
+
+        Parameters
+        ----------
+        names
+            Names of the outputs to keep.
+
+        Returns
+        -------
+        The smaller response; everything else is as before.
+
+        Raises
+        ------
+        ResponseError
+            If no name is given, one is given twice, or the response has no such output.
+        """
+        places = _places("output", names, self.outputs)
+        inputs, count = len(self.inputs), len(self.outputs) * len(self.inputs)
+        rows = np.array([place * inputs + i for place in places for i in range(inputs)])
+        both = np.concatenate([rows, rows + count])
+        change = weight_change(self.degrees_of_freedom, len(self.outputs), len(names))
+        return replace(
+            self,
+            outputs=tuple(names),
+            response=self.response[places],
+            covariance=change[:, np.newaxis, np.newaxis] * self.covariance[:, both[:, np.newaxis], both],
+        )
+
+    def of_lines(self, *names: str) -> "FrequencyResponse":
+        """Return the response at some of the lines, in ascending frequency whatever the order of the names.
+
+        Parameters
+        ----------
+        names
+            Names of the lines to keep.
+
+        Returns
+        -------
+        The smaller response, with the names of its lines.
+
+        Raises
+        ------
+        ResponseError
+            If no name is given, one is given twice, or the response has no such line.
+        """
+        return self._at_lines(sorted(_places("line", names, self.lines)))
+
+    def between(self, lowest_hz: float, highest_hz: float) -> "FrequencyResponse":
+        """Return the response at the lines of a band of frequencies, borders included.
+
+        Parameters
+        ----------
+        lowest_hz, highest_hz
+            Borders of the band [Hz].
+
+        Returns
+        -------
+        The smaller response, with the names of its lines.
+
+        Raises
+        ------
+        ResponseError
+            If the band holds no line.
+        """
+        places = np.flatnonzero((self.frequency_hz >= lowest_hz) & (self.frequency_hz <= highest_hz)).tolist()
+        if not places:
+            raise ResponseError(
+                f"between {lowest_hz:g} and {highest_hz:g} Hz: found no line; the response has lines from "
+                f"{self.frequency_hz[0]:g} to {self.frequency_hz[-1]:g} Hz."
+            )
+        return self._at_lines(places)
+
+    def _at_lines(self, places: list[int]) -> "FrequencyResponse":
+        names = tuple(self.lines[place] for place in places)
+        return replace(
+            self,
+            frequency_hz=self.frequency_hz[places],
+            response=self.response[:, :, places],
+            covariance=self.covariance[places],
+            lines=names,
+            degrees_of_freedom=self.degrees_of_freedom[places],
+            used=self.used[places],
+            remarks={name: remark for name, remark in self.remarks.items() if name in names},
+            load=self.load[places],
+        )
+
+
+def _distinct(kind: str, names: Sequence[str]) -> tuple[str, ...]:
+    if isinstance(names, str):
+        raise ResponseError(f'{kind}: expected a tuple of names such as ("{names}",), found the text {names!r}.')
+    if len(set(names)) != len(names):
+        raise ResponseError(f"{kind}: expected different names, found {', '.join(names)}.")
+    if not names and kind != "lines":
+        raise ResponseError(f"{kind}: expected at least one name, found none.")
+    return tuple(names)
+
+
+def _places(kind: str, names: tuple[str, ...], known: tuple[str, ...]) -> list[int]:
+    unknown = [name for name in names if name not in known]
+    if unknown or not names:
+        raise ResponseError(
+            f"{kind} {', '.join(map(repr, unknown)) or 'not given'}: the response has {', '.join(known)}."
+        )
+    _distinct(f"{kind}s", names)
+    return [known.index(name) for name in names]
+
 
 def _expect_shape(name: str, values: ArrayLike, shape: tuple[int, ...]) -> None:
-    found = np.shape(values)
-    if found != shape:
-        raise ResponseError(f"{name}: expected shape {shape}, found {found}.")
+    if np.shape(values) != shape:
+        raise ResponseError(f"{name}: expected shape {shape}, found {np.shape(values)}.")

@@ -66,6 +66,25 @@ def weight_factor(complex_samples: float, outputs: int) -> float:
     return complex_samples / max(complex_samples - outputs, _LEAST_EXCESS)
 
 
+def weight_change(degrees_of_freedom: FloatArray, before: int, after: int) -> FloatArray:
+    """Return the factor on covariances when another number of outputs is weighted together.
+
+    Parameters
+    ----------
+    degrees_of_freedom
+        Real degrees of freedom behind each covariance, infinite for known ones, shape (lines,).
+    before, after
+        Number of outputs that the covariance was made for and will be used for.
+
+    Returns
+    -------
+    ``weight_factor`` of the one over that of the other, shape (lines,); 1 for known covariances.
+    """
+    samples = 0.5 * np.where(np.isfinite(degrees_of_freedom), degrees_of_freedom, 2.0)
+    pairs = [weight_factor(float(n), after) / weight_factor(float(n), before) for n in samples]
+    return np.where(np.isfinite(degrees_of_freedom), pairs, 1.0)
+
+
 def response_of_line(
     amplitude: ComplexArray,
     noise: ComplexArray,
