@@ -6,7 +6,7 @@ import pytest
 from shaftprint.errors import SettingsError
 from shaftprint.tug import Tug
 from shaftprint.tug._physics import build_plant, equilibrium, shaft_time_constant_s, working_point
-from shaftprint.tug._plant import INTEGRAL, RACK, SPEED, derivatives
+from shaftprint.tug._plant import RACK, derivatives
 from shaftprint.vessel import Vessel
 
 BRAKE_TORQUE_NM = 465.54  # 1725 / (3.82 * 0.97)
@@ -43,12 +43,10 @@ def test_governor_gains_are_physical(vessel: Vessel) -> None:
 def test_working_point_is_an_equilibrium_of_every_map(vessel: Vessel, g: float, v: float) -> None:
     plant = build_plant(Tug(g=g, v=v), vessel)
     state = equilibrium(plant, SPEED_REV_S)
-    rates = derivatives.py_func(
-        state[SPEED], state[INTEGRAL], state[RACK], 0.0, SPEED_REV_S, state[RACK], 0.0, 0.0, plant
-    )
-    assert rates[:4] == pytest.approx((0.0, 0.0, 0.0, 0.0), abs=1e-11)
-    assert rates[5] == pytest.approx(1725.0, rel=1e-12)
-    assert rates[6] == pytest.approx(BRAKE_TORQUE_NM, rel=1e-5)
+    rates = derivatives.py_func(state, SPEED_REV_S, state[RACK], 0.0, 0.0, plant)
+    assert rates[:5] == pytest.approx((0.0, 0.0, 0.0, 0.0, 0.0), abs=1e-11)
+    assert rates[6] == pytest.approx(1725.0, rel=1e-12)
+    assert rates[7] == pytest.approx(BRAKE_TORQUE_NM, rel=1e-5)
 
 
 def test_slopes_of_the_map_are_g_and_v(vessel: Vessel) -> None:
@@ -83,6 +81,10 @@ def test_vessel_fills_what_the_truth_leaves_open(vessel: Vessel) -> None:
         ({"damping_ratio": math.nan}, "expected damping_ratio above 0, found nan"),
         ({"set_point_latency_s": -0.1}, "expected set_point_latency_s of at least 0, found -0.1"),
         ({"governor_delay_s": -0.1}, "expected governor_delay_s of at least 0, found -0.1"),
+        ({"inflow_gain": -0.5}, "expected inflow_gain of at least 0, found -0.5"),
+        ({"inflow_time_s": 0.0}, "expected inflow_time_s above 0, found 0"),
+        ({"entrained_water_kg_m2": math.nan}, "expected entrained_water_kg_m2 of at least 0, found nan"),
+        ({"rack_latency_s": -0.01}, "expected rack_latency_s of at least 0, found -0.01"),
     ],
 )
 def test_impossible_truth_is_refused(vessel: Vessel, change: dict[str, float], message: str) -> None:

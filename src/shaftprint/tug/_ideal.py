@@ -30,6 +30,8 @@ class IdealSignals:
     """Torque at the gauge [N m], shape (samples,)."""
     brake_torque_nm: FloatArray
     """Brake torque of the engine [N m], shape (samples,)."""
+    rack_given: FloatArray
+    """Fuel rack ``X`` that the governor gives, before the delay and the actuation [fraction], shape (samples,)."""
     limited: BoolArray
     """Whether a limit of torque or rack acts, shape (samples,)."""
 
@@ -86,7 +88,7 @@ def simulate_signals(
         start_s=start_s,
         disturbance=disturbance,
     )
-    speed, torque, brake, limited = _sampled(legs, every)
+    speed, torque, brake, rack, limited = _sampled(legs, every)
     speed *= vessel.gearbox.ratio
     time = start_s + np.arange(samples) / rate_hz
     return IdealSignals(
@@ -95,21 +97,23 @@ def simulate_signals(
         engine_speed_rev_s=frozen_float(speed),
         shaft_torque_nm=frozen_float(torque),
         brake_torque_nm=frozen_float(brake),
+        rack_given=frozen_float(rack),
         limited=frozen_bool(limited),
     )
 
 
-def _sampled(legs: Iterable[Leg], every: int) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
-    """Return every so many steps of shaft speed and torques, and whether a limit acted in any step between."""
+def _sampled(legs: Iterable[Leg], every: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, BoolArray]:
+    """Return every so many steps of shaft speed, torques and rack, and whether a limit acted in any step between."""
     # copies: a view would keep every step in memory
     parts = [
         (
             leg.shaft_speed_rev_s[::every].copy(),
             leg.shaft_torque_nm[::every].copy(),
             leg.brake_torque_nm[::every].copy(),
+            leg.rack_given[::every].copy(),
             leg.limited.reshape(-1, every).any(axis=1),
         )
         for leg in legs
     ]
-    speed, torque, brake, limited = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return speed, torque, brake, limited
+    speed, torque, brake, rack, limited = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return speed, torque, brake, rack, limited

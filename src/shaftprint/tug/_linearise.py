@@ -6,17 +6,22 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.errors import SettingsError
 from shaftprint.tug._physics import build_plant, equilibrium, working_point
-from shaftprint.tug._plant import INTEGRAL, RACK, RACK_RATE, SPEED, Plant, derivatives
+from shaftprint.tug._plant import INTEGRAL, RACK, RACK_RATE, SLIPSTREAM, SPEED, Plant, derivatives
 from shaftprint.tug._tug import Tug
 from shaftprint.vessel import Vessel
 
-# Places in the vector that is perturbed: four states, the demand in the ECU and the rack given a delay ago.
-_DEMAND, _RACK_DELAYED, _SIZE = 4, 5, 6
+# Places in the vector that is perturbed: five states, the demand in the ECU and the rack given a delay ago.
+_DEMAND, _RACK_DELAYED, _SIZE = 5, 6, 7
+# Places in what comes out: the rates of the five states, then the rack given and the torque at the gauge.
+_GIVEN, _GAUGE, _RATES = 5, 6, 7
 
 
-def linearised_response(tug: Tug, vessel: Vessel, frequency_hz: ArrayLike) -> ComplexArray:
-    """Return the response from set point to speed and torque at the working point, with the exact delays.
+def linearised_response(
+    tug: Tug, vessel: Vessel, frequency_hz: ArrayLike, *, outputs: tuple[str, ...] = ("n", "M_s")
+) -> ComplexArray:
+    """Return the response from set point to speed, torque and rack at the working point, with the exact delays.
 
     The nonlinear rates are perturbed numerically (central differences) and the delays ``exp(-j w t_d)`` inside the
     loop and ``exp(-j w t_sp)`` before it are put in exactly. Limits, quantisation and disturbances take no part.
@@ -27,43 +32,58 @@ def linearised_response(tug: Tug, vessel: Vessel, frequency_hz: ArrayLike) -> Co
         The truth and the installation.
     frequency_hz
         Frequencies [Hz], shape (lines,).
+    outputs
+        Which responses: ``n``, ``M_s``, and ``X``, the fuel rack that the governor gives before the delay.
 
     Returns
     -------
     response
-        ``n* / n_set*`` and ``M_s* / n_set*`` [-], normalised at the working point, shape (2, 1, lines).
+        ``n* / n_set*``, ``M_s* / n_set*`` and ``X* / n_set*`` as asked [-], normalised at the working point, shape
+        (outputs, 1, lines).
 
     Raises
     ------
     SettingsError
-        If the truth is not physical.
+        If the truth is not physical or an output has another name.
     """
+    unknown = [name for name in outputs if name not in ("n", "M_s", "X")]
+    if unknown:
+        raise SettingsError(f"outputs: expected names out of n, M_s and X, found {', '.join(unknown)}.")
     plant = build_plant(tug, vessel)
     speed, torque = working_point(tug, vessel)
     slope = _slopes(plant, speed)
+    rack = float(equilibrium(plant, speed)[RACK])
     s = 2j * np.pi * np.asarray(frequency_hz, dtype=np.float64)
-    states, rates = slice(0, 4), slice(0, 4)
-    response = np.empty((2, 1, s.size), dtype=np.complex128)
+    # a slipstream that follows at once is no state
+    states = slice(0, SLIPSTREAM + 1 if plant.inflow_gain else SLIPSTREAM)
+    response = np.empty((len(outputs), 1, s.size), dtype=np.complex128)
     for line, value in enumerate(s):
         delay = np.exp(-value * plant.delay_s)
         # (s I - A) x - B_delayed e^{-s t_d} (given) = B_demand e^{-s t_sp} n_set
-        given, gauge = slope[4], slope[5]
-        inner = slope[rates, _RACK_DELAYED] * delay
-        left = value * np.eye(4) - slope[rates, states] - np.outer(inner, given[states])
-        right = slope[rates, _DEMAND] + inner * given[_DEMAND]
-        x = np.linalg.solve(left, right) * np.exp(-value * tug.set_point_latency_s)
-        response[0, 0, line] = plant.gear_ratio * x[SPEED]
-        response[1, 0, line] = (gauge[states] @ x) * speed / torque
+        given, gauge = slope[_GIVEN], slope[_GAUGE]
+        inner = slope[states, _RACK_DELAYED] * delay
+        left = value * np.eye(inner.size) - slope[states, states] - np.outer(inner, given[states])
+        right = slope[states, _DEMAND] + inner * given[_DEMAND]
+        demand = np.exp(-value * tug.set_point_latency_s)
+        x = np.linalg.solve(left, right) * demand
+        found = {
+            "n": plant.gear_ratio * x[SPEED],
+            "M_s": (gauge[states] @ x) * speed / torque,
+            "X": (given[states] @ x + given[_DEMAND] * demand) * speed / rack,
+        }
+        response[:, 0, line] = [found[name] for name in outputs]
     return response
 
 
 def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
-    """Return the slopes of the four rates, the rack given and the gauge torque, shape (6, 6)."""
+    """Return the slopes of the five rates, the rack given and the gauge torque, shape (7, 7)."""
     state = equilibrium(plant, engine_speed_rev_s)
-    centre = np.array([state[SPEED], state[INTEGRAL], state[RACK], state[RACK_RATE], engine_speed_rev_s, state[RACK]])
+    states = [SPEED, INTEGRAL, RACK, RACK_RATE, SLIPSTREAM]
+    centre = np.array([*state[states], engine_speed_rev_s, state[RACK]])
     # the rates are at most quadratic: the central difference has no truncation error
-    size = 1e-4 * np.array([centre[0], centre[1], centre[2], centre[2], centre[4], centre[2]])
-    slope = np.empty((6, _SIZE))
+    size = 1e-4 * centre
+    size[RACK_RATE] = size[RACK]
+    slope = np.empty((_RATES, _SIZE))
     for place in range(_SIZE):
         shift = np.zeros(_SIZE)
         shift[place] = size[place]
@@ -74,4 +94,4 @@ def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
 
 def _rates(plant: Plant, vector: FloatArray) -> FloatArray:
     rates: Any = derivatives
-    return np.array(rates.py_func(*vector, 0.0, 0.0, plant)[:6])
+    return np.array(rates.py_func(vector[:_DEMAND], *vector[_DEMAND:], 0.0, 0.0, plant)[:_RATES])

@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SettingsError
-from shaftprint.tug._plant import INTEGRAL, RACK, SPEED, STATES, Plant
+from shaftprint.tug._plant import INTEGRAL, RACK, SLIPSTREAM, SPEED, STATES, Plant
 from shaftprint.tug._tug import Tug
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel
@@ -45,12 +45,15 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
     rack_slope = vessel.engine.rated_torque_nm - speed_slope * rated - offset
     rack = tug.v * brake / rack_slope
     upstream, downstream = tug.inertia_upstream_kg_m2, tug.inertia_downstream_kg_m2
+    downstream = vessel.inertia_downstream_kg_m2 if downstream is None else downstream
     return Plant(
         inertia_upstream_kg_m2=vessel.inertia_upstream_kg_m2 if upstream is None else upstream,
-        inertia_downstream_kg_m2=vessel.inertia_downstream_kg_m2 if downstream is None else downstream,
+        inertia_downstream_kg_m2=downstream + tug.entrained_water_kg_m2,
         gear_ratio=ratio,
         efficiency=efficiency,
         propeller_nm_s2=torque / (speed / ratio) ** 2,
+        inflow_gain=tug.inflow_gain,
+        inflow_per_rev=ratio / (2.0 * speed * tug.inflow_time_s),
         speed_slope_nm_s=speed_slope,
         rack_slope_nm=rack_slope,
         rack_offset_nm=offset,
@@ -82,7 +85,7 @@ def equilibrium(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
     brake = load / (plant.gear_ratio * plant.efficiency)
     rack = (brake - plant.speed_slope_nm_s * engine_speed_rev_s - plant.rack_offset_nm) / plant.rack_slope_nm
     state = np.zeros(STATES)
-    state[SPEED], state[INTEGRAL], state[RACK] = speed_s, rack, rack
+    state[SPEED], state[INTEGRAL], state[RACK], state[SLIPSTREAM] = speed_s, rack, rack, speed_s
     return state
 
 
@@ -105,12 +108,22 @@ def _check(tug: Tug) -> None:
         "motoring_torque_nm",
         "demand_resolution_rpm",
         "demand_rate_limit_rpm_per_s",
+        "inflow_time_s",
     )
     for name in positive:
         value = getattr(tug, name)
         if value is not None and not value > 0.0:
             raise SettingsError(f"tug: expected {name} above 0, found {value:g}; give a positive value.")
-    for name in ("proportional_gain", "integral_gain_per_s", "governor_delay_s", "set_point_latency_s"):
+    not_negative = (
+        "proportional_gain",
+        "integral_gain_per_s",
+        "governor_delay_s",
+        "set_point_latency_s",
+        "entrained_water_kg_m2",
+        "inflow_gain",
+        "rack_latency_s",
+    )
+    for name in not_negative:
         value = getattr(tug, name)
-        if not value >= 0.0:
+        if value is not None and not value >= 0.0:
             raise SettingsError(f"tug: expected {name} of at least 0, found {value:g}; give 0 or a positive value.")

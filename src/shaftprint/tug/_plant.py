@@ -5,7 +5,15 @@ Rigid shaft line, referred to the propeller shaft, cut at the torque gauge::
     2 pi (I_up + I_dn) dn_s/dt = i eta M_b - M_p        M_s = M_p + 2 pi I_dn dn_s/dt
     M_p = K n_s |n_s|                                   M_b = A_1 n_e + A_2 X + A_3, limited
 
-with the PI governor and its back-calculation ahead of a transport delay and a second-order actuation.
+with the PI governor and its back-calculation ahead of a transport delay and a second-order actuation. Where the
+propeller has dynamic inflow, the slipstream follows it late and the blades meet a larger angle until it has::
+
+    M_p = K (n_s |n_s| + kappa |n_s| (n_s - u))         du/dt = (n_s |n_s| - u |u|) / (2 n_s0 tau_i)
+
+``u`` is the slipstream velocity as the shaft speed to which it belongs in steady running. The form is that of Blanke,
+Lindegaard and Fossen, "Dynamic model for thrust generation of marine propellers" (2000): torque ``Q_nn n |n| - Q_nu
+|n| u``, momentum of the water accelerated by the thrust and lost by ``u |u|``. Linear at the working point it is
+``Q* = (2 + kappa) n* - kappa u*`` with ``tau_i du*/dt = n* - u*``.
 """
 
 from typing import NamedTuple
@@ -15,9 +23,10 @@ from numba import njit
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
 
-SPEED, INTEGRAL, RACK, RACK_RATE, ANGLE = range(5)
-"""Places in the state vector: shaft speed [rev/s], integrator [rack], rack, rack rate [1/s], shaft angle [rev]."""
-STATES = 5
+SPEED, INTEGRAL, RACK, RACK_RATE, SLIPSTREAM, ANGLE = range(6)
+"""Places in the state vector: shaft speed [rev/s], integrator [rack], rack, rack rate [1/s], slipstream velocity as a
+shaft speed [rev/s], shaft angle [rev]."""
+STATES = 6
 
 
 class Plant(NamedTuple):
@@ -29,6 +38,10 @@ class Plant(NamedTuple):
     efficiency: float
     propeller_nm_s2: float
     """``K`` of the propeller law ``M_p = K n_s |n_s|`` [N m s2]."""
+    inflow_gain: float
+    """``kappa`` of the dynamic inflow; 0 where the slipstream follows at once."""
+    inflow_per_rev: float
+    """``1 / (2 n_s0 tau_i)`` of the dynamic inflow [1/rev]."""
     speed_slope_nm_s: float
     """``A_1`` [N m per rev/s]."""
     rack_slope_nm: float
@@ -85,10 +98,9 @@ def governor_rack(speed_s, integral, demand, plant):  # type: ignore[no-untyped-
 
 
 @njit(inline="always", cache=True)
-def derivatives(  # type: ignore[no-untyped-def]
-    speed_s, integral, rack, rack_rate, demand, rack_delayed, propeller_noise, engine_noise, plant
-):
-    """Return the rates of speed, integrator, rack and rack rate, then rack given, ``M_s``, ``M_b``, limited or not."""
+def derivatives(state, demand, rack_delayed, propeller_noise, engine_noise, plant):  # type: ignore[no-untyped-def]
+    """Return the rates of the states without the angle, then rack given, ``M_s``, ``M_b`` and whether it is limited."""
+    speed_s, integral, rack, rack_rate, slipstream = state[0], state[1], state[2], state[3], state[4]
     speed = plant.gear_ratio * speed_s
     wanted, given = governor_rack(speed_s, integral, demand, plant)
     if plant.delay_s == 0.0:
@@ -97,7 +109,12 @@ def derivatives(  # type: ignore[no-untyped-def]
     lowest, highest = _torque_limits(speed, plant)
     brake = min(max(asked, lowest), highest)
     load = plant.propeller_nm_s2 * speed_s * abs(speed_s)
-    propeller = load * (1.0 + propeller_noise)
+    hydrodynamic = load
+    slipstream_rate = 0.0
+    if plant.inflow_gain != 0.0:
+        hydrodynamic += plant.inflow_gain * plant.propeller_nm_s2 * abs(speed_s) * (speed_s - slipstream)
+        slipstream_rate = plant.inflow_per_rev * (speed_s * abs(speed_s) - slipstream * abs(slipstream))
+    propeller = hydrodynamic * (1.0 + propeller_noise)
     drive = plant.gear_ratio * plant.efficiency * brake + load * engine_noise
     acceleration = (drive - propeller) / (2.0 * np.pi * (plant.inertia_upstream_kg_m2 + plant.inertia_downstream_kg_m2))
     gauge = propeller + 2.0 * np.pi * plant.inertia_downstream_kg_m2 * acceleration
@@ -105,7 +122,7 @@ def derivatives(  # type: ignore[no-untyped-def]
     omega = plant.natural_frequency_rad_s
     rack_acceleration = omega * (omega * (rack_delayed - rack) - 2.0 * plant.damping_ratio * rack_rate)
     limited = given != wanted or brake != asked
-    return acceleration, integral_rate, rack_rate, rack_acceleration, given, gauge, brake, limited
+    return acceleration, integral_rate, rack_rate, rack_acceleration, slipstream_rate, given, gauge, brake, limited
 
 
 @njit(inline="always", cache=True)
@@ -138,7 +155,7 @@ class Carried(NamedTuple):
     """What the kernel carries from chunk to chunk."""
 
     state: FloatArray
-    """Shaft speed, integrator, rack, rack rate and angle, shape (5,)."""
+    """Shaft speed, integrator, rack, rack rate, slipstream and angle, shape (6,)."""
     history: FloatArray
     """Ring of the racks given at the nodes; its size is a power of two."""
     counter: IntArray
@@ -161,7 +178,20 @@ class Traces(NamedTuple):
     shaft_angle_rev: FloatArray
     shaft_torque_nm: FloatArray
     brake_torque_nm: FloatArray
+    rack_given: FloatArray
     limited: BoolArray
+
+
+@njit(inline="always", cache=True)
+def _moved(x, h, rates):  # type: ignore[no-untyped-def]
+    """Return the states without the angle after a time ``h`` at constant rates."""
+    return (
+        x[0] + h * rates[0],
+        x[1] + h * rates[1],
+        x[2] + h * rates[2],
+        x[3] + h * rates[3],
+        x[4] + h * rates[4],
+    )
 
 
 @njit(inline="always", cache=True)
@@ -170,26 +200,20 @@ def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant):  # type: ign
 
     ``demand``, ``past``, ``propeller`` and ``engine`` hold the inputs at the start, middle and end of the step.
     """
-    q = 0.5 * h
-    n2 = x[0] + q * k1[0]
-    k2 = derivatives(
-        n2, x[1] + q * k1[1], x[2] + q * k1[2], x[3] + q * k1[3], demand[1], past[1], propeller[1], engine[1], plant
-    )
-    n3 = x[0] + q * k2[0]
-    k3 = derivatives(
-        n3, x[1] + q * k2[1], x[2] + q * k2[2], x[3] + q * k2[3], demand[1], past[1], propeller[1], engine[1], plant
-    )
-    n4 = x[0] + h * k3[0]
-    k4 = derivatives(
-        n4, x[1] + h * k3[1], x[2] + h * k3[2], x[3] + h * k3[3], demand[2], past[2], propeller[2], engine[2], plant
-    )
+    x2 = _moved(x, 0.5 * h, k1)
+    k2 = derivatives(x2, demand[1], past[1], propeller[1], engine[1], plant)
+    x3 = _moved(x, 0.5 * h, k2)
+    k3 = derivatives(x3, demand[1], past[1], propeller[1], engine[1], plant)
+    x4 = _moved(x, h, k3)
+    k4 = derivatives(x4, demand[2], past[2], propeller[2], engine[2], plant)
     part = h / 6.0
     return (
         x[0] + part * (k1[0] + 2.0 * k2[0] + 2.0 * k3[0] + k4[0]),
         x[1] + part * (k1[1] + 2.0 * k2[1] + 2.0 * k3[1] + k4[1]),
         x[2] + part * (k1[2] + 2.0 * k2[2] + 2.0 * k3[2] + k4[2]),
         x[3] + part * (k1[3] + 2.0 * k2[3] + 2.0 * k3[3] + k4[3]),
-        x[4] + part * (x[0] + 2.0 * n2 + 2.0 * n3 + n4),
+        x[4] + part * (k1[4] + 2.0 * k2[4] + 2.0 * k3[4] + k4[4]),
+        x[5] + part * (x[0] + 2.0 * x2[0] + 2.0 * x3[0] + x4[0]),
     )
 
 
@@ -203,7 +227,7 @@ def advance(  # type: ignore[no-untyped-def]
     All that goes on is carried, so that the result does not depend on how the time is cut into calls.
     """
     state, history = carried.state, carried.history
-    x = (state[0], state[1], state[2], state[3], state[4])
+    x = (state[0], state[1], state[2], state[3], state[4], state[5])
     k = carried.counter[0]
     mask = history.size - 1
     for j in range(traces.limited.size):
@@ -215,14 +239,15 @@ def advance(  # type: ignore[no-untyped-def]
             _past(history, mask, k + delay.first[1], delay.weights[1]),
             _past(history, mask, k + delay.first[2], delay.weights[2]),
         )
-        rates = derivatives(x[0], x[1], x[2], x[3], asked[0], past[0], propeller[0], engine[0], plant)
-        history[k & mask] = rates[4]
+        rates = derivatives(x, asked[0], past[0], propeller[0], engine[0], plant)
+        history[k & mask] = rates[5]
         traces.shaft_speed_rev_s[j] = x[0]
-        traces.shaft_angle_rev[j] = x[4]
-        traces.shaft_torque_nm[j] = rates[5]
-        traces.brake_torque_nm[j] = rates[6]
-        traces.limited[j] = rates[7]
+        traces.shaft_angle_rev[j] = x[5]
+        traces.rack_given[j] = rates[5]
+        traces.shaft_torque_nm[j] = rates[6]
+        traces.brake_torque_nm[j] = rates[7]
+        traces.limited[j] = rates[8]
         x = _runge_kutta(step_s, x, rates, asked, past, propeller, engine, plant)
         k += 1
-    state[0], state[1], state[2], state[3], state[4] = x
+    state[0], state[1], state[2], state[3], state[4], state[5] = x
     carried.counter[0] = k

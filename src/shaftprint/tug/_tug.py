@@ -26,6 +26,15 @@ class Tug:
     """Inertia upstream of the torque gauge, referred to the propeller shaft [kg m2]; ``None``: the vessel's."""
     inertia_downstream_kg_m2: float | None = None
     """Inertia downstream of the torque gauge, with entrained water [kg m2]; ``None``: the vessel's."""
+    entrained_water_kg_m2: float = 0.0
+    """Entrained water beyond what the inertia downstream already contains [kg m2]; it moves with the propeller."""
+    inflow_gain: float = 0.0
+    """``kappa`` of the dynamic inflow: torque of the propeller over a lag of its slipstream, both normalised; 0: none.
+
+    Ducted propellers at the quay: 0.5 to 2.
+    """
+    inflow_time_s: float = 0.1
+    """Time ``tau_i`` in which the slipstream follows the propeller at the working point [s]; 0.09 to 0.21 s."""
     g: float = 0.0
     """Slope of brake torque over engine speed at constant rack, normalised at the working point."""
     v: float = 1.0
@@ -66,6 +75,10 @@ class Tug:
     -197 N m, with noise to -253 N m, and the sines shall stay unclipped so that they show a linear line. The chirps
     C11 and C23 still touch both limits where they pass the closed-loop peak near 1.2 Hz, and the staircases do.
     """
+    torque_zero_offset_nm: float = 0.0
+    """What the torque gauge shows beyond the zero that the vessel file knows of [N m]."""
+    rack_latency_s: float | None = None
+    """Time by which the percent torque on the CAN bus is late [s]; ``None``: the vessel's."""
     strip_angles_deg: tuple[float, ...] = STRIP_ANGLES_DEG
     """Angles between the reflection strips of a pick-up with as many pulses a revolution [degree], scaled to 360."""
     noise: Noise = field(default_factory=Noise)

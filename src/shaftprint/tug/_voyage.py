@@ -30,6 +30,8 @@ class Leg:
     """Torque at the gauge [N m], shape (steps,)."""
     brake_torque_nm: FloatArray
     """Brake torque of the engine [N m], engine side, shape (steps,)."""
+    rack_given: FloatArray
+    """Fuel rack that the governor gives, after its limiter and before the delay [fraction], shape (steps,)."""
     limited: BoolArray
     """Whether a limit of torque or rack acts, shape (steps,)."""
 
@@ -92,9 +94,9 @@ def voyage(
     while done < steps:
         count = min(chunk, steps - done)
         propeller, engine, wander = disturbance.next(count)
-        speed, angle, torque, brake = np.empty((4, count))
+        speed, angle, torque, brake, rack = np.empty((5, count))
         limited = np.empty(count, dtype=np.bool_)
-        traces = Traces(speed, angle, torque, brake, limited)
+        traces = Traces(speed, angle, torque, brake, rack, limited)
         advance(step_s, demand.next(count, wander), propeller, engine, plant, delay, carried, traces)
         time: FloatArray = start_s + step_s * np.arange(done, done + count, dtype=np.float64)
         yield Leg(
@@ -103,6 +105,7 @@ def voyage(
             shaft_angle_rev=angle,
             shaft_torque_nm=torque,
             brake_torque_nm=brake,
+            rack_given=rack,
             limited=limited,
         )
         done += count
