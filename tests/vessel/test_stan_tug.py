@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from shaftprint.settings import write_template
 from shaftprint.vessel import load_vessel
 
 
@@ -117,3 +118,27 @@ def test_torque_gauge_is_scaled_to_newton_metre(tug):
     assert gauge.torque_nm([0.0, 3.45, -10.0]).tolist() == [0.0, 1725.0, -5000.0]
     assert gauge.full_scale_nm > 3.82 * 0.97 * 1172.44
     assert gauge.resolution_nm == pytest.approx(2 * gauge.full_scale_nm / 2**12, abs=0.005)
+
+
+def test_ship_with_percent_torque_is_the_same_ship(tug):
+    with_rack = load_vessel("stan-tug-1205-ecu").model_dump()
+    rack = with_rack["sensors"].pop("rack")
+    without = tug.model_dump()
+    assert without["sensors"].pop("rack") is None
+    assert with_rack.pop("name") == without.pop("name") + ", with percent torque"
+    assert with_rack == without
+    # SAE J1939: 1 % a bit, 10 to 100 ms
+    assert (rack["unit"], rack["resolution_percent"]) == ("%", 1.0)
+    assert 0.01 <= rack["cycle_s"] <= 0.1
+
+
+def test_rack_of_the_template_can_be_switched_on(tmp_path):
+    path = tmp_path / "ship.toml"
+    write_template("vessel", path)
+    assert load_vessel(path).sensors.rack is None
+    head, rack = path.read_text(encoding="utf-8").split("# [sensors.rack]")
+    block, rest = rack.split("\n\n", 1)
+    text = head + "[sensors.rack]" + block.replace("\n# ", "\n") + "\n\n" + rest
+    path.write_text(text, encoding="utf-8")
+    found = load_vessel(path).sensors.rack
+    assert (found.channel, found.cycle_s, found.latency_s, found.latency_std_s) == ("X_percent", 0.05, 0.01, 0.005)

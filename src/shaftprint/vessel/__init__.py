@@ -12,6 +12,7 @@ inertia               kg m2        of a row on its own shaft; the sums are refer
                                    propeller shaft (engine-side rows times ``i`` squared)
 ``K_Q``               1            effective torque coefficient at zero advance,
                                    ``Q / (rho n^2 D^5)``
+fuel rack ``X``       1            1 gives rated torque at rated speed; 100 % on the CAN bus
 ===================== ============ ==============================================================
 
 The torque gauge sits on the propeller shaft: *upstream* of it is what lies towards the engine,
@@ -22,6 +23,7 @@ from shaftprint.vessel._inertia import InertiaRow
 from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, RackMap, WorkingPoint
 from shaftprint.vessel._sensors import (
     Logger,
+    RackSensor,
     Sensors,
     SetPointSensor,
     ShaftTorqueSensor,
@@ -36,6 +38,7 @@ __all__ = [
     "Logger",
     "Propeller",
     "RackMap",
+    "RackSensor",
     "Sensors",
     "SetPointSensor",
     "ShaftTorqueSensor",

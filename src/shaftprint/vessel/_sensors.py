@@ -109,6 +109,26 @@ class SetPointSensor(Settings):
     """Standard deviation of the logger's noise [V]."""
 
 
+class RackSensor(Settings):
+    """Percent torque that the engine's control unit demands, as it stands on the CAN bus: the picture of the fuel rack.
+
+    SAE J1939-71, message EEC1: 1 % a bit from -125 % on, 100 % for a rack of 1, a message every 10 to 100 ms.
+    """
+
+    channel: Name
+    """Name of the channel in the recording."""
+    unit: Literal["%"]
+    """Unit of the channel."""
+    cycle_s: PositiveNumber
+    """Time from one message to the next [s]."""
+    resolution_percent: PositiveNumber = 1.0
+    """Step of the value [%]."""
+    latency_s: NotNegativeNumber
+    """Time by which a value is late behind the output of the governor [s]."""
+    latency_std_s: NotNegativeNumber | None = None
+    """Standard deviation of the latency [s]."""
+
+
 class Logger(Settings):
     """The instrument that recorded the channels."""
 
@@ -127,12 +147,15 @@ class Sensors(Settings):
     """The torque gauge."""
     set_point: SetPointSensor
     """The speed set point."""
+    rack: RackSensor | None = None
+    """Percent torque from the engine's control unit, where it was logged."""
 
     @model_validator(mode="after")
     def _names_and_channels_differ(self) -> Self:
         names = [sensor.name for sensor in self.speed]
         channels = [sensor.channel for sensor in self.speed]
         channels += [self.shaft_torque.channel, self.set_point.channel]
+        channels += [] if self.rack is None else [self.rack.channel]
         found = []
         for what, values in (("name", names), ("channel", channels)):
             twice = sorted({value for value in values if values.count(value) > 1})
