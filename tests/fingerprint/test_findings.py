@@ -72,13 +72,13 @@ def test_no_word_on_stability_without_feedback(fit):
 
 def test_misfit(sharp):
     # 46 degrees of freedom: the 99 % point of chi-square is 71.2; the normal approximation used here gives 68.3
-    sharp = replace(sharp, degrees_of_freedom=46)
+    sharp = replace(sharp, fit_test=replace(sharp.fit_test, degrees_of_freedom=46))
     assert none(found(replace(sharp, cost=0.5 * 66.0)), "explain")
     worse = one(found(replace(sharp, cost=0.5 * 92.0)), "The structure does not explain the data")
     assert "chi-square is 92 for 46 degrees of freedom" in worse
     unweighted = replace(sharp, cost=0.5 * 92.0, settings=replace(sharp.settings, weighting=Unweighted()))
     assert none(found(unweighted), "explain")
-    assert none(found(replace(sharp, cost=10.0, degrees_of_freedom=0)), "explain")
+    assert none(found(replace(sharp, cost=10.0, fit_test=replace(sharp.fit_test, degrees_of_freedom=0))), "explain")
 
 
 def test_bound(sharp, put_by_hand):

@@ -15,9 +15,12 @@ REPEATS = 400
 def fitted_repeats(response, objective, truth, seed):
     """Fit many tests that differ in their noise only, each from the truth; return estimates and costs."""
     rng = np.random.default_rng(seed)
-    lines, size = objective.data.shape
-    noise = np.einsum("fab,kfb->kfa", np.linalg.cholesky(objective.covariance), rng.normal(size=(REPEATS, lines, size)))
-    moved = np.einsum("fab,kfb->kaf", objective.weights, noise).reshape(REPEATS, lines * size)
+    (experiment,) = objective.experiments
+    lines, size = experiment.data.shape
+    noise = np.einsum(
+        "fab,kfb->kfa", np.linalg.cholesky(experiment.covariance), rng.normal(size=(REPEATS, lines, size))
+    )
+    moved = np.einsum("fab,kfb->kaf", experiment.weights, noise).reshape(REPEATS, lines * size)
     shift = np.pad(moved, ((0, 0), (0, objective.prior_rows.shape[0])))
 
     def residuals(theta, starts):
@@ -156,7 +159,7 @@ def test_twice_the_cost_is_a_chi_square(make_response, truths, case):
         make_response, name, MaximumLikelihood(), truths, noise=noise, correlation=correlation
     )
     _, cost = fitted_repeats(response, objective, truths[name], seed=29)
-    freedom = objective.data.size - len(objective.free)
+    freedom = objective.data_count - len(objective.free)
     assert np.mean(2.0 * cost) == pytest.approx(freedom, abs=3.5 * (2.0 * freedom / REPEATS) ** 0.5)
     assert np.var(2.0 * cost) == pytest.approx(2.0 * freedom, rel=0.3)
 

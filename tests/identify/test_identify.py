@@ -79,7 +79,7 @@ def test_the_lowest_stable_optimum_wins_over_a_lower_unstable_one(make_response)
 
 def test_an_unstable_model_may_win_when_it_is_allowed(make_response):
     own = delayed_loop()
-    settings = Settings(require_stable=False)
+    settings = Settings(stability="ignored")
     found = identify(own, make_response(own, UNSTABLE, noise=0.05), rng=np.random.default_rng(3), settings=settings)
     assert found.values == pytest.approx(own.vector(UNSTABLE), rel=1e-6)
     assert found.margins.unstable_poles == unstable_poles(own, own.vector(UNSTABLE)) == 2

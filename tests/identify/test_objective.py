@@ -78,7 +78,7 @@ def test_load_of_each_line_acts_on_the_propeller_slope(make_response):
     moved = 1.0 / (0.32j * omega + 2.1 * load)
     objective = build_objective(shipped, response, weighting=MaximumLikelihood(), **NOTHING)
     model = objective.structure.response(
-        objective.complete(np.array([0.32, 2.1])), objective.s, factors=objective.factors
+        objective.complete(np.array([0.32, 2.1])), objective.experiments[0].s, factors=objective.experiments[0].factors
     )
     np.testing.assert_allclose(model[0], moved, rtol=1e-14)
 

@@ -28,7 +28,7 @@ def test_at_each_end_the_best_fit_of_the_rest_costs_1_92_more(make_response, nam
     """Hold the parameter at the end and search again from fifty starts: the cost is half of 3.84 higher."""
     response = make_response(name, noise=0.08, rng=np.random.default_rng(5))
     found = identify(structure(name), response, rng=np.random.default_rng(1))
-    unrestricted = Settings(require_stable=False)
+    unrestricted = Settings(stability="ignored")
     closed_ends = 0
     for parameter in found.parameters:
         interval = profile_intervals(found)[parameter.name]
@@ -112,7 +112,7 @@ def test_cover_the_truth_in_95_of_100_tests_although_the_cost_is_no_parabola(mak
     for seed in range(tests):
         rng = np.random.default_rng(seed)
         response = make_response("CL4", noise=0.05, rng=rng)
-        found = identify(structure("CL4"), response, rng=rng, settings=Settings(starts=10, require_stable=False))
+        found = identify(structure("CL4"), response, rng=rng, settings=Settings(starts=10, stability="ignored"))
         for name, interval in profile_intervals(found).items():
             covered[name] += interval.lower <= truths["CL4"][name] <= interval.upper
     # 95 of 100 +/- 2.2

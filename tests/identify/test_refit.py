@@ -126,7 +126,7 @@ def test_lines_that_are_not_fitted_are_not_looked_at(found: Identification) -> N
 
 def test_shapes_and_values_that_cannot_be_are_refused(found: Identification) -> None:
     own = found.response.response[None, :, 0]
-    with pytest.raises(IdentificationError, match=r"expected shape \(repeats, 1 outputs, 12 lines\), found \(1, 12\)"):
+    with pytest.raises(IdentificationError, match=r"expected shape \(repeats, 1 channels, 12 lines\), found \(1, 12\)"):
         refit(found, own[0])
     with pytest.raises(IdentificationError, match=r"found \(1, 1, 5\)"):
         refit(found, own[..., :5])

@@ -13,28 +13,36 @@ covariance          mixed   of the free parameters, each in its own unit
 
 from shaftprint.identify._covariance import estimate_covariance
 from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
-from shaftprint.identify._identification import Cluster, Estimate, Identification, Settings
-from shaftprint.identify._identify import identify
+from shaftprint.identify._fit_test import FitTest, LineTest
+from shaftprint.identify._identification import Cluster, Estimate, Identification
+from shaftprint.identify._identify import identify, identify_jointly
 from shaftprint.identify._known import PRIOR_OF_G, priors_from_vessel
-from shaftprint.identify._objective import MaximumLikelihood, Unweighted, Weighting
+from shaftprint.identify._part import Part
 from shaftprint.identify._prior import Prior
 from shaftprint.identify._profile import Interval, Profile, profile, profile_intervals
 from shaftprint.identify._refit import Refits, refit
+from shaftprint.identify._settings import Settings, Stability
 from shaftprint.identify._starts import Draw, LatinHypercube, Uniform
+from shaftprint.identify._weighting import MaximumLikelihood, StudentT, Unweighted, Weighting
 
 __all__ = [
     "PRIOR_OF_G",
     "Cluster",
     "Draw",
     "Estimate",
+    "FitTest",
     "Identification",
     "Interval",
     "LatinHypercube",
+    "LineTest",
     "MaximumLikelihood",
+    "Part",
     "Prior",
     "Profile",
     "Refits",
     "Settings",
+    "Stability",
+    "StudentT",
     "Uniform",
     "Unweighted",
     "Weighting",
@@ -42,6 +50,7 @@ __all__ = [
     "fit_ceiling",
     "fit_percent",
     "identify",
+    "identify_jointly",
     "priors_from_vessel",
     "profile",
     "profile_intervals",

@@ -67,13 +67,11 @@ def _known_part(objective: Objective, theta: FloatArray) -> tuple[FloatArray, Fl
 
 def _residual_covariance(objective: Objective, rows: int) -> FloatArray:
     """Return the covariance ``V`` of the weighted residuals, in their order, shape (rows, rows)."""
-    lines, size = objective.data.shape
-    blocks = objective.weights @ objective.covariance @ objective.weights.swapaxes(1, 2)
     covariance = np.zeros((rows, rows))
-    place = np.arange(size)[None, :] * lines + np.arange(lines)[:, None]
-    covariance[place[:, :, None], place[:, None, :]] = blocks
-    count = objective.prior_rows.shape[0]
-    if count:
-        tail = np.arange(rows - count, rows)
-        covariance[tail, tail] = objective.prior_counts
+    first = 0
+    for experiment in objective.experiments:
+        block = experiment.residual_covariance()
+        covariance[first : first + block.shape[0], first : first + block.shape[0]] = block
+        first += block.shape[0]
+    np.fill_diagonal(covariance[first:, first:], objective.prior_counts)
     return covariance

@@ -1,57 +1,22 @@
-"""The nouns of the room: how to search, and what a fit found."""
+"""What a fit found."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.errors import IdentificationError
 from shaftprint.identify._covariance import variance_along
-from shaftprint.identify._objective import MaximumLikelihood, Objective, Weighting
-from shaftprint.identify._prior import Prior
-from shaftprint.identify._starts import Draw, LatinHypercube
+from shaftprint.identify._fit_test import FitTest, LineTest
+from shaftprint.identify._objective import Objective
+from shaftprint.identify._part import Part
+from shaftprint.identify._settings import Settings
 from shaftprint.models import Margins, Structure, margins
 from shaftprint.spectra import FrequencyResponse
 
 # Two-sided 95 % of the normal distribution.
 NORMAL_95 = 1.959963984540054
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Settings:
-    """How a fit searches and weighs; the defaults follow thesis section 5.1, but weigh by the measured covariance."""
-
-    weighting: Weighting = field(default_factory=MaximumLikelihood)
-    """How lines and outputs are weighed."""
-    priors: Mapping[str, Prior] = field(default_factory=dict)
-    """What is known of parameters beforehand; it counts in the uncertainty."""
-    regularisation: Mapping[str, Prior] = field(default_factory=dict)
-    """A pull towards values that is not knowledge: it does not count in the uncertainty."""
-    starts: int = 50
-    """Number of starts."""
-    draw: Draw = field(default_factory=LatinHypercube)
-    """How the starts are drawn within the bounds."""
-    max_iterations: int = 100
-    """Limit of iterations of each start."""
-    tolerance: float = 1e-5
-    """Share of the cost below which a further gain is not worth a step (0.001 %)."""
-    require_stable: bool = True
-    """Whether an unstable model may not win."""
-
-    def __post_init__(self) -> None:
-        """Check the counts.
-
-        Raises
-        ------
-        IdentificationError
-            If starts, iterations or tolerance are not positive.
-        """
-        if self.starts < 1 or self.max_iterations < 1 or not self.tolerance > 0.0:
-            raise IdentificationError(
-                f"search settings: expected positive starts, iterations and tolerance, found {self.starts}, "
-                f"{self.max_iterations} and {self.tolerance}."
-            )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -93,39 +58,87 @@ class Estimate:
 class Identification:
     """What a fit found: parameters with covariance, how well the model explains the data, how unique the optimum is."""
 
-    structure: Structure
-    """The structure, with its held and free parameters."""
-    response: FrequencyResponse
-    """The data."""
-    fitted: BoolArray
-    """Which lines of the response were fitted, shape (lines,)."""
+    experiments: tuple[Part, ...]
+    """The responses that were fitted, each with its structure; one, but for joint fits."""
     objective: Objective
     """The problem that was solved."""
     settings: Settings
     """How it was searched."""
     values: FloatArray
-    """All parameters, in the structure's order, shape (parameters,)."""
+    """All independent parameters, in the objective's order, shape (parameters,); with one response the structure's."""
     covariance: FloatArray
     """Covariance of the free parameters, shape (free, free)."""
     cost: float
     """Half the sum of squared weighted residuals and prior rows."""
-    degrees_of_freedom: int
-    """Number of data and prior rows minus the number of free parameters."""
-    data_count: int
-    """Number of data: two a complex value."""
-    fit_percent: Mapping[str, float]
-    """FitPercent of each output (thesis eq. 2.41)."""
-    fit_ceiling: Mapping[str, float]
-    """FitPercent that the noise allows, of each output."""
+    fit_test: FitTest
+    """Whether the structure explains the data."""
     clusters: tuple[Cluster, ...]
     """Optima of the search, lowest cost first; those that won or would have won are checked for stability."""
+
+    @property
+    def structure(self) -> Structure:
+        """The structure, with its held and free parameters; the first of a joint fit."""
+        return self.experiments[0].structure
+
+    @property
+    def response(self) -> FrequencyResponse:
+        """The data; the first of a joint fit."""
+        return self.experiments[0].response
+
+    @property
+    def fitted(self) -> BoolArray:
+        """Which lines of the response were fitted, shape (lines,)."""
+        return self.experiments[0].fitted
+
+    @property
+    def fit_percent(self) -> Mapping[str, float]:
+        """FitPercent of each output (thesis eq. 2.41)."""
+        return self.experiments[0].fit_percent
+
+    @property
+    def fit_ceiling(self) -> Mapping[str, float]:
+        """FitPercent that the noise allows, of each output."""
+        return self.experiments[0].fit_ceiling
+
+    @property
+    def data_count(self) -> int:
+        """Number of data: two a complex value."""
+        return self.objective.data_count
+
+    @property
+    def whitened(self) -> FloatArray:
+        """Residuals of the fitted lines over their covariance, shape (lines, 2 channels), see ``Part``."""
+        return self.experiments[0].whitened
+
+    @property
+    def chi_square(self) -> float:
+        """Sum of the squared distances of all lines and of the squared rows of priors."""
+        return self.fit_test.chi_square
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Number of data and prior rows minus the number of free parameters."""
+        return self.fit_test.degrees_of_freedom
+
+    @property
+    def p_value(self) -> float | None:
+        """Probability of a chi-square that large or larger if the structure holds.
+
+        None where nothing is left to test, or where the fit was not weighted by the covariance.
+        """
+        return self.fit_test.p_value if self.is_likelihood else None
+
+    @property
+    def line_tests(self) -> tuple[LineTest, ...]:
+        """How far each fitted line lies from the model, experiment by experiment."""
+        return self.fit_test.lines
 
     @property
     def parameters(self) -> tuple[Estimate, ...]:
         """Every free parameter with its standard deviation."""
         found = []
-        for i, parameter in enumerate(self.structure.free):
-            value = float(self.values[self.structure.names.index(parameter.name)])
+        for i, (place, parameter) in enumerate(zip(self.objective.free, self.objective.free_parameters, strict=True)):
+            value = float(self.values[place])
             found.append(
                 Estimate(
                     name=parameter.name,
@@ -139,10 +152,10 @@ class Identification:
 
     @property
     def combinations(self) -> tuple[Estimate, ...]:
-        """Every combination of parameters that the structure names, with its standard deviation to first order."""
+        """Every combination of parameters that a structure names, with its standard deviation to first order."""
         return tuple(
             self.derived(c.name, c.unit, lambda named, of=c.of: of(named))  # type: ignore[misc]
-            for c in self.structure.combinations
+            for c in self.objective.combinations
         )
 
     @property
@@ -155,12 +168,12 @@ class Identification:
     @property
     def margins(self) -> Margins | None:
         """Stability margins, found anew at each call; None for a structure without feedback."""
-        return None if self.structure.loop is None else margins(self.structure, self.values)
+        return None if self.structure.loop is None else margins(self.structure, self.own_values())
 
     @property
     def is_likelihood(self) -> bool:
-        """Whether ``2 cost`` is a chi-square: the fit was weighted by the covariance."""
-        return isinstance(self.settings.weighting, MaximumLikelihood)
+        """Whether the cost is a negative log-likelihood: the fit was weighted by the covariance."""
+        return self.settings.weighting.is_likelihood
 
     @property
     def reached(self) -> int:
@@ -168,18 +181,19 @@ class Identification:
         return next(c.starts for c in self.clusters if np.array_equal(c.values, self.values))
 
     def value(self, name: str) -> float:
-        """Return the value of a parameter, free or held.
+        """Return the value of a parameter, free, held or tied.
 
         Raises
         ------
         IdentificationError
             If the structure has no parameter of that name.
         """
-        if name not in self.structure.names:
+        named = self._named(self.values)
+        if name not in named:
             raise IdentificationError(
-                f"structure {self.structure.name} has no parameter {name}; it has {', '.join(self.structure.names)}."
+                f"structure {self.objective.name} has no parameter {name}; it has {', '.join(named)}."
             )
-        return float(self.values[self.structure.names.index(name)])
+        return named[name]
 
     def derived(self, name: str, unit: str, of: Callable[[Mapping[str, float]], float]) -> Estimate:
         """Return a function of the parameters with its standard deviation to first order.
@@ -189,7 +203,7 @@ class Identification:
         of
             Takes the parameter values by name, gives the number; a quotient by a parameter that is 0 is infinite.
         """
-        places = [self.structure.names.index(p.name) for p in self.structure.free]
+        places = list(self.objective.free)
         slopes = np.zeros(len(places))
         with np.errstate(divide="ignore", invalid="ignore"):
             value = float(of(self._named(self.values)))
@@ -204,8 +218,12 @@ class Identification:
         return Estimate(name=name, unit=unit, value=value, std=float(np.sqrt(variance)))
 
     def model(self, frequency_hz: FloatArray) -> ComplexArray:
-        """Return the fitted response, shape (outputs, frequencies)."""
-        return self.structure.response(self.values, 2j * np.pi * frequency_hz)
+        """Return the fitted response, shape (channels, frequencies); of a joint fit's first structure."""
+        return self.structure.response(self.own_values(), 2j * np.pi * frequency_hz)
+
+    def own_values(self, experiment: int = 0) -> FloatArray:
+        """Return all parameters of one experiment's structure, in that structure's order, shape (parameters,)."""
+        return self.objective.experiments[experiment].own(self.values)
 
     def _named(self, values: FloatArray) -> dict[str, float]:
-        return dict(zip(self.structure.names, values, strict=True))
+        return {name: np.float64(value) for name, value in self.objective.named(values).items()}

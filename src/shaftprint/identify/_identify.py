@@ -7,10 +7,14 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_bool, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify._covariance import estimate_covariance
+from shaftprint.identify._experiment import Experiment
 from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
-from shaftprint.identify._identification import Cluster, Identification, Settings
+from shaftprint.identify._fit_test import tested_fit, whitened
+from shaftprint.identify._identification import Cluster, Identification
 from shaftprint.identify._levenberg_marquardt import Descent, descend
-from shaftprint.identify._objective import Objective, build_objective, load_factors
+from shaftprint.identify._objective import Objective, build_joint_objective
+from shaftprint.identify._part import Part, channel_names
+from shaftprint.identify._settings import Settings
 from shaftprint.models import Structure, is_stable
 from shaftprint.spectra import FrequencyResponse
 
@@ -51,63 +55,94 @@ def identify(
     IdentificationError
         If structure and response do not fit together, there are too few data, or no start reached a stable model.
     """
-    chosen = settings or Settings()
-    sensed = _with_sensor(structure, response)
-    objective = build_objective(
-        sensed,
-        response,
-        weighting=chosen.weighting,
-        priors=chosen.priors,
-        regularisation=chosen.regularisation,
+    return _identified([(structure, response)], rng, settings or Settings(), lines)
+
+
+def identify_jointly(
+    pairs: Sequence[tuple[Structure, FrequencyResponse]],
+    *,
+    rng: np.random.Generator,
+    settings: Settings | None = None,
+) -> Identification:
+    """Fit structures to several responses at once: campaigns, repeats, working points.
+
+    The responses are independent of each other, and parameters of one name are one parameter.
+
+    Parameters
+    ----------
+    pairs
+        Each structure with the response it is fitted to, at the lines which that marks as used. A structure may stand
+        there several times; for another working point it is ``Structure.scaled``, or has other names.
+    rng
+        Source of the start values.
+    settings
+        How to search and weigh.
+
+    Raises
+    ------
+    IdentificationError
+        If a structure and its response do not fit together, two structures describe a parameter differently, there are
+        too few data, or no start reached stable models.
+    """
+    return _identified(pairs, rng, settings or Settings(), None)
+
+
+def _identified(
+    pairs: Sequence[tuple[Structure, FrequencyResponse]],
+    rng: np.random.Generator,
+    settings: Settings,
+    lines: Sequence[str] | None,
+) -> Identification:
+    objective = build_joint_objective(
+        [(_with_sensor(structure, response), response) for structure, response in pairs],
+        weighting=settings.weighting,
+        priors=settings.priors,
+        regularisation=settings.regularisation,
         lines=lines,
     )
-    start = chosen.draw.starts(objective.lower, objective.upper, chosen.starts, rng)
+    start = settings.draw.starts(objective.lower, objective.upper, settings.starts, rng)
     descent = descend(
         objective.of_starts,
         start,
         objective.lower,
         objective.upper,
-        tolerance=chosen.tolerance,
-        max_iterations=chosen.max_iterations,
+        tolerance=settings.tolerance,
+        max_iterations=settings.max_iterations,
         leader_tolerance=POLISH_TOLERANCE,
     )
     sharp = bool(descent.converged[np.argmin(descent.cost)])
-    clusters, winner = _judged(objective, _clustered(objective, descent), chosen, sharp=sharp)
-    return _outcome(response, objective, clusters, winner, chosen)
-
-
-def _outcome(
-    response: FrequencyResponse,
-    objective: Objective,
-    clusters: tuple[Cluster, ...],
-    winner: Cluster,
-    settings: Settings,
-) -> Identification:
-    """Return what was found, with its covariance and how well it fits."""
-    structure = objective.structure
-    theta = winner.values[list(objective.free)]
-    fitted = np.isin(response.omega_rad_s, objective.s.imag)
-    model = structure.response(winner.values, 1j * response.omega_rad_s, factors=load_factors(response))
-    outputs = {name: i for i, name in enumerate(response.outputs)}
-    measured = response.response[:, 0]
-    variance = np.diagonal(response.covariance, axis1=1, axis2=2).T
+    clusters, winner = _judged(objective, _clustered(objective, descent), settings, sharp=sharp)
     return Identification(
-        structure=structure,
-        response=response,
-        fitted=frozen_bool(fitted),
+        experiments=tuple(
+            _part(experiment, winner.values, residuals)
+            for experiment, residuals in zip(objective.experiments, whitened(objective, winner.values), strict=True)
+        ),
         objective=objective,
         settings=settings,
         values=winner.values,
-        covariance=frozen_float(estimate_covariance(objective, theta)),
+        covariance=frozen_float(estimate_covariance(objective, winner.values[list(objective.free)])),
         cost=winner.cost,
-        degrees_of_freedom=objective.data.size + len(settings.priors) - theta.size,
-        data_count=objective.data.size,
-        fit_percent={n: fit_percent(measured[i, fitted], model[i, fitted]) for n, i in outputs.items()},
-        fit_ceiling={
-            n: fit_ceiling(measured[i, fitted], (variance[i] + variance[len(outputs) + i])[fitted])
-            for n, i in outputs.items()
-        },
+        fit_test=tested_fit(objective, winner.values),
         clusters=clusters,
+    )
+
+
+def _part(experiment: Experiment, values: FloatArray, residuals: FloatArray) -> Part:
+    """Return how well one response is explained."""
+    structure, response, fitted = experiment.structure, experiment.response, experiment.fitted
+    model = structure.response(experiment.own(values), experiment.s, factors=experiment.factors)
+    count = len(structure.channels)
+    variance = np.diagonal(experiment.covariance, axis1=1, axis2=2).T
+    names = channel_names(response)
+    return Part(
+        structure=structure,
+        response=response,
+        fitted=frozen_bool(fitted),
+        fit_percent={n: fit_percent(experiment.measured[i], model[i]) for i, n in enumerate(names)},
+        fit_ceiling={
+            n: fit_ceiling(experiment.measured[i], variance[i] + variance[count + i]) for i, n in enumerate(names)
+        },
+        whitened=frozen_float(residuals),
     )
 
 
@@ -126,7 +161,7 @@ def _clustered(objective: Objective, descent: Descent) -> list[tuple[FloatArray,
     """Return parameters, cost and number of starts of each distinct optimum, lowest cost first."""
     order = np.argsort(descent.cost, kind="stable")
     theta, cost = descent.theta[order], descent.cost[order]
-    nothing = 0.5 * float(np.sum((objective.weights @ objective.data[:, :, None]) ** 2))
+    nothing = 0.5 * sum(float(np.sum((e.weights @ e.data[:, :, None]) ** 2)) for e in objective.experiments)
     width = objective.upper - objective.lower
     found: list[tuple[FloatArray, float, int]] = []
     while cost.size:
@@ -164,14 +199,14 @@ def _judged(
             )
             place, lowest = polished.theta[0], float(polished.cost[0])
         values = frozen_float(objective.complete(place))
-        stable = is_stable(objective.structure, values)
+        stable = all(is_stable(e.structure, e.own(values)) for e in objective.experiments)
         cluster = Cluster(values=values, cost=lowest, starts=starts, stable=stable)
         clusters.append(cluster)
-        if stable or not settings.require_stable:
+        if stable or settings.stability == "ignored":
             winner = cluster
     if winner is None:
         raise IdentificationError(
-            f"structure {objective.structure.name}: none of {settings.starts} starts reached a stable model; the "
+            f"structure {objective.name}: none of {settings.starts} starts reached a stable model; the "
             f"lowest cost is {clusters[0].cost:.4g}. Check the data and bounds, or allow unstable models."
         )
     return tuple(clusters), winner

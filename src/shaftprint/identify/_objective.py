@@ -1,88 +1,49 @@
-"""What a fit minimises: weighted residuals of all lines and outputs, and rows for what is known beforehand.
+"""What a fit minimises: weighted residuals of all experiments, and rows for what is known beforehand.
 
-With the residual vector ``r = W (y - f(theta))`` over ``[Re, Im]`` of every used line and output, the cost is
-``r^T r / 2``. For maximum likelihood ``W^T W`` is the inverse of the full covariance of each line, so ``2 cost`` is a
-chi-square; unweighted (the thesis' way) ``W`` holds output weights only. A prior ``mean +/- std`` of a parameter is
-one more row, ``(theta - mean) / std``.
+The cost is half the sum of squares of all residuals. For maximum likelihood it is the negative log-likelihood, up to a
+constant, of all experiments together: they are independent of each other, and parameters of one name are one parameter.
+A prior ``mean +/- std`` of a parameter is one more row, ``(theta - mean) / std``.
 """
 
-from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from shaftprint.arrays import ComplexArray, FloatArray, IntArray
 from shaftprint.errors import IdentificationError
+from shaftprint.identify._experiment import Experiment, build_experiment
 from shaftprint.identify._prior import Prior
-from shaftprint.models import Structure
+from shaftprint.identify._weighting import Weighting
+from shaftprint.models import Combination, Parameter, Structure
 from shaftprint.spectra import FrequencyResponse
 
-
-class Weighting(ABC):
-    """How the lines and outputs of a response are weighted against each other."""
-
-    __slots__ = ()
-
-    @abstractmethod
-    def matrices(self, response: FrequencyResponse, covariance: FloatArray) -> FloatArray:
-        """Return ``W`` of each line, shape (lines, size, size), for covariances of that shape."""
+# Held parameters that belong to the pick-up of an experiment: they may differ from one to the other.
+OF_PICK_UP = ("T_average", "T_hold", "t_pickup")
 
 
-@dataclass(frozen=True, slots=True)
-class MaximumLikelihood(Weighting):
-    """Weights from the full covariance of each line: efficient, and ``2 cost`` is a chi-square."""
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Redrawn:
+    """Other data for the same problem, one row a repeat."""
 
-    def matrices(self, response: FrequencyResponse, covariance: FloatArray) -> FloatArray:
-        """Return the inverse Cholesky factors of the covariances."""
-        return np.linalg.inv(np.linalg.cholesky(covariance))
+    measured: tuple[ComplexArray, ...]
+    """Of each experiment, fitted lines only, shape (repeats, channels, lines)."""
+    prior_means: FloatArray
+    """Means of the prior rows, shape (repeats, prior rows)."""
 
-
-@dataclass(frozen=True, slots=True)
-class Unweighted(Weighting):
-    """All lines alike, as in the thesis; outputs against each other by the given weights."""
-
-    output_weights: Mapping[str, float] = field(default_factory=dict)
-    """Weight of each output's squared residuals by name; 1 where not given."""
-
-    def matrices(self, response: FrequencyResponse, covariance: FloatArray) -> FloatArray:
-        """Return diagonal matrices of the square roots of the output weights.
-
-        Raises
-        ------
-        IdentificationError
-            If a weight names an output that the response does not have, or is not positive.
-        """
-        for name, weight in self.output_weights.items():
-            if name not in response.outputs or not weight > 0.0:
-                raise IdentificationError(
-                    f"output weight {name} = {weight}: expected a positive weight of one of "
-                    f"{', '.join(response.outputs)}."
-                )
-        roots = np.sqrt([self.output_weights.get(name, 1.0) for name in response.outputs])
-        return np.broadcast_to(np.diag(np.tile(roots, 2)), covariance.shape).copy()
+    def chosen(self, repeats: IntArray | slice) -> "Redrawn":
+        """Return some of the repeats."""
+        return Redrawn(measured=tuple(m[repeats] for m in self.measured), prior_means=self.prior_means[repeats])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Objective:
-    """A fit problem: structure, data, weights and prior rows, ready to be evaluated for many parameter sets at once."""
+    """A fit problem: experiments and prior rows, ready to be evaluated for many parameter sets at once."""
 
-    structure: Structure
-    """The structure with its held and free parameters."""
-    s: ComplexArray
-    """Laplace variable of the used lines [rad/s], shape (lines,), complex."""
-    factors: Mapping[str, FloatArray]
-    """Factor on a parameter at each used line: the propeller load of its window acts on ``k_q``."""
-    data: FloatArray
-    """[Re, Im] of the used lines, shape (lines, size)."""
-    measured: ComplexArray
-    """The same as complex numbers, shape (outputs, lines)."""
-    covariance: FloatArray
-    """Covariance of the data, shape (lines, size, size)."""
-    weights: FloatArray
-    """``W`` of each line, shape (lines, size, size)."""
-    terms: tuple[tuple[int, int, FloatArray], ...]
-    """Row, column and elements of ``-W``, shape (lines,), where they are not all zero; those of the diagonal first."""
+    parameters: tuple[Parameter, ...]
+    """Independent parameters of all structures, each once, those of the first structure first."""
+    experiments: tuple[Experiment, ...]
+    """The responses with their structures."""
     prior_rows: FloatArray
     """Rows ``(index of free parameter, mean, 1 / std)`` of priors and regularisation, shape (rows, 3)."""
     prior_counts: FloatArray
@@ -93,14 +54,47 @@ class Objective:
     """Places of the free parameters."""
 
     @property
+    def structure(self) -> Structure:
+        """The structure of the first experiment."""
+        return self.experiments[0].structure
+
+    @property
+    def name(self) -> str:
+        """Names of the structures, each once."""
+        return " + ".join(dict.fromkeys(e.structure.name for e in self.experiments))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all parameters."""
+        return tuple(p.name for p in self.parameters)
+
+    @property
+    def free_parameters(self) -> tuple[Parameter, ...]:
+        """The parameters that the fit may change."""
+        return tuple(self.parameters[i] for i in self.free)
+
+    @property
     def lower(self) -> FloatArray:
         """Lower bounds of the free parameters."""
-        return np.array([p.lower for p in self.structure.free])
+        return np.array([p.lower for p in self.free_parameters])
 
     @property
     def upper(self) -> FloatArray:
         """Upper bounds of the free parameters."""
-        return np.array([p.upper for p in self.structure.free])
+        return np.array([p.upper for p in self.free_parameters])
+
+    @property
+    def combinations(self) -> tuple[Combination, ...]:
+        """The combinations that the structures name, each once."""
+        found: dict[str, Combination] = {}
+        for combination in (c for e in self.experiments for c in e.structure.combinations):
+            found.setdefault(combination.name, combination)
+        return tuple(found.values())
+
+    @property
+    def data_count(self) -> int:
+        """Number of real data: two a complex value."""
+        return sum(e.data.size for e in self.experiments)
 
     def complete(self, theta: FloatArray) -> FloatArray:
         """Return all parameters, shape (..., parameters), from the free ones, shape (..., free)."""
@@ -108,45 +102,54 @@ class Objective:
         values[..., self.free] = theta
         return values
 
+    def named(self, values: FloatArray) -> dict[str, FloatArray]:
+        """Return every parameter of every structure by name, tied ones included, from values (..., parameters)."""
+        found: dict[str, FloatArray] = {}
+        for experiment in self.experiments[::-1]:
+            found |= experiment.structure.named(experiment.own(values))
+        return found
+
     def of_starts(self, theta: FloatArray, starts: IntArray) -> tuple[FloatArray, FloatArray]:
         """Return the same as ``residuals``: every start has the same problem."""
         return self.residuals(theta)
 
-    def residuals(self, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def residuals(self, theta: FloatArray, redrawn: Redrawn | None = None) -> tuple[FloatArray, FloatArray]:
         """Return weighted residuals and their derivatives for many parameter sets.
 
         Parameters
         ----------
         theta
             Free parameters, shape (starts, free).
+        redrawn
+            Other data for each start.
 
         Returns
         -------
-            Residuals, shape (starts, rows), and Jacobian, shape (starts, free, rows).
+            Residuals, shape (starts, rows), and Jacobian, shape (starts, free, rows); rows experiment by experiment,
+            those of the priors last.
         """
-        stacked = self.structure.stacked(self.complete(theta), self.s, factors=self.factors)
-        starts, count, outputs, lines = stacked.shape
-        stacked[:, 0] -= self.measured
-        table = self._weighted(stacked).reshape(starts, count, 2 * outputs * lines)
-        if not self.prior_rows.size:
-            return table[:, 0], table[:, 1:]
-        index = self.prior_rows[:, 0].astype(int)
-        known = np.zeros((starts, count, index.size))
-        known[:, 0] = (theta[:, index] - self.prior_rows[:, 1]) * self.prior_rows[:, 2]
-        known[:, 1 + index, np.arange(index.size)] = self.prior_rows[:, 2]
-        table = np.concatenate([table, known], axis=2)
+        parts = [self._part(i, theta, redrawn) for i in range(len(self.experiments))]
+        if self.prior_rows.size:
+            parts.append(self._prior_part(theta, self.prior_rows[:, 1] if redrawn is None else redrawn.prior_means))
+        table = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
         return table[:, 0], table[:, 1:]
 
-    def _weighted(self, stacked: ComplexArray) -> FloatArray:
-        """Return ``-W`` times [Re, Im] of stacked responses, shape (starts, stack, 2 outputs, lines), term by term."""
-        starts, count, outputs, lines = stacked.shape
-        table = np.empty((starts, count, 2 * outputs, lines))
-        for row, column, weight in self.terms:
-            part = (stacked.real if column < outputs else stacked.imag)[:, :, column % outputs]
-            if row == column:
-                np.multiply(part, weight, out=table[:, :, row])
-            else:
-                table[:, :, row] += part * weight
+    def _part(self, number: int, theta: FloatArray, redrawn: Redrawn | None) -> FloatArray:
+        """Return residuals of one experiment and below them their derivatives to all free parameters."""
+        experiment = self.experiments[number]
+        measured = None if redrawn is None else redrawn.measured[number]
+        if experiment.columns == tuple(range(theta.shape[1])):
+            return experiment.table(theta, measured)
+        own = experiment.table(theta[:, experiment.columns], measured)
+        table = np.zeros((theta.shape[0], 1 + theta.shape[1], own.shape[2]))
+        table[:, [0, *(1 + column for column in experiment.columns)]] = own
+        return table
+
+    def _prior_part(self, theta: FloatArray, means: FloatArray) -> FloatArray:
+        index = self.prior_rows[:, 0].astype(int)
+        table = np.zeros((theta.shape[0], 1 + theta.shape[1], index.size))
+        table[:, 0] = (theta[:, index] - means) * self.prior_rows[:, 2]
+        table[:, 1 + index, np.arange(index.size)] = self.prior_rows[:, 2]
         return table
 
 
@@ -159,85 +162,104 @@ def build_objective(
     regularisation: Mapping[str, Prior],
     lines: Sequence[str] | None = None,
 ) -> Objective:
-    """Return the fit problem of a structure and a response.
+    """Return the fit problem of one structure and one response, see ``build_joint_objective``."""
+    return build_joint_objective(
+        [(structure, response)], weighting=weighting, priors=priors, regularisation=regularisation, lines=lines
+    )
+
+
+def build_joint_objective(
+    pairs: Sequence[tuple[Structure, FrequencyResponse]],
+    *,
+    weighting: Weighting,
+    priors: Mapping[str, Prior],
+    regularisation: Mapping[str, Prior],
+    lines: Sequence[str] | None = None,
+) -> Objective:
+    """Return the fit problem of several structures, each with a response; parameters of one name are one.
+
+    Parameters
+    ----------
+    lines
+        Names of the lines to fit in every response; those that it marks as used by default.
 
     Raises
     ------
     IdentificationError
-        If input or outputs differ, a prior names no free parameter, no parameter is free, or there are fewer data than
-        free parameters.
+        If input or outputs differ, two structures describe a parameter differently, a prior names no free parameter,
+        no parameter is free, or there are fewer data than free parameters.
     """
-    _expect_same_channels(structure, response)
-    names = structure.free
+    if not pairs:
+        raise IdentificationError("joint fit: expected at least one pair of structure and response, found none.")
+    parameters = _united([structure for structure, _ in pairs])
+    names = [p.name for p in parameters]
+    free = [p.name for p in parameters if not p.held]
+    experiments = tuple(
+        build_experiment(structure, response, weighting=weighting, lines=lines, names=names, free=free)
+        for structure, response in pairs
+    )
     known = [*priors.items(), *regularisation.items()]
-    unknown = [name for name, _ in known if name not in {p.name for p in names}]
+    objective = Objective(
+        parameters=parameters,
+        experiments=experiments,
+        prior_rows=np.empty((0, 3)),
+        prior_counts=np.array([1.0] * len(priors) + [0.0] * len(regularisation)),
+        held=np.array([p.value for p in parameters]),
+        free=tuple(i for i, p in enumerate(parameters) if not p.held),
+    )
+    _expect_solvable(objective, [name for name, _ in known])
+    rows = [[free.index(name), prior.mean, 1.0 / prior.std] for name, prior in known]
+    return replace(objective, prior_rows=np.array(rows).reshape(-1, 3))
+
+
+def _united(structures: Sequence[Structure]) -> tuple[Parameter, ...]:
+    """Return the parameters of all structures, each once."""
+    found: dict[str, tuple[Parameter, Structure]] = {}
+    for structure in structures:
+        for parameter in structure.parameters:
+            first, owner = found.setdefault(parameter.name, (parameter, structure))
+            if _described(first) != _described(parameter):
+                raise IdentificationError(
+                    f"joint fit: parameter {first.name} is {_words(first)} in structure {owner.name} and "
+                    f"{_words(parameter)} in {structure.name}; describe it alike, or give one of them another name."
+                )
+    tied = {tie.name: structure for structure in structures for tie in structure.ties}
+    both = [name for name in tied if name in found]
+    if both:
+        raise IdentificationError(
+            f"joint fit: parameter {both[0]} is tied to others in structure {tied[both[0]].name} and a parameter of "
+            f"its own in {found[both[0]][1].name}; tie it in both, or give one of them another name."
+        )
+    return tuple(parameter for parameter, _ in found.values())
+
+
+def _described(parameter: Parameter) -> tuple[object, ...]:
+    """Return what must be the same for two parameters to be one."""
+    if parameter.held:
+        return (parameter.unit, None if parameter.name in OF_PICK_UP else parameter.value)
+    return (parameter.unit, parameter.lower, parameter.upper)
+
+
+def _words(parameter: Parameter) -> str:
+    if parameter.held:
+        return f"held at {parameter.value} {parameter.unit}"
+    return f"free from {parameter.lower} to {parameter.upper} {parameter.unit}"
+
+
+def _expect_solvable(objective: Objective, known: Sequence[str]) -> None:
+    names = [p.name for p in objective.free_parameters]
+    unknown = [name for name in known if name not in names]
     if unknown:
         raise IdentificationError(
-            f"prior of {', '.join(unknown)}: structure {structure.name} has the free parameters "
-            f"{', '.join(p.name for p in names)}."
+            f"prior of {', '.join(unknown)}: structure {objective.name} has the free parameters {', '.join(names)}."
         )
-    chosen = _chosen_lines(response, lines)
-    data = np.concatenate([response.response[:, 0].real, response.response[:, 0].imag]).T[chosen]
     if not names:
         raise IdentificationError(
-            f"structure {structure.name} has no free parameter: free one with free_between(), or compare its response."
+            f"structure {objective.name} has no free parameter: free one with free_between(), or compare its response."
         )
-    if data.size + len(known) < len(names):
+    if objective.data_count + len(known) < len(names):
+        lines = sum(e.s.size for e in objective.experiments)
         raise IdentificationError(
-            f"structure {structure.name} has {len(names)} free parameters, the response {data.size} usable numbers "
-            f"({int(chosen.sum())} lines): measure more lines or hold parameters."
-        )
-    covariance = response.covariance[chosen]
-    weights = weighting.matrices(response, covariance)
-    places = {p.name: i for i, p in enumerate(names)}
-    return Objective(
-        structure=structure,
-        factors=load_factors(response, chosen),
-        s=np.asarray(1j * response.omega_rad_s[chosen], dtype=np.complex128),
-        data=data,
-        measured=response.response[:, 0, chosen],
-        covariance=covariance,
-        weights=weights,
-        terms=_terms(weights),
-        prior_rows=np.array([[places[n], p.mean, 1.0 / p.std] for n, p in known]).reshape(-1, 3),
-        prior_counts=np.array([1.0] * len(priors) + [0.0] * len(regularisation)),
-        held=structure.vector({}),
-        free=tuple(i for i, p in enumerate(structure.parameters) if not p.held),
-    )
-
-
-def _terms(weights: FloatArray) -> tuple[tuple[int, int, FloatArray], ...]:
-    """Return row, column and elements of ``-W`` where they are not all zero, the diagonal first."""
-    size = weights.shape[1]
-    rest = [(i, j) for i in range(size) for j in range(size) if i != j and weights[:, i, j].any()]
-    return tuple((i, j, -weights[:, i, j]) for i, j in [*((i, i) for i in range(size)), *rest])
-
-
-def load_factors(response: FrequencyResponse, chosen: BoolArray | None = None) -> dict[str, FloatArray]:
-    """Return what the propeller load of each line's window does to the parameters of a structure.
-
-    A propeller whose torque is ``M_s0 (1 + delta) (n / n_0)^2`` has the slope ``k_q (1 + delta)`` in values
-    normalised with one working point, and nothing else changes.
-    """
-    load = response.load if chosen is None else response.load[chosen]
-    return {} if np.all(load == 1.0) else {"k_q": load}
-
-
-def _chosen_lines(response: FrequencyResponse, lines: Sequence[str] | None) -> BoolArray:
-    if lines is None:
-        return response.used
-    unknown = [name for name in lines if name not in response.lines]
-    if unknown:
-        raise IdentificationError(
-            f"lines {', '.join(unknown)} are not in the response; it has {', '.join(response.lines)}."
-        )
-    return np.array([name in lines for name in response.lines], dtype=np.bool_)
-
-
-def _expect_same_channels(structure: Structure, response: FrequencyResponse) -> None:
-    if (structure.input,) != response.inputs or tuple(structure.outputs) != response.outputs:
-        raise IdentificationError(
-            f"structure {structure.name} goes from {structure.input} to {', '.join(structure.outputs)}, the "
-            f"response from {', '.join(response.inputs)} to {', '.join(response.outputs)}: choose a structure with "
-            "these channels, or convert the response with open_loop()."
+            f"structure {objective.name} has {len(names)} free parameters, the response {objective.data_count} usable "
+            f"numbers ({lines} lines): measure more lines or hold parameters."
         )

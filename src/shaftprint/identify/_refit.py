@@ -1,11 +1,13 @@
 """Fit many responses of one test at once, each from a known start: for a parametric bootstrap or a fleet of repeats.
 
-The responses share lines, covariance and weights with the identification, so only the data differ. With the weighted
-residual ``r = W (y - f(theta))`` of the identification's data ``y``, repeat ``k`` has ``r_k = r + W (y_k - y)``: the
-model is evaluated for many repeats in the same array operations, as it is for the starts of one search.
+The responses share lines, covariance, weights and priors' standard deviations with the identification, so only the data
+and the priors' means differ: the model is evaluated for many repeats in the same array operations, as it is for the
+starts of one search.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,9 +21,10 @@ from shaftprint.arrays import (
     frozen_float,
 )
 from shaftprint.errors import IdentificationError
+from shaftprint.identify._experiment import Experiment
 from shaftprint.identify._identification import Identification
 from shaftprint.identify._levenberg_marquardt import Descent, descend
-from shaftprint.identify._objective import Objective
+from shaftprint.identify._objective import Objective, Redrawn
 
 # A repeat is done when a further step promises less than this share of its cost: below 1e-3 standard deviations.
 TOLERANCE = 1e-8
@@ -43,18 +46,28 @@ class Refits:
     """Whether the fit settled within the iterations that the identification's settings allow, shape (repeats,)."""
 
 
-def refit(identification: Identification, responses: ArrayLike, *, start: ArrayLike | None = None) -> Refits:
-    """Fit the identified structure to other responses of the same test, each from one start.
+def refit(
+    identification: Identification,
+    responses: ArrayLike | Sequence[ArrayLike],
+    *,
+    start: ArrayLike | None = None,
+    prior_means: ArrayLike | None = None,
+) -> Refits:
+    """Fit the identified structures to other responses of the same test, each from one start.
 
-    Weights, priors and bounds are the identification's. A prior keeps its mean, so where repeats are drawn to learn the
-    spread of the estimates, what the prior adds to it is not in them. Nothing is judged for stability.
+    Weights, bounds and the standard deviations of priors are the identification's. Nothing is judged for stability.
 
     Parameters
     ----------
     responses
-        Responses at all lines of the identification's response, shape (repeats, outputs, lines); one repeat or more.
+        Responses at all lines of the identification's response, shape (repeats, channels, lines), one repeat or more;
+        with one input the channels are the outputs. For a joint fit a sequence of such arrays, one an experiment.
     start
         Start values of the free parameters, shape (free,) or (repeats, free); the identified ones when not given.
+    prior_means
+        Means of priors and regularisation, in the order of ``Objective.prior_rows``, shape (repeats, prior rows); the
+        identification's when not given. Where repeats are drawn to learn the spread of the estimates, what a prior adds
+        to it is in them only if its mean is drawn too.
 
     Raises
     ------
@@ -62,35 +75,60 @@ def refit(identification: Identification, responses: ArrayLike, *, start: ArrayL
         If a shape does not fit or a value is not finite.
     """
     objective = identification.objective
-    measured = np.asarray(responses, dtype=np.complex128)
-    expected = (len(identification.response.outputs), identification.response.frequency_hz.size)
-    if measured.ndim != 3 or measured.shape[1:] != expected or not measured.size:
-        raise IdentificationError(
-            f"responses: expected shape (repeats, {expected[0]} outputs, {expected[1]} lines), found {measured.shape}."
-        )
-    finite = np.isfinite(measured).all(axis=(1, 2))
-    if not finite.all():
-        raise IdentificationError(
-            f"responses: found values that are not finite, first in repeat {np.argmin(finite)}; leave it out."
-        )
-    shift = _shift(objective, measured[:, :, identification.fitted])
-    theta = _starts(identification, start, repeats=measured.shape[0])
+    measured = _measured(objective, responses)
+    repeats = measured[0].shape[0]
+    redrawn = Redrawn(measured=measured, prior_means=_prior_means(objective, prior_means, repeats))
+    theta = _starts(identification, start, repeats=repeats)
     limit = identification.settings.max_iterations
-    blocks = [slice(i, i + BLOCK) for i in range(0, measured.shape[0], BLOCK)]
-    found = [_descended(objective, shift[block], theta[block], limit) for block in blocks]
+    blocks = [slice(i, i + BLOCK) for i in range(0, repeats, BLOCK)]
+    found = [_descended(objective, redrawn.chosen(block), theta[block], limit) for block in blocks]
     return Refits(
-        names=tuple(p.name for p in objective.structure.free),
+        names=tuple(p.name for p in objective.free_parameters),
         values=frozen_float(np.concatenate([descent.theta for descent in found])),
         cost=frozen_float(np.concatenate([descent.cost for descent in found])),
         converged=frozen_bool(np.concatenate([descent.converged for descent in found])),
     )
 
 
-def _shift(objective: Objective, measured: ComplexArray) -> FloatArray:
-    """Return ``W (y_k - y)`` of every repeat in the order of the residuals, zero in the prior rows."""
-    parts = np.concatenate([measured.real, measured.imag], axis=1) - objective.data.T
-    weighted = np.einsum("fab,kbf->kaf", objective.weights, parts).reshape(parts.shape[0], -1)
-    return np.pad(weighted, ((0, 0), (0, objective.prior_rows.shape[0])))
+def _measured(objective: Objective, responses: ArrayLike | Sequence[ArrayLike]) -> tuple[ComplexArray, ...]:
+    """Return the fitted lines of every experiment's responses."""
+    count = len(objective.experiments)
+    given = [responses] if count == 1 else list(cast("Sequence[ArrayLike]", responses))
+    if len(given) != count:
+        raise IdentificationError(f"responses: expected {count} arrays, one an experiment, found {len(given)}.")
+    found = tuple(_of_experiment(e, values) for e, values in zip(objective.experiments, given, strict=True))
+    repeats = [measured.shape[0] for measured in found]
+    if len(set(repeats)) > 1:
+        raise IdentificationError(
+            f"responses: expected the same number of repeats of every experiment, found {', '.join(map(str, repeats))}."
+        )
+    return found
+
+
+def _of_experiment(experiment: Experiment, responses: ArrayLike | Sequence[ArrayLike]) -> ComplexArray:
+    measured = np.asarray(responses, dtype=np.complex128)
+    channels, lines = len(experiment.structure.channels), experiment.fitted.size
+    if measured.ndim != 3 or measured.shape[1:] != (channels, lines) or not measured.size:
+        raise IdentificationError(
+            f"responses: expected shape (repeats, {channels} channels, {lines} lines), found {measured.shape}."
+        )
+    finite = np.isfinite(measured[:, :, experiment.fitted]).all(axis=(1, 2))
+    if not finite.all():
+        raise IdentificationError(
+            f"responses: found values that are not finite, first in repeat {np.argmin(finite)}; leave it out."
+        )
+    return measured[:, :, experiment.fitted]
+
+
+def _prior_means(objective: Objective, prior_means: ArrayLike | None, repeats: int) -> FloatArray:
+    own = objective.prior_rows[:, 1]
+    means = np.broadcast_to(own, (repeats, own.size)) if prior_means is None else np.asarray(prior_means, dtype=float)
+    if means.shape != (repeats, own.size) or not np.all(np.isfinite(means)):
+        raise IdentificationError(
+            f"prior_means: expected finite values of shape ({repeats} repeats, {own.size} prior rows), found shape "
+            f"{means.shape}."
+        )
+    return means
 
 
 def _starts(identification: Identification, start: ArrayLike | None, *, repeats: int) -> FloatArray:
@@ -103,9 +141,8 @@ def _starts(identification: Identification, start: ArrayLike | None, *, repeats:
     return np.broadcast_to(given, (repeats, free.size))
 
 
-def _descended(objective: Objective, shift: FloatArray, theta: FloatArray, limit: int) -> Descent:
+def _descended(objective: Objective, redrawn: Redrawn, theta: FloatArray, limit: int) -> Descent:
     def residuals(trial: FloatArray, repeats: IntArray) -> tuple[FloatArray, FloatArray]:
-        r, jacobian = objective.residuals(trial)
-        return r + shift[repeats], jacobian
+        return objective.residuals(trial, redrawn.chosen(repeats))
 
     return descend(residuals, theta, objective.lower, objective.upper, tolerance=TOLERANCE, max_iterations=limit)
