@@ -69,6 +69,21 @@ def pick_up(s, p):
     return windows * mp.exp(-s * p["t_pickup"])
 
 
+def load_slope(s, p):
+    """Torque of propeller and water over speed: quasi-steady slope, water to be accelerated, slipstream that lags.
+
+    The slipstream: ``Q = (k_q + kappa) n - kappa u`` with ``tau_i s u = n - u``.
+    """
+    slope = p["k_q"] + p.get("tau_w", 0) * s
+    if "kappa" in p:
+        slope += p["kappa"] - p["kappa"] / (p["tau_i"] * s + 1)
+    return slope
+
+
+def telemetry(s, p):
+    return mp.exp(-s * p["t_gauge"]) / (p["T_filter"] * s + 1)
+
+
 def gauge(s, p):
     """``n / n_set`` (true speed) and ``M_s / n_set`` of the two free bodies cut at the gauge.
 
@@ -81,12 +96,12 @@ def gauge(s, p):
     matrix = mp.matrix(
         [
             [1, -1, -p["tau_up"] * s],
-            [0, 1, -p["k_q"] - p["tau_dn"] * s],
+            [0, 1, -load_slope(s, p) - p["tau_dn"] * s],
             [1, 0, -p["g"] + engine],
         ]
     )
     _, torque, speed = mp.lu_solve(matrix, mp.matrix([0, 0, engine * demand]))
-    return speed, torque * mp.exp(-s * p["t_gauge"])
+    return speed, torque * telemetry(s, p)
 
 
 def gauge_open(s, p):
@@ -98,6 +113,22 @@ def gauge_open(s, p):
 def gauge_closed(s, p):
     speed, torque = gauge(s, p)
     return pick_up(s, p) * speed, torque
+
+
+def gauge_ecu(s, p):
+    """The rack is what the governor makes of its own error, seen ``t_rack`` late."""
+    speed, torque = gauge(s, p)
+    error = p["c_set"] * mp.exp(-s * p["t_sp"]) - speed
+    rack = (p["K_p"] + p["K_i"] / s) * error * mp.exp(-s * p["t_rack"])
+    return pick_up(s, p) * speed, torque, rack
+
+
+def engine(s, p):
+    """Speed and torque from the rack: no governor, no set point."""
+    lag = p["omega_n"] ** 2 / (s**2 + 2 * p["zeta"] * p["omega_n"] * s + p["omega_n"] ** 2)
+    brake = p["v"] * mp.exp(-s * (p["t_d"] - p["t_rack"])) * lag
+    speed = brake / ((p["tau_up"] + p["tau_dn"]) * s + p["k_q"] - p["g"])
+    return pick_up(s, p) * speed, (p["tau_dn"] * s + p["k_q"]) * telemetry(s, p) * speed
 
 
 FORMS = {
@@ -113,9 +144,13 @@ FORMS = {
     "CL4-PADE5": lambda s, p: closed(s, p, governor_pade),
     "INITIAL": five_parameters,
     "BENCHMARK": lambda s, p: five_parameters(s, p)[::2],
-    "GAUGE-CORE": lambda s, p: (pick_up(s, p) * mp.exp(s * p["t_gauge"]) / (p["tau_dn"] * s + p["k_q"]),),
+    "GAUGE-CORE": lambda s, p: (pick_up(s, p) / telemetry(s, p) / (p["tau_dn"] * s + p["k_q"]),),
     "GAUGE-OPEN": gauge_open,
     "GAUGE-CLOSED": gauge_closed,
+    "GAUGE-INFLOW": gauge_closed,
+    "GAUGE-ECU": gauge_ecu,
+    "GOVERNOR": lambda s, p: ((p["K_p"] + p["K_i"] / s) * mp.exp(-s * p["t_rack"]),),
+    "ENGINE": engine,
 }
 
 # A block's own zero is where formulas lose digits or divide by zero: no gain, no delay, no window.

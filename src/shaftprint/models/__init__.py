@@ -21,12 +21,11 @@ Feedback is negative: the closed loop of forward ``G`` and back ``H`` is ``G / (
 from shaftprint.models._blocks import (
     Constant,
     FilteredDerivative,
+    FirstOrderLag,
     Gain,
     Integrator,
     PIGovernor,
     SecondOrderLag,
-    Shaft,
-    TorqueBalance,
 )
 from shaftprint.models._catalogue import STRUCTURES, structure
 from shaftprint.models._combination import Combination
@@ -36,6 +35,7 @@ from shaftprint.models._margins import Margins, margins, poles
 from shaftprint.models._nyquist import is_stable, loop_gain, stable_rows, unstable_poles
 from shaftprint.models._own_blocks import FunctionBlock, RationalBlock
 from shaftprint.models._parameter import Parameter
+from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
 from shaftprint.models._structure import Structure
 from shaftprint.models._tie import Tie
 
@@ -45,10 +45,14 @@ __all__ = [
     "Combination",
     "Constant",
     "Delay",
+    "DynamicInflow",
+    "EntrainedWater",
     "Expression",
     "FilteredDerivative",
+    "FirstOrderLag",
     "FunctionBlock",
     "Gain",
+    "Inertia",
     "Integrator",
     "Inverse",
     "Margins",

@@ -172,71 +172,25 @@ class SecondOrderLag(Block):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Shaft(Block):
-    """Rigid line of shafts from torque to speed, ``1 / (tau s + k_q - g)``.
+class FirstOrderLag(Block):
+    """First-order lag ``1 / (T s + 1)``, such as the low-pass of a torque telemetry."""
 
-    ``tau`` is the sum of the inertia times given, ``k_q`` the slope of the propeller torque (2 for a quadratic law) and
-    ``g`` that of the engine torque (thesis eqs 2.13, 2.18, 2.20; eq. 4.2 is the case of one inertia and ``g = 0``).
-    """
-
-    inertia: tuple[Parameter, ...]
-    propeller_slope: Parameter
-    engine_slope: Parameter | None = None
+    time: Parameter
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """Inertia times, ``k_q``, and ``g`` where there is one."""
-        end = () if self.engine_slope is None else (self.engine_slope,)
-        return (*self.inertia, self.propeller_slope, *end)
-
-    def _totals(self, values: tuple[FloatArray, ...]) -> tuple[FloatArray, FloatArray]:
-        count = len(self.inertia)
-        tau = values[0] if count == 1 else sum(values[1:count], start=values[0])
-        slope = values[count] if self.engine_slope is None else values[count] - values[count + 1]
-        return tau, slope
+        """``T``."""
+        return (self.time,)
 
     def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
-        """Return ``1 / (tau s + k_q - g)``."""
-        tau, slope = self._totals(values)
-        return 1.0 / (tau * s + slope)
+        """Return ``1 / (T s + 1)``."""
+        (t,) = values
+        return np.asarray(1.0 / (t * s + 1.0))
 
     def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
-        """Return ``-s H^2`` for each inertia time, ``-H^2`` for ``k_q``, ``H^2`` for ``g``."""
-        square = response * response
-        to_inertia = -s * square
-        end = () if self.engine_slope is None else (square,)
-        return (*(to_inertia for _ in self.inertia), -square, *end)
+        """Return ``-s H^2``."""
+        return (-s * response * response,)
 
     def ratio(self, *values: float) -> Polynomials:
-        """Return ``1 / (tau s + k_q - g)``."""
-        tau, slope = self._totals(tuple(np.asarray(value) for value in values))
-        return np.array([1.0]), np.array([float(tau), float(slope)])
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class TorqueBalance(Block):
-    """Torque at the gauge over speed, ``tau_dn s + k_q``: what is downstream of the gauge must be turned.
-
-    Free body cut at the gauge: ``M_s - M_p = 2 pi I_dn dn_s/dt``, with ``M_p* = k_q n*``.
-    """
-
-    inertia: Parameter
-    propeller_slope: Parameter
-
-    @property
-    def parameters(self) -> tuple[Parameter, ...]:
-        """``tau_dn``, ``k_q``."""
-        return (self.inertia, self.propeller_slope)
-
-    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
-        """Return ``tau_dn s + k_q``."""
-        tau, slope = values
-        return tau * s + slope
-
-    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
-        """Return ``s`` and ``1``."""
-        return s, np.ones_like(s)
-
-    def ratio(self, *values: float) -> Polynomials:
-        """Return ``(tau_dn s + k_q) / 1``."""
-        return np.array(values), np.array([1.0])
+        """Return ``1 / (T s + 1)``."""
+        return np.array([1.0]), np.array([values[0], 1.0])

@@ -1,4 +1,4 @@
-"""The shipped structures: those of the thesis, and the gauge-aware ones that know where the torque gauge sits.
+"""The shipped structures: those of the thesis are written here, the gauge-aware ones beside.
 
 Every structure is a few lines that read like the block diagrams of the thesis (figures 3.6 and 4.1). Default bounds are
 those of thesis table 5.1; for the initial linear model and the benchmark those of eqs 2.36-2.40.
@@ -8,25 +8,32 @@ from collections.abc import Callable, Mapping
 
 from shaftprint.errors import StructureError
 from shaftprint.models._blocks import (
-    Constant,
     FilteredDerivative,
     Gain,
     Integrator,
     PIGovernor,
     SecondOrderLag,
-    Shaft,
-    TorqueBalance,
 )
 from shaftprint.models._combination import Combination
-from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor
-from shaftprint.models._expression import Expression, Inverse, Sensitivity
+from shaftprint.models._delays import Delay, PadeDelay
+from shaftprint.models._expression import Expression, Sensitivity
+from shaftprint.models._gauge_catalogue import (
+    T_D,
+    engine,
+    gauge_closed,
+    gauge_core,
+    gauge_ecu,
+    gauge_inflow,
+    gauge_open,
+    governor,
+)
 from shaftprint.models._parameter import Parameter
+from shaftprint.models._shaft_blocks import Shaft, TorqueBalance
 from shaftprint.models._structure import Structure
 
 TAU_N = Parameter("tau_n", "s", 0.0, 5.0, 0.39, "inertia time of the line, 2 pi I n_s0 / M_s0")
 K_P = Parameter("K_p", "-", 0.0, 10.0, 3.0, "proportional gain of the governor")
 K_I = Parameter("K_i", "1/s", 0.0, 10.0, 4.0, "integral gain of the governor")
-T_D = Parameter("t_d", "s", 0.0, 0.5, 0.1, "delay inside the loop: governor, injection, combustion")
 OMEGA_N = Parameter("omega_n", "rad/s", 7.0, 13.0, 10.0, "natural frequency of the actuation lag")
 ZETA = Parameter("zeta", "-", 0.3, 4.0, 0.5, "damping ratio of the actuation lag")
 K_Q_TWO = Parameter("k_q", "-", 1.0, 3.0, 2.0, "slope of the propeller torque, d ln M / d ln n", held=True)
@@ -41,22 +48,6 @@ FIRST_K_P = Parameter("K_p", "-", 0.0, 15.0, 10.0, "proportional gain of the gov
 FIRST_K_I = Parameter("K_i", "1/s", 0.0, 10.0, 3.0, "integral gain of the governor")
 FIRST_G = Parameter("g", "-", -3.0, 0.0, -0.5, "slope of the engine torque with speed")
 FIRST_V = Parameter("v", "-", 0.0, 5.0, 1.0, "slope of the engine torque with fuel rack")
-
-TAU_DN = Parameter("tau_dn", "s", 0.0, 2.0, 0.3, "inertia time downstream of the torque gauge")
-TAU_UP = Parameter("tau_up", "s", 0.0, 5.0, 1.0, "inertia time upstream of the torque gauge")
-K_Q = Parameter("k_q", "-", 1.0, 3.0, 2.0, "slope of the propeller torque; 2 if gauge and inflow are right")
-G = Parameter("g", "-", -3.0, 0.9, 0.0, "slope of the engine torque with speed")
-V_ONE = Parameter("v", "-", 0.0, 5.0, 1.0, "slope of the engine torque with fuel rack", held=True)
-GAUGE_K_P = Parameter("K_p", "-", 0.0, 20.0, 5.0, "proportional gain of the governor")
-GAUGE_K_I = Parameter("K_i", "1/s", 0.0, 20.0, 4.0, "integral gain of the governor")
-GAUGE_OMEGA_N = Parameter("omega_n", "rad/s", 3.0, 60.0, 10.0, "natural frequency of the actuation lag")
-GAUGE_ZETA = Parameter("zeta", "-", 0.1, 4.0, 0.5, "damping ratio of the actuation lag")
-T_SP = Parameter("t_sp", "s", 0.0, 0.5, 0.05, "latency of the set point, outside the loop")
-C_SET = Parameter("c_set", "-", 0.95, 1.05, 1.0, "scale error of the measured set point")
-T_GAUGE = Parameter("t_gauge", "s", -0.02, 0.02, 0.0, "error of the known latency of the torque telemetry")
-T_AVERAGE = Parameter("T_average", "s", 0.0, 1.0, 0.0, "window of the pick-up's mean", held=True)
-T_HOLD = Parameter("T_hold", "s", 0.0, 1.0, 0.0, "time for which a pick-up value is held", held=True)
-T_PICKUP = Parameter("t_pickup", "s", 0.0, 1.0, 0.0, "delay of the pick-up's value", held=True)
 
 
 def _core(tau: Parameter = TAU_N) -> Expression:
@@ -172,82 +163,6 @@ def _five_parameters(name: str, title: str, *, integrated_error: bool) -> Struct
     )
 
 
-def gauge_core() -> Structure:
-    """Return the gauge-aware core propulsion: only what is downstream.
-
-    ``n / M_s = sensor exp(s t_gauge) / (tau_dn s + k_q)``.
-    """
-    core = Shaft((TAU_DN,), K_Q) * Inverse(Delay(T_GAUGE)) * SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP)
-    return Structure(name="GAUGE-CORE", title="gauge-aware core propulsion", input="M_s", outputs={"n": core})
-
-
-def gauge_open() -> Structure:
-    """Return the gauge-aware governor and engine, ``M_s / e`` with ``e = n_set - n`` as it is measured.
-
-    ``M_s / e = v C exp(-s t_d) F (tau_dn s + k_q) / ((tau_up + tau_dn) s + k_q - g)`` inside the ship; the latency
-    of the set point and the pick-up enter through ``e``, so the measured ratio is
-    ``(M_s / n_set) / (1 - n / n_set)``.
-    """
-    speed, torque = _gauge_outputs()
-    error = Constant(1.0) + Constant(-1.0) * speed
-    return Structure(
-        name="GAUGE-OPEN",
-        title="gauge-aware governor and engine",
-        input="e",
-        outputs={"M_s": torque * Inverse(error)},
-        combinations=_gauge_combinations(),
-    )
-
-
-def gauge_closed() -> Structure:
-    """Return the gauge-aware closed loop, ``n`` and ``M_s`` from ``n_set``.
-
-    ``n = c_set sensor exp(-s t_sp) L / (1 + L)`` with ``L = v C exp(-s t_d) F / ((tau_up + tau_dn) s + k_q - g)``, and
-    ``M_s = (tau_dn s + k_q) exp(-s t_gauge) n`` without the sensor.
-    """
-    speed, torque = _gauge_outputs()
-    return Structure(
-        name="GAUGE-CLOSED",
-        title="gauge-aware closed loop",
-        input="n_set",
-        outputs={"n": speed, "M_s": torque},
-        combinations=_gauge_combinations(),
-    )
-
-
-def _gauge_outputs() -> tuple[Expression, Expression]:
-    governor = PIGovernor(GAUGE_K_P, GAUGE_K_I) * Gain(V_ONE)
-    engine = Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA)
-    loop = governor * engine * Shaft((TAU_DN, TAU_UP), K_Q, G)
-    speed = loop * Sensitivity(loop) * Delay(T_SP) * Gain(C_SET)
-    torque = speed * TorqueBalance(TAU_DN, K_Q) * Delay(T_GAUGE)
-    return speed * SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP), torque
-
-
-def _gauge_combinations() -> tuple[Combination, ...]:
-    return (
-        Combination(name="t_d + t_sp", unit="s", of=lambda p: p["t_d"] + p["t_sp"], meaning="total delay"),
-        Combination(
-            name="K_p / K_i",
-            unit="s",
-            of=lambda p: p["K_p"] / p["K_i"],
-            meaning="reset time of the governor",
-        ),
-        Combination(
-            name="v K_i / (k_q - g)",
-            unit="1/s",
-            of=lambda p: p["v"] * p["K_i"] / (p["k_q"] - p["g"]),
-            meaning="integral gain over the slope of load and engine",
-        ),
-        Combination(
-            name="v K_p / (tau_up + tau_dn)",
-            unit="1/s",
-            of=lambda p: p["v"] * p["K_p"] / (p["tau_up"] + p["tau_dn"]),
-            meaning="loop gain at high frequency",
-        ),
-    )
-
-
 STRUCTURES: Mapping[str, Callable[[], Structure]] = {
     "OL1": ol1,
     "OL2": ol2,
@@ -264,6 +179,10 @@ STRUCTURES: Mapping[str, Callable[[], Structure]] = {
     "GAUGE-CORE": gauge_core,
     "GAUGE-OPEN": gauge_open,
     "GAUGE-CLOSED": gauge_closed,
+    "GAUGE-INFLOW": gauge_inflow,
+    "GAUGE-ECU": gauge_ecu,
+    "GOVERNOR": governor,
+    "ENGINE": engine,
 }
 
 

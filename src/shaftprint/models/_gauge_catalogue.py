@@ -1,0 +1,200 @@
+"""The gauge-aware structures: they know where the torque gauge sits and what each sensor does to what it measures.
+
+Two free bodies cut at the gauge::
+
+    upstream    M_b - M_s = tau_up s n        M_b = g n + v exp(-s t_d) F X,   X = C (c_set exp(-s t_sp) n_set - n)
+    downstream  M_s - M_p = tau_dn s n        M_p = k_q n
+
+With ``tau_up = 0`` and no latencies they are those of the thesis.
+"""
+
+from shaftprint.models._blocks import Constant, FirstOrderLag, Gain, PIGovernor, SecondOrderLag
+from shaftprint.models._combination import Combination
+from shaftprint.models._delays import Delay, SpeedSensor
+from shaftprint.models._expression import Expression, Inverse, Sensitivity
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
+from shaftprint.models._structure import Structure
+
+T_D = Parameter("t_d", "s", 0.0, 0.5, 0.1, "delay inside the loop: governor, injection, combustion")
+TAU_DN = Parameter("tau_dn", "s", 0.0, 2.0, 0.3, "inertia time downstream of the torque gauge")
+TAU_UP = Parameter("tau_up", "s", 0.0, 5.0, 1.0, "inertia time upstream of the torque gauge")
+K_Q = Parameter("k_q", "-", 1.0, 3.0, 2.0, "slope of the propeller torque; 2 if gauge and inflow are right")
+G = Parameter("g", "-", -3.0, 0.9, 0.0, "slope of the engine torque with speed")
+V_ONE = Parameter("v", "-", 0.0, 5.0, 1.0, "slope of the engine torque with fuel rack", held=True)
+GAUGE_K_P = Parameter("K_p", "-", 0.0, 20.0, 5.0, "proportional gain of the governor")
+GAUGE_K_I = Parameter("K_i", "1/s", 0.0, 20.0, 4.0, "integral gain of the governor")
+GAUGE_OMEGA_N = Parameter("omega_n", "rad/s", 3.0, 60.0, 10.0, "natural frequency of the actuation lag")
+GAUGE_ZETA = Parameter("zeta", "-", 0.1, 4.0, 0.5, "damping ratio of the actuation lag")
+T_SP = Parameter("t_sp", "s", 0.0, 0.5, 0.05, "latency of the set point, outside the loop")
+C_SET = Parameter("c_set", "-", 0.95, 1.05, 1.0, "scale error of the measured set point")
+T_GAUGE = Parameter("t_gauge", "s", -0.02, 0.02, 0.0, "error of the known latency of the torque telemetry")
+T_AVERAGE = Parameter("T_average", "s", 0.0, 1.0, 0.0, "window of the pick-up's mean", held=True)
+T_HOLD = Parameter("T_hold", "s", 0.0, 1.0, 0.0, "time for which a pick-up value is held", held=True)
+T_PICKUP = Parameter("t_pickup", "s", 0.0, 1.0, 0.0, "delay of the pick-up's value", held=True)
+
+T_FILTER = Parameter("T_filter", "s", 0.0, 0.5, 0.0, "time constant of the torque telemetry's low-pass", held=True)
+V = Parameter("v", "-", 0.0, 5.0, 1.0, "slope of the engine torque with fuel rack")
+T_RACK = Parameter("t_rack", "s", -0.1, 0.1, 0.0, "error of the known latency of the rack channel")
+TAU_W = Parameter("tau_w", "s", 0.0, 1.0, 0.0, "inertia time of the entrained water, where tau_dn is dry", held=True)
+KAPPA = Parameter("kappa", "-", 0.0, 3.0, 1.0, "slope of the propeller torque with the speed of the slipstream")
+TAU_I = Parameter("tau_i", "s", 0.02, 1.0, 0.12, "time in which the slipstream follows the propeller")
+
+
+def gauge_core() -> Structure:
+    """Return the gauge-aware core propulsion: only what is downstream.
+
+    ``n / M_s = sensor exp(s t_gauge) (T_filter s + 1) / (tau_dn s + k_q)``.
+    """
+    core = Shaft((TAU_DN,), K_Q) * Inverse(_torque_sensor()) * _speed_sensor()
+    return Structure(name="GAUGE-CORE", title="gauge-aware core propulsion", input="M_s", outputs={"n": core})
+
+
+def gauge_open() -> Structure:
+    """Return the gauge-aware governor and engine, ``M_s / e`` with ``e = n_set - n`` as it is measured.
+
+    ``M_s / e = v C exp(-s t_d) F (tau_dn s + k_q) / ((tau_up + tau_dn) s + k_q - g)`` inside the ship; the latency
+    of the set point and the pick-up enter through ``e``, so the measured ratio is
+    ``(M_s / n_set) / (1 - n / n_set)``.
+    """
+    speed, torque, _ = _measured(_rigid_shaft(), _rigid_load(), V_ONE)
+    error = Constant(1.0) + Constant(-1.0) * speed
+    return Structure(
+        name="GAUGE-OPEN",
+        title="gauge-aware governor and engine",
+        input="e",
+        outputs={"M_s": torque * Inverse(error)},
+        combinations=_combinations(),
+    )
+
+
+def gauge_closed() -> Structure:
+    """Return the gauge-aware closed loop, ``n`` and ``M_s`` from ``n_set``.
+
+    ``n = c_set sensor exp(-s t_sp) L / (1 + L)`` with ``L = v C exp(-s t_d) F / ((tau_up + tau_dn) s + k_q - g)``, and
+    ``M_s = (tau_dn s + k_q) exp(-s t_gauge) / (T_filter s + 1) n`` without the speed sensor.
+    """
+    speed, torque, _ = _measured(_rigid_shaft(), _rigid_load(), V_ONE)
+    return Structure(
+        name="GAUGE-CLOSED",
+        title="gauge-aware closed loop",
+        input="n_set",
+        outputs={"n": speed, "M_s": torque},
+        combinations=_combinations(),
+    )
+
+
+def gauge_inflow() -> Structure:
+    """Return the gauge-aware closed loop with entrained water and dynamic inflow.
+
+    ``M_p = (tau_w s + k_q + kappa tau_i s / (tau_i s + 1)) n``: the slipstream follows the propeller late, so that a
+    fast change of speed meets more torque than a slow one. ``tau_dn`` holds the water too while ``tau_w`` is held at 0.
+    """
+    load = _rigid_load() + EntrainedWater(TAU_W) + DynamicInflow(KAPPA, TAU_I)
+    shaft = Inverse(load + Inertia(TAU_UP) + Constant(-1.0) * Gain(G))
+    speed, torque, _ = _measured(shaft, load, V_ONE)
+    return Structure(
+        name="GAUGE-INFLOW",
+        title="gauge-aware closed loop with dynamic inflow",
+        input="n_set",
+        outputs={"n": speed, "M_s": torque},
+        combinations=_combinations(),
+    )
+
+
+def gauge_ecu() -> Structure:
+    """Return the gauge-aware closed loop with the fuel rack logged: ``n``, ``M_s`` and ``X`` from ``n_set``.
+
+    ``X = C exp(-s t_rack) / (1 + L) c_set exp(-s t_sp)``: it shows the governor without the engine, so that ``v`` is
+    found.
+    """
+    speed, torque, rack = _measured(_rigid_shaft(), _rigid_load(), V)
+    return Structure(
+        name="GAUGE-ECU",
+        title="gauge-aware closed loop with the fuel rack logged",
+        input="n_set",
+        outputs={"n": speed, "M_s": torque, "X": rack},
+        combinations=(
+            *_combinations(),
+            Combination(
+                name="v / (tau_up + tau_dn)",
+                unit="1/s",
+                of=lambda p: p["v"] / (p["tau_up"] + p["tau_dn"]),
+                meaning="acceleration of the line for one unit of rack",
+            ),
+        ),
+    )
+
+
+def governor() -> Structure:
+    """Return the governor alone, ``X / e = C exp(-s t_rack)``, with ``e`` formed from the set point that it has."""
+    rack = PIGovernor(GAUGE_K_P, GAUGE_K_I) * Delay(T_RACK)
+    return Structure(name="GOVERNOR", title="governor alone, fuel rack logged", input="e", outputs={"X": rack})
+
+
+def engine() -> Structure:
+    """Return engine and line without the governor, ``n`` and ``M_s`` from ``X``.
+
+    ``n = v exp(-s (t_d - t_rack)) F / ((tau_up + tau_dn) s + k_q - g) X``: no feedback is in it, and no set point.
+    """
+    drive = Gain(V) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA) * Inverse(Delay(T_RACK))
+    speed = drive * _rigid_shaft()
+    return Structure(
+        name="ENGINE",
+        title="engine and line, fuel rack logged",
+        input="X",
+        outputs={"n": speed * _speed_sensor(), "M_s": speed * _rigid_load() * _torque_sensor()},
+    )
+
+
+def _rigid_shaft() -> Expression:
+    """Return ``n / M_b`` of one rigid body."""
+    return Shaft((TAU_DN, TAU_UP), K_Q, G)
+
+
+def _rigid_load() -> Expression:
+    """Return ``M_s / n`` of the body downstream of the gauge."""
+    return TorqueBalance(TAU_DN, K_Q)
+
+
+def _speed_sensor() -> Expression:
+    return SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP)
+
+
+def _torque_sensor() -> Expression:
+    return Delay(T_GAUGE) * FirstOrderLag(T_FILTER)
+
+
+def _measured(shaft: Expression, load: Expression, v: Parameter) -> tuple[Expression, Expression, Expression]:
+    """Return ``n``, ``M_s`` and ``X`` from ``n_set`` as measured, for ``n / M_b`` and ``M_s / n`` of a line."""
+    rack = PIGovernor(GAUGE_K_P, GAUGE_K_I)
+    loop = rack * Gain(v) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA) * shaft
+    left_of_error = Sensitivity(loop)
+    set_point = Delay(T_SP) * Gain(C_SET)
+    speed = loop * left_of_error * set_point
+    torque = speed * load * _torque_sensor()
+    return speed * _speed_sensor(), torque, rack * left_of_error * set_point * Delay(T_RACK)
+
+
+def _combinations() -> tuple[Combination, ...]:
+    return (
+        Combination(name="t_d + t_sp", unit="s", of=lambda p: p["t_d"] + p["t_sp"], meaning="total delay"),
+        Combination(
+            name="K_p / K_i",
+            unit="s",
+            of=lambda p: p["K_p"] / p["K_i"],
+            meaning="reset time of the governor",
+        ),
+        Combination(
+            name="v K_i / (k_q - g)",
+            unit="1/s",
+            of=lambda p: p["v"] * p["K_i"] / (p["k_q"] - p["g"]),
+            meaning="integral gain over the slope of load and engine",
+        ),
+        Combination(
+            name="v K_p / (tau_up + tau_dn)",
+            unit="1/s",
+            of=lambda p: p["v"] * p["K_p"] / (p["tau_up"] + p["tau_dn"]),
+            meaning="loop gain at high frequency",
+        ),
+    )
