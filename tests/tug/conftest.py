@@ -17,6 +17,11 @@ def vessel() -> Vessel:
 
 
 @pytest.fixture(scope="session")
+def vessel_with_bus() -> Vessel:
+    return load_vessel("stan-tug-1205-ecu")
+
+
+@pytest.fixture(scope="session")
 def quiet() -> Noise:
     return Noise().without(process=True, measurement=True, faults=True)
 

@@ -49,15 +49,17 @@ def test_same_seed_gives_the_same_bytes(vessel: Vessel, campaign: Any, busy: Tug
 
 
 def test_result_does_not_depend_on_chunks(
-    vessel: Vessel, campaign: Any, busy: Tug, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    vessel_with_bus: Vessel, campaign: Any, busy: Tug, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     truths = []
     for chunk in (262_144, 1777):
         monkeypatch.setattr("shaftprint.tug._sail._CHUNK", chunk)
-        truths.append(sail(vessel, campaign, tmp_path / f"{chunk}.nc", tug=busy, seed=7))
+        truths.append(sail(vessel_with_bus, campaign, tmp_path / f"{chunk}.nc", tug=busy, seed=7))
     assert truths[0] == truths[1]
     with read_recording(tmp_path / "262144.nc") as whole, read_recording(tmp_path / "1777.nc") as cut:
+        assert "X_percent" in whole.channels
         for name, channel in whole.channels.items():
+            assert channel.start_s == cut.channel(name).start_s
             assert np.array_equal(channel.read(0, channel.count), cut.channel(name).read(0, channel.count))
 
 
@@ -71,7 +73,8 @@ def test_truth_lies_beside_the_recording(vessel: Vessel, campaign: Any, tmp_path
     assert truth.normalised == pytest.approx(
         {
             "tau_up": 1.01601, "tau_dn": 0.31982, "tau_t": 1.33583, "k_q": 2.0, "g": 0.0, "v": 1.0, "K_p": 5.7,
-            "K_i": 4.27, "t_d": 0.0703, "omega_n": 10.3, "zeta": 0.47, "t_sp": 0.0518,
+            "K_i": 4.27, "t_d": 0.0703, "omega_n": 10.3, "zeta": 0.47, "t_sp": 0.0518, "X_0": 0.39707, "kappa": 0.0,
+            "tau_i": 0.1, "tau_w": 0.0,
         },
         rel=1e-4,
     )  # fmt: skip
@@ -82,6 +85,24 @@ def test_truth_lies_beside_the_recording(vessel: Vessel, campaign: Any, tmp_path
     assert truth.limited["S"] == 0.0
     assert 0.001 < truth.limited["St"] < 0.5
     assert list(truth.faults) == sorted(truth.faults, key=lambda fault: (fault.time_s, fault.channel))
+
+
+def test_truth_tells_of_inflow_water_zero_and_bus(vessel_with_bus: Vessel, campaign: Any, tmp_path: Path) -> None:
+    tug = Tug(
+        inflow_gain=1.2, inflow_time_s=0.15, entrained_water_kg_m2=3.4, torque_zero_offset_nm=40.0, rack_latency_s=0.013
+    )
+    truth = sail(vessel_with_bus, campaign, tmp_path / "test.nc", tug=tug, seed=3)
+    assert read_truth(tmp_path / "test.truth.json") == truth
+    found = truth.normalised
+    assert (found["kappa"], found["tau_i"]) == (1.2, 0.15)
+    # a fifth of the 17 kg m2 that the vessel has: water beyond it, and part of the whole
+    assert found["tau_w"] == pytest.approx(0.2 * 0.31982, rel=1e-4)
+    assert found["tau_dn"] == pytest.approx(1.2 * 0.31982, rel=1e-4)
+    # the vessel file says 10 ms
+    assert found["t_rack"] == pytest.approx(0.003)
+    assert truth.physical["torque_zero_offset_nm"] == 40.0
+    assert truth.physical["entrained_water_kg_m2"] == 3.4
+    assert truth.physical["inertia_downstream_kg_m2"] == pytest.approx(20.4, abs=1e-3)
 
 
 def test_nothing_is_replaced_unless_asked(vessel: Vessel, ask: Make, tmp_path: Path) -> None:

@@ -156,6 +156,14 @@ def test_zero_and_reversed_gauge_are_undone_by_the_vessel(
     assert other.sensors.shaft_torque.torque_nm(values["M_s"]) == pytest.approx(1725.0, abs=0.1)
 
 
+def test_zero_that_nobody_knows_of_stays_in_the_torque(
+    vessel: Vessel, ask: Make, quiet_tug: Tug, tmp_path: Path
+) -> None:
+    values, _ = recorded(vessel, ask(2.0), replace(quiet_tug, torque_zero_offset_nm=51.75), tmp_path / "offset.nc")
+    shown = vessel.sensors.shaft_torque.torque_nm(values["M_s"])
+    assert shown == pytest.approx(1725.0 + 51.75, abs=1.22 + 0.08)
+
+
 def test_torque_is_late_by_the_latency_of_the_vessel(
     vessel: Vessel, ask: Make, sine: Make, quiet_tug: Tug, tmp_path: Path
 ) -> None:

@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import SettingsError
-from shaftprint.tug._physics import build_plant, equilibrium, working_point
+from shaftprint.tug._physics import build_plant, equilibrium, working_point, working_point_rack
 from shaftprint.tug._plant import INTEGRAL, RACK, RACK_RATE, SLIPSTREAM, SPEED, Plant, derivatives
 from shaftprint.tug._tug import Tug
 from shaftprint.vessel import Vessel
@@ -52,7 +52,7 @@ def linearised_response(
     plant = build_plant(tug, vessel)
     speed, torque = working_point(tug, vessel)
     slope = _slopes(plant, speed)
-    rack = float(equilibrium(plant, speed)[RACK])
+    rack = working_point_rack(tug, vessel)
     s = 2j * np.pi * np.asarray(frequency_hz, dtype=np.float64)
     # a slipstream that follows at once is no state
     states = slice(0, SLIPSTREAM + 1 if plant.inflow_gain else SLIPSTREAM)

@@ -78,6 +78,12 @@ def working_point(tug: Tug, vessel: Vessel) -> tuple[float, float]:
     return rev_s_from_rpm(speed_rpm), torque_nm
 
 
+def working_point_rack(tug: Tug, vessel: Vessel) -> float:
+    """Return the fuel rack ``X_0`` of the working point [fraction]."""
+    speed, _ = working_point(tug, vessel)
+    return float(equilibrium(build_plant(tug, vessel), speed)[RACK])
+
+
 def equilibrium(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
     """Return the state in which the line runs steadily at an engine speed [rev/s], angle zero, shape (states,)."""
     speed_s = engine_speed_rev_s / plant.gear_ratio

@@ -12,15 +12,16 @@ from shaftprint.campaign import Campaign
 from shaftprint.errors import RecordingError, SettingsError
 from shaftprint.files import written_whole
 from shaftprint.recording import RecordingWriter
+from shaftprint.tug._control_unit import LOWEST_PERCENT, ControlUnit
 from shaftprint.tug._demand import Demand
 from shaftprint.tug._disturbance import Disturbance
 from shaftprint.tug._faults import Fault
 from shaftprint.tug._gauge import TorqueGauge
 from shaftprint.tug._helm import Helm
 from shaftprint.tug._physics import build_plant, equilibrium
-from shaftprint.tug._plant import SPEED
+from shaftprint.tug._plant import RACK, SPEED
 from shaftprint.tug._pulses import VOLT_PER_COUNT, PickUp
-from shaftprint.tug._truth import StripTruth, Truth, tell_truth, truth_path, truth_text
+from shaftprint.tug._truth import StripTruth, Truth, rack_latency_s, tell_truth, truth_path, truth_text
 from shaftprint.tug._tug import Tug
 from shaftprint.tug._voyage import Leg, voyage
 from shaftprint.vessel import Vessel
@@ -111,19 +112,21 @@ class _Crew:
                 f"campaign {campaign.name}: expected at least one sample at {self._rate_hz:g} Hz, "
                 f"found a duration of {campaign.duration_s:g} s."
             )
-        process, torque, set_point, *speeds = (
-            np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(3 + len(vessel.sensors.speed))
+        # the bus comes last: without it the others draw the same numbers
+        process, torque, set_point, *speeds, bus = (
+            np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(4 + len(vessel.sensors.speed))
         )
         duration_s = campaign.duration_s
         plant = build_plant(tug, vessel)
-        first_demand = Demand(tug, vessel, campaign, start_s=0.0, step_s=1.0 / self._rate_hz).first
+        first = equilibrium(plant, Demand(tug, vessel, campaign, start_s=0.0, step_s=1.0 / self._rate_hz).first)
         load = plant.propeller_nm_s2
         self._disturbance = Disturbance(tug.noise, 1.0 / self._rate_hz, process)
         self._gauge = TorqueGauge(
             tug.noise,
             vessel,
             load_nm_s2=load,
-            first_torque_nm=load * equilibrium(plant, first_demand)[SPEED] ** 2,
+            zero_offset_nm=tug.torque_zero_offset_nm,
+            first_torque_nm=load * first[SPEED] ** 2,
             duration_s=duration_s,
             rate_hz=self._rate_hz,
             rng=torque,
@@ -133,8 +136,17 @@ class _Crew:
             PickUp(sensor, tug, vessel, duration_s=duration_s, rate_hz=self._rate_hz, rng=rng)
             for sensor, rng in zip(vessel.sensors.speed, speeds, strict=True)
         ]
-        self._sensors: tuple[_Sensor, ...] = (self._helm, *self._pick_ups, self._gauge)
+        self._control_unit = self._watch_bus(float(first[RACK]), bus)
+        on_board = (self._helm, *self._pick_ups, self._gauge, self._control_unit)
+        self._sensors: tuple[_Sensor, ...] = tuple(sensor for sensor in on_board if sensor is not None)
         self._limited = {excitation.name: 0 for excitation in campaign.excitations}
+
+    def _watch_bus(self, first_rack: float, rng: np.random.Generator) -> ControlUnit | None:
+        sensor = self._vessel.sensors.rack
+        if sensor is None:
+            return None
+        latency_s = rack_latency_s(self._tug, sensor)
+        return ControlUnit(sensor, latency_s=latency_s, first_rack=first_rack, rate_hz=self._rate_hz, rng=rng)
 
     def record(self, writer: RecordingWriter, progress: Callable[[float], None]) -> None:
         """Sail and write; the sensors and the file work in a second thread while the ship sails on."""
@@ -207,6 +219,16 @@ class _Crew:
             scale=self._gauge.scale,
             long_name="torque telemetry of the propeller shaft",
         )
+        if self._control_unit is not None:
+            writer.declare(
+                self._control_unit.channel,
+                unit="%",
+                rate_hz=1.0 / self._control_unit.cycle_s,
+                start_s=self._control_unit.start_s,
+                scale=self._control_unit.scale,
+                offset=LOWEST_PERCENT,
+                long_name="demand percent torque of the engine's control unit, from its CAN bus",
+            )
 
     def _log(self, writer: RecordingWriter, leg: Leg) -> None:
         for sensor in self._sensors:

@@ -8,10 +8,10 @@ from pathlib import Path
 from shaftprint.campaign import Campaign
 from shaftprint.errors import RecordingError
 from shaftprint.tug._faults import Fault
-from shaftprint.tug._physics import build_plant, shaft_time_constant_s, working_point
+from shaftprint.tug._physics import build_plant, shaft_time_constant_s, working_point, working_point_rack
 from shaftprint.tug._tug import Tug
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel import Vessel
+from shaftprint.vessel import RackSensor, Vessel
 
 SCHEMA = 1
 """Version of the truth file."""
@@ -44,10 +44,13 @@ class Truth:
     rate_hz: float
     """Sample rate of every channel [Hz]."""
     normalised: Mapping[str, float]
-    """Parameters normalised at the working point: ``tau_up``, ``tau_dn``, ``tau_t`` [s], ``k_q``, ``g``, ``v``,
-    ``K_p``, ``K_i`` [1/s], ``t_d`` [s], ``omega_n`` [rad/s], ``zeta``, ``t_sp`` [s]."""
+    """Parameters normalised at the working point: ``tau_up``, ``tau_dn``, ``tau_t`` [s]; ``tau_w`` [s], the part of
+    ``tau_dn`` that is water beyond the vessel's; ``k_q``; ``kappa``, ``tau_i`` [s] of the dynamic inflow; ``g``, ``v``,
+    ``X_0``; ``K_p``, ``K_i`` [1/s], ``t_d`` [s], ``omega_n`` [rad/s], ``zeta``, ``t_sp`` [s]; and where percent torque
+    was logged ``t_rack`` [s], its latency beyond the vessel's."""
     physical: Mapping[str, float]
-    """The same in physical units, which the names carry; rack as a fraction, speeds of the engine in rev/s."""
+    """The same in physical units, which the names carry; rack as a fraction, speeds of the engine in rev/s. With it the
+    offset of the torque gauge, which acts on the recording alone."""
     engine_speed_rpm: float
     """Engine speed of the working point [rpm]."""
     shaft_torque_nm: float
@@ -73,20 +76,31 @@ def normalised_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
     plant = build_plant(tug, vessel)
     upstream = shaft_time_constant_s(plant.inertia_upstream_kg_m2, tug, vessel)
     downstream = shaft_time_constant_s(plant.inertia_downstream_kg_m2, tug, vessel)
+    sensor = vessel.sensors.rack
+    late = {} if sensor is None else {"t_rack": rack_latency_s(tug, sensor) - sensor.latency_s}
     return {
         "tau_up": upstream,
         "tau_dn": downstream,
         "tau_t": upstream + downstream,
+        "tau_w": shaft_time_constant_s(tug.entrained_water_kg_m2, tug, vessel),
         "k_q": 2.0,
+        "kappa": tug.inflow_gain,
+        "tau_i": tug.inflow_time_s,
         "g": tug.g,
         "v": tug.v,
+        "X_0": working_point_rack(tug, vessel),
         "K_p": tug.proportional_gain,
         "K_i": tug.integral_gain_per_s,
         "t_d": tug.governor_delay_s,
         "omega_n": tug.natural_frequency_rad_s,
         "zeta": tug.damping_ratio,
         "t_sp": tug.set_point_latency_s,
-    }
+    } | late
+
+
+def rack_latency_s(tug: Tug, sensor: RackSensor) -> float:
+    """Return the time by which the percent torque is late [s]."""
+    return sensor.latency_s if tug.rack_latency_s is None else tug.rack_latency_s
 
 
 def physical_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
@@ -95,6 +109,7 @@ def physical_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
     return {
         "inertia_upstream_kg_m2": plant.inertia_upstream_kg_m2,
         "inertia_downstream_kg_m2": plant.inertia_downstream_kg_m2,
+        "entrained_water_kg_m2": tug.entrained_water_kg_m2,
         "propeller_nm_per_rev_s_squared": plant.propeller_nm_s2,
         "map_speed_slope_nm_per_rev_s": plant.speed_slope_nm_s,
         "map_rack_slope_nm": plant.rack_slope_nm,
@@ -105,6 +120,7 @@ def physical_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
         "motoring_torque_nm": plant.motoring_torque_nm,
         "gear_ratio": plant.gear_ratio,
         "transmission_efficiency": plant.efficiency,
+        "torque_zero_offset_nm": tug.torque_zero_offset_nm,
     }
 
 

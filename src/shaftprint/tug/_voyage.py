@@ -88,8 +88,8 @@ def voyage(
         first=np.array([node for node, _ in parts], dtype=np.int64), weights=np.array([weight for _, weight in parts])
     )
     state = equilibrium(plant, demand.first)
-    size = 1 << int(np.ceil(np.log2(delay_steps + 8.0)))
-    carried = Carried(state=state, history=np.full(size, state[RACK]), counter=np.zeros(1, dtype=np.int64))
+    ring = np.full(1 << int(np.ceil(np.log2(delay_steps + 8.0))), state[RACK])
+    carried = Carried(state=state, history=ring, counter=np.zeros(1, dtype=np.int64))
     done = 0
     while done < steps:
         count = min(chunk, steps - done)
@@ -98,9 +98,8 @@ def voyage(
         limited = np.empty(count, dtype=np.bool_)
         traces = Traces(speed, angle, torque, brake, rack, limited)
         advance(step_s, demand.next(count, wander), propeller, engine, plant, delay, carried, traces)
-        time: FloatArray = start_s + step_s * np.arange(done, done + count, dtype=np.float64)
         yield Leg(
-            time_s=time,
+            time_s=start_s + step_s * np.arange(done, done + count, dtype=np.float64),
             shaft_speed_rev_s=speed,
             shaft_angle_rev=angle,
             shaft_torque_nm=torque,

@@ -1,0 +1,126 @@
+"""Percent torque on the CAN bus: its clock, its steps, its latency, and that nothing else hears of it."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from shaftprint.recording import read_recording
+from shaftprint.tug import Noise, Tug, sail, simulate_signals
+from shaftprint.tug._control_unit import ControlUnit
+from shaftprint.tug._voyage import Leg
+from shaftprint.vessel import RackSensor, Vessel
+
+Make = Callable[..., Any]
+
+
+def with_sensor(vessel: Vessel, **changes: Any) -> Vessel:
+    content = vessel.model_dump()
+    content["sensors"]["rack"] |= changes
+    return Vessel.model_validate(content)
+
+
+def leg_of(rack: np.ndarray, start: int = 0) -> Leg:
+    zeros = np.zeros(rack.size)
+    return Leg(
+        time_s=(start + np.arange(rack.size)) / 2000.0,
+        shaft_speed_rev_s=zeros,
+        shaft_angle_rev=zeros,
+        shaft_torque_nm=zeros,
+        brake_torque_nm=zeros,
+        rack_given=rack,
+        limited=zeros > 0.0,
+    )
+
+
+def test_bus_adds_a_channel_and_changes_no_other(
+    vessel: Vessel, vessel_with_bus: Vessel, ask: Make, tmp_path: Path
+) -> None:
+    for name, ship in (("without", vessel), ("with", vessel_with_bus)):
+        sail(ship, ask(20.0), tmp_path / f"{name}.nc", seed=5)
+    with read_recording(tmp_path / "without.nc") as plain, read_recording(tmp_path / "with.nc") as logged:
+        assert set(logged.channels) - set(plain.channels) == {"X_percent"}
+        for name, channel in plain.channels.items():
+            assert np.array_equal(channel.read(0, channel.count), logged.channel(name).read(0, channel.count))
+        bus = logged.channel("X_percent")
+        assert (bus.unit, bus.rate_hz, bus.scale, bus.offset) == ("%", 20.0, 1.0, -125.0)
+        assert 0.0 < bus.start_s < 0.05
+        assert bus.count == 400
+        assert bus.read(0, 400).dtype == np.int16
+        # 465.54 of 1172.44 N m is 39.7 %
+        assert np.mean(bus.values(0, 400)) == pytest.approx(39.7, abs=1.0)
+
+
+@pytest.mark.parametrize(
+    ("sensor", "latency_s"),
+    [
+        ({}, 0.01),
+        ({"cycle_s": 0.02, "resolution_percent": 0.1, "latency_s": 0.0433}, 0.0433),
+        ({"cycle_s": 0.1, "latency_s": 0.0}, 0.0),
+        ({"cycle_s": 0.033}, 0.0721),
+    ],
+)
+def test_every_message_holds_what_the_governor_gave_a_latency_ago(
+    vessel_with_bus: Vessel,
+    ask: Make,
+    sine: Make,
+    quiet: Noise,
+    tmp_path: Path,
+    sensor: dict[str, float],
+    latency_s: float,
+) -> None:
+    campaign = ask(21.0, sines=[sine(0.8, 0.6)])
+    ship = with_sensor(vessel_with_bus, **sensor)
+    stated = ship.sensors.rack.latency_s
+    tug = Tug(noise=quiet, rack_latency_s=None if stated == latency_s else latency_s)
+    truth = sail(ship, campaign, tmp_path / "bus.nc", tug=tug, seed=1)
+    assert truth.normalised["t_rack"] == pytest.approx(latency_s - stated, abs=1e-15)
+    with read_recording(tmp_path / "bus.nc") as recording:
+        bus = recording.channel("X_percent")
+        time_s, percent = bus.time_s(0, bus.count), bus.values(0, bus.count)
+    true = simulate_signals(ship, campaign, tug=tug, rate_hz=2000.0)
+    expected = 100.0 * np.interp(time_s - latency_s, true.time_s, true.rack_given)
+    step = ship.sensors.rack.resolution_percent
+    assert np.abs(percent - expected).max() < 0.5001 * step
+    assert np.abs(percent - expected).max() > 0.4 * step
+    assert percent / step == pytest.approx(np.round(percent / step), abs=1e-9)
+    assert np.ptp(percent) > 20.0
+    assert 0.0 <= 21.0 - time_s[-1] < ship.sensors.rack.cycle_s + 1e-3
+
+
+def test_beyond_125_percent_the_message_cannot_go() -> None:
+    sensor = RackSensor(channel="X", unit="%", cycle_s=0.01, latency_s=0.0)
+    unit = ControlUnit(sensor, latency_s=0.0, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1))
+    counts = unit.next(leg_of(np.concatenate([np.full(200, 1.6), np.full(200, -1.6)])))
+    assert set(counts.tolist()) == {250, 0}
+
+
+def test_legs_shorter_than_a_message_lose_none() -> None:
+    sensor = RackSensor(channel="X", unit="%", cycle_s=0.05, latency_s=0.02, resolution_percent=0.01)
+    rack = 0.4 + 1e-4 * np.arange(3000.0)
+    counts = []
+    for size in (3000, 7, 1):
+        unit = ControlUnit(sensor, latency_s=0.02, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1))
+        parts = [unit.next(leg_of(rack[start : start + size], start)) for start in range(0, 3000, size)]
+        counts.append(np.concatenate(parts))
+        # of a ramp of 20 % a second
+        expected = 40.0 + 20.0 * (unit.start_s + 0.05 * np.arange(counts[-1].size) - 0.02)
+        assert counts[-1] * 0.01 - 125.0 == pytest.approx(np.maximum(expected, 40.0), abs=0.0051)
+        assert unit.faults() == []
+    assert counts[0].size == 30
+    assert np.array_equal(counts[0], counts[1])
+    assert np.array_equal(counts[0], counts[2])
+
+
+def test_latency_may_be_longer_than_the_cycle(vessel_with_bus: Vessel, ask: Make, quiet: Noise, tmp_path: Path) -> None:
+    levels = {"name": "St", "levels_v": [-5.0, -6.0], "dwell_s": 5.0, "start_s": 0.0}
+    tug = replace(Tug(noise=quiet), rack_latency_s=0.4)
+    sail(vessel_with_bus, ask(10.0, staircases=[levels]), tmp_path / "late.nc", tug=tug, seed=1)
+    with read_recording(tmp_path / "late.nc") as recording:
+        bus = recording.channel("X_percent")
+        time_s, percent = bus.time_s(0, bus.count), bus.values(0, bus.count)
+    # step at 5 s, set-point latency 51.8 ms, then the bus
+    assert time_s[np.flatnonzero(percent > 41.0)[0]] == pytest.approx(5.0518 + 0.4, abs=0.05)
