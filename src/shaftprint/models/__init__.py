@@ -18,6 +18,7 @@ quantity        unit    meaning and sign
 Feedback is negative: the closed loop of forward ``G`` and back ``H`` is ``G / (1 + G H)``.
 """
 
+from shaftprint.models._block import Block
 from shaftprint.models._blocks import (
     Constant,
     FilteredDerivative,
@@ -30,7 +31,7 @@ from shaftprint.models._blocks import (
 from shaftprint.models._catalogue import STRUCTURES, structure
 from shaftprint.models._combination import Combination
 from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor
-from shaftprint.models._expression import Block, Expression, Inverse, Sensitivity, feedback
+from shaftprint.models._expression import Expression, Inverse, Sensitivity, feedback
 from shaftprint.models._margins import Margins, margins, poles
 from shaftprint.models._nyquist import is_stable, loop_gain, stable_rows, unstable_poles
 from shaftprint.models._own_blocks import FunctionBlock, RationalBlock

@@ -3,7 +3,8 @@
 from collections.abc import Iterable, Mapping
 
 from shaftprint.errors import StructureError
-from shaftprint.models._expression import Block, Expression, Sensitivity
+from shaftprint.models._block import Block
+from shaftprint.models._expression import Expression, Sensitivity
 from shaftprint.models._parameter import Parameter
 
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.models._expression import Block, Polynomials
+from shaftprint.models._block import Block
+from shaftprint.models._expression import Polynomials
 from shaftprint.models._parameter import Parameter
 
 

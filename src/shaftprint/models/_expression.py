@@ -22,15 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.models._parameter import Parameter
 
 Values: TypeAlias = Mapping[str, FloatArray]
 Gradient: TypeAlias = dict[str, ComplexArray]
 Dual: TypeAlias = tuple[ComplexArray, Gradient]
 Polynomials: TypeAlias = tuple[NDArray[np.floating], NDArray[np.floating]]
-
-# Share of a parameter by which it is moved to find a derivative: errors of rounding and of the formula are alike.
-STEP = 1e-3
 
 
 @dataclass(slots=True)
@@ -92,68 +88,6 @@ def _nodes(node: Expression, seen: set[int]) -> Iterator[Expression]:
     for child in node.children():
         yield from _nodes(child, seen)
     yield node
-
-
-class Block(Expression):
-    """A building block: a transfer function of a few parameters, with its derivatives.
-
-    A block of one's own is a frozen dataclass with :class:`Parameter` fields, the property ``parameters`` and the
-    method ``transfer``; ``derivatives`` too where exact ones are wanted instead of numerical ones, and ``ratio`` if it
-    is rational in ``s``. ``RationalBlock`` and ``FunctionBlock`` make one from a function.
-    """
-
-    __slots__ = ()
-
-    @property
-    @abstractmethod
-    def parameters(self) -> tuple[Parameter, ...]:
-        """Parameters in the order in which ``transfer`` takes them."""
-
-    @abstractmethod
-    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
-        """Return the transfer function at ``s``; values have shape (..., 1), the result (..., frequencies)."""
-
-    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
-        """Return the derivative of ``transfer`` to each parameter; ``response`` is its value.
-
-        Central differences of fourth order where a block has no formula of its own: right to about eleven digits. They
-        ask for values a thousandth outside the bounds.
-        """
-        return tuple(self._difference(s, values, place) for place in range(len(values)))
-
-    def _difference(self, s: ComplexArray, values: tuple[FloatArray, ...], place: int) -> ComplexArray:
-        parameter, value = self.parameters[place], values[place]
-        step = STEP * np.maximum(np.abs(value), STEP * (parameter.upper - parameter.lower))
-
-        def at(steps: float) -> ComplexArray:
-            return self.transfer(s, *values[:place], value + steps * step, *values[place + 1 :])
-
-        return np.asarray((8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * step))
-
-    def ratio(self, *values: float) -> Polynomials | None:
-        """Return numerator and denominator in ``s``, highest power first, or None where it is not rational."""
-        return None
-
-    def evaluate(self, walk: Walk) -> Dual:
-        """Return the response and the wanted derivatives."""
-        values = [walk.values[parameter.name] for parameter in self.parameters]
-        response = self.transfer(walk.s, *values)
-        names = [parameter.name for parameter in self.parameters]
-        if not any(name in walk.wanted for name in names):
-            return response, {}
-        gradient: Gradient = {}
-        for name, derivative in zip(names, self.derivatives(walk.s, response, *values), strict=True):
-            if name in walk.wanted:
-                gradient[name] = gradient[name] + derivative if name in gradient else derivative
-        return response, gradient
-
-    def children(self) -> tuple[Expression, ...]:
-        """Return nothing: a block is a leaf."""
-        return ()
-
-    def polynomials(self, values: Mapping[str, float]) -> Polynomials | None:
-        """Return numerator and denominator at the given values."""
-        return self.ratio(*(values[parameter.name] for parameter in self.parameters))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

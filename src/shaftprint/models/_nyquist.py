@@ -14,8 +14,9 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.errors import StructureError
+from shaftprint.models._block import Block
 from shaftprint.models._delays import Delay
-from shaftprint.models._expression import Block, Expression, Inverse, Sensitivity, Series, Walk
+from shaftprint.models._expression import Expression, Inverse, Sensitivity, Series, Walk
 from shaftprint.models._structure import Structure
 
 LOWEST_RAD_S = 1e-5

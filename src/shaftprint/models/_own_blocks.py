@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.models._expression import Block, Polynomials
+from shaftprint.models._block import Block
+from shaftprint.models._expression import Polynomials
 from shaftprint.models._parameter import Parameter
 
 Coefficients: TypeAlias = Callable[..., tuple[Sequence[ArrayLike], Sequence[ArrayLike]]]

@@ -9,10 +9,11 @@ from numpy.typing import ArrayLike
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.models._assembly import block_parameters, channel_paths, outermost_loop
+from shaftprint.models._block import Block
 from shaftprint.models._combination import Combination
-from shaftprint.models._expression import Block, Expression, Gradient, Walk
+from shaftprint.models._expression import Expression, Walk
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._tie import Tie
+from shaftprint.models._tie import Tie, through_ties
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -283,6 +284,7 @@ class Structure:
             if name in columns:
                 columns[name] = columns[name] * factor
                 known[name] = known[name] * factor if name in known else factor
+        independent = {name: table[..., place : place + 1] for place, name in enumerate(self.names)}
         ties = [tie for tie in self.ties if any(argument in names for argument in tie.arguments)]
         walk = Walk(laplace, columns, frozenset([*names, *(tie.name for tie in ties)]))
         stacked = np.empty((*table.shape[:-1], 1 + len(names), len(self.paths), laplace.size), dtype=np.complex128)
@@ -290,21 +292,10 @@ class Structure:
             stacked[..., 0, i, :], slopes = walk.dual(expression)
             slopes = {name: slope * known[name] if name in known else slope for name, slope in slopes.items()}
             if ties:
-                slopes = self._through_ties(ties, slopes, table)
+                slopes = through_ties(ties, slopes, independent)
             for j, name in enumerate(names, start=1):
                 stacked[..., j, i, :] = slopes.get(name, 0.0)
         return stacked
-
-    def _through_ties(self, ties: Sequence[Tie], slopes: Gradient, table: FloatArray) -> Gradient:
-        """Return derivatives to independent parameters, those that reach the response through a tie added."""
-        values = {name: table[..., place : place + 1] for place, name in enumerate(self.names)}
-        found = dict(slopes)
-        for tie in ties:
-            for argument in tie.arguments:
-                if tie.name in slopes:
-                    through = slopes[tie.name] * tie.slope(values, argument)
-                    found[argument] = found[argument] + through if argument in found else through
-        return found
 
     def _expect_names(self, names: Mapping[str, object] | Sequence[str], *, tied: bool = False) -> None:
         allowed = (*self.names, *(tie.name for tie in self.ties)) if tied else self.names

@@ -2,13 +2,14 @@
 
 import inspect
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
+from shaftprint.models._expression import Gradient
 
 # Imaginary step on a real formula: its square is lost beside 1, so that no digit of the derivative is.
 IMAGINARY_STEP = 1e-30
@@ -52,3 +53,24 @@ class Tie:
                 f"tied parameter {self.name}: its formula could not be differentiated to {to} ({error}); use "
                 "arithmetic and NumPy functions only."
             ) from None
+
+
+def through_ties(ties: Sequence[Tie], slopes: Gradient, values: Mapping[str, FloatArray]) -> Gradient:
+    """Return derivatives to independent parameters: those that reach the response through a tie are added.
+
+    Parameters
+    ----------
+    ties
+        Parameters that follow.
+    slopes
+        Derivatives of a response to the parameters of its blocks, tied ones included.
+    values
+        Independent parameters by name, each of shape (..., 1).
+    """
+    found = dict(slopes)
+    for tie in ties:
+        for argument in tie.arguments:
+            if tie.name in slopes:
+                through = slopes[tie.name] * tie.slope(values, argument)
+                found[argument] = found[argument] + through if argument in found else through
+    return found
