@@ -9,12 +9,13 @@ import pytest
 
 from shaftprint.models import structure
 from shaftprint.tug import Tug, linearised_response
+from shaftprint.tug._truth import normalised_truth
 
 OMEGA_RAD_S = np.geomspace(0.1, 10.0, 200)
 GEAR_RATIO = 3.82
 
 # None of the delays is a multiple of the logger's 0.5 ms but those of the round set.
-TRUTHS = {
+PLAIN = {
     "reference": {},
     "falling engine torque": {"g": -0.3, "governor_delay_s": 0.04337, "set_point_latency_s": 0.0211},
     "rising engine torque": {"g": 0.2, "v": 1.2, "governor_delay_s": 0.0991, "set_point_latency_s": 0.0073},
@@ -30,38 +31,88 @@ TRUTHS = {
     },
     "round delays": {"governor_delay_s": 0.0700, "set_point_latency_s": 0.0500},
     "no delay": {"governor_delay_s": 0.0, "set_point_latency_s": 0.0},
+    "more water": {"entrained_water_kg_m2": 4.4},
+}
+INFLOW = {
+    "inflow": {"inflow_gain": 1.0, "inflow_time_s": 0.1},
+    "strong, slow inflow": {"inflow_gain": 2.0, "inflow_time_s": 0.21, "g": -0.3, "v": 1.2},
+    "inflow and water": {"inflow_gain": 0.5, "inflow_time_s": 0.09, "entrained_water_kg_m2": 4.4},
+    "inflow at another load": {
+        "inflow_gain": 1.3,
+        "inflow_time_s": 0.15,
+        "engine_speed_rpm": 1500.0,
+        "shaft_torque_nm": 2700.0,
+    },
 }
 
 
-@pytest.mark.parametrize("given", TRUTHS.values(), ids=TRUTHS)
-def test_linearised_tug_is_the_composed_structure(vessel, given):
-    tug = Tug(**given)
-    speed_rpm, torque = given.get("engine_speed_rpm", 1183.8), given.get("shaft_torque_nm", 1725.0)
+def parameters_of(tug):
+    """Return the normalised parameters of a truth by the names of the structures, worked out by hand."""
+    speed_rpm, torque = tug.engine_speed_rpm or 1183.8, tug.shaft_torque_nm or 1725.0
     # tau = 2 pi I n_s0 / M_s0 (thesis eq. 2.23)
     seconds_per_kg_m2 = 2.0 * np.pi * speed_rpm / 60.0 / GEAR_RATIO / torque
-    model = structure("GAUGE-CLOSED")
-    values = model.vector(
-        {
-            "tau_up": seconds_per_kg_m2 * given.get("inertia_upstream_kg_m2", 54.006),
-            "tau_dn": seconds_per_kg_m2 * given.get("inertia_downstream_kg_m2", 17.0),
-            "k_q": 2.0,
-            "c_set": 1.0,
-            "g": tug.g,
-            "v": tug.v,
-            "K_p": tug.proportional_gain,
-            "K_i": tug.integral_gain_per_s,
-            "t_d": tug.governor_delay_s,
-            "omega_n": tug.natural_frequency_rad_s,
-            "zeta": tug.damping_ratio,
-            "t_sp": tug.set_point_latency_s,
-        }
-    )
-    composed = model.response(values, 1j * OMEGA_RAD_S)
-    simulated = linearised_response(tug, vessel, OMEGA_RAD_S / (2.0 * np.pi))[:, 0]
-    ratio = simulated / composed
+    return {
+        "tau_up": seconds_per_kg_m2 * (tug.inertia_upstream_kg_m2 or 54.006),
+        "tau_dn": seconds_per_kg_m2 * ((tug.inertia_downstream_kg_m2 or 17.0) + tug.entrained_water_kg_m2),
+        "k_q": 2.0,
+        "kappa": tug.inflow_gain,
+        "tau_i": tug.inflow_time_s,
+        "c_set": 1.0,
+        "g": tug.g,
+        "v": tug.v,
+        "K_p": tug.proportional_gain,
+        "K_i": tug.integral_gain_per_s,
+        "t_d": tug.governor_delay_s,
+        "omega_n": tug.natural_frequency_rad_s,
+        "zeta": tug.damping_ratio,
+        "t_sp": tug.set_point_latency_s,
+    }
+
+
+def composed(name, known):
+    model = structure(name)
+    values = model.vector({p.name: known[p.name] for p in model.parameters if p.name in known})
+    return tuple(model.outputs), model.response(values, 1j * OMEGA_RAD_S)
+
+
+@pytest.mark.parametrize(
+    ("name", "given"),
+    [
+        *(("GAUGE-CLOSED", given) for given in PLAIN.values()),
+        *(("GAUGE-ECU", given) for given in PLAIN.values()),
+        *(("GAUGE-INFLOW", given) for given in INFLOW.values()),
+    ],
+    ids=[*(f"closed, {name}" for name in PLAIN), *(f"rack, {name}" for name in PLAIN), *INFLOW],
+)
+def test_linearised_tug_is_the_composed_structure(vessel, name, given):
+    tug = Tug(**given)
+    outputs, model = composed(name, parameters_of(tug))
+    simulated = linearised_response(tug, vessel, OMEGA_RAD_S / (2.0 * np.pi), outputs=outputs)[:, 0]
+    ratio = simulated / model
     # asked are 0.5 % and 0.5 degrees; both sides are exact but for the vessel file's rounding of its inertias
     assert np.abs(ratio) == pytest.approx(np.ones(ratio.shape), abs=1e-5)
     assert np.degrees(np.angle(ratio)) == pytest.approx(np.zeros(ratio.shape), abs=1e-3)
+
+
+@pytest.mark.parametrize("given", [*PLAIN.values(), *INFLOW.values()], ids=[*PLAIN, *INFLOW])
+def test_truth_beside_a_recording_is_the_same(vessel, given):
+    tug = Tug(**given)
+    told, known = normalised_truth(tug, vessel), parameters_of(tug)
+    for name in set(known) - {"c_set"}:
+        assert told[name] == pytest.approx(known[name], rel=1e-5), name
+    # what is said to be water is a part of what turns downstream, not beside it
+    share = tug.entrained_water_kg_m2 / ((tug.inertia_downstream_kg_m2 or 17.0) + tug.entrained_water_kg_m2)
+    assert told["tau_w"] == pytest.approx(share * known["tau_dn"], rel=1e-5)
+
+
+def test_governor_and_engine_apart_are_the_structures(vessel):
+    """``X / e`` and ``M_s / X`` of the tug against the two structures that know them."""
+    tug = Tug(g=-0.3, v=1.2)
+    known = parameters_of(tug)
+    speed, torque, rack = linearised_response(tug, vessel, OMEGA_RAD_S / (2.0 * np.pi), outputs=("n", "M_s", "X"))[:, 0]
+    error = np.exp(-1j * OMEGA_RAD_S * tug.set_point_latency_s) - speed
+    assert rack / error == pytest.approx(composed("GOVERNOR", known)[1][0], rel=1e-5)
+    assert np.stack([speed, torque]) / rack == pytest.approx(composed("ENGINE", known)[1], rel=1e-5)
 
 
 def test_tie_would_notice_a_sign_error(vessel):
@@ -70,3 +121,10 @@ def test_tie_would_notice_a_sign_error(vessel):
     honest = linearised_response(Tug(), vessel, OMEGA_RAD_S / (2.0 * np.pi))
     swapped = linearised_response(tug, vessel, OMEGA_RAD_S / (2.0 * np.pi))
     assert np.abs(swapped / honest - 1.0).max() > 0.1
+
+
+def test_tie_would_notice_a_structure_without_inflow(vessel):
+    tug = Tug(inflow_gain=1.0, inflow_time_s=0.1)
+    _, plain = composed("GAUGE-CLOSED", parameters_of(tug))
+    simulated = linearised_response(tug, vessel, OMEGA_RAD_S / (2.0 * np.pi))[:, 0]
+    assert np.abs(simulated / plain - 1.0).max() > 0.1
