@@ -12,8 +12,10 @@ covariance          mixed   of the free parameters, each in its own unit
 """
 
 from shaftprint.identify._covariance import estimate_covariance
+from shaftprint.identify._directions import Direction
 from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify._fit_test import FitTest, LineTest
+from shaftprint.identify._identifiability import Identifiability, identifiability
 from shaftprint.identify._identification import Cluster, Estimate, Identification
 from shaftprint.identify._identify import identify, identify_jointly
 from shaftprint.identify._known import PRIOR_OF_G, priors_from_vessel
@@ -28,9 +30,11 @@ from shaftprint.identify._weighting import MaximumLikelihood, StudentT, Unweight
 __all__ = [
     "PRIOR_OF_G",
     "Cluster",
+    "Direction",
     "Draw",
     "Estimate",
     "FitTest",
+    "Identifiability",
     "Identification",
     "Interval",
     "LatinHypercube",
@@ -49,6 +53,7 @@ __all__ = [
     "estimate_covariance",
     "fit_ceiling",
     "fit_percent",
+    "identifiability",
     "identify",
     "identify_jointly",
     "priors_from_vessel",
