@@ -14,6 +14,7 @@ from shaftprint.identify._identification import Cluster, Identification
 from shaftprint.identify._levenberg_marquardt import Descent, descend
 from shaftprint.identify._objective import Objective, build_joint_objective
 from shaftprint.identify._part import Part, channel_names
+from shaftprint.identify._sensor import with_sensor
 from shaftprint.identify._settings import Settings
 from shaftprint.models import Structure, is_stable
 from shaftprint.spectra import FrequencyResponse
@@ -94,7 +95,7 @@ def _identified(
     lines: Sequence[str] | None,
 ) -> Identification:
     objective = build_joint_objective(
-        [(_with_sensor(structure, response), response) for structure, response in pairs],
+        [(with_sensor(structure, response), response) for structure, response in pairs],
         weighting=settings.weighting,
         priors=settings.priors,
         regularisation=settings.regularisation,
@@ -144,17 +145,6 @@ def _part(experiment: Experiment, values: FloatArray, residuals: FloatArray) -> 
         },
         whitened=frozen_float(residuals),
     )
-
-
-def _with_sensor(structure: Structure, response: FrequencyResponse) -> Structure:
-    """Return the structure with the pick-up's held parameters at the values of the data."""
-    sensor = {
-        "T_average": response.averaging_s,
-        "T_hold": response.hold_s,
-        "t_pickup": response.pick_up_delay_s,
-    }
-    held = {p.name: sensor[p.name] for p in structure.parameters if p.held and p.name in sensor}
-    return structure.held_at(**held) if held else structure
 
 
 def _clustered(objective: Objective, descent: Descent) -> list[tuple[FloatArray, float, int]]:
