@@ -9,6 +9,8 @@ speed ``n``           rev/s    of the engine; shaft speeds are multiplied by the
 set point ``n_set``   rev/s    engine speed that is asked for
 shaft torque ``M_s``  N m      at the gauge, positive when the engine drives the propeller
 strip angle           rev      from one reflection strip to the next, of the shaft that carries them
+fuel rack ``X``       1        what the governor gives; 1 for rated torque at rated speed, positive
+                               for driving torque; on its own clock
 deviation             1        ``(x - x_0) / x_0`` from the working point
 ===================== ======== ====================================================================
 """
@@ -16,6 +18,7 @@ deviation             1        ``(x - x_0) / x_0`` from the working point
 from shaftprint.signals._inspect import ChannelReport, PulseReport, inspect_channels
 from shaftprint.signals._prepare import prepare_signals
 from shaftprint.signals._signals import (
+    RackSignal,
     Repair,
     SetPointCalibration,
     Signals,
@@ -31,6 +34,7 @@ __all__ = [
     "ChannelReport",
     "Mode",
     "PulseReport",
+    "RackSignal",
     "Repair",
     "SetPointCalibration",
     "Signals",

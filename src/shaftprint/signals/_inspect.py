@@ -12,15 +12,16 @@ from shaftprint.signals._edges import find_edges, pulse_levels
 from shaftprint.signals._outliers import FaultLimits, fault_limits, flagged
 from shaftprint.signals._patch import Patcher
 from shaftprint.signals._pick_up import expect_no_gap, numbered_strips, pulse_repairs
+from shaftprint.signals._rack import read_rack
 from shaftprint.signals._signals import Repair
 from shaftprint.signals._sources import find_sources
 from shaftprint.signals._torque import judge_saturation, torque_limits
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel, Recording
-    from shaftprint.vessel import SpeedSensor, Vessel
+    from shaftprint.vessel import RackSensor, SpeedSensor, Vessel
 
-Use: TypeAlias = Literal["speed", "shaft torque", "set point"]
+Use: TypeAlias = Literal["speed", "shaft torque", "set point", "fuel rack"]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -89,6 +90,7 @@ def inspect_channels(recording: "Recording", vessel: "Vessel") -> tuple[ChannelR
         *(_inspect_pulses(channel, sensor) for channel, sensor in zip(sources.speed, sensors.speed, strict=True)),
         _inspect_values(sources.torque, "shaft torque", torque_limits(sources.torque, sensors.shaft_torque)),
         _inspect_values(sources.set_point, "set point", fault_limits(sources.set_point, holds=False)),
+        *_inspect_rack(sources.rack, sensors.rack),
     )
 
 
@@ -138,6 +140,20 @@ def _inspect_values(channel: "Channel", use: Use, limits: FaultLimits) -> Channe
         problem = str(error)
         _exhaust(extremes.watched(channel))
     return _report(channel, use, extremes, None, tuple(repairs), problem)
+
+
+def _inspect_rack(channel: "Channel | None", sensor: "RackSensor | None") -> tuple[ChannelReport, ...]:
+    if channel is None or sensor is None:
+        return ()
+    extremes = _Extremes()
+    _exhaust(extremes.watched(channel))
+    repairs: list[Repair] = []
+    problem = None
+    try:
+        _, repairs = read_rack(channel, sensor, block_samples=DEFAULT_BLOCK_SAMPLES)
+    except SignalError as error:
+        problem = str(error)
+    return (_report(channel, "fuel rack", extremes, None, tuple(repairs), problem),)
 
 
 def _exhaust(passing: Iterable[object]) -> None:

@@ -15,12 +15,13 @@ from shaftprint.signals._dc_scale import DcScale, dc_scale
 from shaftprint.signals._match import expect_campaign, expect_length
 from shaftprint.signals._outliers import fault_limits
 from shaftprint.signals._pick_up import PickUp, read_pick_up
-from shaftprint.signals._signals import Repair, Signals
+from shaftprint.signals._rack import rack_signal, read_rack
+from shaftprint.signals._signals import RackSignal, Repair, Signals
 from shaftprint.signals._sources import Clock, Mode, Sources, common_clock, find_sources
-from shaftprint.signals._steady import steady_stretches
+from shaftprint.signals._steady import SteadyStretch, steady_stretches
 from shaftprint.signals._steps import find_step_delays
 from shaftprint.signals._torque import expect_moving_torque, judge_saturation, torque_limits
-from shaftprint.signals._working_point import find_working_point
+from shaftprint.signals._working_point import find_working_point, stretches_at_working_point
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel, Recording
@@ -37,6 +38,7 @@ class _Read:
     volts: FloatArray
     torque_nm: FloatArray
     pick_ups: tuple[PickUp, ...]
+    rack: FloatArray | None
     repairs: tuple[Repair, ...]
     findings: tuple[str, ...]
 
@@ -82,7 +84,7 @@ def prepare_signals(
     sources = find_sources(recording, vessel)
     clock = common_clock(sources, mode=mode, rate_hz=rate_hz, chunk_s=chunk_s, progress=progress)
     expect_length(clock.start_s + clock.count / rate_hz, campaign, name=str(recording.path))
-    return _put_together(recording, vessel, campaign, clock, _read_all(vessel, sources, clock))
+    return _put_together(recording, vessel, campaign, clock, sources, _read_all(vessel, sources, clock))
 
 
 def _read_all(vessel: "Vessel", sources: Sources, clock: Clock) -> _Read:
@@ -98,6 +100,7 @@ def _read_all(vessel: "Vessel", sources: Sources, clock: Clock) -> _Read:
         ]
         torque, torque_repairs = torque_job.result()
         volts, volts_repairs = volts_job.result()
+        rack, rack_repairs = _read_rack(sources, vessel, clock)
         pick_ups = [speed_jobs[0].result()]
         findings = list(judge_saturation(sources.torque, torque_repairs))
         for sensor, job in zip(sensors[1:], speed_jobs[1:], strict=True):
@@ -107,12 +110,13 @@ def _read_all(vessel: "Vessel", sources: Sources, clock: Clock) -> _Read:
                 findings.append(f"{sensor.name} was left out: {error}")
     finally:
         pool.shutdown(cancel_futures=True)
-    repairs = [*torque_repairs, *volts_repairs]
+    repairs = [*torque_repairs, *volts_repairs, *rack_repairs]
     repairs += [repair for pick_up in pick_ups for repair in pick_up.repairs]
     return _Read(
         volts=volts,
         torque_nm=torque,
         pick_ups=tuple(pick_ups),
+        rack=rack,
         repairs=tuple(sorted(repairs, key=lambda repair: repair.time_s)),
         findings=(*findings, *(finding for pick_up in pick_ups for finding in pick_up.findings)),
     )
@@ -143,6 +147,23 @@ def _read_set_point(channel: "Channel", clock: Clock) -> tuple[FloatArray, list[
     )
 
 
+def _read_rack(sources: Sources, vessel: "Vessel", clock: Clock) -> tuple[FloatArray | None, list[Repair]]:
+    sensor = vessel.sensors.rack
+    if sources.rack is None or sensor is None:
+        return None, []
+    return read_rack(sources.rack, sensor, block_samples=clock.block_samples(sources.rack))
+
+
+def _rack_signal(
+    sources: Sources, vessel: "Vessel", clock: Clock, fraction: FloatArray | None, stretches: tuple[SteadyStretch, ...]
+) -> RackSignal | None:
+    sensor = vessel.sensors.rack
+    if sources.rack is None or sensor is None or fraction is None:
+        return None
+    latency_s = 0.0 if clock.mode == "thesis" else sensor.latency_s
+    return rack_signal(fraction, sources.rack, sensor, stretches, latency_s=latency_s)
+
+
 def _read_speed(channel: "Channel", sensor: "SpeedSensor", vessel: "Vessel", clock: Clock) -> PickUp:
     return read_pick_up(
         channel,
@@ -157,7 +178,9 @@ def _read_speed(channel: "Channel", sensor: "SpeedSensor", vessel: "Vessel", clo
     )
 
 
-def _put_together(recording: "Recording", vessel: "Vessel", campaign: Campaign, clock: Clock, read: _Read) -> Signals:
+def _put_together(
+    recording: "Recording", vessel: "Vessel", campaign: Campaign, clock: Clock, sources: Sources, read: _Read
+) -> Signals:
     """Calibrate the set point, find the working point and the steps, and say what was found."""
     channel = vessel.sensors.set_point.channel
     rate_hz, start_s = clock.rate_hz, clock.start_s
@@ -170,15 +193,14 @@ def _put_together(recording: "Recording", vessel: "Vessel", campaign: Campaign, 
     thesis = clock.mode == "thesis"
     calibration = calibrate(stretches, weighted=not thesis, channel=channel)
     working_point = find_working_point(stretches, campaign, channel=channel)
+    quiet = stretches_at_working_point(stretches, campaign, channel=channel)
     n_set *= calibration.slope_rev_s_per_v
     n_set += calibration.intercept_rev_s
     scale = DcScale(value=1.0, std=0.0, findings=())
     if not thesis:
         slope_std = float(calibration.covariance[0, 0]) ** 0.5 / abs(calibration.slope_rev_s_per_v)
         scale = dc_scale(n_set, speed, campaign, rate_hz=rate_hz, start_s=start_s, slope_std=slope_std)
-        n_set -= working_point.engine_speed_rev_s
-        n_set *= scale.value
-        n_set += working_point.engine_speed_rev_s
+        _stretch(n_set, scale.value, about=working_point.engine_speed_rev_s)
     delays, missed = find_step_delays(n_set, speed, campaign, rate_hz=rate_hz, start_s=start_s)
     return Signals(
         rate_hz=rate_hz,
@@ -197,4 +219,12 @@ def _put_together(recording: "Recording", vessel: "Vessel", campaign: Campaign, 
         findings=(*read.findings, *mismatches, *differences, *scale.findings, *missed),
         recording_sha256=recording.sha256,
         recording_name=recording.path.name,
+        rack=_rack_signal(sources, vessel, clock, read.rack, quiet),
     )
+
+
+def _stretch(values: FloatArray, factor: float, *, about: float) -> None:
+    """Multiply the deviation from a value, in place: the signals of a whole test are large."""
+    values -= about
+    values *= factor
+    values += about

@@ -112,6 +112,45 @@ class SpeedSignal:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class RackSignal:
+    """Fuel rack that the governor gives, from the percent torque on the CAN bus, on the channel's own clock.
+
+    It is not on the common grid: between two messages nothing is known.
+    """
+
+    channel: str
+    """Name of the channel in the recording."""
+    fraction: FloatArray
+    """Fuel rack ``X`` [fraction]: 1 gives rated torque at rated speed; shape (values,)."""
+    rate_hz: float
+    """Values a second [Hz]."""
+    start_s: float
+    """Time of the first value, in seconds of the recording; the known latency has been taken off."""
+    resolution: float
+    """Step of the channel [fraction]."""
+    cycle_s: float
+    """Time from one message to the next [s]: how often the rack is really sampled."""
+    averaging_s: float
+    """Length of the window over which a value is a mean, about its own time [s]; 0 for single samples."""
+    hold_s: float
+    """Time for which a message is held until the next [s]; 0 where every value is a message."""
+    working_point: float
+    """Mean rack ``X_0`` of the steady state for normalisation [fraction]."""
+    working_point_std: float
+    """Standard deviation of ``X_0`` [fraction]; it holds the steps of the channel."""
+
+    @property
+    def nyquist_hz(self) -> float:
+        """Highest frequency that the messages show without aliasing [Hz]."""
+        return 0.5 / self.cycle_s
+
+    @property
+    def stop_s(self) -> float:
+        """Time after the last value, each counted with its period, in seconds of the recording."""
+        return self.start_s + self.fraction.size / self.rate_hz
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Signals:
     """A recording in physical units on one uniform time grid, with every repair and calibration listed."""
 
@@ -147,6 +186,8 @@ class Signals:
     """SHA-256 of the raw file."""
     recording_name: str
     """File name of the raw recording."""
+    rack: RackSignal | None = None
+    """Fuel rack, where the vessel file names the percent torque of the engine's control unit."""
 
     @property
     def engine_speed(self) -> SpeedSignal:

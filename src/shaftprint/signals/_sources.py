@@ -28,10 +28,12 @@ class Sources:
     """Shaft torque."""
     set_point: "Channel"
     """Set point of the engine speed."""
+    rack: "Channel | None" = None
+    """Percent torque of the control unit."""
 
     @property
     def every(self) -> "tuple[Channel, ...]":
-        """All of them."""
+        """All of them but the percent torque, which keeps its own clock."""
         return (*self.speed, self.torque, self.set_point)
 
 
@@ -76,7 +78,7 @@ def find_sources(recording: "Recording", vessel: "Vessel") -> Sources:
         If one is missing, empty or in another unit.
     """
     sensors = vessel.sensors
-    torque, set_point = sensors.shaft_torque, sensors.set_point
+    torque, set_point, rack = sensors.shaft_torque, sensors.set_point, sensors.rack
     return Sources(
         speed=tuple(
             find_channel(recording, sensor.channel, unit=sensor.unit, use=f"speed {sensor.name}")
@@ -84,6 +86,7 @@ def find_sources(recording: "Recording", vessel: "Vessel") -> Sources:
         ),
         torque=find_channel(recording, torque.channel, unit=torque.unit, use="shaft torque"),
         set_point=find_channel(recording, set_point.channel, unit=set_point.unit, use="set point"),
+        rack=None if rack is None else find_channel(recording, rack.channel, unit=rack.unit, use="fuel rack"),
     )
 
 

@@ -21,12 +21,12 @@ def deviation(values: FloatArray, reference: float) -> FloatArray:
     return (values - reference) / reference
 
 
-def find_working_point(stretches: "tuple[SteadyStretch, ...]", campaign: "Campaign", *, channel: str) -> WorkingPoint:
-    """Return the mean of the quiet stretches between the tests at the working voltage.
+def stretches_at_working_point(
+    stretches: "tuple[SteadyStretch, ...]", campaign: "Campaign", *, channel: str
+) -> "tuple[SteadyStretch, ...]":
+    """Return the quiet stretches between the tests at the working voltage.
 
     Where there is no quiet stretch between tests, levels of staircases at the working voltage serve.
-    The standard deviations are those of the means, from the scatter between stretches; with a single
-    stretch from the scatter within it.
 
     Parameters
     ----------
@@ -50,19 +50,28 @@ def find_working_point(stretches: "tuple[SteadyStretch, ...]", campaign: "Campai
             f"of {campaign.offset_v:g} V, found steady levels at {found}; check offset_v in the "
             "campaign file."
         )
-    used = [stretch for stretch in near if _between_tests(stretch, campaign)] or near
+    return tuple(stretch for stretch in near if _between_tests(stretch, campaign)) or tuple(near)
+
+
+def find_working_point(stretches: "tuple[SteadyStretch, ...]", campaign: "Campaign", *, channel: str) -> WorkingPoint:
+    """Return the mean of the quiet stretches at the working point.
+
+    The standard deviations are those of the means, from the scatter between stretches; with a single stretch from the
+    scatter within it. Parameters and errors are those of `stretches_at_working_point`.
+    """
+    used = stretches_at_working_point(stretches, campaign, channel=channel)
     weight = np.array([stretch.duration_s for stretch in used])
-    speed, speed_std = _mean(
+    speed, speed_std = mean_of_stretches(
         [stretch.speed_rev_s for stretch in used],
         [stretch.speed_std_rev_s for stretch in used],
         weight,
     )
-    torque, torque_std = _mean(
+    torque, torque_std = mean_of_stretches(
         [stretch.torque_nm for stretch in used],
         [stretch.torque_std_nm for stretch in used],
         weight,
     )
-    volts, _ = _mean([stretch.set_point_v for stretch in used], [0.0] * len(used), weight)
+    volts, _ = mean_of_stretches([stretch.set_point_v for stretch in used], [0.0] * len(used), weight)
     return WorkingPoint(
         engine_speed_rev_s=speed,
         shaft_torque_nm=torque,
@@ -79,8 +88,16 @@ def _between_tests(stretch: "SteadyStretch", campaign: "Campaign") -> bool:
     )
 
 
-def _mean(values: list[float], deviations: list[float], weight: FloatArray) -> tuple[float, float]:
-    """Return the weighted mean and its standard deviation."""
+def mean_of_stretches(values: list[float], deviations: list[float], weight: FloatArray) -> tuple[float, float]:
+    """Return the weighted mean of stretches and its standard deviation.
+
+    Parameters
+    ----------
+    values, deviations
+        Mean of each stretch and its standard deviation.
+    weight
+        Weight of each stretch, shape (stretches,).
+    """
     share = weight / weight.sum()
     found = np.array(values)
     mean = float(share @ found)

@@ -1,0 +1,188 @@
+"""Fuel rack from the percent torque on the CAN bus, at the times of the messages.
+
+It is not brought on the common grid: between messages that come every 10 to 100 ms nothing is known, and whatever an
+interpolation put there would bend the response. Spectra are measured on the channel's own clock.
+"""
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import SignalError
+from shaftprint.signals._channels import blocks, time_of
+from shaftprint.signals._signals import RackSignal, Repair
+from shaftprint.signals._steady import SteadyStretch
+from shaftprint.signals._working_point import mean_of_stretches
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel
+    from shaftprint.vessel import RackSensor
+
+# Beyond the range of the message stand "error" and "not available" (SAE J1939-71).
+_HIGHEST_PERCENT = 125.0
+_LONGEST_GAP_S = 2.0
+
+# A logger that repeats each value on its own clock: means of a tenth of a cycle keep the memory low.
+_PARTS_OF_A_CYCLE = 10
+_SAME_RATE, _HELD_RATE = 0.1, 2.0
+_BLOCK_S = 1.0
+_PERCENT = 0.01
+
+
+def read_rack(channel: "Channel", sensor: "RackSensor", *, block_samples: int) -> tuple[FloatArray, list[Repair]]:
+    """Return the fuel rack [fraction], one value a message or a part of one, and what was repaired.
+
+    Parameters
+    ----------
+    channel
+        Percent torque, one sample a message or held on the clock of the logger.
+    sensor
+        What the vessel file says of it.
+    block_samples
+        Samples that are read at a time; the result does not depend on it.
+
+    Raises
+    ------
+    SignalError
+        If the rate is not that of the messages, a value is not a number, no torque is available for more than 2 s, or
+        the channel never moves.
+    """
+    group = _samples_together(channel, sensor)
+    percent = np.concatenate(list(_means(channel, group, block_samples)))
+    repairs = _bridge(percent, channel, group)
+    if np.ptp(percent) == 0.0:
+        raise SignalError(
+            f"channel {channel.name}: expected a percent torque that moves, found {percent[0]:g} % from beginning to "
+            "end; check the message it was taken from, or take [sensors.rack] out of the vessel file."
+        )
+    return _PERCENT * percent, repairs
+
+
+def rack_signal(
+    fraction: FloatArray,
+    channel: "Channel",
+    sensor: "RackSensor",
+    stretches: tuple[SteadyStretch, ...],
+    *,
+    latency_s: float,
+) -> RackSignal:
+    """Return the fuel rack with its clock, its sampling and its working point.
+
+    Parameters
+    ----------
+    fraction
+        Fuel rack as `read_rack` gives it, shape (values,).
+    channel, sensor
+        Where it comes from.
+    stretches
+        Where the line stands still at the working point.
+    latency_s
+        Time by which the channel is taken to be late [s].
+
+    Raises
+    ------
+    SignalError
+        If the channel does not cover any of the stretches, or the rack is not positive there.
+    """
+    group = _samples_together(channel, sensor)
+    held = channel.rate_hz * sensor.cycle_s >= _HELD_RATE
+    rate_hz, start_s = channel.rate_hz / group, time_of(channel, 0.5 * (group - 1)) - latency_s
+    resolution = _PERCENT * sensor.resolution_percent
+    inside = [_between(fraction, rate_hz, start_s, stretch) for stretch in stretches]
+    mean, std = _working_point(inside, rate_hz, resolution)
+    if not mean > 0.0:
+        found = "none there" if np.isnan(mean) else f"{mean / _PERCENT:.3g} %"
+        raise SignalError(
+            f"channel {channel.name}: expected a positive percent torque while the line stands still, as near "
+            f"{stretches[0].start_s:.0f} s, found {found}; check the message it was taken from and when it was logged."
+        )
+    return RackSignal(
+        channel=channel.name,
+        fraction=frozen_float(fraction),
+        rate_hz=rate_hz,
+        start_s=start_s,
+        resolution=resolution,
+        cycle_s=sensor.cycle_s if held else 1.0 / channel.rate_hz,
+        averaging_s=group / channel.rate_hz if group > 1 else 0.0,
+        hold_s=sensor.cycle_s if held else 0.0,
+        working_point=mean,
+        working_point_std=std,
+    )
+
+
+def _samples_together(channel: "Channel", sensor: "RackSensor") -> int:
+    """Return how many samples make one value: one where they are messages, a part of a cycle where they are held."""
+    for_one = channel.rate_hz * sensor.cycle_s
+    if for_one >= _HELD_RATE:
+        return max(int(for_one / _PARTS_OF_A_CYCLE), 1)
+    if abs(for_one - 1.0) > _SAME_RATE:
+        raise SignalError(
+            f"channel {channel.name}: expected {1.0 / sensor.cycle_s:g} samples a second, one a message as cycle_s = "
+            f"{sensor.cycle_s:g} says, or at least twice as many where each is held, found {channel.rate_hz:g}; "
+            "correct cycle_s in the vessel file."
+        )
+    return 1
+
+
+def _means(channel: "Channel", group: int, block_samples: int) -> Iterator[FloatArray]:
+    """Yield the means of so many samples in percent, not a number where no torque was available."""
+    waiting = np.empty(0)
+    for counts in blocks(channel, block_samples):
+        percent = np.concatenate([waiting, counts * channel.scale + channel.offset])
+        whole = percent.size - percent.size % group
+        waiting = percent[whole:]
+        parts = percent[:whole].reshape(-1, group)
+        known = parts <= _HIGHEST_PERCENT
+        number = known.sum(axis=1)
+        mean = np.where(known, parts, 0.0).sum(axis=1) / np.maximum(number, 1)
+        yield np.where(number > 0, mean, np.nan)
+
+
+def _bridge(percent: FloatArray, channel: "Channel", group: int) -> list[Repair]:
+    """Put straight lines where no torque was available."""
+    missing = np.isnan(percent)
+    if not missing.any():
+        return []
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]])))
+    repairs = []
+    for first, stop in edges.reshape(-1, 2).tolist():
+        start_s = time_of(channel, first * group)
+        if (stop - first) * group > _LONGEST_GAP_S * channel.rate_hz:
+            raise SignalError(
+                f"channel {channel.name}: expected percent torque all the time, found values above "
+                f"{_HIGHEST_PERCENT:g} %, which mean that none is available, for more than {_LONGEST_GAP_S:g} s from "
+                f"{start_s:.1f} s on; use another recording, or take [sensors.rack] out of the vessel file."
+            )
+        repairs.append(Repair(channel=channel.name, kind="dropout", time_s=start_s, count=(stop - first) * group))
+    place = np.arange(percent.size)
+    percent[missing] = np.interp(place[missing], place[~missing], percent[~missing])
+    return repairs
+
+
+def _between(fraction: FloatArray, rate_hz: float, start_s: float, stretch: SteadyStretch) -> FloatArray:
+    first, stop = (round((instant - start_s) * rate_hz) for instant in (stretch.start_s, stretch.stop_s))
+    return fraction[max(first, 0) : max(stop, 0)]
+
+
+def _working_point(inside: list[FloatArray], rate_hz: float, resolution: float) -> tuple[float, float]:
+    """Return the mean over steady stretches and its standard deviation; not a number where there are no values.
+
+    The steps of the channel do not average out where the rack stands stiller than they are wide: with normal noise of
+    deviation ``s`` a step ``q`` leaves ``exp(-2 pi^2 s^2 / q^2)`` of its error (Widrow and Kollar, "Quantization
+    Noise", chapter 4).
+    """
+    length = max(round(_BLOCK_S * rate_hz), 1)
+    long_enough = [values for values in inside if values.size >= 2 * length]
+    if not long_enough:
+        return np.nan, np.nan
+    deviations = []
+    for values in long_enough:
+        means = values[: values.size - values.size % length].reshape(-1, length).mean(axis=1)
+        deviations.append(float(means.std(ddof=1) / np.sqrt(means.size)))
+    weight = np.array([float(values.size) for values in long_enough])
+    mean, std = mean_of_stretches([float(values.mean()) for values in long_enough], deviations, weight)
+    noise = max(float(np.mean([values.var() for values in long_enough])) - resolution**2 / 12.0, 0.0)
+    left = resolution / np.sqrt(12.0) * np.exp(-2.0 * np.pi**2 * noise / resolution**2)
+    return mean, float(np.hypot(std, left))
