@@ -1,11 +1,13 @@
 """Profile-likelihood intervals against parabolas, held refits and simulation."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Prior, Settings, Unweighted, identify, profile_intervals
-from shaftprint.models import structure
+from shaftprint.identify import Prior, Settings, Unweighted, identify, profile, profile_intervals
+from shaftprint.models import Combination, Constant, Gain, Parameter, Structure, structure
 
 # Half the 95 % point of chi-square with one degree of freedom.
 RISE = 1.9207294103470636
@@ -118,3 +120,74 @@ def test_cover_the_truth_in_95_of_100_tests_although_the_cost_is_no_parabola(mak
     # 95 of 100 +/- 2.2
     assert all(88 <= count <= 100 for count in covered.values())
     assert 92 <= np.mean(list(covered.values())) <= 98
+
+
+def number(name, of):
+    return Combination(name=name, unit="-", of=of, meaning="a number")
+
+
+def test_does_not_depend_on_the_form_of_a_number(make_response):
+    """The ends of an increasing function of a parameter are that function of its ends; of a falling one the reverse."""
+    response = make_response("CL4", noise=0.08, rng=np.random.default_rng(6))
+    found = identify(structure("CL4"), response, rng=np.random.default_rng(1))
+    forms = (
+        number("root", lambda p: np.sqrt(p["tau_n"])),
+        number("fourth", lambda p: p["K_p"] ** 4),
+        number("growing", lambda p: np.exp(8.0 * p["zeta"])),
+        number("inverse", lambda p: 1.0 / p["t_d"]),
+    )
+    ends = profile(found, forms).intervals
+    for name, of, form in (
+        ("tau_n", np.sqrt, "root"),
+        ("K_p", lambda x: x**4, "fourth"),
+        ("zeta", lambda x: np.exp(8.0 * x), "growing"),
+    ):
+        assert ends[form].lower == pytest.approx(of(ends[name].lower), rel=2e-3)
+        assert ends[form].upper == pytest.approx(of(ends[name].upper), rel=2e-3)
+    assert ends["inverse"].lower == pytest.approx(1.0 / ends["t_d"].upper, rel=2e-3)
+    assert ends["inverse"].upper == pytest.approx(1.0 / ends["t_d"].lower, rel=2e-3)
+
+
+def test_of_a_difference_of_two_parameters_of_a_linear_structure(make_response):
+    """``K_i - 3 K_p`` has the deviation that the covariance gives it."""
+    response = make_response("OL2", noise=0.05, correlation=0.5, rng=np.random.default_rng(2))
+    found = identify(structure("OL2"), response, rng=np.random.default_rng(1))
+    interval = profile(found, [number("difference", lambda p: p["K_i"] - 3.0 * p["K_p"])]).intervals["difference"]
+    slope = np.array([-3.0, 1.0])
+    half = 1.959964 * np.sqrt(slope @ found.covariance @ slope)
+    middle = slope @ found.values
+    assert (interval.lower, interval.upper) == pytest.approx((middle - half, middle + half), abs=1e-5 * half)
+
+
+def test_at_a_minimum_on_a_bound_reaches_as_far_as_the_cost_says(make_response):
+    """By hand: one gain from 0 up, measured as -0.5 +/- 1; the cost ``(x + 0.5)^2 / 2`` is 1.92 higher at 1.523."""
+    gain = Structure(
+        name="GAIN", title="a gain", input="u", outputs={"y": Gain(Parameter("k", "-", 0.0, 10.0, 1.0, "gain"))}
+    )
+    response = make_response(gain, {"k": 1.0}, frequency_hz=np.array([1.0]), names=("one",), noise=1.0)
+    moved = replace(response, response=np.full((1, 1, 1), -0.5 + 0.0j))
+    interval = profile_intervals(identify(gain, moved, rng=np.random.default_rng(1)))["k"]
+    assert interval.lower == 0.0
+    assert interval.lower_open
+    assert interval.upper == pytest.approx(np.sqrt(0.25 + 2.0 * RISE) - 0.5, rel=1e-6)
+    assert not interval.upper_open
+
+
+def test_of_a_parameter_without_influence_is_its_range(make_response):
+    idle = Structure(
+        name="IDLE",
+        title="a gain, and another that is multiplied by nothing",
+        input="u",
+        outputs={
+            "y": Gain(Parameter("k", "-", 0.0, 10.0, 1.0, "gain"))
+            + Constant(0.0) * Gain(Parameter("idle", "-", -3.0, 7.0, 1.0, "nothing"))
+        },
+    )
+    response = make_response(idle, {"k": 1.0, "idle": 0.0}, noise=0.1)
+    intervals = profile_intervals(identify(idle, response, rng=np.random.default_rng(1)))
+    assert (intervals["idle"].lower, intervals["idle"].upper) == (-3.0, 7.0)
+    assert intervals["idle"].lower_open
+    assert intervals["idle"].upper_open
+    # 13 lines of two real data with 10 % each, of which the gain sees the real part
+    half = 0.1 * 1.959964 / np.sqrt(13.0)
+    assert intervals["k"].upper - intervals["k"].lower == pytest.approx(2.0 * half, rel=1e-3)

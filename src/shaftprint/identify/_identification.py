@@ -13,10 +13,8 @@ from shaftprint.identify._objective import Objective
 from shaftprint.identify._part import Part
 from shaftprint.identify._settings import Settings
 from shaftprint.models import Margins, Structure, margins
+from shaftprint.normal import NORMAL_95
 from shaftprint.spectra import FrequencyResponse
-
-# Two-sided 95 % of the normal distribution.
-NORMAL_95 = 1.959963984540054
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

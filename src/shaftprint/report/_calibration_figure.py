@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.normal import NORMAL_95
 from shaftprint.report._style import (
     DATA,
     house_style,
@@ -14,7 +15,6 @@ from shaftprint.report._style import (
     new_figure,
     plain_number,
 )
-from shaftprint.report._uncertainty import NORMAL_95
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:

@@ -4,10 +4,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from shaftprint.normal import NORMAL_95
 from shaftprint.report._numbers import decimals_of, interval, plain, rounded, with_deviation
 from shaftprint.report._symbols import unit_text
 from shaftprint.report._table import Cell, Table, symbol_html
-from shaftprint.report._uncertainty import NORMAL_95
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quality, Quantity

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.special import chdtri
 
 from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.normal import NORMAL_95
 from shaftprint.report._style import (
     REFERENCE,
     house_style,
@@ -17,7 +18,7 @@ from shaftprint.report._style import (
     plain_log_axis,
 )
 from shaftprint.report._symbols import mathtext
-from shaftprint.report._uncertainty import COVERAGE, NORMAL_95
+from shaftprint.report._uncertainty import COVERAGE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

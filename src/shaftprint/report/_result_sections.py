@@ -3,6 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
+from shaftprint.normal import NORMAL_95
 from shaftprint.report._bode import plot_bode
 from shaftprint.report._correlation_figure import plot_correlation
 from shaftprint.report._curve import Curve
@@ -20,7 +21,6 @@ from shaftprint.report._nyquist import plot_nyquist
 from shaftprint.report._residual_figure import plot_residuals
 from shaftprint.report._sections import Inputs, Picture, Section
 from shaftprint.report._symbols import unit_text
-from shaftprint.report._uncertainty import NORMAL_95
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quantity

@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.normal import NORMAL_95
 from shaftprint.report._style import DATA, house_style, legend_below, legend_entries, letter_panels, new_figure
-from shaftprint.report._uncertainty import NORMAL_95
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import ndtri, stdtrit
+from scipy.special import stdtrit
 
 from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.normal import NORMAL_95
 from shaftprint.units import decibel
 
 if TYPE_CHECKING:
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 
 DECIBEL_PER_NEPER = 20.0 / np.log(10.0)
 COVERAGE = 0.95
-NORMAL_95 = float(ndtri(0.5 + COVERAGE / 2.0))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
