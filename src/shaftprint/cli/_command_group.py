@@ -16,6 +16,7 @@ COMMANDS = {
     "sail": "Let a simulated tug sail a campaign and write its raw recording.",
     "inspect": "Say what is in a recording and whether it is good enough.",
     "identify": "Identify the fingerprint from a recording.",
+    "explain": "Say where the numbers of the thesis' way come from on one recording.",
     "show": "Print a saved fingerprint.",
     "structures": "List the model structures with their parameters and bounds.",
     "sensitivity": "Draw what each parameter of a structure does to its response.",

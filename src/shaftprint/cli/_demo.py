@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._chain import Measurement, fingerprint_of, fit, known_beforehand, measure
+from shaftprint.cli._chain import Measurement, fingerprint_of, measure
 from shaftprint.cli._demo_summary import print_summary
 from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.cli._fingerprint_tables import print_fingerprint
@@ -16,16 +16,14 @@ from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._progress import Steps, no_progress_option, progress
 from shaftprint.cli._results import where, write_results
 from shaftprint.cli._signal_tables import print_lines
+from shaftprint.cli._thesis_way import thesis_way, weighted_fits
 from shaftprint.fingerprint import Fingerprint
-from shaftprint.identify import Identification, Settings, Uniform, Unweighted
-from shaftprint.models import structure
+from shaftprint.identify import Identification
 from shaftprint.report import ThesisMode
 from shaftprint.tug import Truth, sail
 
 VESSEL = "stan-tug-1205"
 FULL, SHORT = "thesis", "short"
-IDENTIFIED = "GAUGE-CLOSED"
-OF_THE_THESIS = ("OL1", "OL2", "OL3", "OL4", "OL5", "BENCHMARK", "CL1", "CL3", "CL4")
 RECORDING = "recording.nc"
 
 
@@ -88,26 +86,13 @@ def _sail(folder: Path, trial: Trial, campaign: str, *, seed: int, steps: Steps)
 def _identify(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> _Found:
     """Identify the gauge-aware structure and those of the thesis, and the latter once more the thesis' way."""
     measurement = measure(recording, trial, mode="shaftprint", steps=steps)
-    structures = [structure(name) for name in (IDENTIFIED, *OF_THE_THESIS)]
-    settings = {
-        chosen.name: Settings(priors=known_beforehand(chosen, trial.vessel, measurement.signals, {}))
-        for chosen in structures
-    }
-    fits = fit(structures, measurement, settings=settings, seed=seed, steps=steps)
-    as_thesis = measure(recording, trial, mode="thesis", steps=steps)
-    unweighted = Settings(weighting=Unweighted(), draw=Uniform())
-    thesis_fits = fit(
-        structures[1:], as_thesis, settings=dict.fromkeys(OF_THE_THESIS, unweighted), seed=seed, steps=steps
-    )
+    fits = weighted_fits(measurement, trial, seed=seed, steps=steps)
+    thesis = thesis_way(recording, trial, seed=seed, steps=steps)
     steps.begin("Finding the intervals")
     return _Found(
         measurement=measurement,
         fits=fits,
-        thesis=ThesisMode(
-            signals=as_thesis.signals,
-            spectra=as_thesis.spectra,
-            identifications=dict(zip(OF_THE_THESIS, thesis_fits, strict=True)),
-        ),
+        thesis=thesis,
         fingerprint=fingerprint_of(fits[0], measurement, trial),
     )
 

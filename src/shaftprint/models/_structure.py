@@ -88,6 +88,16 @@ class Structure:
         """Parameters that a fit may change."""
         return tuple(parameter for parameter in self.parameters if not parameter.held)
 
+    def path(self, output: str) -> Expression:
+        """Return the response of an output to the first input, as an expression.
+
+        Raises
+        ------
+        KeyError
+            If there is no output of that name.
+        """
+        return dict(zip(self.channels, self.paths, strict=True))[output, self.input]
+
     def held_at(self, **values: float) -> "Structure":
         """Return the structure with the named parameters held at the given values.
 

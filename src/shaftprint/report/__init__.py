@@ -21,6 +21,9 @@ from shaftprint.report._calibration_figure import plot_calibration
 from shaftprint.report._campaign_figure import plot_campaign
 from shaftprint.report._correlation_figure import plot_correlation
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
+from shaftprint.report._explanation import Explanation, explain_thesis
+from shaftprint.report._explanation_figure import plot_missing_damping
+from shaftprint.report._explanation_words import damping_table, explanation_sentences, gain_table, inertia_table
 from shaftprint.report._fit_figures import (
     plot_closed_loop_comparison,
     plot_closed_loop_fits,
@@ -42,15 +45,23 @@ from shaftprint.report._signal_to_noise_figure import plot_signal_to_noise
 from shaftprint.report._step_figure import plot_step_delays
 from shaftprint.report._strip_figure import plot_strip_angles
 from shaftprint.report._style import save_figure
+from shaftprint.report._table import Table
 from shaftprint.report._thesis_families import Family, thesis_families
 from shaftprint.report._thesis_mode import ThesisMode
 from shaftprint.report._time_series import plot_chirp, plot_excitation, plot_staircase
 
 __all__ = [
     "Curve",
+    "Explanation",
     "Family",
+    "Table",
     "ThesisMode",
     "closed_loop_curve",
+    "damping_table",
+    "explain_thesis",
+    "explanation_sentences",
+    "gain_table",
+    "inertia_table",
     "open_loop_curve",
     "plot_bode",
     "plot_calibration",
@@ -64,6 +75,7 @@ __all__ = [
     "plot_excitation",
     "plot_governor_fits",
     "plot_line_selection",
+    "plot_missing_damping",
     "plot_nyquist",
     "plot_open_loop_comparison",
     "plot_open_loop_responses",

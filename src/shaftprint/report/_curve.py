@@ -60,13 +60,15 @@ def open_loop_curve(closed: Curve) -> Curve:
             f"structure {model.name}: expected outputs n and M_s of n_set to form M_s / e, found "
             f"{', '.join(model.outputs)} of {model.input}."
         )
-    error = Constant(1.0) + Constant(-1.0) * model.outputs["n"]
+    error = Constant(1.0) + Constant(-1.0) * model.path("n")
     structure = Structure(
         name=model.name,
         title=model.title,
         input="e",
-        outputs={"M_s": model.outputs["M_s"] * Inverse(error)},
+        outputs={"M_s": model.path("M_s") * Inverse(error)},
         parameters=model.parameters,
+        ties=model.ties,
+        factors=model.factors,
     )
     return Curve(label=closed.label, structure=structure, values=closed.values, covariance=closed.covariance)
 
@@ -87,7 +89,7 @@ def closed_loop_curve(core: Curve, governor: Curve) -> Curve:
             f"structures {core.structure.name} and {governor.structure.name}: expected n of M_s and M_s of e, found "
             f"{', '.join(outputs[0] + ' of ' + input_ for input_, outputs in found)}."
         )
-    engine, shaft = governor.structure.outputs["M_s"], core.structure.outputs["n"]
+    engine, shaft = governor.structure.path("M_s"), core.structure.path("n")
     torque = engine * Sensitivity(engine * shaft)
     label = f"{core.label}+{governor.label}"
     structure = Structure(name=label, title=label, input="n_set", outputs={"n": shaft * torque, "M_s": torque})

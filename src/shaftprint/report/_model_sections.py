@@ -5,6 +5,14 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
+from shaftprint.report._explanation import can_explain, explain_thesis
+from shaftprint.report._explanation_figure import plot_missing_damping
+from shaftprint.report._explanation_words import (
+    damping_table,
+    explanation_sentences,
+    gain_table,
+    inertia_table,
+)
 from shaftprint.report._fit_figures import (
     plot_closed_loop_comparison,
     plot_closed_loop_fits,
@@ -14,6 +22,7 @@ from shaftprint.report._fit_figures import (
 )
 from shaftprint.report._sections import Inputs, Picture, Section
 from shaftprint.report._sensitivity import plot_sensitivity
+from shaftprint.report._table import with_symbols
 from shaftprint.report._thesis_mode import thesis_findings, thesis_fit_table
 from shaftprint.spectra import open_loop
 
@@ -44,6 +53,31 @@ def thesis_section(inputs: Inputs) -> list[Section]:
             points=thesis_findings(thesis, inputs.vessel),
             tables=(thesis_fit_table(thesis),),
             pictures=fit_pictures(thesis.identifications, thesis.spectra.response, limit, prefix="thesis_mode"),
+        )
+    ]
+
+
+def explanation_section(inputs: Inputs) -> list[Section]:
+    """Return where the thesis' numbers come from; nothing where its way was not tried with all structures."""
+    thesis = inputs.thesis
+    fits = {**inputs.fits, inputs.identification.structure.name: inputs.identification}
+    if thesis is None or not can_explain(thesis, fits):
+        return []
+    explanation = explain_thesis(thesis, fits, inputs.spectra.response, inputs.vessel)
+    return [
+        Section(
+            key="explanation",
+            title="Where the thesis' numbers come from",
+            paragraphs=explanation_sentences(explanation),
+            tables=tuple(with_symbols(make(explanation)) for make in (inertia_table, damping_table, gain_table)),
+            pictures=(
+                Picture(
+                    name="missing_damping",
+                    caption="Governor and engine without and with the inertia upstream of the gauge; the closed loop.",
+                    alt="Bode diagram of M_s / e from 0.5 to 12 rad/s with two models and the measured points.",
+                    draw=partial(plot_missing_damping, explanation),
+                ),
+            ),
         )
     ]
 

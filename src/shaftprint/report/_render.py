@@ -12,7 +12,12 @@ from markupsafe import Markup
 
 from shaftprint.report._folder import FIGURES, PAGE, report_written_whole
 from shaftprint.report._measurement_sections import quality_section, response_section, signal_section, time_section
-from shaftprint.report._model_sections import sensitivity_section, structure_section, thesis_section
+from shaftprint.report._model_sections import (
+    explanation_section,
+    sensitivity_section,
+    structure_section,
+    thesis_section,
+)
 from shaftprint.report._result_sections import fit_section, parameter_section, stability_section, summary_section
 from shaftprint.report._sections import Inputs, Picture, Section
 from shaftprint.report._style import save_figure
@@ -123,6 +128,7 @@ def _sections(inputs: Inputs) -> list[Section]:
         *time_section(inputs),
         *structure_section(inputs),
         *thesis_section(inputs),
+        *explanation_section(inputs),
         *sensitivity_section(inputs),
     ]
 

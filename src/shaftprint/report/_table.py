@@ -1,7 +1,7 @@
 """A table of the report, and names of parameters as HTML."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TypeAlias
 
 from markupsafe import Markup, escape
@@ -38,6 +38,12 @@ class Table:
         for row in self.rows:
             if len(row) != len(self.header):
                 raise ValueError(f"table {self.caption}: expected {len(self.header)} cells in a row, found {len(row)}.")
+
+
+def with_symbols(table: Table) -> Table:
+    """Return a table of plain text with the symbols in its heading and cells set as such."""
+    rows = tuple(tuple(sentence_html(cell) for cell in row) for row in table.rows)
+    return replace(table, header=tuple(sentence_html(cell) for cell in table.header), rows=rows)
 
 
 def sentence_html(text: str) -> Markup:

@@ -1,0 +1,72 @@
+"""``shaftprint explain``: where the numbers of the thesis' way come from."""
+
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._chain import fingerprint_of, measure
+from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
+from shaftprint.cli._output_folder import force_option, output_folder
+from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.cli._results import where, write_results
+from shaftprint.cli._tables import print_table
+from shaftprint.cli._thesis_way import thesis_way, weighted_fits
+from shaftprint.report import (
+    Explanation,
+    Table,
+    damping_table,
+    explain_thesis,
+    explanation_sentences,
+    gain_table,
+    inertia_table,
+)
+
+# What a terminal's code page may lack, as it is written elsewhere on the terminal.
+PLAIN = str.maketrans({"−": "-", "±": "+/-", "°": " deg", "–": "-", "∞": "inf", "\u202f": ""})
+
+
+@click.command("explain")
+@click.argument("recording", type=click.Path(path_type=Path))
+@vessel_option
+@campaign_option
+@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the starts.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for fingerprint, figures and report.")
+@force_option
+@no_progress_option
+def command(
+    recording: Path, vessel: str, campaign: str, seed: int, output: Path | None, force: bool, no_progress: bool
+) -> None:
+    """Say where the numbers of the thesis' way come from on one recording.
+
+    Fits the structures of the thesis the thesis' way and the gauge-aware one, and shows side by side where the
+    inertia time that is too small, the damping that is missing between 1 and 10 rad/s and the K_p that
+    drifts come from. With --output the whole report is written too.
+    """
+    trial = load_trial(vessel, campaign)
+    with progress(hidden=no_progress) as steps:
+        measurement = measure(recording, trial, mode="shaftprint", steps=steps)
+        fits = weighted_fits(measurement, trial, seed=seed, steps=steps)
+        thesis = thesis_way(recording, trial, seed=seed, steps=steps)
+    by_name = {found.structure.name: found for found in fits}
+    explanation = explain_thesis(thesis, by_name, measurement.spectra.response, trial.vessel)
+    if output is not None:
+        with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
+            fingerprint = fingerprint_of(fits[0], measurement, trial)
+            write_results(folder, recording, trial, measurement, fits, fingerprint, steps=steps, thesis=thesis)
+    _print(explanation)
+    if output is not None:
+        click.echo(where(output))
+
+
+def _print(explanation: Explanation) -> None:
+    tables = (inertia_table, damping_table, gain_table)
+    for sentence, make in zip(explanation_sentences(explanation), tables, strict=True):
+        _print_table(make(explanation))
+        click.echo(f"{sentence.translate(PLAIN)}\n")
+
+
+def _print_table(table: Table) -> None:
+    rows = [[cell.translate(PLAIN) for cell in row] for row in table.rows]
+    print_table(table.caption, table.header, rows)
+    if table.note:
+        click.echo(f"{table.note.translate(PLAIN)}\n")

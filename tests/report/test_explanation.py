@@ -1,0 +1,110 @@
+"""Where the thesis' numbers come from: on data whose truth is known, against the truth worked out by hand."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from shaftprint.errors import IdentificationError
+from shaftprint.identify import Settings, Unweighted, identify
+from shaftprint.models import structure
+from shaftprint.report import (
+    ThesisMode,
+    damping_table,
+    explain_thesis,
+    explanation_sentences,
+    gain_table,
+    inertia_table,
+    plot_missing_damping,
+)
+
+# truth of tests/report/conftest.py
+TAU_DN, TAU_UP, K_P, K_I, T_D, OMEGA_N, ZETA = 0.32, 1.016, 5.7, 4.27, 0.07, 10.3, 0.47
+
+
+@pytest.fixture(scope="module")
+def thesis(signals, spectra, open_responses):
+    governor, core = open_responses
+    rng = np.random.default_rng(9)
+    settings = Settings(weighting=Unweighted(), starts=12)
+    data = {"OL1": core, "GAUGE-CORE": core} | dict.fromkeys(("OL2", "OL3", "OL4", "OL5"), governor)
+    found = {name: identify(structure(name), r, rng=rng, settings=settings) for name, r in data.items()}
+    return ThesisMode(signals=signals, spectra=spectra, identifications=found)
+
+
+@pytest.fixture(scope="module")
+def explanation(thesis, fits, identification, response, vessel):
+    return explain_thesis(thesis, {**fits, "GAUGE-CLOSED": identification}, response, vessel)
+
+
+def test_inertia_goes_from_the_calculation_to_the_truth(explanation, signals):
+    upstream, downstream, *_, ours = explanation.inertia
+    # 2 pi 54.006 n_s0 / M_s0 and 17 kg m2 at 19.53 rev/s, 1725 N m, ratio 3.82
+    seconds = 2.0 * math.pi * 19.53 / 3.82 / 1725.0
+    assert upstream.value_s == pytest.approx(54.006 * seconds, rel=1e-4)
+    assert downstream.value_s == pytest.approx(17.0 * seconds, rel=2e-3)
+    assert upstream.factor == 1.0
+    assert ours.value_s == pytest.approx(TAU_DN, abs=3.0 * ours.std_s)
+    assert ours.factor == pytest.approx(54.006 * seconds / ours.value_s)
+
+
+def test_lines_between_half_and_twelve_rad_s_are_taken_apart(thesis, fits, response, vessel):
+    truth = {"tau_dn": TAU_DN, "tau_up": TAU_UP, "K_p": K_P, "K_i": K_I, "t_d": T_D, "omega_n": OMEGA_N, "zeta": ZETA}
+    model = structure("GAUGE-CLOSED").held_at(g=0.0, k_q=2.0, t_sp=0.05, t_gauge=0.0, c_set=1.0)
+    exact = model.response(model.vector(truth), 1j * response.omega_rad_s)
+    clean = replace(response, response=exact[:, None, :])
+    found = identify(model, clean, rng=np.random.default_rng(1), settings=Settings(starts=10))
+    explanation = explain_thesis(thesis, {**fits, "GAUGE-CLOSED": found}, clean, vessel)
+    assert [step.line for step in explanation.lines] == ["S7", "S8", "S9", "S10", "S11", "S12"]
+    for step in explanation.lines:
+        s = 1j * step.omega_rad_s
+        lag = OMEGA_N**2 / (s**2 + 2.0 * ZETA * OMEGA_N * s + OMEGA_N**2)
+        governor = (K_P + K_I / s) * np.exp(-s * T_D) * lag
+        inertia = (TAU_DN * s + 2.0) / ((TAU_UP + TAU_DN) * s + 2.0)
+        loop = governor / ((TAU_UP + TAU_DN) * s + 2.0)
+        assert step.governor == pytest.approx(governor, rel=1e-4)
+        assert step.inertia == pytest.approx(inertia, rel=1e-4)
+        assert step.measured == pytest.approx(governor * inertia, rel=1e-4)
+        assert step.speed_gauge_aware == pytest.approx(abs(loop / (1.0 + loop)), rel=1e-4)
+        assert step.speed == pytest.approx(step.speed_gauge_aware, rel=1e-4)
+
+
+def test_the_gain_without_inertia_and_the_share_of_two_lines(explanation, open_responses):
+    assert explanation.seen_gain == pytest.approx(K_P * TAU_DN / (TAU_UP + TAU_DN), rel=0.25)
+    squares = np.abs(open_responses[0].response[0, 0]) ** 2
+    assert explanation.share_of_two_lines == pytest.approx(squares[:2].sum() / squares.sum())
+    assert [step.structure for step in explanation.gains] == ["OL2", "OL3", "OL4", "OL5", "GAUGE-CLOSED"]
+    assert explanation.gains[0].p_value < 1e-6
+    assert explanation.gains[-1].p_value > 0.001
+    assert math.isnan(explanation.gains[-1].thesis)
+
+
+def test_words_and_tables_say_the_numbers(explanation):
+    factor, damping, drift = explanation_sentences(explanation)
+    assert f"a factor {explanation.inertia[2].factor:.2f}" in factor
+    deepest = min(np.degrees(np.angle(step.inertia)) for step in explanation.lines)
+    assert f"turned by \N{MINUS SIGN}{-deepest:.0f}°" in damping
+    assert "OL2" in drift
+    assert "rejected outright" in drift
+    assert len(inertia_table(explanation).rows) == 6
+    assert [row[0] for row in damping_table(explanation).rows] == ["S7", "S8", "S9", "S10", "S11", "S12"]
+    assert gain_table(explanation).rows[0][-1] == "< 0.000001"
+
+
+def test_the_figure_shows_models_and_points(explanation):
+    figure = plot_missing_damping(explanation)
+    gain, phase, speed = figure.axes
+    points = next(line for line in gain.lines if line.get_label() == "measured")
+    expected = 20.0 * np.log10([abs(step.measured) for step in explanation.lines])
+    np.testing.assert_allclose(points.get_ydata(), expected)
+    assert len(phase.lines) == 3
+    model, marks = phase.lines[1], phase.lines[2]
+    at = np.interp(marks.get_xdata(), model.get_xdata(), model.get_ydata())
+    assert np.abs(at - marks.get_ydata()).max() < 30.0
+    assert {line.get_label() for line in speed.lines} >= {"GAUGE-CLOSED", "OL1+OL5"}
+
+
+def test_missing_fits_are_named(thesis, fits, response, vessel):
+    with pytest.raises(IdentificationError, match="expected GAUGE-CLOSED weighted; fit them too"):
+        explain_thesis(thesis, fits, response, vessel)
