@@ -23,6 +23,7 @@ from shaftprint.identify._part import Part
 from shaftprint.identify._prior import Prior
 from shaftprint.identify._profile import Interval, Profile, profile, profile_intervals
 from shaftprint.identify._refit import Refits, refit
+from shaftprint.identify._scan import Minimum, Scan, scan, scan_response
 from shaftprint.identify._settings import Settings, Stability
 from shaftprint.identify._starts import Draw, LatinHypercube, Uniform
 from shaftprint.identify._weighting import MaximumLikelihood, StudentT, Unweighted, Weighting
@@ -40,10 +41,12 @@ __all__ = [
     "LatinHypercube",
     "LineTest",
     "MaximumLikelihood",
+    "Minimum",
     "Part",
     "Prior",
     "Profile",
     "Refits",
+    "Scan",
     "Settings",
     "Stability",
     "StudentT",
@@ -60,4 +63,6 @@ __all__ = [
     "profile",
     "profile_intervals",
     "refit",
+    "scan",
+    "scan_response",
 ]
