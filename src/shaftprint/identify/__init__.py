@@ -12,6 +12,7 @@ covariance          mixed   of the free parameters, each in its own unit
 """
 
 from shaftprint.identify._covariance import estimate_covariance
+from shaftprint.identify._criteria import Criteria, criteria_of
 from shaftprint.identify._directions import Direction
 from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify._fit_test import FitTest, LineTest
@@ -19,6 +20,8 @@ from shaftprint.identify._identifiability import Identifiability, identifiabilit
 from shaftprint.identify._identification import Cluster, Estimate, Identification
 from shaftprint.identify._identify import identify, identify_jointly
 from shaftprint.identify._known import PRIOR_OF_G, priors_from_vessel
+from shaftprint.identify._left_out import Foretold
+from shaftprint.identify._likelihood_ratio import LikelihoodRatio
 from shaftprint.identify._part import Part
 from shaftprint.identify._prior import Prior
 from shaftprint.identify._profile import Interval, Profile, profile, profile_intervals
@@ -31,14 +34,17 @@ from shaftprint.identify._weighting import MaximumLikelihood, StudentT, Unweight
 __all__ = [
     "PRIOR_OF_G",
     "Cluster",
+    "Criteria",
     "Direction",
     "Draw",
     "Estimate",
     "FitTest",
+    "Foretold",
     "Identifiability",
     "Identification",
     "Interval",
     "LatinHypercube",
+    "LikelihoodRatio",
     "LineTest",
     "MaximumLikelihood",
     "Minimum",
@@ -53,6 +59,7 @@ __all__ = [
     "Uniform",
     "Unweighted",
     "Weighting",
+    "criteria_of",
     "estimate_covariance",
     "fit_ceiling",
     "fit_percent",
