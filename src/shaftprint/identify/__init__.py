@@ -11,28 +11,36 @@ covariance          mixed   of the free parameters, each in its own unit
 =================== ======= ==========================================================================================
 """
 
+from shaftprint.identify._accuracy import Accuracy, predict_accuracy, predict_joint_accuracy
 from shaftprint.identify._covariance import estimate_covariance
 from shaftprint.identify._criteria import Criteria, criteria_of
 from shaftprint.identify._directions import Direction
 from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify._fit_test import FitTest, LineTest
+from shaftprint.identify._groups import Group
 from shaftprint.identify._identifiability import Identifiability, identifiability
 from shaftprint.identify._identification import Cluster, Estimate, Identification
 from shaftprint.identify._identify import identify, identify_jointly
 from shaftprint.identify._known import PRIOR_OF_G, priors_from_vessel
 from shaftprint.identify._left_out import Foretold
 from shaftprint.identify._likelihood_ratio import LikelihoodRatio
+from shaftprint.identify._noise_levels import NoiseLevels, noise_levels, stated_noise
 from shaftprint.identify._part import Part
+from shaftprint.identify._planned_response import expected_response, planned_lines, planned_response
+from shaftprint.identify._predicted_intervals import predict_intervals
 from shaftprint.identify._prior import Prior
 from shaftprint.identify._profile import Interval, Profile, profile, profile_intervals
 from shaftprint.identify._refit import Refits, refit
 from shaftprint.identify._scan import Minimum, Scan, scan, scan_response
 from shaftprint.identify._settings import Settings, Stability
+from shaftprint.identify._stan_tug_noise import STAN_TUG_NOISE
 from shaftprint.identify._starts import Draw, LatinHypercube, Uniform
 from shaftprint.identify._weighting import MaximumLikelihood, StudentT, Unweighted, Weighting
 
 __all__ = [
     "PRIOR_OF_G",
+    "STAN_TUG_NOISE",
+    "Accuracy",
     "Cluster",
     "Criteria",
     "Direction",
@@ -40,6 +48,7 @@ __all__ = [
     "Estimate",
     "FitTest",
     "Foretold",
+    "Group",
     "Identifiability",
     "Identification",
     "Interval",
@@ -48,6 +57,7 @@ __all__ = [
     "LineTest",
     "MaximumLikelihood",
     "Minimum",
+    "NoiseLevels",
     "Part",
     "Prior",
     "Profile",
@@ -61,15 +71,23 @@ __all__ = [
     "Weighting",
     "criteria_of",
     "estimate_covariance",
+    "expected_response",
     "fit_ceiling",
     "fit_percent",
     "identifiability",
     "identify",
     "identify_jointly",
+    "noise_levels",
+    "planned_lines",
+    "planned_response",
+    "predict_accuracy",
+    "predict_intervals",
+    "predict_joint_accuracy",
     "priors_from_vessel",
     "profile",
     "profile_intervals",
     "refit",
     "scan",
     "scan_response",
+    "stated_noise",
 ]
