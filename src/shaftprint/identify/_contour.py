@@ -159,13 +159,13 @@ class _Position:
         cost, gradient, hessian = _parabola(numbers.objective, trial)
         value = self.side * asked.values(trial)
         excess = np.maximum(cost, self.limit) - np.maximum(self.cost, self.limit)
-        with np.errstate(invalid="ignore"):
-            further = pull * (value - self.value) > PENALTY * excess
-        good = np.where(pull > 0.0, further, cost < self.cost) & np.isfinite(value)
+        # Where bounds leave the number no way, or the parabola never comes down to the contour, the cost decides.
+        further = np.where(pull > 0.0, pull * (value - self.value) > PENALTY * excess, cost < self.cost)
+        good = further & np.isfinite(value)
         damping = np.where(good, RELIEF * self.damping, np.maximum(self.damping, FIRST_DAMPING) * self.growth)
         self.damping = np.maximum(damping, LEAST_DAMPING)
         self.growth = np.where(good, 1.0, 2.0 * self.growth)
-        slope = self.side[:, None] * asked.slopes(trial, np.diagonal(hessian, axis1=1, axis2=2))
+        slope = self.side[:, None] * asked.slopes(trial, _diagonal(hessian))
         if good.all():
             self.theta, self.gradient, self.slope, self.hessian = trial, gradient, slope, hessian
             self.cost, self.value = cost, value
@@ -181,6 +181,12 @@ def _parabola(objective: Objective, theta: FloatArray) -> tuple[FloatArray, Floa
     r, jacobian = objective.residuals(theta)
     gradient = (jacobian @ r[:, :, None])[:, :, 0]
     return 0.5 * np.vecdot(r, r), gradient, jacobian @ jacobian.swapaxes(1, 2)
+
+
+def _diagonal(matrix: FloatArray) -> FloatArray:
+    """Return a view of the diagonal of every row's matrix."""
+    rows, size, _ = matrix.shape
+    return matrix.reshape(rows, -1)[:, :: size + 1]
 
 
 def _judged(at: _Position, step: _Step) -> tuple[BoolArray, BoolArray]:
@@ -199,7 +205,7 @@ def _model_step(at: _Position, lower: FloatArray, upper: FloatArray) -> _Step:
     """Return the step to the furthest point of the parabola's contour that is inside the box."""
     to_lower, to_upper = lower - at.theta, upper - at.theta
     damped = at.hessian.copy()
-    diagonal = np.einsum("sii->si", damped)
+    diagonal = _diagonal(damped)
     diagonal += at.damping[:, None] * np.maximum(diagonal, SMALLEST_SCALE)
     low = (to_lower >= 0.0) & (at.slope < 0.0)
     high = (to_upper <= 0.0) & (at.slope > 0.0)
@@ -218,7 +224,7 @@ def _model_step(at: _Position, lower: FloatArray, upper: FloatArray) -> _Step:
             change &= np.cumsum(change, axis=1) == 1
         low = (low & ~(back_up & change)) | (below & change)
         high = (high & ~(back_down & change)) | (above & change)
-    step.delta = np.clip(step.delta, to_lower, to_upper)
+    step.delta = np.minimum(np.maximum(step.delta, to_lower), to_upper)
     return step
 
 
@@ -233,17 +239,20 @@ def _step_beside(
     """Return the step with some parameters put on their bounds."""
     held = low | high
     slope, gradient, system, base = at.slope, at.gradient, damped, at.cost
+    free_gradient = gradient
     if held.any():
         put = np.where(low, to_lower, np.where(high, to_upper, 0.0))
         moved = (damped @ put[:, :, None])[:, :, 0]
         base = base + np.vecdot(gradient, put) + 0.5 * np.vecdot(put, moved)
         slope = np.where(held, 0.0, slope)
-        gradient = np.where(held, -put, gradient + moved)
+        free_gradient = np.where(held, 0.0, gradient + moved)
+        gradient = np.where(held, -put, free_gradient)
         system = np.where(held[:, :, None] | held[:, None, :], 0.0, damped)
-        np.einsum("sii->si", system)[held] = 1.0
-    along, down = np.moveaxis(np.linalg.solve(system, np.stack([slope, gradient], axis=2)), 2, 0)
+        _diagonal(system)[held] = 1.0
+    found = np.linalg.solve(system, np.concatenate([slope[:, :, None], gradient[:, :, None]], axis=2))
+    along, down = found[:, :, 0], found[:, :, 1]
     reach = np.vecdot(slope, along)
-    fall = np.vecdot(np.where(held, 0.0, gradient), down)
+    fall = np.vecdot(free_gradient, down)
     room = at.limit - base + 0.5 * fall
     stuck = reach <= TINY
     pull = np.sqrt(2.0 * np.maximum(room, 0.0) / np.where(stuck, 1.0, reach))
