@@ -12,6 +12,8 @@ covariance          mixed   of the free parameters, each in its own unit
 """
 
 from shaftprint.identify._accuracy import Accuracy, predict_accuracy, predict_joint_accuracy
+from shaftprint.identify._compare import compare_fits, compare_structures
+from shaftprint.identify._comparison import Candidate, Comparison
 from shaftprint.identify._covariance import estimate_covariance
 from shaftprint.identify._criteria import Criteria, criteria_of
 from shaftprint.identify._directions import Direction
@@ -41,7 +43,9 @@ __all__ = [
     "PRIOR_OF_G",
     "STAN_TUG_NOISE",
     "Accuracy",
+    "Candidate",
     "Cluster",
+    "Comparison",
     "Criteria",
     "Direction",
     "Draw",
@@ -69,6 +73,8 @@ __all__ = [
     "Uniform",
     "Unweighted",
     "Weighting",
+    "compare_fits",
+    "compare_structures",
     "criteria_of",
     "estimate_covariance",
     "expected_response",
