@@ -1,6 +1,7 @@
-"""Files that are written whole or not at all."""
+"""Files that are written whole or not at all, and names for them."""
 
 import contextlib
+import re
 import secrets
 from collections.abc import Iterator
 from pathlib import Path
@@ -32,6 +33,11 @@ def written_whole(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
         part.replace(path)
     finally:
         part.unlink(missing_ok=True)
+
+
+def plain_name(text: str) -> str:
+    """Return a text as the stem of a file name: what some system forbids there becomes a hyphen."""
+    return re.sub(r'[\\/:*?"<>|\s]+', "-", text)
 
 
 def _expect_free(path: Path, *, overwrite: bool) -> None:

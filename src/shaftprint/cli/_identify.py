@@ -1,5 +1,6 @@
 """``shaftprint identify``: from a recording to a fingerprint."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -7,14 +8,15 @@ import click
 from shaftprint.cli._chain import fingerprint_of, fit, known_beforehand, measure
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_tables import print_fits
-from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
+from shaftprint.cli._inputs import campaign_option, load_trial, structure_sources, vessel_option
 from shaftprint.cli._known_values import named_prior, named_value
 from shaftprint.cli._output_folder import force_option, output_folder
+from shaftprint.cli._own_structure import OWN_FILE_HELP, chosen_structures, expect_response
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._results import where, write_results
 from shaftprint.errors import StructureError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted
-from shaftprint.models import Structure, structure
+from shaftprint.models import Structure
 from shaftprint.signals import Mode
 
 
@@ -28,7 +30,8 @@ from shaftprint.signals import Mode
     multiple=True,
     default=("GAUGE-CLOSED",),
     show_default=True,
-    help="Model structure; the fingerprint is of the first, others are fitted beside it.",
+    metavar="NAME",
+    help=f"Model structure: {OWN_FILE_HELP}. The fingerprint is of the first, others are fitted beside it.",
 )
 @click.option(
     "--prior",
@@ -85,11 +88,13 @@ def command(
     structures = _structures(names, dict(held))
     _expect_free(freed, structures)
     trial = load_trial(vessel, campaign)
+    trial = replace(trial, sources=(*trial.sources, *structure_sources(names)))
     weighting = Unweighted() if unweighted else MaximumLikelihood()
     with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode=mode, steps=steps)
         settings = {}
         for chosen in structures:
+            expect_response(chosen, measurement.responses)
             given = _given(chosen, structures, dict(priors))
             known = known_beforehand(chosen, trial.vessel, measurement.signals, given)
             settings[chosen.name] = Settings(
@@ -109,7 +114,7 @@ def command(
 
 def _structures(names: tuple[str, ...], held: dict[str, float]) -> tuple[Structure, ...]:
     """Return the structures with what is held in those that have it; each value must be of use in one."""
-    chosen = tuple({name.upper(): structure(name) for name in names}.values())
+    chosen = chosen_structures(names)
     unused = [name for name in held if not any(name in found.names for found in chosen)]
     if unused:
         raise StructureError(

@@ -1,7 +1,7 @@
 """The settings files that a command is given: vessel and campaign."""
 
 import hashlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -10,6 +10,7 @@ from typing import Any, Literal
 import click
 
 from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.cli._own_structure import own_file
 from shaftprint.fingerprint import SourceFile
 from shaftprint.settings import shipped_names
 from shaftprint.vessel import Vessel, load_vessel
@@ -41,6 +42,16 @@ def load_trial(vessel: str, campaign: str) -> Trial:
         vessel=load_vessel(vessel),
         campaign=load_campaign(campaign),
         sources=(_source("vessel", vessel), _source("campaign", campaign)),
+    )
+
+
+def structure_sources(names: Sequence[str]) -> tuple[SourceFile, ...]:
+    """Return the user's files that structures were taken from, each once, with their hashes."""
+    own = (own_file(name) for name in names)
+    paths = {found[0].resolve() for found in own if found is not None}
+    return tuple(
+        SourceFile(role="structure", name=path.name, sha256=hashlib.sha256(path.read_bytes()).hexdigest())
+        for path in sorted(paths)
     )
 
 

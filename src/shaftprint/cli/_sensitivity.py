@@ -1,5 +1,6 @@
 """``shaftprint sensitivity``: what each parameter does to the response."""
 
+import math
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
@@ -7,8 +8,9 @@ from typing import TYPE_CHECKING, TypeAlias
 import click
 
 from shaftprint.cli._output_folder import force_option, output_folder
+from shaftprint.cli._own_structure import chosen_structures
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.models import structure
+from shaftprint.files import plain_name
 from shaftprint.report import plot_sensitivity, save_figure, thesis_families
 
 if TYPE_CHECKING:
@@ -19,6 +21,19 @@ if TYPE_CHECKING:
 ALL_OF_THE_THESIS = "THESIS"
 
 
+def ascending(context: click.Context, parameter: click.Parameter, span: tuple[float, float]) -> tuple[float, float]:
+    """Return the span of frequencies as it was given.
+
+    Raises
+    ------
+    click.BadParameter
+        If it is not ascending.
+    """
+    if not 0.0 < span[0] < span[1] < math.inf:
+        raise click.BadParameter(f"expected ascending frequencies above 0 rad/s, found {span[0]:g} and {span[1]:g}.")
+    return span
+
+
 @click.command("sensitivity")
 @click.argument("name", metavar="STRUCTURE")
 @click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the figures.")
@@ -26,15 +41,27 @@ ALL_OF_THE_THESIS = "THESIS"
     "--format", "suffix", type=click.Choice(["svg", "png", "pdf"]), default="svg", show_default=True,
     help="Kind of picture.",
 )  # fmt: skip
+@click.option(
+    "--between",
+    "span",
+    type=float,
+    nargs=2,
+    metavar="LOWEST HIGHEST",
+    default=(0.01, 300.0),
+    show_default=True,
+    callback=ascending,
+    help="Frequencies to draw [rad/s]; not for the figures of the thesis.",
+)
 @force_option
 @no_progress_option
-def command(name: str, output: Path, suffix: str, force: bool, no_progress: bool) -> None:
+def command(name: str, output: Path, suffix: str, span: tuple[float, float], force: bool, no_progress: bool) -> None:
     """Draw what each parameter of a structure does to its response.
 
-    One figure an output: the Bode families of STRUCTURE with each free parameter varied between its bounds. With
-    `thesis` for STRUCTURE, the sensitivity figures of the thesis (4.2 to 4.8, B.1 to B.4, D.1).
+    One figure an output: the Bode families of STRUCTURE with each free parameter varied between its bounds. A
+    STRUCTURE such as my_ship.py:my_loop is one in a file of your own, which is Python and is run. With `thesis` for
+    STRUCTURE, the sensitivity figures of the thesis (4.2 to 4.8, B.1 to B.4, D.1).
     """
-    drawings = _of_the_thesis() if name.upper() == ALL_OF_THE_THESIS else _of_structure(name)
+    drawings = _of_the_thesis() if name.upper() == ALL_OF_THE_THESIS else _of_structure(name, span)
     with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
         steps.begin("Drawing", total=float(len(drawings)))
         for stem, draw in drawings.items():
@@ -44,9 +71,12 @@ def command(name: str, output: Path, suffix: str, force: bool, no_progress: bool
         click.echo(output / f"{stem}.{suffix}")
 
 
-def _of_structure(name: str) -> "Drawings":
-    chosen = structure(name)
-    return {f"{chosen.name}_{output}": partial(plot_sensitivity, chosen, output=output) for output in chosen.outputs}
+def _of_structure(name: str, span: tuple[float, float]) -> "Drawings":
+    (chosen,) = chosen_structures([name])
+    return {
+        plain_name(f"{chosen.name}_{output}"): partial(plot_sensitivity, chosen, output=output, span_rad_s=span)
+        for output in chosen.outputs
+    }
 
 
 def _of_the_thesis() -> "Drawings":

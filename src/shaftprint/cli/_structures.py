@@ -1,9 +1,10 @@
-"""``shaftprint structures``: the model structures that come with the package."""
+"""``shaftprint structures``: the model structures that come with the package, and the user's own."""
 
 import click
 
+from shaftprint.cli._own_structure import chosen_structures
 from shaftprint.cli._tables import print_table
-from shaftprint.models import STRUCTURES, Parameter, Structure, structure
+from shaftprint.models import STRUCTURES, Parameter, Structure
 
 
 @click.command("structures")
@@ -11,11 +12,12 @@ from shaftprint.models import STRUCTURES, Parameter, Structure, structure
 def command(names: tuple[str, ...]) -> None:
     """List the model structures with their parameters and bounds.
 
-    With one or more NAMEs only those. Held parameters keep their value unless they are freed.
+    With one or more NAMEs only those. A NAME such as my_ship.py:my_loop is a structure in a file of your
+    own, which is Python and is run. Held parameters keep their value unless they are freed.
     """
-    for chosen in [structure(name) for name in names or STRUCTURES]:
+    for chosen in chosen_structures(names or tuple(STRUCTURES)):
         print_table(
-            f"{chosen.name}: {chosen.title}, {chosen.input} -> {', '.join(chosen.outputs)}",
+            f"{chosen.name}: {chosen.title}, {', '.join(chosen.inputs)} -> {', '.join(chosen.outputs)}",
             ("parameter", "unit", "lower", "upper", "value", "meaning"),
             [_row(parameter) for parameter in chosen.parameters],
             numbers=(2, 3, 4),
@@ -31,7 +33,9 @@ def _row(parameter: Parameter) -> tuple[str, ...]:
 
 
 def _print_combinations(chosen: Structure) -> None:
+    tied = {tie.name: f"; follows from {', '.join(tie.arguments)}" for tie in chosen.ties}
     for combination in chosen.combinations:
-        click.echo(f"  {combination.name} [{combination.unit}]: {combination.meaning}")
+        follows = tied.get(combination.name, "")
+        click.echo(f"  {combination.name} [{combination.unit}]: {combination.meaning}{follows}")
     if chosen.combinations:
         click.echo()

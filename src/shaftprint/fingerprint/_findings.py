@@ -107,9 +107,11 @@ def _size(parameter: Parameter, estimate: Estimate) -> float:
 
 def _is_better(combination: Estimate, estimate: Estimate, identification: Identification) -> bool:
     of = next(c.of for c in identification.structure.combinations if c.name == combination.name)
-    values = dict(zip(identification.structure.names, identification.values.tolist(), strict=True))
-    moved = {**values, estimate.name: values[estimate.name] + max(1e-3, 1e-3 * abs(values[estimate.name]))}
-    if of(moved) == of(values):
+    values = identification.objective.named(identification.values)
+    place = identification.objective.names.index(estimate.name)
+    moved = identification.values.copy()
+    moved[place] += max(1e-3, 1e-3 * abs(moved[place]))
+    if of(identification.objective.named(moved)) == of(values):
         return False
     share = combination.std / max(abs(combination.value), 1e-300)
     return share < BETTER_KNOWN * estimate.std / max(abs(estimate.value), 1e-300)

@@ -46,7 +46,7 @@ class Quantity(_Record):
 class SourceFile(_Record):
     """A file that went into the fingerprint."""
 
-    role: Literal["recording", "vessel", "campaign"]
+    role: Literal["recording", "vessel", "campaign", "structure"]
     """What it is."""
     name: str
     """File name or the name of a shipped file."""

@@ -37,20 +37,24 @@ def margin_quantities(identification: Identification, profile: Profile | None = 
     if identification.structure.loop is None:
         return ()
 
+    names = identification.structure.names
+    experiment = identification.objective.experiments[0]
+
     # all three margins are asked for at the same points, and each point costs a sweep of the loop
     @cache
     def at(values: tuple[float, ...]) -> Margins:
         return margins(identification.structure, values)
 
     def follow(number: Callable[[Margins], float]) -> Callable[[Mapping[str, float]], float]:
-        return lambda named: number(at(tuple(float(value) for value in named.values())))
+        return lambda named: number(at(tuple(float(named[name]) for name in names)))
 
     found = []
     for name, unit, number, meaning in MARGINS:
         estimate = identification.derived(name, unit, follow(number))
         if not np.isfinite(estimate.value):
             continue
-        reached = [] if profile is None else [number(at(tuple(point))) for point in profile.points.tolist()]
+        points = [] if profile is None else [experiment.own(point).tolist() for point in profile.points]
+        reached = [number(at(tuple(point))) for point in points]
         interval = (min(*reached, estimate.value), max(*reached, estimate.value)) if reached else None
         found.append(
             Quantity(

@@ -47,9 +47,11 @@ def physical_quantities(
     torque, sensor = working_point.shaft_torque_nm, vessel.sensors.shaft_torque
     gauge = sensor.scale_std_fraction or 0.0
     torque_share = float(np.hypot(working_point.shaft_torque_std_nm / torque, gauge))
+    structure = identification.structure
+    names = {*structure.names, *(tie.name for tie in structure.ties)}
     found = []
     for item in _catalogue(working_point, vessel):
-        if not set(item.needs) <= set(identification.structure.names):
+        if not set(item.needs) <= names:
             continue
         estimate = identification.derived(item.name, item.unit, item.of)
         value = item.factor * estimate.value

@@ -29,6 +29,7 @@ from shaftprint.models._blocks import (
     SecondOrderLag,
 )
 from shaftprint.models._catalogue import STRUCTURES, structure
+from shaftprint.models._check import check_structure
 from shaftprint.models._combination import Combination
 from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor
 from shaftprint.models._expression import Expression, Inverse, Sensitivity, feedback
@@ -68,6 +69,7 @@ __all__ = [
     "Structure",
     "Tie",
     "TorqueBalance",
+    "check_structure",
     "feedback",
     "is_stable",
     "loop_gain",

@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
+from shaftprint.files import plain_name
+from shaftprint.report._bode import plot_bode
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
 from shaftprint.report._explanation import can_explain, explain_thesis
 from shaftprint.report._explanation_figure import plot_missing_damping
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
 ROWS_A_FIGURE = 4
 GOVERNOR = ("OL2", "OL3", "OL4", "OL5")
 CLOSED = ("CL1", "CL3", "CL4", "BENCHMARK")
+OF_THE_THESIS = ("OL1", *GOVERNOR, *CLOSED)
 BAND_NOTE = "Bands hold the noise only: of a structure that does not explain the data they are too narrow."
 
 
@@ -83,11 +86,30 @@ def explanation_section(inputs: Inputs) -> list[Section]:
 
 
 def structure_section(inputs: Inputs) -> list[Section]:
-    """Return the structures of the thesis fitted to shaftprint's responses; nothing where there are none."""
+    """Return the structures of the thesis and others on shaftprint's responses; nothing where there are none."""
     if not inputs.fits:
         return []
     pictures = fit_pictures(inputs.fits, inputs.spectra.response, inputs.aliasing_limit_hz, prefix="structures")
-    return [Section(key="structures", title="The thesis' structures on shaftprint's responses", pictures=pictures)]
+    others = [fit for name, fit in inputs.fits.items() if name not in OF_THE_THESIS]
+    what = "Other" if others else "The thesis'"
+    return [
+        Section(
+            key="structures",
+            title=f"{what} structures on shaftprint's responses",
+            pictures=[*pictures, *(_other_fit(fit, inputs.aliasing_limit_hz) for fit in others)],
+        )
+    ]
+
+
+def _other_fit(fit: "Identification", limit_hz: float) -> Picture:
+    """Return a structure that the thesis does not have beside the response that it was fitted to."""
+    name = fit.structure.name
+    return Picture(
+        name=f"structures_{plain_name(name.lower())}",
+        caption=f"{name}: {fit.structure.title}, with data. {BAND_NOTE}",
+        alt=f"Bode diagram of the model {name} and the measured points.",
+        draw=partial(plot_bode, [Curve.of(fit)], data=fit.response, aliasing_limit_hz=limit_hz),
+    )
 
 
 def fit_pictures(
@@ -148,7 +170,7 @@ def sensitivity_section(inputs: Inputs) -> list[Section]:
             names = free[first : first + ROWS_A_FIGURE]
             pictures.append(
                 Picture(
-                    name=f"sensitivity_{model.name.lower()}_{first // ROWS_A_FIGURE + 1}",
+                    name=f"sensitivity_{plain_name(model.name.lower())}_{first // ROWS_A_FIGURE + 1}",
                     caption=(
                         f"{model.name}: {', '.join(names)} varied one at a time between the bounds, the others at "
                         f"their {'identified' if same else 'default'} values."

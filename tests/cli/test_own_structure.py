@@ -1,0 +1,310 @@
+"""A structure from a file of the user's, wherever a command takes the name of one."""
+
+import json
+import sys
+import textwrap
+
+import pytest
+
+from shaftprint.cli._own_structure import chosen_structures, own_file
+from shaftprint.errors import StructureError
+from shaftprint.fingerprint import read_fingerprint
+
+GIVEN = ("--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress")
+
+CORE = """
+    from shaftprint.models import Parameter, RationalBlock, Structure
+
+    TAU = Parameter("inertia", "s", 0.0, 2.0, 0.3, "inertia time behind the gauge")
+    SLOPE = Parameter("slope", "-", 1.0, 3.0, 2.0, "slope of the load")
+
+    my_core = Structure(
+        name="MY-CORE",
+        title="core propulsion of my ship",
+        input="M_s",
+        outputs={"n": RationalBlock(lambda tau, k: ([1.0], [tau, k]), (TAU, SLOPE))},
+    )
+"""
+
+LOOP = """
+    from dataclasses import dataclass, replace
+
+    import numpy as np
+
+    from shaftprint.models import Parameter, structure
+
+
+    @dataclass
+    class Note:
+        text: "str"
+
+
+    def my_loop():
+        \"\"\"The thesis' CL4 with a reset time for the integral gain, and the logarithm of the inertia time.\"\"\"
+        loop = structure("CL4").tied("K_i", lambda K_p, T_i: K_p / T_i, Parameter("T_i", "s", 0.1, 10.0, 1.0, "reset"))
+        log_tau = Parameter("log_tau", "-", -3.0, 1.0, -1.0, "logarithm of the inertia time")
+        return replace(loop.tied("tau_n", lambda log_tau: np.exp(log_tau), log_tau), name="MY/LOOP", title="own")
+"""
+
+
+@pytest.fixture
+def written(tmp_path, monkeypatch):
+    """Write a file into the working folder."""
+    monkeypatch.chdir(tmp_path)
+
+    def write(text, name="my_ship.py"):
+        (tmp_path / name).write_text(textwrap.dedent(text), encoding="utf-8")
+        return tmp_path / name
+
+    return write
+
+
+@pytest.mark.parametrize(
+    ("text", "path", "name"),
+    [
+        ("my_ship.py:my_loop", "my_ship.py", "my_loop"),
+        (r"C:\ships\my_ship.py:my_loop", r"C:\ships\my_ship.py", "my_loop"),
+        (r"C:\ships\my_ship.py", r"C:\ships\my_ship.py", ""),
+        ("/home/me/a b.py:x", "/home/me/a b.py", "x"),
+        ("my_ship.PY:x", "my_ship.PY", "x"),
+        ("my_ship.py:", "my_ship.py", ""),
+    ],
+)
+def test_file_and_name_are_told_apart(text, path, name):
+    found = own_file(text)
+    assert (str(found[0]), found[1]) == (path, name)
+
+
+@pytest.mark.parametrize("text", ["CL4", "gauge-closed", "OL-PID"])
+def test_a_shipped_name_is_no_file(text):
+    assert own_file(text) is None
+
+
+def test_an_own_structure_is_fitted_from_the_command_line(run, recording, written, tmp_path):
+    written(CORE)
+    result = run("identify", recording, *GIVEN, "--structure", "my_ship.py:my_core", "-o", tmp_path / "out")
+    assert result.exit_code == 0, result.stderr
+    found = read_fingerprint(tmp_path / "out" / "fingerprint.json")
+    assert found.structure == "MY-CORE"
+    # the truth of the simulated tug, 17 kg m2 behind the gauge at its working point, and a quadratic propeller
+    assert found.quantity("inertia").value == pytest.approx(0.3172, rel=0.02)
+    assert found.quantity("slope").value == pytest.approx(2.0, rel=0.02)
+    # the names mean nothing to shaftprint, so there is no inertia in kg m2, but the working point's torque coefficient
+    assert [quantity.name for quantity in found.physical] == ["K_Q"]
+    assert found.margins == ()
+    # the file is one of the sources, with its hash
+    assert [(source.role, source.name) for source in found.sources][-1] == ("structure", "my_ship.py")
+    page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    assert "MY-CORE" in page
+    assert "inertia time behind the gauge" in page
+    # nothing is left beside the user's file
+    assert not (tmp_path / "__pycache__").exists()
+    assert run("show", tmp_path / "out").exit_code == 0
+
+
+def test_ties_go_through_the_whole_chain(run, recording, written, tmp_path):
+    written(LOOP)
+    options = ("--structure", "my_ship.py:my_loop", "--structure", "CL4", "--structure", "GAUGE-CORE")
+    result = run("identify", recording, *GIVEN, *options, "-o", tmp_path / "out")
+    assert result.exit_code == 0, result.stderr
+    found = read_fingerprint(tmp_path / "out" / "fingerprint.json")
+    table = result.output[result.output.index("All structures") :]
+    assert all(name in table for name in ("MY/LOOP", "CL4", "GAUGE-CORE"))
+    assert {"T_i", "log_tau"} <= {quantity.name for quantity in found.parameters}
+    # a tied parameter is reported as a combination, with a physical value and margins as if it were free
+    direct = json.loads((tmp_path / "out" / "fingerprint.json").read_text(encoding="utf-8"))
+    assert {entry["name"] for entry in direct["combinations"]} == {"tau_n", "K_i"}
+    k_p, k_i, t_i = (found.quantity(name).value for name in ("K_p", "K_i", "T_i"))
+    assert k_i == pytest.approx(k_p / t_i, rel=1e-9)
+    assert found.quantity("I").value > 0.0
+    assert found.quantity("gain margin").interval_95 is not None
+    figures = {path.stem for path in (tmp_path / "out" / "figures").iterdir()}
+    assert {"sensitivity_my-loop_1", "structures_5_3", "structures_gauge-core"} <= figures
+
+
+def test_the_same_optimum_with_and_without_ties(run, recording, written, tmp_path):
+    written(LOOP)
+    for name, chosen in (("tied", "my_ship.py:my_loop"), ("plain", "CL4")):
+        assert run("identify", recording, *GIVEN, "--structure", chosen, "-o", tmp_path / name).exit_code == 0
+    tied, plain = (read_fingerprint(tmp_path / name / "fingerprint.json") for name in ("tied", "plain"))
+    for name in ("K_i", "tau_n", "t_d", "gain margin", "I"):
+        assert tied.quantity(name).value == pytest.approx(plain.quantity(name).value, rel=1e-3), name
+        assert tied.quantity(name).std == pytest.approx(plain.quantity(name).std, rel=2e-2), name
+
+
+def test_a_structure_of_other_channels_is_refused_with_those_that_there_are(run, recording, written, tmp_path):
+    written(CORE.replace('input="M_s"', 'input="voltage"').replace('"n":', '"omega_1":'))
+    result = run("identify", recording, *GIVEN, "--structure", "my_ship.py:my_core", "-o", tmp_path / "out")
+    assert result.exit_code == 1
+    assert "structure MY-CORE goes from voltage to omega_1" in result.stderr
+    assert "n_set to n, M_s; e to M_s; M_s to n" in result.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_an_output_that_the_recording_lacks_is_refused(run, recording, tmp_path):
+    result = run("identify", recording, *GIVEN, "--structure", "INITIAL", "-o", tmp_path / "out")
+    assert result.exit_code == 1
+    assert "structure INITIAL goes from n_set to n, E_n, M_s" in result.stderr
+
+
+def test_parameters_outputs_and_combinations_are_listed(run, written):
+    written(LOOP + "\n\n    core = structure('OL1')\n")
+    result = run("structures", "my_ship.py:my_loop")
+    assert result.exit_code == 0, result.stderr
+    assert result.output.startswith("MY/LOOP: own, n_set -> n, M_s\n")
+    rows = {line.split()[0]: line.split() for line in result.output.splitlines() if line.strip()}
+    assert rows["T_i"][1:4] == ["s", "0.1", "10"]
+    assert "  tau_n [s]: inertia time" in result.output
+    assert "follows from log_tau" in result.output
+
+
+def test_several_inputs_are_listed(run, written):
+    written(
+        """
+        from shaftprint.models import Gain, Parameter, Structure
+
+        a, b = (Gain(Parameter(name, "mm/N", 0.0, 1.0, 0.1, name)) for name in "ab")
+        pair = Structure(name="PAIR", title="p", inputs=("F_1", "F_2"), outputs={"x": {"F_1": a, "F_2": b}})
+        """
+    )
+    assert run("structures", "my_ship.py:pair").output.startswith("PAIR: p, F_1, F_2 -> x\n")
+
+
+def test_sensitivity_of_an_own_structure(run, written, tmp_path):
+    written(LOOP)
+    result = run("sensitivity", "my_ship.py:my_loop", "--between", 0.1, 50, "-o", "out", "--format", "png")
+    assert result.exit_code == 0, result.stderr
+    assert {path.name for path in (tmp_path / "out").glob("*.png")} == {"MY-LOOP_n.png", "MY-LOOP_M_s.png"}
+    again = run("sensitivity", "my_ship.py:my_loop", "--between", 50, 0.1, "-o", "out")
+    assert again.exit_code == 2
+    assert "expected ascending frequencies above 0 rad/s, found 50 and 0.1" in again.stderr
+
+
+def test_the_file_may_import_one_beside_it(written):
+    written("GAIN = 2.5\n", "my_numbers.py")
+    written(
+        """
+        from my_numbers import GAIN
+        from shaftprint.models import structure
+
+        line = structure("OL2").held_at(K_p=GAIN)
+        """
+        + NAMED
+    )
+    before = list(sys.path)
+    (found,) = chosen_structures(["my_ship.py:line"])
+    assert found.parameters[0].value == 2.5
+    assert sys.path == before
+
+
+NAMED = """
+        from dataclasses import replace
+
+        line = replace(line, name="LINE")
+"""
+
+
+def test_one_file_is_run_once_and_a_changed_one_again(written):
+    path = written("print('run')" + CORE.replace("\n    ", "\n"))
+    first = chosen_structures(["my_ship.py:my_core", f"{path}:my_core"])
+    assert len(first) == 1
+    path.write_text(path.read_text().replace('"inertia"', '"J"'))
+    assert chosen_structures(["my_ship.py:my_core"])[0].names == ("J", "slope")
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "message"),
+    [
+        (None, "none.py:x", "none.py: expected a Python file, found nothing there."),
+        (None, "folder.py:x", "folder.py: expected a Python file, found a folder."),
+        (
+            "",
+            "my_ship.txt:x",
+            "my_ship.txt:x: expected a file whose name ends in .py and the name of a structure",
+        ),
+        (CORE, "my_ship.py", "my_ship.py: expected the name of a structure in it, such as my_ship.py:my_core"),
+        (CORE, "my_ship.py:my_cor", "my_ship.py: found no my_cor; its structures are my_core."),
+        ("x = 1", "my_ship.py:y", "my_ship.py: found no y, and no other structure in it."),
+        (LOOP, "my_ship.py:loop", "my_ship.py: found no loop; its structures are my_loop."),
+        ("x = 1", "my_ship.py:x", "my_ship.py:x: expected a Structure, or a function without arguments that returns"),
+        ("def x():\n    return [1]", "my_ship.py:x", "my_ship.py:x: expected a Structure, found list."),
+        (
+            "def x(a, b=1):\n    return a",
+            "my_ship.py:x",
+            "my_ship.py:x: expected a function without arguments, found",
+        ),
+        (
+            "import nothing_there",
+            "my_ship.py:x",
+            "my_ship.py, line 1: ModuleNotFoundError: No module named",
+        ),
+        ("x = 1\ny = x +\n", "my_ship.py:x", "my_ship.py, line 2: SyntaxError: invalid syntax."),
+        (
+            "def f():\n    return 1 / 0\n\n\nx = f()",
+            "my_ship.py:x",
+            "my_ship.py, line 2: ZeroDivisionError: division",
+        ),
+        ("def x():\n    raise KeyError('k')", "my_ship.py:x", "my_ship.py, line 2: KeyError: 'k'."),
+        ("raise SystemExit(3)", "my_ship.py:x", "my_ship.py, line 1: SystemExit: 3."),
+        ("raise ValueError", "my_ship.py:x", "my_ship.py, line 1: ValueError."),
+        (
+            "from shaftprint.models import Parameter\n\nx = Parameter('K', '-', 2.0, 1.0, 1.5, 'gain')",
+            "my_ship.py:x",
+            "my_ship.py, line 3: parameter K: expected lower bound < upper bound, found 2.0 and 1.0.",
+        ),
+        (
+            "from shaftprint.models import structure\n\nCL4 = structure('CL4').held_at(zeta=0.5)",
+            "my_ship.py:CL4",
+            "my_ship.py:CL4: its name CL4 is that of a shipped structure; give it its own, with "
+            'dataclasses.replace(structure, name="...").',
+        ),
+        (
+            """
+            from shaftprint.models import FunctionBlock, Parameter, Structure
+
+            def lag(s, t):
+                return 1.0 / (s * t + 1.0) if t > 0.0 else 0.0 * s
+
+            x = Structure(name="X", title="x", input="M_s", outputs={
+                "n": FunctionBlock(lag, (Parameter("T", "s", 0.0, 1.0, 0.5, "time"),))})
+            """,
+            "my_ship.py:x",
+            "my_ship.py, line 5: ValueError: The truth value of an array with more than one element is ambiguous.",
+        ),
+        (
+            """
+            from shaftprint.models import FunctionBlock, Parameter, Structure
+
+            x = Structure(name="X", title="x", input="M_s", outputs={
+                "n": FunctionBlock(lambda s, t: t * abs(s) * 1j, (Parameter("T", "s", 0.0, 1.0, 0.5, "time"),))})
+            """,
+            "my_ship.py:x",
+            "my_ship.py:x: structure X, block FunctionBlock of T: its response at -s is not the conjugate",
+        ),
+    ],
+)
+def test_what_is_wrong_with_a_file_is_one_sentence(run, written, tmp_path, text, name, message):
+    (tmp_path / "folder.py").mkdir()
+    if text is not None:
+        written(text, name.rpartition(":")[0] or name)
+    result = run("structures", name)
+    assert result.exit_code == 1
+    assert result.stderr.startswith("Error: ")
+    assert message in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+    assert "Traceback" not in result.output
+
+
+def test_two_structures_of_one_name_cannot_stand_beside_each_other(written):
+    written(CORE)
+    written(CORE, "sister.py")
+    with pytest.raises(StructureError, match=r"two structures have the name MY-CORE, my_ship\.py:my_core and si"):
+        chosen_structures(["my_ship.py:my_core", "sister.py:my_core"])
+
+
+def test_a_fault_while_a_file_runs_leaves_the_path_as_it_was(written):
+    written("raise ValueError('x')")
+    before = list(sys.path), set(sys.modules)
+    with pytest.raises(StructureError):
+        chosen_structures(["my_ship.py:x"])
+    assert list(sys.path) == before[0]
