@@ -1,8 +1,9 @@
 """One response in the likelihood: its structure, lines, weights, and where its parameters stand among all.
 
-With the residual vector ``r = W (y - f(theta))`` over ``[Re, Im]`` of every used line and channel, the cost of an
-experiment is ``r^T r / 2``. For maximum likelihood ``W^T W`` is the inverse of the full covariance of each line;
-unweighted (the thesis' way) ``W`` holds output weights only.
+With the weighted residuals ``r = W (y - f(theta))`` over ``[Re, Im]`` of every used line and channel, the cost of an
+experiment is ``r^T r / 2``. For maximum likelihood ``W^T W`` is the inverse of the full covariance of each line, and
+where that was estimated the residuals of a line are shortened (``Tails``); unweighted (the thesis' way) ``W`` holds
+output weights only.
 """
 
 from abc import ABC, abstractmethod
@@ -13,6 +14,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.errors import IdentificationError
+from shaftprint.identify._tails import Tails, excess_freedom
 from shaftprint.identify._weighting import Weighting
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
@@ -24,20 +26,31 @@ class Term(ABC):
     __slots__ = ()
 
     @abstractmethod
-    def table(self, theta: FloatArray, measured: ComplexArray | None = None) -> FloatArray:
+    def table(self, theta: FloatArray) -> FloatArray:
         """Return residuals and below them their derivatives, shape (starts, 1 + free, rows).
 
         Parameters
         ----------
         theta
             Free parameters of this term, shape (starts, free).
-        measured
-            Other data than its own for each start, in the term's own shape.
         """
 
     @abstractmethod
-    def residual_covariance(self) -> FloatArray:
-        """Return the covariance of the residuals at the true parameters, shape (rows, rows)."""
+    def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
+        """Return rows whose products are the information, and what their noise is.
+
+        Parameters
+        ----------
+        theta
+            Free parameters of this term, shape (free,).
+        expected
+            Whether to average over the noise instead of taking the data as they are.
+
+        Returns
+        -------
+            Derivatives ``J``, shape (free, rows), so that ``J J^T`` is the second derivative of the cost, and ``V``,
+            shape (rows, rows), so that ``J V J^T`` is the covariance of its slope.
+        """
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -64,6 +77,8 @@ class Experiment(Term):
     """How lines and outputs are weighed."""
     weights: FloatArray
     """``W`` of each line, shape (lines, size, size)."""
+    tails: Tails
+    """How much lines far from the model count."""
     elements: tuple[tuple[int, int, FloatArray], ...]
     """Row, column and elements of ``-W``, shape (lines,), where they are not all zero; those of the diagonal first."""
     held: FloatArray
@@ -85,39 +100,53 @@ class Experiment(Term):
         """Return the parameters of the structure, shape (..., parameters), from those of the objective."""
         return self.complete(values[..., self.places])
 
-    def table(self, theta: FloatArray, measured: ComplexArray | None = None) -> FloatArray:
+    def table(
+        self, theta: FloatArray, measured: ComplexArray | None = None, weights: FloatArray | None = None
+    ) -> FloatArray:
         """Return residuals, those of one channel's real or imaginary part side by side, and their derivatives.
 
         Parameters
         ----------
         measured
             Other data of the fitted lines for each start, shape (starts, channels, lines).
+        weights
+            Other weights ``W`` for each start, shape (starts, lines, size, size).
         """
-        stacked = self.structure.stacked(self.complete(theta), self.s, factors=self.factors)
-        stacked[:, 0] -= self.measured if measured is None else measured
-        shaped = self.weighting.shaped(self._weighted(stacked))
+        elements = self.elements if weights is None else _elements(weights)
+        weighted = _weighted(self._stacked(theta, measured), elements)
+        shaped = weighted if self.tails.normal else self.tails.shaped(weighted)
         return shaped.reshape(*shaped.shape[:2], -1)
 
-    def residual_covariance(self) -> FloatArray:
-        """Return ``W C W^T`` in the order of the residuals."""
+    def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
+        """Return rows whose products are the information, and ``W C W^T`` in their order, or 1 for a likelihood."""
+        table = _weighted(self._stacked(theta[None, :], None), self.elements)
+        rows = np.sqrt(self.tails.information) * table[:, 1:] if expected else self.tails.curvature(table)
         lines, size = self.data.shape
-        covariance = np.zeros((lines * size, lines * size))
+        if self.weighting.is_likelihood:
+            return rows.reshape(theta.size, -1), np.eye(lines * size)
+        noise = np.zeros((lines * size, lines * size))
         place = np.arange(size)[None, :] * lines + np.arange(lines)[:, None]
-        blocks = self.weights @ self.covariance @ self.weights.swapaxes(1, 2)
-        covariance[place[:, :, None], place[:, None, :]] = blocks
-        return covariance
+        blocks = self.weights @ self.noise_covariance @ self.weights.swapaxes(1, 2)
+        noise[place[:, :, None], place[:, None, :]] = blocks
+        return rows.reshape(theta.size, -1), noise
 
-    def _weighted(self, stacked: ComplexArray) -> FloatArray:
-        """Return ``-W`` times [Re, Im] of stacked responses, shape (starts, stack, size, lines), element by element."""
-        starts, count, channels, lines = stacked.shape
-        table = np.empty((starts, count, 2 * channels, lines))
-        for row, column, weight in self.elements:
-            part = (stacked.real if column < channels else stacked.imag)[:, :, column % channels]
-            if row == column:
-                np.multiply(part, weight, out=table[:, :, row])
-            else:
-                table[:, :, row] += part * weight
-        return table
+    @property
+    def freedom(self) -> FloatArray:
+        """Real degrees of freedom behind the covariance of each fitted line, shape (lines,)."""
+        return self.response.degrees_of_freedom[self.fitted]
+
+    @property
+    def noise_covariance(self) -> FloatArray:
+        """Covariance of the data without the factor that makes it right as a weight, shape (lines, size, size)."""
+        size = self.data.shape[1]
+        known = np.isinf(self.freedom)
+        share = np.where(known, 1.0, excess_freedom(self.freedom, size) / np.where(known, 1.0, self.freedom))
+        return share[:, None, None] * self.covariance
+
+    def _stacked(self, theta: FloatArray, measured: ComplexArray | None) -> ComplexArray:
+        stacked = self.structure.stacked(self.complete(theta), self.s, factors=self.factors)
+        stacked[:, 0] -= self.measured if measured is None else measured
+        return stacked
 
 
 def build_experiment(
@@ -157,6 +186,7 @@ def build_experiment(
         covariance=covariance,
         weighting=weighting,
         weights=weights,
+        tails=weighting.tails(taken.degrees_of_freedom[fitted], covariance.shape[1]),
         elements=_elements(weights),
         held=structure.vector({}),
         free=tuple(i for i, p in enumerate(structure.parameters) if not p.held),
@@ -181,10 +211,35 @@ def load_factors(response: FrequencyResponse, chosen: BoolArray | None = None) -
 
 
 def _elements(weights: FloatArray) -> tuple[tuple[int, int, FloatArray], ...]:
-    """Return row, column and elements of ``-W`` where they are not all zero, the diagonal first."""
-    size = weights.shape[1]
-    rest = [(i, j) for i in range(size) for j in range(size) if i != j and weights[:, i, j].any()]
-    return tuple((i, j, -weights[:, i, j]) for i, j in [*((i, i) for i in range(size)), *rest])
+    """Return row, column and elements of ``-W`` where they are not all zero, the diagonal first.
+
+    Parameters
+    ----------
+    weights
+        Shape (lines, size, size), or (starts, lines, size, size).
+
+    Returns
+    -------
+        The elements of shape (lines,), or (starts, 1, lines).
+    """
+    size = weights.shape[-1]
+    pairs = [(i, i) for i in range(size)]
+    pairs += [(i, j) for i in range(size) for j in range(size) if i != j and weights[..., i, j].any()]
+    found = ((i, j, -weights[..., i, j]) for i, j in pairs)
+    return tuple((i, j, w if w.ndim == 1 else w[:, None]) for i, j, w in found)
+
+
+def _weighted(stacked: ComplexArray, elements: tuple[tuple[int, int, FloatArray], ...]) -> FloatArray:
+    """Return ``-W`` times [Re, Im] of stacked responses, shape (starts, stack, size, lines), element by element."""
+    starts, count, channels, lines = stacked.shape
+    table = np.empty((starts, count, 2 * channels, lines))
+    for row, column, weight in elements:
+        part = (stacked.real if column < channels else stacked.imag)[:, :, column % channels]
+        if row == column:
+            np.multiply(part, weight, out=table[:, :, row])
+        else:
+            table[:, :, row] += part * weight
+    return table
 
 
 def _fitted_lines(response: FrequencyResponse, lines: Sequence[str] | None) -> BoolArray:

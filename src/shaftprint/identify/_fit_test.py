@@ -1,4 +1,12 @@
-"""Does the structure explain the data within their noise? Squared distances of the lines, and their sum."""
+"""Does the structure explain the data within their noise? Squared distances of the lines, and their sum.
+
+Where the covariance of a line of ``m`` real numbers is known, its squared distance ``d^2`` from the true model is a
+chi-square of ``m`` degrees of freedom. Where it was estimated from ``nu`` of them, ``d^2`` is a scaled F variable: in
+the complex form of Hotelling's (Giri, On the complex analogues of T^2- and R^2-tests, 1965), with weights that are
+right on average, ``m (nu - m) / (nu - m + 2) F(m, nu - m + 2)``. Its share of the sum is then
+``(nu - m + 2) log(1 + d^2 / (nu - m))``, which is nearly a chi-square again: the sum of ``m / 2`` independent
+exponential variables of means ``2``, ``2 (nu - m + 2) / (nu - m + 4)``, ...
+"""
 
 from dataclasses import dataclass
 
@@ -8,6 +16,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.identify._chi_square import chi_square_tail
 from shaftprint.identify._f_distribution import f_tail
 from shaftprint.identify._objective import Objective
+from shaftprint.identify._tails import excess_freedom
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -21,24 +30,37 @@ class LineTest:
     distance: float
     """Squared distance ``d^2 = (y - f)^T C^-1 (y - f)``: of the order of the number of real data of a line."""
     p_value: float
-    """Probability that the true model is that far away or farther."""
+    """Probability that the true model is that far away or farther; the fitted one is a little nearer."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class FitTest:
     """Whether the structure explains the data within their noise."""
 
     chi_square: float
-    """Sum of the squared distances of all lines, and of the squared rows of priors."""
+    """Sum over all lines, and of the squared rows of priors."""
     degrees_of_freedom: int
     """Number of data and prior rows minus the number of free parameters."""
-    p_value: float | None
-    """Probability of a sum that large or larger if the structure holds; None where nothing is left to test."""
+    mean: float
+    """What the sum is on average if the structure holds; the degrees of freedom where all covariances are known."""
+    variance: float
+    """Variance of the sum; twice the degrees of freedom where all covariances are known."""
     lines: tuple[LineTest, ...]
     """Each fitted line, experiment by experiment."""
 
+    @property
+    def p_value(self) -> float | None:
+        """Probability of a sum that large or larger if the structure holds; None where nothing is left to test.
 
-def whitened(objective: Objective, values: FloatArray) -> tuple[FloatArray, ...]:
+        From the multiple of a chi-square that has its mean and variance.
+        """
+        if self.degrees_of_freedom <= 0 or not (self.mean > 0.0 and self.variance > 0.0):
+            return None
+        scale = 0.5 * self.variance / self.mean
+        return chi_square_tail(self.chi_square / scale, self.mean / scale)
+
+
+def whitened_residuals(objective: Objective, values: FloatArray) -> tuple[FloatArray, ...]:
     """Return ``L^-1 (y - f)`` of every experiment's lines, each of shape (lines, 2 channels)."""
     found = []
     for experiment in objective.experiments:
@@ -48,31 +70,56 @@ def whitened(objective: Objective, values: FloatArray) -> tuple[FloatArray, ...]
     return tuple(found)
 
 
-def tested_fit(objective: Objective, values: FloatArray) -> FitTest:
-    """Return the test of fit at the given parameters."""
-    lines = tuple(
-        line
-        for number, residuals in enumerate(whitened(objective, values))
-        for line in _line_tests(objective, number, residuals)
-    )
+def tested_fit(objective: Objective, values: FloatArray, whitened: tuple[FloatArray, ...]) -> FitTest:
+    """Return the test of fit at the given parameters.
+
+    Parameters
+    ----------
+    whitened
+        The residuals there.
+    """
     theta = values[list(objective.free)]
     index = objective.prior_rows[:, 0].astype(int)
     prior = (theta[index] - objective.prior_rows[:, 1]) * objective.prior_rows[:, 2] * objective.prior_counts
-    total = sum(line.distance for line in lines) + float(prior @ prior)
-    freedom = objective.data_count + int(objective.prior_counts.sum()) - theta.size
+    total, spare = float(prior @ prior), int(objective.prior_counts.sum()) - theta.size
+    mean, variance = float(spare), 2.0 * spare
+    lines: list[LineTest] = []
+    for number, residuals in enumerate(whitened):
+        squares = np.sum(residuals**2, axis=1)
+        excess = excess_freedom(objective.experiments[number].freedom, residuals.shape[1])
+        total += float(np.sum(_shares(squares, excess)))
+        means, variances = _moments(excess, residuals.shape[1])
+        mean, variance = mean + float(means.sum()), variance + float(variances.sum())
+        lines += _line_tests(objective, number, squares, excess)
     return FitTest(
         chi_square=total,
-        degrees_of_freedom=freedom,
-        p_value=chi_square_tail(total, freedom) if freedom > 0 else None,
-        lines=lines,
+        degrees_of_freedom=objective.data_count + spare,
+        mean=mean,
+        variance=variance,
+        lines=tuple(lines),
     )
 
 
-def _line_tests(objective: Objective, number: int, residuals: FloatArray) -> list[LineTest]:
+def _shares(squares: FloatArray, excess: FloatArray) -> FloatArray:
+    """Return what each line adds to the sum."""
+    known = np.isinf(excess)
+    finite = np.where(known, 1.0, excess)
+    return np.where(known, squares, (finite + 2.0) * np.log1p(squares / finite))
+
+
+def _moments(excess: FloatArray, size: int) -> tuple[FloatArray, FloatArray]:
+    """Return mean and variance of what each line adds to the sum."""
+    steps = 2.0 * np.arange(size // 2)[:, None]
+    means = 2.0 / (1.0 + steps / (excess + 2.0))
+    return means.sum(axis=0), (means**2).sum(axis=0)
+
+
+def _line_tests(objective: Objective, number: int, squares: FloatArray, excess: FloatArray) -> list[LineTest]:
     experiment = objective.experiments[number]
-    size = residuals.shape[1]
+    size = experiment.data.shape[1]
     names = [name for name, taken in zip(experiment.response.lines, experiment.fitted, strict=True) if taken]
+    scaled = squares * (1.0 + 2.0 / excess) / size
     return [
-        LineTest(experiment=number, name=name, distance=float(d), p_value=f_tail(float(d) / size, size, np.inf))
-        for name, d in zip(names, np.sum(residuals**2, axis=1), strict=True)
+        LineTest(experiment=number, name=name, distance=float(d), p_value=f_tail(float(f), size, float(k) + 2.0))
+        for name, d, f, k in zip(names, squares, scaled, excess, strict=True)
     ]

@@ -9,7 +9,7 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify._covariance import estimate_covariance
 from shaftprint.identify._experiment import Experiment
 from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
-from shaftprint.identify._fit_test import tested_fit, whitened
+from shaftprint.identify._fit_test import tested_fit, whitened_residuals
 from shaftprint.identify._identification import Cluster, Identification
 from shaftprint.identify._levenberg_marquardt import Descent, descend
 from shaftprint.identify._objective import Objective, build_joint_objective
@@ -113,17 +113,18 @@ def _identified(
     )
     sharp = bool(descent.converged[np.argmin(descent.cost)])
     clusters, winner = _judged(objective, _clustered(objective, descent), settings, sharp=sharp)
+    whitened = whitened_residuals(objective, winner.values)
     return Identification(
         experiments=tuple(
             _part(experiment, winner.values, residuals)
-            for experiment, residuals in zip(objective.experiments, whitened(objective, winner.values), strict=True)
+            for experiment, residuals in zip(objective.experiments, whitened, strict=True)
         ),
         objective=objective,
         settings=settings,
         values=winner.values,
         covariance=frozen_float(estimate_covariance(objective, winner.values[list(objective.free)])),
         cost=winner.cost,
-        fit_test=tested_fit(objective, winner.values),
+        fit_test=tested_fit(objective, winner.values, whitened),
         clusters=clusters,
     )
 
@@ -133,7 +134,7 @@ def _part(experiment: Experiment, values: FloatArray, residuals: FloatArray) -> 
     structure, response, fitted = experiment.structure, experiment.response, experiment.fitted
     model = structure.response(experiment.own(values), experiment.s, factors=experiment.factors)
     count = len(structure.channels)
-    variance = np.diagonal(experiment.covariance, axis1=1, axis2=2).T
+    variance = np.diagonal(experiment.noise_covariance, axis1=1, axis2=2).T
     names = channel_names(response)
     return Part(
         structure=structure,

@@ -28,12 +28,18 @@ class Redrawn:
 
     measured: tuple[ComplexArray, ...]
     """Of each experiment, fitted lines only, shape (repeats, channels, lines)."""
+    weights: tuple[FloatArray | None, ...]
+    """``W`` of each experiment's lines, shape (repeats, lines, size, size); None where they are the experiment's."""
     prior_means: FloatArray
     """Means of the prior rows, shape (repeats, prior rows)."""
 
     def chosen(self, repeats: IntArray | slice) -> "Redrawn":
         """Return some of the repeats."""
-        return Redrawn(measured=tuple(m[repeats] for m in self.measured), prior_means=self.prior_means[repeats])
+        return Redrawn(
+            measured=tuple(m[repeats] for m in self.measured),
+            weights=tuple(None if w is None else w[repeats] for w in self.weights),
+            prior_means=self.prior_means[repeats],
+        )
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -134,13 +140,44 @@ class Objective:
         table = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
         return table[:, 0], table[:, 1:]
 
+    def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
+        """Return rows whose products are the information, and the covariance of their noise.
+
+        Parameters
+        ----------
+        theta
+            Free parameters, shape (free,).
+        expected
+            Whether to average over the noise instead of taking the data as they are.
+
+        Returns
+        -------
+            Shape (free, rows), and (rows, rows); rows that only regularise have no noise.
+        """
+        parts = [
+            experiment.sensitivity(theta[list(experiment.columns)], expected=expected)
+            for experiment in self.experiments
+        ]
+        count = sum(rows.shape[1] for rows, _ in parts)
+        total = count + self.prior_counts.size
+        rows, noise = np.zeros((theta.size, total)), np.zeros((total, total))
+        first = 0
+        for experiment, (own, covariance) in zip(self.experiments, parts, strict=True):
+            last = first + own.shape[1]
+            rows[experiment.columns, first:last] = own
+            noise[first:last, first:last] = covariance
+            first = last
+        rows[:, count:] = self._prior_part(theta[None, :], self.prior_rows[:, 1])[0, 1:]
+        np.fill_diagonal(noise[count:, count:], self.prior_counts)
+        return rows, noise
+
     def _part(self, number: int, theta: FloatArray, redrawn: Redrawn | None) -> FloatArray:
         """Return residuals of one experiment and below them their derivatives to all free parameters."""
         experiment = self.experiments[number]
-        measured = None if redrawn is None else redrawn.measured[number]
+        data = () if redrawn is None else (redrawn.measured[number], redrawn.weights[number])
         if experiment.columns == tuple(range(theta.shape[1])):
-            return experiment.table(theta, measured)
-        own = experiment.table(theta[:, experiment.columns], measured)
+            return experiment.table(theta, *data)
+        own = experiment.table(theta[:, experiment.columns], *data)
         table = np.zeros((theta.shape[0], 1 + theta.shape[1], own.shape[2]))
         table[:, [0, *(1 + column for column in experiment.columns)]] = own
         return table

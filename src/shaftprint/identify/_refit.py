@@ -52,10 +52,12 @@ def refit(
     *,
     start: ArrayLike | None = None,
     prior_means: ArrayLike | None = None,
+    covariances: ArrayLike | Sequence[ArrayLike] | None = None,
 ) -> Refits:
     """Fit the identified structures to other responses of the same test, each from one start.
 
-    Weights, bounds and the standard deviations of priors are the identification's. Nothing is judged for stability.
+    Bounds, degrees of freedom and the standard deviations of priors are the identification's. Nothing is judged for
+    stability.
 
     Parameters
     ----------
@@ -68,6 +70,10 @@ def refit(
         Means of priors and regularisation, in the order of ``Objective.prior_rows``, shape (repeats, prior rows); the
         identification's when not given. Where repeats are drawn to learn the spread of the estimates, what a prior adds
         to it is in them only if its mean is drawn too.
+    covariances
+        Covariances of [Re, Im] at all lines, shape (repeats, lines, 2 channels, 2 channels), for a joint fit one an
+        experiment; the identification's when not given. What an estimated covariance adds to the spread is in repeats
+        only if it is drawn too.
 
     Raises
     ------
@@ -77,7 +83,11 @@ def refit(
     objective = identification.objective
     measured = _measured(objective, responses)
     repeats = measured[0].shape[0]
-    redrawn = Redrawn(measured=measured, prior_means=_prior_means(objective, prior_means, repeats))
+    redrawn = Redrawn(
+        measured=measured,
+        weights=_weights(objective, covariances, repeats),
+        prior_means=_prior_means(objective, prior_means, repeats),
+    )
     theta = _starts(identification, start, repeats=repeats)
     limit = identification.settings.max_iterations
     blocks = [slice(i, i + BLOCK) for i in range(0, repeats, BLOCK)]
@@ -92,10 +102,7 @@ def refit(
 
 def _measured(objective: Objective, responses: ArrayLike | Sequence[ArrayLike]) -> tuple[ComplexArray, ...]:
     """Return the fitted lines of every experiment's responses."""
-    count = len(objective.experiments)
-    given = [responses] if count == 1 else list(cast("Sequence[ArrayLike]", responses))
-    if len(given) != count:
-        raise IdentificationError(f"responses: expected {count} arrays, one an experiment, found {len(given)}.")
+    given = _an_experiment_each("responses", objective, responses)
     found = tuple(_of_experiment(e, values) for e, values in zip(objective.experiments, given, strict=True))
     repeats = [measured.shape[0] for measured in found]
     if len(set(repeats)) > 1:
@@ -105,7 +112,33 @@ def _measured(objective: Objective, responses: ArrayLike | Sequence[ArrayLike]) 
     return found
 
 
-def _of_experiment(experiment: Experiment, responses: ArrayLike | Sequence[ArrayLike]) -> ComplexArray:
+def _an_experiment_each(name: str, objective: Objective, given: ArrayLike | Sequence[ArrayLike]) -> list[ArrayLike]:
+    count = len(objective.experiments)
+    arrays = [cast("ArrayLike", given)] if count == 1 else list(cast("Sequence[ArrayLike]", given))
+    if len(arrays) != count:
+        raise IdentificationError(f"{name}: expected {count} arrays, one an experiment, found {len(arrays)}.")
+    return arrays
+
+
+def _weights(
+    objective: Objective, covariances: ArrayLike | Sequence[ArrayLike] | None, repeats: int
+) -> tuple[FloatArray | None, ...]:
+    """Return the weights of every experiment's fitted lines in every repeat."""
+    if covariances is None:
+        return (None,) * len(objective.experiments)
+    given = _an_experiment_each("covariances", objective, covariances)
+    found = []
+    for experiment, values in zip(objective.experiments, given, strict=True):
+        covariance = np.asarray(values, dtype=np.float64)
+        size = experiment.data.shape[1]
+        expected = (repeats, experiment.fitted.size, size, size)
+        if covariance.shape != expected:
+            raise IdentificationError(f"covariances: expected shape {expected}, found {covariance.shape}.")
+        found.append(experiment.weighting.matrices(experiment.response, covariance[:, experiment.fitted]))
+    return tuple(found)
+
+
+def _of_experiment(experiment: Experiment, responses: ArrayLike) -> ComplexArray:
     measured = np.asarray(responses, dtype=np.complex128)
     channels, lines = len(experiment.structure.channels), experiment.fitted.size
     if measured.ndim != 3 or measured.shape[1:] != (channels, lines) or not measured.size:

@@ -8,10 +8,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
+from shaftprint.identify._tails import Tails, estimated_tails, student_tails
 from shaftprint.spectra import FrequencyResponse
-
-# Below this squared distance over the degrees of freedom the logarithm is taken from its series.
-NEAR = 1e-3
 
 
 class Weighting(ABC):
@@ -29,19 +27,25 @@ class Weighting(ABC):
         """Return ``W`` of each line, shape (lines, size, size), for covariances of that shape."""
 
     @abstractmethod
-    def shaped(self, table: FloatArray) -> FloatArray:
-        """Return residuals whose half square sum is the cost, from the weighted ones.
+    def tails(self, degrees_of_freedom: FloatArray, size: int) -> Tails:
+        """Return how much lines far from the model count.
 
         Parameters
         ----------
-        table
-            Weighted residuals and below them their derivatives, shape (starts, 1 + free, size, lines).
+        degrees_of_freedom
+            Real degrees of freedom behind the covariance of each line, infinite for a known one, shape (lines,).
+        size
+            Number of real data of a line.
         """
 
 
 @dataclass(frozen=True, slots=True)
 class MaximumLikelihood(Weighting):
-    """Weights from the full covariance of each line: efficient, and ``2 cost`` is a chi-square."""
+    """Weights from the full covariance of each line.
+
+    Where it is known ``2 cost`` is a chi-square and the fit efficient. Where it was estimated the degrees of freedom
+    are respected (``Tails``): a line of few of them counts less, and less still when it lies far off.
+    """
 
     @property
     def is_likelihood(self) -> bool:
@@ -52,9 +56,9 @@ class MaximumLikelihood(Weighting):
         """Return the inverse Cholesky factors of the covariances."""
         return np.linalg.inv(np.linalg.cholesky(covariance))
 
-    def shaped(self, table: FloatArray) -> FloatArray:
-        """Return the weighted residuals as they are."""
-        return table
+    def tails(self, degrees_of_freedom: FloatArray, size: int) -> Tails:
+        """Return the tails that the degrees of freedom of the covariances give."""
+        return estimated_tails(degrees_of_freedom, size)
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,9 +91,9 @@ class Unweighted(Weighting):
         channels = np.repeat(roots, len(response.inputs))
         return np.broadcast_to(np.diag(np.tile(channels, 2)), covariance.shape).copy()
 
-    def shaped(self, table: FloatArray) -> FloatArray:
-        """Return the weighted residuals as they are."""
-        return table
+    def tails(self, degrees_of_freedom: FloatArray, size: int) -> Tails:
+        """Return none: every line counts by its square."""
+        return estimated_tails(np.full_like(degrees_of_freedom, np.inf), size)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,12 +102,12 @@ class StudentT(Weighting):
 
     Each line of ``m`` real numbers has the multivariate t density with its covariance ``C`` as scale: up to a constant
     ``(1 + d^2 / nu)^(-(nu + m) / 2)`` with ``d^2 = (y - f)^T C^-1 (y - f)`` (Lange, Little and Taylor, Robust
-    statistical modeling using the t distribution, 1989, eq. 1). Its negative logarithm is half the square of the
-    weighted residuals ``W (y - f)`` times ``sqrt((nu + m) log(1 + d^2 / nu)) / d``.
+    statistical modeling using the t distribution, 1989, eq. 1). The cost is its negative logarithm times a factor near
+    1 that makes standard deviations and profiles right for normal noise, whose covariance ``C`` is (``Tails``).
     """
 
     degrees_of_freedom: float = 4.0
-    """``nu``: the smaller, the less a far line counts; 4 is what Lange, Little and Taylor recommend for few data."""
+    """``nu``: the smaller, the less a far line counts; at 4 variances without bad lines are a tenth above the least."""
 
     def __post_init__(self) -> None:
         """Check the degrees of freedom.
@@ -127,27 +131,6 @@ class StudentT(Weighting):
         """Return the inverse Cholesky factors of the covariances."""
         return np.linalg.inv(np.linalg.cholesky(covariance))
 
-    def shaped(self, table: FloatArray) -> FloatArray:
-        """Return residuals whose half square sum is the negative logarithm of the t density."""
-        residuals = table[:, 0]
-        gain, slope = self._gain(np.einsum("smf,smf->sf", residuals, residuals), residuals.shape[1])
-        along = np.einsum("smf,skmf->skf", residuals, table)
-        shaped = gain[:, None, None, :] * table
-        shaped[:, 1:] += (2.0 * slope[:, None, :] * along[:, 1:])[:, :, None, :] * residuals[:, None]
-        return np.asarray(shaped)
-
-    def _gain(self, squares: FloatArray, size: int) -> tuple[FloatArray, FloatArray]:
-        """Return the factor on the residuals of each line, and its derivative to the squared distance."""
-        nu = self.degrees_of_freedom
-        x = squares / nu
-        far = np.maximum(x, NEAR)
-        near = np.minimum(x, NEAR)
-        log = np.where(x < NEAR, 1.0 - near / 2.0 + near**2 / 3.0 - near**3 / 4.0, np.log1p(far) / far)
-        fall = np.where(
-            x < NEAR,
-            -0.5 + 2.0 * near / 3.0 - 0.75 * near**2,
-            (1.0 / (1.0 + far) - np.log1p(far) / far) / far,
-        )
-        scale = (nu + size) / nu
-        gain = np.sqrt(scale * log)
-        return gain, scale * fall / (2.0 * nu * gain)
+    def tails(self, degrees_of_freedom: FloatArray, size: int) -> Tails:
+        """Return the tails of the t density, or those of the covariance where its degrees of freedom are fewer."""
+        return student_tails(degrees_of_freedom, size, self.degrees_of_freedom)
