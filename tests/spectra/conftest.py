@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.special import stdtrit
 
 from shaftprint.campaign import Campaign, Sine
 from shaftprint.signals import SetPointCalibration, Signals, SpeedSignal, WorkingPoint
@@ -110,3 +111,29 @@ def coloured():
         return np.fft.irfft(shaped, axis=1)[:, count : 2 * count]
 
     return draw
+
+
+@pytest.fixture
+def expect_honest():
+    """Check over repeats that covariances are right as weights and that 95 % intervals cover the truth."""
+
+    def check(responses, truth):
+        distances, covered = [], []
+        for found in responses:
+            used = found.used
+            size = len(found.outputs) * len(found.inputs)
+            error = (found.response - truth(found.frequency_hz)).reshape(size, -1)[:, used]
+            error = np.concatenate([error.real, error.imag]).T
+            covariance = found.covariance[used]
+            distances.append(np.einsum("li,lij,lj->l", error, np.linalg.inv(covariance), error).mean() / (2 * size))
+            # the covariance is n / (n - outputs) larger than the mean square of the errors
+            samples = 0.5 * found.degrees_of_freedom[used]
+            plain = np.diagonal(covariance, axis1=1, axis2=2) * ((samples - len(found.outputs)) / samples)[:, None]
+            half = stdtrit(2.0 * samples, 0.975)[:, None] * np.sqrt(plain)
+            covered.append(np.mean(np.abs(error) < half))
+        for values, expected in ((np.array(distances), 1.0), (np.array(covered), 0.95)):
+            assert abs(values.mean() - expected) < 3.0 * values.std() / np.sqrt(values.size), (expected, values.mean())
+            # the check must be sharp enough to find a wrong factor
+            assert values.std() / np.sqrt(values.size) < 0.025
+
+    return check

@@ -16,12 +16,16 @@ load drift ``delta``        -       propeller load of a window over that at the 
 `estimate_spectra` gives all of it, `estimate_response` the response alone, `open_loop` its open-loop form.
 """
 
+from shaftprint.spectra._arbitrary import Arbitrary
 from shaftprint.spectra._bin_selection import ExactBin, HighestPeak
+from shaftprint.spectra._excitation import Excitation
 from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._from_arrays import response_from_arrays
 from shaftprint.spectra._harmonics import Harmonics
 from shaftprint.spectra._line_fit import LineFit, SineMethod, WindowSamples
 from shaftprint.spectra._load_drift import LoadDrift
 from shaftprint.spectra._open_loop import open_loop
+from shaftprint.spectra._periodic import Periodic
 from shaftprint.spectra._plain_covariance import circular_covariance, coherence_covariance
 from shaftprint.spectra._signal_to_noise import SignalToNoise
 from shaftprint.spectra._sine_fit import WholePeriodSine
@@ -29,12 +33,15 @@ from shaftprint.spectra._spectra import Spectra, estimate_response, estimate_spe
 from shaftprint.spectra._windows import Window, plan_windows, whole_period_window
 
 __all__ = [
+    "Arbitrary",
     "ExactBin",
+    "Excitation",
     "FrequencyResponse",
     "Harmonics",
     "HighestPeak",
     "LineFit",
     "LoadDrift",
+    "Periodic",
     "SignalToNoise",
     "SineMethod",
     "Spectra",
@@ -47,5 +54,6 @@ __all__ = [
     "estimate_spectra",
     "open_loop",
     "plan_windows",
+    "response_from_arrays",
     "whole_period_window",
 ]

@@ -53,12 +53,15 @@ class LineNoise:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class _Neighbours:
+class Neighbours:
     """Bins beside a line with their weights."""
 
     bins: FloatArray
+    """Where they stand: number in the window, or frequency [Hz], shape (bins,)."""
     log_ratio: FloatArray
+    """Logarithm of their frequency over that of the line, shape (bins,)."""
     weight: FloatArray
+    """Their weights, 1 at the line, shape (bins,)."""
 
 
 def residual_spectrum(fit: LineFit) -> ComplexArray:
@@ -151,13 +154,13 @@ def line_noise(spectrum: ComplexArray, stretches: ComplexArray, *, periods: int,
     """
     neighbours = _neighbours(spectrum.shape[1], periods, order)
     chosen = spectrum[:, neighbours.bins.astype(np.int64)]
-    slope = _local_slope(np.abs(chosen) ** 2, neighbours)
+    slope = local_slope(np.abs(chosen) ** 2, neighbours)
     levelled = chosen * np.exp(0.5 * slope[:, np.newaxis] * neighbours.log_ratio)
     # what the drift in the fit takes from the neighbours, it adds to the uncertainty of the line
     kept = _kept_by_drift(neighbours.bins) * _kept_by_drift(np.array([float(order * periods)]))
     weight = neighbours.weight / neighbours.weight.sum() / kept
     covariance = (levelled * weight) @ levelled.conj().T
-    samples = _complex_samples(neighbours)
+    samples = equivalent_samples(neighbours)
     count = stretches.shape[1]
     if order > 1 or count < _FEWEST_STRETCHES:
         return LineNoise(covariance=covariance, complex_samples=samples)
@@ -172,7 +175,7 @@ def line_noise(spectrum: ComplexArray, stretches: ComplexArray, *, periods: int,
     )
 
 
-def _neighbours(bins: int, periods: int, order: int) -> _Neighbours:
+def _neighbours(bins: int, periods: int, order: int) -> Neighbours:
     line = periods * order
     reach_ratio = max(_REACH_RATIO, (line + _LEAST_REACH_BINS) / line)
     lowest = max(line - _REACH_BINS, int(np.ceil(line / reach_ratio)), 1)
@@ -184,7 +187,7 @@ def _neighbours(bins: int, periods: int, order: int) -> _Neighbours:
     log_ratio = np.log(place / line)
     octaves = 1.0 - (log_ratio / np.log(1.05 * reach_ratio)) ** 2
     distance = 1.0 - ((place - line) / (_REACH_BINS + 1.0)) ** 2
-    return _Neighbours(bins=place, log_ratio=log_ratio, weight=octaves * distance)
+    return Neighbours(bins=place, log_ratio=log_ratio, weight=octaves * distance)
 
 
 def _kept_by_drift(place: FloatArray) -> FloatArray:
@@ -197,8 +200,20 @@ def _kept_by_drift(place: FloatArray) -> FloatArray:
     return kept
 
 
-def _local_slope(power: FloatArray, neighbours: _Neighbours) -> FloatArray:
-    """Exponent ``a`` of ``S ~ f^-a`` of each channel: Newton steps on a convex profile likelihood."""
+def local_slope(power: FloatArray, neighbours: Neighbours) -> FloatArray:
+    """Find the exponent ``a`` of ``S ~ f^-a`` of each channel: Newton steps on a convex profile likelihood.
+
+    Parameters
+    ----------
+    power
+        Squared magnitudes at the bins, shape (channels, bins).
+    neighbours
+        The bins.
+
+    Returns
+    -------
+    The exponents, shape (channels,); without contrast between the bins about 1.
+    """
     weight, log_ratio = neighbours.weight, neighbours.log_ratio
     total = weight.sum()
     relative = power / np.maximum(power.mean(axis=1, keepdims=True), np.finfo(np.float64).tiny)
@@ -214,8 +229,8 @@ def _local_slope(power: FloatArray, neighbours: _Neighbours) -> FloatArray:
     return slope
 
 
-def _complex_samples(neighbours: _Neighbours) -> float:
-    """Equivalent number of bins: variance of the level, with the part that the unknown slope adds."""
+def equivalent_samples(neighbours: Neighbours) -> float:
+    """Return the equivalent number of bins: variance of the level, with the part that the unknown slope adds."""
     weight, log_ratio = neighbours.weight, neighbours.log_ratio
     total = weight.sum()
     centre = (weight @ log_ratio) / total

@@ -85,6 +85,42 @@ def weight_change(degrees_of_freedom: FloatArray, before: int, after: int) -> Fl
     return np.where(np.isfinite(degrees_of_freedom), pairs, 1.0)
 
 
+def products(outputs: ComplexArray, inputs: ComplexArray) -> ComplexArray:
+    """Return the covariance of a response to several inputs, outputs times inputs in C order.
+
+    Parameters
+    ----------
+    outputs
+        Covariance of the noise at the outputs, shape (lines, outputs, outputs).
+    inputs
+        Covariance of the response to each input for noise of variance 1, shape (lines, inputs, inputs).
+
+    Returns
+    -------
+    The Kronecker product of each line, shape (lines, outputs inputs, outputs inputs).
+    """
+    lines, size = len(outputs), outputs.shape[1] * inputs.shape[1]
+    result: ComplexArray = np.einsum("kop,kij->koipj", outputs, inputs).reshape(lines, size, size)
+    return result
+
+
+def rounding_floor(power: FloatArray) -> FloatArray:
+    """Return what is added to the covariance of amplitudes, so that noise-free ones keep a covariance.
+
+    Parameters
+    ----------
+    power
+        Squared magnitudes of the amplitudes, shape (lines, channels).
+
+    Returns
+    -------
+    Diagonal matrices, shape (lines, channels, channels); at a line without any amplitude that of the strongest counts.
+    """
+    least = np.maximum(power, _ROUNDING * power.max(axis=0)) + np.finfo(np.float64).tiny
+    floor: FloatArray = _ROUNDING**2 * least[:, :, np.newaxis] * np.eye(power.shape[1])
+    return floor
+
+
 def response_of_line(
     amplitude: ComplexArray,
     noise: ComplexArray,
