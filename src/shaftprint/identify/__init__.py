@@ -27,6 +27,7 @@ from shaftprint.identify._known import PRIOR_OF_G, priors_from_vessel
 from shaftprint.identify._left_out import Foretold
 from shaftprint.identify._likelihood_ratio import LikelihoodRatio
 from shaftprint.identify._noise_levels import NoiseLevels, noise_levels, stated_noise
+from shaftprint.identify._optima import Optimum
 from shaftprint.identify._part import Part
 from shaftprint.identify._planned_response import expected_response, planned_lines, planned_response
 from shaftprint.identify._predicted_intervals import predict_intervals
@@ -34,6 +35,7 @@ from shaftprint.identify._prior import Prior
 from shaftprint.identify._profile import Interval, Profile, profile, profile_intervals
 from shaftprint.identify._refit import Refits, refit
 from shaftprint.identify._scan import Minimum, Scan, scan, scan_response
+from shaftprint.identify._search_report import SearchReport, report_search
 from shaftprint.identify._settings import Settings, Stability
 from shaftprint.identify._stan_tug_noise import STAN_TUG_NOISE
 from shaftprint.identify._starts import Draw, LatinHypercube, Uniform
@@ -62,11 +64,13 @@ __all__ = [
     "MaximumLikelihood",
     "Minimum",
     "NoiseLevels",
+    "Optimum",
     "Part",
     "Prior",
     "Profile",
     "Refits",
     "Scan",
+    "SearchReport",
     "Settings",
     "Stability",
     "StudentT",
@@ -93,6 +97,7 @@ __all__ = [
     "profile",
     "profile_intervals",
     "refit",
+    "report_search",
     "scan",
     "scan_response",
     "stated_noise",
