@@ -15,7 +15,18 @@ HEAVY = ("numpy", "scipy", "numba", "h5py", "pydantic", "matplotlib", "rich", "j
 
 
 def test_commands_are_those_that_were_asked_for():
-    assert set(COMMANDS) == {"demo", "sail", "inspect", "identify", "structures", "sensitivity", "explain", "show", "new"}
+    assert set(COMMANDS) == {
+        "demo",
+        "sail",
+        "inspect",
+        "predict",
+        "identify",
+        "structures",
+        "sensitivity",
+        "explain",
+        "show",
+        "new",
+    }
 
 
 @pytest.mark.parametrize("name", COMMANDS)

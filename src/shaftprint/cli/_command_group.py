@@ -14,6 +14,7 @@ COMMANDS = {
     "demo": "Sail the simulated Stan Tug 1205 and identify it from its recording.",
     "new": "Write a commented vessel or campaign file to fill in.",
     "sail": "Let a simulated tug sail a campaign and write its raw recording.",
+    "predict": "Say what a test would find, before it is made.",
     "inspect": "Say what is in a recording and whether it is good enough.",
     "identify": "Identify the fingerprint from a recording.",
     "explain": "Say where the numbers of the thesis' way come from on one recording.",

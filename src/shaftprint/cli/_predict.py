@@ -1,0 +1,209 @@
+"""``shaftprint predict``: what a test would find, before it is made."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import click
+import numpy as np
+
+from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.cli._chain import known_beforehand, measure
+from shaftprint.cli._inputs import NAMES, campaign_option, load_trial
+from shaftprint.cli._known_values import named_prior, named_value
+from shaftprint.cli._own_structure import OWN_FILE_HELP, chosen_structures
+from shaftprint.cli._prediction_tables import print_prediction
+from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.errors import StructureError
+from shaftprint.identify import (
+    STAN_TUG_NOISE,
+    NoiseLevels,
+    Prior,
+    expected_response,
+    identifiability,
+    noise_levels,
+    planned_response,
+    predict_accuracy,
+    predict_intervals,
+    priors_from_vessel,
+)
+from shaftprint.models import Structure, structure
+from shaftprint.signals import WorkingPoint
+from shaftprint.spectra import FrequencyResponse, open_loop
+from shaftprint.units import rev_s_from_rpm
+from shaftprint.vessel import Vessel, load_vessel
+
+CLOSED_LOOP = "GAUGE-CLOSED"
+# Where the sensitivity of a structure is taken; what can be found does not depend on it.
+SEED = 1
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Ship:
+    """What is known of the ship before the test."""
+
+    priors: Mapping[str, Prior]
+    noise: NoiseLevels
+    words: str
+
+
+@click.command("predict")
+@campaign_option
+@click.option(
+    "--structure", "name", default=CLOSED_LOOP, show_default=True, metavar="NAME", help=f"Structure: {OWN_FILE_HELP}."
+)
+@click.option("--vessel", help=f"Vessel file, for what it knows of parameters: {NAMES} stan-tug-1205.")
+@click.option(
+    "--from",
+    "recording",
+    type=click.Path(path_type=Path),
+    help="A recording of the ship, for its noise; without it the noise of the Stan Tug 1205 is assumed.",
+)
+@click.option("--from-campaign", "recorded", help="Campaign of that recording; --campaign when not given.")
+@click.option(
+    "--rpm-per-volt",
+    type=click.FloatRange(min=0.0, min_open=True),
+    help="Engine speed that one volt of set point asks for, without a recording; needs --vessel.",
+)
+@click.option(
+    "--prior",
+    "priors",
+    metavar="NAME=MEAN+-STD",
+    type=named_prior,
+    multiple=True,
+    help="What is known of a parameter beforehand, such as g=0+-0.1; instead of what the vessel file knows.",
+)
+@click.option(
+    "--free", "freed", metavar="NAME", multiple=True, help="Take nothing as known of a parameter, such as tau_up."
+)
+@click.option(
+    "--hold", "held", metavar="NAME=VALUE", type=named_value, multiple=True, help="Hold a parameter at a value."
+)
+@click.option(
+    "--value",
+    "values",
+    metavar="NAME=VALUE",
+    type=named_value,
+    multiple=True,
+    help="Value at which to predict; the prior's mean or the structure's default when not given.",
+)
+@no_progress_option
+def command(
+    campaign: str,
+    name: str,
+    vessel: str | None,
+    recording: Path | None,
+    recorded: str | None,
+    rpm_per_volt: float | None,
+    priors: tuple[tuple[str, Prior], ...],
+    freed: tuple[str, ...],
+    held: tuple[tuple[str, float], ...],
+    values: tuple[tuple[str, float], ...],
+    no_progress: bool,
+) -> None:
+    """Say what a test would find, before it is made.
+
+    Prints the standard deviation of every parameter that the lines of a campaign would give, what they cannot
+    separate, and what no test of these outputs can find. --prior, --free, --hold and --value may be repeated.
+    """
+    (chosen,) = chosen_structures([name])
+    chosen = chosen.held_at(**dict(held))
+    planned = load_campaign(campaign)
+    _expect_free(freed, chosen)
+    if recording is not None:
+        if vessel is None:
+            raise click.UsageError("--from needs --vessel, which says what is in the recording.")
+        ship = _recorded(recording, vessel, recorded or campaign, chosen, no_progress=no_progress)
+    else:
+        ship = _assumed(vessel, rpm_per_volt, chosen)
+    known = {
+        parameter: prior for parameter, prior in (dict(ship.priors) | dict(priors)).items() if parameter not in freed
+    }
+    assumed = _values_of(chosen, known) | dict(values)
+    response = _planned(chosen, planned, ship.noise)
+    possible = identifiability(chosen, rng=np.random.default_rng(SEED))
+    print_prediction(
+        planned,
+        response,
+        ship.words,
+        possible,
+        predict_accuracy(chosen, response, values=assumed, priors=known, combinations=possible.combinations),
+        predict_intervals(chosen, response, values=assumed, priors=known),
+    )
+
+
+def _expect_free(freed: tuple[str, ...], chosen: Structure) -> None:
+    free = [parameter.name for parameter in chosen.free]
+    unknown = [name for name in freed if name not in free]
+    if unknown:
+        raise StructureError(f"--free {', '.join(unknown)}: expected a free parameter, one of {', '.join(free)}.")
+
+
+def _recorded(path: Path, vessel: str, campaign: str, chosen: Structure, *, no_progress: bool) -> _Ship:
+    """Return what a recording tells of the noise, and what it and the vessel file know."""
+    trial = load_trial(vessel, campaign)
+    with progress(hidden=no_progress) as steps:
+        measurement = measure(path, trial, mode="shaftprint", steps=steps)
+    signals = measurement.signals
+    slope = abs(signals.calibration.slope_rev_s_per_v) * signals.dc_scale
+    noise = noise_levels(
+        measurement.responses["n_set"],
+        trial.campaign,
+        set_point_per_v=slope / signals.working_point.engine_speed_rev_s,
+    )
+    priors = known_beforehand(chosen, trial.vessel, signals, {})
+    return _Ship(priors=priors, noise=noise, words=f"noise of {path.name}")
+
+
+def _assumed(vessel: str | None, rpm_per_volt: float | None, chosen: Structure) -> _Ship:
+    """Return the noise of the Stan Tug, and what the vessel file knows where there is one."""
+    if vessel is None:
+        if rpm_per_volt is not None:
+            raise click.UsageError("--rpm-per-volt needs --vessel, which says at what speed.")
+        return _Ship(priors={}, noise=STAN_TUG_NOISE, words="noise of the Stan Tug 1205 assumed")
+    ship = load_vessel(vessel)
+    noise = STAN_TUG_NOISE
+    if rpm_per_volt is not None:
+        noise = replace(noise, set_point_per_v=rpm_per_volt / ship.working_point.engine_speed_rpm)
+    priors = priors_from_vessel(chosen, ship, _working_point(ship))
+    return _Ship(priors=priors, noise=noise, words=f"noise of the Stan Tug 1205 assumed for {ship.name}")
+
+
+def _working_point(vessel: Vessel) -> WorkingPoint:
+    return WorkingPoint(
+        engine_speed_rev_s=rev_s_from_rpm(vessel.working_point.engine_speed_rpm),
+        shaft_torque_nm=vessel.working_point.shaft_torque_nm,
+        engine_speed_std_rev_s=0.0,
+        shaft_torque_std_nm=0.0,
+        set_point_v=0.0,
+    )
+
+
+def _values_of(chosen: Structure, known: Mapping[str, Prior]) -> dict[str, float]:
+    """Return the means of what is known beforehand, within the bounds."""
+    bounds = {parameter.name: (parameter.lower, parameter.upper) for parameter in chosen.free}
+    return {name: float(np.clip(prior.mean, *bounds[name])) for name, prior in known.items() if name in bounds}
+
+
+def _planned(chosen: Structure, campaign: Campaign, noise: NoiseLevels) -> FrequencyResponse:
+    """Return the planned lines from the structure's input to its outputs.
+
+    Raises
+    ------
+    StructureError
+        If the lines of a campaign do not give these.
+    """
+    closed = planned_response(campaign, noise)
+    given = {"n_set": closed}
+    if chosen.inputs in (("e",), ("M_s",)):
+        speed_and_torque = closed.of_outputs("n", "M_s")
+        governor, core = open_loop(expected_response(speed_and_torque, structure(CLOSED_LOOP)))
+        given |= {"e": governor, "M_s": core}
+    found = given.get(chosen.input) if len(chosen.inputs) == 1 else None
+    if found is None or not set(chosen.outputs) <= set(found.outputs):
+        raise StructureError(
+            f"structure {chosen.name} goes from {', '.join(chosen.inputs)} to {', '.join(chosen.outputs)}; the noise "
+            f"is known of {', '.join(noise.outputs)} under the set point only. Give a recording of the other channels "
+            "with --from."
+        )
+    return found
