@@ -83,6 +83,20 @@ def test_equals_a_joint_fit(make_response):
     assert predict_joint_accuracy(pairs, values=values).covariance == pytest.approx(fit.covariance, rel=1e-6)
 
 
+def test_estimated_covariances_cost_what_their_degrees_of_freedom_do(make_response):
+    """A fit states it for its own noise, a prediction on average, whatever the values of the response."""
+    response = make_response("CL4", noise=0.02, rng=np.random.default_rng(4), degrees_of_freedom=np.full(13, 30.0))
+    fit = identify(structure("CL4"), response, rng=np.random.default_rng(1))
+    values = dict(zip(fit.structure.names, fit.values, strict=True))
+    found = predict_accuracy(structure("CL4"), response, values=values)
+    empty = predict_accuracy(structure("CL4"), replace(response, response=0.0 * response.response), values=values)
+    known = replace(response, degrees_of_freedom=np.full(13, np.inf))
+    assert empty.covariance == pytest.approx(found.covariance, rel=1e-12)
+    std, stated = (np.sqrt(np.diag(covariance)) for covariance in (found.covariance, fit.covariance))
+    assert std == pytest.approx(stated, rel=0.15)
+    assert np.all(std >= np.sqrt(np.diag(predict_accuracy(structure("CL4"), known, values=values).covariance)))
+
+
 def test_fisher_information_of_the_core_by_hand():
     """``dH/dtau = -s / (tau s + 2)^2``, each part of a line with the variance ``S / (T A^2)``."""
     noise = STAN_TUG_NOISE.of_outputs("n")

@@ -2,7 +2,8 @@
 
 The inverse of the Fisher information ``J^T C^-1 J``, priors included, at assumed parameter values: no unbiased estimate
 from such lines is better on average (Cramer, Mathematical Methods of Statistics, section 32.3), and a fit weighted by
-the covariance attains it where the standard deviations are small against the curvature of the response.
+the covariance attains it where the standard deviations are small against the curvature of the response. Where a
+covariance was estimated, what its degrees of freedom cost is in it, averaged over the noise.
 """
 
 from collections.abc import Mapping, Sequence
@@ -202,7 +203,7 @@ def _predicted(
     )
     assumed = _assumed(objective, values)
     theta = assumed[list(objective.free)]
-    covariance = estimate_covariance(objective, theta)
+    covariance = estimate_covariance(objective, theta, expected=True)
     parameters = tuple(
         Estimate(name=p.name, unit=p.unit, value=float(value), std=float(np.sqrt(variance)))
         for p, value, variance in zip(objective.free_parameters, theta, np.diag(covariance), strict=True)
@@ -249,5 +250,5 @@ def _derived(objective: Objective, theta: FloatArray, combination: Combination) 
         found = np.broadcast_to(combination.of(objective.named(objective.complete(table))), table.shape[:1])
         slopes = (found[1 : 1 + theta.size] - found[1 + theta.size :]) / (2.0 * step)
     known = np.isfinite(found[0]) and bool(np.all(np.isfinite(slopes)))
-    variance = variance_along(objective, theta, slopes) if known else np.inf
+    variance = variance_along(objective, theta, slopes, expected=True) if known else np.inf
     return Estimate(name=combination.name, unit=combination.unit, value=float(found[0]), std=float(np.sqrt(variance)))

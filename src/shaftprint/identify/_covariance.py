@@ -33,7 +33,7 @@ def estimate_covariance(objective: Objective, theta: FloatArray, *, expected: bo
     return covariance
 
 
-def variance_along(objective: Objective, theta: FloatArray, slopes: FloatArray) -> float:
+def variance_along(objective: Objective, theta: FloatArray, slopes: FloatArray, *, expected: bool = False) -> float:
     """Return the variance of a function of the free parameters to first order; infinite where the data do not fix it.
 
     It is finite for a product such as ``v K_p`` although neither factor is known alone.
@@ -44,8 +44,10 @@ def variance_along(objective: Objective, theta: FloatArray, slopes: FloatArray) 
         Free parameters at the optimum, shape (free,).
     slopes
         Derivatives of the function to the free parameters, shape (free,).
+    expected
+        See ``estimate_covariance``.
     """
-    covariance, unknown, scale = _known_part(objective, theta, expected=False)
+    covariance, unknown, scale = _known_part(objective, theta, expected=expected)
     scaled = slopes / scale
     if np.linalg.norm(unknown.T @ scaled) > LOST_SHARE * np.linalg.norm(scaled):
         return float(np.inf)
