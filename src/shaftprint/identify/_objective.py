@@ -228,6 +228,7 @@ def build_joint_objective(
     """
     if not pairs:
         raise IdentificationError("joint fit: expected at least one pair of structure and response, found none.")
+    weighting.expect_outputs(list(dict.fromkeys(name for structure, _ in pairs for name in structure.outputs)))
     parameters = _united([structure for structure, _ in pairs])
     names = [p.name for p in parameters]
     free = [p.name for p in parameters if not p.held]

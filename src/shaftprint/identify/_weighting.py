@@ -1,7 +1,7 @@
 """How the lines and outputs of a response are weighted against each other."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -21,6 +21,16 @@ class Weighting(ABC):
     @abstractmethod
     def is_likelihood(self) -> bool:
         """Whether the cost is a negative log-likelihood."""
+
+    @abstractmethod
+    def expect_outputs(self, outputs: Sequence[str]) -> None:
+        """Check that what it says of outputs can be applied.
+
+        Parameters
+        ----------
+        outputs
+            Names of the outputs of all responses of a fit.
+        """
 
     @abstractmethod
     def matrices(self, response: FrequencyResponse, covariance: FloatArray) -> FloatArray:
@@ -52,6 +62,9 @@ class MaximumLikelihood(Weighting):
         """Whether the cost is a negative log-likelihood."""
         return True
 
+    def expect_outputs(self, outputs: Sequence[str]) -> None:
+        """Check nothing: all outputs are weighed by their covariance."""
+
     def matrices(self, response: FrequencyResponse, covariance: FloatArray) -> FloatArray:
         """Return the inverse Cholesky factors of the covariances."""
         return np.linalg.inv(np.linalg.cholesky(covariance))
@@ -73,20 +86,22 @@ class Unweighted(Weighting):
         """Whether the cost is a negative log-likelihood."""
         return False
 
-    def matrices(self, response: FrequencyResponse, covariance: FloatArray) -> FloatArray:
-        """Return diagonal matrices of the square roots of the output weights.
+    def expect_outputs(self, outputs: Sequence[str]) -> None:
+        """Check the output weights.
 
         Raises
         ------
         IdentificationError
-            If a weight names an output that the response does not have, or is not positive.
+            If a weight names an output that no response has, or is not positive.
         """
         for name, weight in self.output_weights.items():
-            if name not in response.outputs or not weight > 0.0:
+            if name not in outputs or not weight > 0.0:
                 raise IdentificationError(
-                    f"output weight {name} = {weight}: expected a positive weight of one of "
-                    f"{', '.join(response.outputs)}."
+                    f"output weight {name} = {weight}: expected a positive weight of one of {', '.join(outputs)}."
                 )
+
+    def matrices(self, response: FrequencyResponse, covariance: FloatArray) -> FloatArray:
+        """Return diagonal matrices of the square roots of the output weights."""
         roots = np.sqrt([self.output_weights.get(name, 1.0) for name in response.outputs])
         channels = np.repeat(roots, len(response.inputs))
         return np.broadcast_to(np.diag(np.tile(channels, 2)), covariance.shape).copy()
@@ -126,6 +141,9 @@ class StudentT(Weighting):
     def is_likelihood(self) -> bool:
         """Whether the cost is a negative log-likelihood."""
         return True
+
+    def expect_outputs(self, outputs: Sequence[str]) -> None:
+        """Check nothing: all outputs are weighed by their covariance."""
 
     def matrices(self, response: FrequencyResponse, covariance: FloatArray) -> FloatArray:
         """Return the inverse Cholesky factors of the covariances."""
