@@ -5,7 +5,7 @@ quantity                    unit    meaning and sign convention
 =========================== ======= ==================================================================
 frequency of a line ``f``   Hz      of the campaign; ``omega_rad_s`` in rad/s
 amplitude                   -       complex, ``x = Re(a exp(j w t))``, over the working point; set point
-                                    and speed over ``n_0``, torque over ``M_s0``
+                                    and speed over ``n_0``, torque over ``M_s0``, rack over ``X_0``
 response                    -       output amplitude over input amplitude; a lag has negative phase
 covariance                  -       of the real vector [Re, Im], outputs first
 degrees of freedom          -       real degrees of freedom behind a covariance
@@ -13,7 +13,8 @@ signal-to-noise ratio       dB      local, 20 DFT bins on each side; overall rat
 load drift ``delta``        -       propeller load of a window over that at the working point, minus 1
 =========================== ======= ==================================================================
 
-`estimate_spectra` gives all of it, `estimate_response` the response alone, `open_loop` its open-loop form.
+`estimate_spectra` gives all of it, `estimate_response` the response alone, `open_loop` and `governor_and_engine` its
+open-loop forms.
 """
 
 from shaftprint.spectra._arbitrary import Arbitrary
@@ -23,8 +24,9 @@ from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._from_arrays import response_from_arrays
 from shaftprint.spectra._harmonics import Harmonics
 from shaftprint.spectra._line_fit import LineFit, SineMethod, WindowSamples
+from shaftprint.spectra._line_responses import NOT_MEASURED_STD, measured
 from shaftprint.spectra._load_drift import LoadDrift
-from shaftprint.spectra._open_loop import open_loop
+from shaftprint.spectra._open_loop import governor_and_engine, open_loop
 from shaftprint.spectra._periodic import Periodic
 from shaftprint.spectra._plain_covariance import circular_covariance, coherence_covariance
 from shaftprint.spectra._signal_to_noise import SignalToNoise
@@ -33,6 +35,7 @@ from shaftprint.spectra._spectra import Spectra, estimate_response, estimate_spe
 from shaftprint.spectra._windows import Window, plan_windows, whole_period_window
 
 __all__ = [
+    "NOT_MEASURED_STD",
     "Arbitrary",
     "ExactBin",
     "Excitation",
@@ -52,6 +55,8 @@ __all__ = [
     "coherence_covariance",
     "estimate_response",
     "estimate_spectra",
+    "governor_and_engine",
+    "measured",
     "open_loop",
     "plan_windows",
     "response_from_arrays",

@@ -17,9 +17,9 @@ def without_cross_term(
     Parameters
     ----------
     amplitude
-        Amplitudes of set point, speed and torque over the working point, shape (3,).
+        Amplitudes of set point, speed and torque over the working point, and further ones, shape (channels,).
     noise
-        Covariance ``E[a a^H]`` of their noise, shape (3, 3).
+        Covariance ``E[a a^H]`` of their noise, shape (channels, channels).
     harmonic
         Complex amplitude ``b`` of the second harmonic of the speed; not a number where it was not fitted.
     variance

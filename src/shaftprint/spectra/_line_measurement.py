@@ -13,6 +13,7 @@ from shaftprint.spectra._noise import (
     stretch_amplitudes,
     without_modulation,
 )
+from shaftprint.spectra._rack_line import RackLine, RackWindow, measure_rack
 from shaftprint.spectra._signal_to_noise import LineVariances, line_variances
 
 if TYPE_CHECKING:
@@ -48,9 +49,26 @@ class LineMeasurement:
     set_point_frequency_hz: float
     """Frequency of the sine that dominates the set point [Hz]: exactly the window's own where that one does, not a
     number where none does."""
+    rack: RackLine | None = None
+    """The line in the fuel rack; nothing where it was not logged or cannot be measured."""
+    rack_remark: str = ""
+    """Why a rack that was logged cannot be measured at this line; empty where it can."""
+
+    @property
+    def variances_with_rack(self) -> LineVariances:
+        """Variances of all channels and, last, of the rack; not numbers where that was not measured."""
+        nothing = np.array([np.nan])
+        rack = (
+            LineVariances(signal=nothing, local=nothing, overall=nothing) if self.rack is None else self.rack.variances
+        )
+        return LineVariances(
+            signal=np.append(self.variances.signal, rack.signal),
+            local=np.append(self.variances.local, rack.local),
+            overall=np.append(self.variances.overall, rack.overall),
+        )
 
 
-def measure_line(samples: "WindowSamples", method: "SineMethod") -> LineMeasurement:
+def measure_line(samples: "WindowSamples", method: "SineMethod", rack: RackWindow | None = None) -> LineMeasurement:
     """Measure one line in all channels.
 
     Parameters
@@ -59,6 +77,8 @@ def measure_line(samples: "WindowSamples", method: "SineMethod") -> LineMeasurem
         Channels of the window, normalised; the first is the set point.
     method
         The way to measure the sine.
+    rack
+        The fuel rack inside the window, where it was logged.
 
     Returns
     -------
@@ -90,6 +110,8 @@ def measure_line(samples: "WindowSamples", method: "SineMethod") -> LineMeasurem
         set_point_frequency_hz=(
             window.frequency_hz if dominant else strongest_frequency_hz(samples.values[0], samples.rate_hz)
         ),
+        rack=None if rack is None else measure_rack(rack, samples, method, spectrum, residual_stretches),
+        rack_remark="" if rack is None else rack.remark,
     )
 
 

@@ -1,5 +1,6 @@
-"""From the response to the set point to the two open-loop responses, with their covariance."""
+"""From the response to the set point to the open-loop responses, with their covariance."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -28,7 +29,7 @@ def open_loop(
     Parameters
     ----------
     response
-        Response from ``n_set`` to ``n`` and ``M_s``.
+        Response from ``n_set`` to ``n`` and ``M_s``; further outputs are passed over.
     set_point_latency_s
         Time ``t`` from the set point to the governor's demand [s], outside the loop.
 
@@ -42,54 +43,109 @@ def open_loop(
     ResponseError
         If the response is not from ``n_set`` to ``n`` and ``M_s``, or ``e`` or ``M_s`` is exactly 0 at a line.
     """
-    if response.inputs != ("n_set",) or response.outputs != ("n", "M_s"):
-        raise ResponseError(
-            "Open loop: expected a response from n_set to n and M_s, found "
-            f"{', '.join(response.inputs)} to {', '.join(response.outputs)}."
-        )
-    speed, torque = response.response[:, 0, :]
-    error = np.exp(-1j * response.omega_rad_s * set_point_latency_s) - speed
-    for name, values in (("e", error), ("M_s", torque)):
-        if np.any(values == 0.0):
-            line = response.lines[int(np.argmax(values == 0.0))]
-            raise ResponseError(f"{line}: expected {name} to differ from 0, found 0: leave the line out.")
-    governor = torque / error
-    core = speed / torque
-    governor_jacobian = np.stack([governor / error, 1.0 / error], axis=-1)
-    core_jacobian = np.stack([1.0 / torque, -core / torque], axis=-1)
-    error_std = np.sqrt(response.covariance[:, 0, 0] + response.covariance[:, 2, 2])
-    lost = np.abs(error) < _LEAST_ERROR_STD * error_std
+    found = _expected(response, "n", "M_s")
+    if response.outputs != ("n", "M_s"):
+        response = response.of_outputs("n", "M_s")
+    error = np.exp(-1j * response.omega_rad_s * set_point_latency_s) - found["n"]
+    _expect_not_zero(response, "e", error)
+    _expect_not_zero(response, "M_s", found["M_s"])
+    governor = found["M_s"] / error
+    core = found["n"] / found["M_s"]
     return (
-        _converted(response, governor, governor_jacobian, names=("e", "M_s"), lost=lost, error=error),
-        _converted(response, core, core_jacobian, names=("M_s", "n")),
+        _without_lost_lines(
+            _converted(response, ("e", "M_s"), governor, {"n": governor / error, "M_s": 1.0 / error}), response, error
+        ),
+        _converted(response, ("M_s", "n"), core, {"n": 1.0 / found["M_s"], "M_s": -core / found["M_s"]}),
     )
 
 
+def governor_and_engine(
+    response: FrequencyResponse, *, set_point_latency_s: float = 0.0
+) -> tuple[FrequencyResponse, FrequencyResponse]:
+    """Convert responses to the set point into governor ``e -> X`` and engine with line ``X -> M_s``.
+
+    The fuel rack between the two tells them apart. With ``e`` as in `open_loop`,
+
+    ``X / e = G_X / (D - G_n)``,  ``M_s / X = G_M / G_X``.
+
+    Parameters
+    ----------
+    response
+        Response from ``n_set`` to ``n``, ``M_s`` and ``X``.
+    set_point_latency_s
+        Time from the set point to the governor's demand [s], outside the loop.
+
+    Returns
+    -------
+    Responses ``e -> X`` and ``X -> M_s``. Lines whose ``e`` is less than three standard deviations from 0 are marked as
+    not used in the first of them, lines at which ``X`` is less than three from 0 or was not measured in both.
+
+    Raises
+    ------
+    ResponseError
+        If the response is not from ``n_set`` to ``n``, ``M_s`` and ``X``, or ``e`` or ``X`` is exactly 0 at a line.
+    """
+    found = _expected(response, "n", "M_s", "X")
+    error = np.exp(-1j * response.omega_rad_s * set_point_latency_s) - found["n"]
+    _expect_not_zero(response, "e", error)
+    _expect_not_zero(response, "X", found["X"])
+    governor = found["X"] / error
+    engine = found["M_s"] / found["X"]
+    heard = _without_lost_lines(response, response, found["X"], signal="X")
+    return (
+        _without_lost_lines(
+            _converted(heard, ("e", "X"), governor, {"n": governor / error, "X": 1.0 / error}), response, error
+        ),
+        _converted(heard, ("X", "M_s"), engine, {"M_s": 1.0 / found["X"], "X": -engine / found["X"]}),
+    )
+
+
+def _expected(response: FrequencyResponse, *names: str) -> dict[str, ComplexArray]:
+    """Return the response to each of the outputs, shape (lines,)."""
+    if response.inputs != ("n_set",) or not set(names) <= set(response.outputs):
+        *first, last = names
+        raise ResponseError(
+            f"Open loop: expected a response from n_set to {', '.join(first)} and {last}, found "
+            f"{', '.join(response.inputs)} to {', '.join(response.outputs)}."
+        )
+    return {name: response.response[response.outputs.index(name), 0] for name in names}
+
+
+def _expect_not_zero(response: FrequencyResponse, name: str, values: ComplexArray) -> None:
+    if np.any(values == 0.0):
+        line = response.lines[int(np.argmax(values == 0.0))]
+        raise ResponseError(f"{line}: expected {name} to differ from 0, found 0: leave the line out.")
+
+
 def _converted(
-    response: FrequencyResponse,
-    values: ComplexArray,
-    jacobian: ComplexArray,
-    *,
-    names: tuple[str, str],
-    lost: BoolArray | None = None,
-    error: ComplexArray | None = None,
+    response: FrequencyResponse, names: tuple[str, str], values: ComplexArray, derivatives: Mapping[str, ComplexArray]
 ) -> FrequencyResponse:
-    derivative = real_jacobian(jacobian[:, np.newaxis, :])
+    """Return a response of one input and one output, given its derivatives to outputs of the response."""
+    jacobian = np.zeros((len(response.lines), 1, len(response.outputs)), dtype=np.complex128)
+    for name, values_of_lines in derivatives.items():
+        jacobian[:, 0, response.outputs.index(name)] = values_of_lines
+    derivative = real_jacobian(jacobian)
     covariance: FloatArray = derivative @ response.covariance @ np.swapaxes(derivative, 1, 2)
-    remarks = dict(response.remarks)
-    used = response.used
-    if lost is not None and error is not None:
-        used = used & ~lost
-        for place in np.flatnonzero(lost):
-            name = response.lines[place]
-            remark = f"error signal is lost in noise (|e/n_set| = {abs(error[place]):.2g})"
-            remarks[name] = "; ".join(filter(None, (remarks.get(name, ""), remark)))
     return replace(
         response,
         inputs=names[:1],
         outputs=names[1:],
         response=values[np.newaxis, np.newaxis, :],
         covariance=0.5 * (covariance + np.swapaxes(covariance, 1, 2)),
-        used=used,
-        remarks=remarks,
     )
+
+
+def _without_lost_lines(
+    converted: FrequencyResponse, response: FrequencyResponse, values: ComplexArray, *, signal: str = "e"
+) -> FrequencyResponse:
+    """Mark the lines whose error signal or rack is lost in noise as not used."""
+    place, name = (0, "error signal") if signal == "e" else (response.outputs.index(signal), "fuel rack")
+    half = len(response.outputs)
+    std = np.sqrt(response.covariance[:, place, place] + response.covariance[:, half + place, half + place])
+    lost: BoolArray = np.abs(values) < _LEAST_ERROR_STD * std
+    remarks = dict(converted.remarks)
+    for row in np.flatnonzero(lost):
+        line = converted.lines[row]
+        remark = f"{name} is lost in noise (|{signal}/n_set| = {abs(values[row]):.2g})"
+        remarks[line] = "; ".join(filter(None, (remarks.get(line, ""), remark)))
+    return replace(converted, used=converted.used & ~lost, remarks=remarks)

@@ -126,29 +126,32 @@ def response_of_line(
     noise: ComplexArray,
     *,
     complex_samples: float,
+    weighted: int | None = None,
 ) -> tuple[ComplexArray, FloatArray]:
     """Return the response of one line with the covariance of [Re n, Re M_s, Im n, Im M_s] that noise gives it.
 
-    The noise of all three amplitudes is carried through ``H = [N, M] / U`` to first order, that of the input and its
+    The noise of all amplitudes is carried through ``H = [N, M] / U`` to first order, that of the input and its
     correlation with the outputs included.
 
     Parameters
     ----------
     amplitude
-        Amplitudes ``U, N, M`` over the working point, shape (3,).
+        Amplitudes ``U, N, M`` and further outputs over the working point, shape (1 + outputs,).
     noise
-        Covariance ``E[a a^H]`` of their noise, shape (3, 3).
+        Covariance ``E[a a^H]`` of their noise, shape (1 + outputs, 1 + outputs).
     complex_samples
         Number of complex samples behind it.
+    weighted
+        Number of outputs that will be weighted together; those given here when not given.
 
     Returns
     -------
-    The response, shape (2,), and its covariance, shape (4, 4).
+    The response, shape (outputs,), and its covariance, shape (2 outputs, 2 outputs).
     """
     response = amplitude[1:] / amplitude[0]
-    jacobian = np.column_stack([-response, np.eye(2)]) / amplitude[0]
+    jacobian = np.column_stack([-response, np.eye(response.size)]) / amplitude[0]
     floor = np.diag((_ROUNDING * np.abs(amplitude)) ** 2 + np.finfo(np.float64).tiny)
-    spread = jacobian @ (noise * weight_factor(complex_samples, 2) + floor) @ jacobian.conj().T
+    spread = jacobian @ (noise * weight_factor(complex_samples, weighted or response.size) + floor) @ jacobian.conj().T
     return response, _symmetric(real_covariance(spread))
 
 

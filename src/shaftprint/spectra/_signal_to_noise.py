@@ -18,11 +18,13 @@ class SignalToNoise:
     lines: tuple[str, ...]
     """Names of the lines."""
     channels: tuple[str, ...]
-    """Names of the channels: ``n_set``, every speed sensor, ``M_s``."""
+    """Names of the channels: ``n_set``, every speed sensor, ``M_s``, and ``X`` where it was logged."""
     local_db: FloatArray
-    """``10 log10(Var(line) / Var(20 bins on each side))`` [dB], thesis eq. 3.10, shape (lines, channels)."""
+    """``10 log10(Var(line) / Var(20 bins on each side))`` [dB], thesis eq. 3.10, shape (lines, channels); not a number
+    where a channel does not show the line."""
     overall: FloatArray
-    """``sqrt(sum Var(line) / sum Var(everything))`` over all windows [-], thesis eq. 3.9, shape (channels,)."""
+    """``sqrt(sum Var(line) / sum Var(everything))`` over all windows [-] in which a channel shows the line, thesis
+    eq. 3.9, shape (channels,)."""
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
@@ -99,8 +101,8 @@ def signal_to_noise(
     -------
     The table; a channel that never moves has an overall ratio of 0.
     """
-    signal = np.sum([line.signal for line in variances], axis=0)
-    overall = np.sum([line.overall for line in variances], axis=0)
+    signal = np.nansum([line.signal for line in variances], axis=0)
+    overall = np.nansum([line.overall for line in variances], axis=0)
     return SignalToNoise(
         lines=lines,
         channels=channels,

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.errors import ResponseError
-from shaftprint.spectra._cross_term import without_cross_term
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._harmonics import Harmonics, collect_harmonics
 from shaftprint.spectra._line_fit import SineMethod, WindowSamples, cut_window
 from shaftprint.spectra._line_measurement import LineMeasurement, measure_line
+from shaftprint.spectra._line_responses import response_of_lines
 from shaftprint.spectra._load_drift import LoadDrift, load_drift
-from shaftprint.spectra._pick_up_gain import pick_up_gain
-from shaftprint.spectra._response_covariance import response_of_line, with_common_error
+from shaftprint.spectra._rack_line import cut_rack
 from shaftprint.spectra._set_point_check import amplitude_remark, check_frequency_unit, check_set_point
 from shaftprint.spectra._signal_to_noise import SignalToNoise, signal_to_noise
 from shaftprint.spectra._sine_fit import WholePeriodSine
@@ -38,7 +37,7 @@ class Spectra:
     """All that the sines of a campaign tell about one shaft line."""
 
     response: FrequencyResponse
-    """Response from ``n_set`` to ``n`` and ``M_s``."""
+    """Response from ``n_set`` to ``n`` and ``M_s``, and to ``X`` where the rack was logged."""
     windows: tuple[Window, ...]
     """Window of each line (thesis table 3.5)."""
     signal_to_noise: SignalToNoise
@@ -60,7 +59,7 @@ def estimate_response(
     method: SineMethod = _WHOLE_PERIOD_SINE,
     speed: str | None = None,
 ) -> FrequencyResponse:
-    """Estimate the response from set point to speed and torque with full covariance.
+    """Estimate the response from set point to speed, torque and rack with full covariance.
 
     Parameters, result and errors are those of `estimate_spectra`, of which this is the response.
     """
@@ -77,10 +76,11 @@ def estimate_spectra(
     """Measure every sine of a campaign in every channel.
 
     All values are divided by the working point of the whole recording: set point and speed by ``n_0``, torque by
-    ``M_s0``; the propeller load of each window relative to it goes with the response as ``load``. Lines above half the
-    pulse rate of the speed sensor are aliased and not used by default; neither are lines whose set point is not a sine
-    of the stated frequency. In thesis mode all lines are used, as the thesis did, and the remarks say what speaks
-    against them.
+    ``M_s0``, fuel rack by ``X_0``; the propeller load of each window relative to it goes with the response as ``load``.
+    Lines above half the pulse rate of the speed sensor are aliased and not used by default; neither are lines whose set
+    point is not a sine of the stated frequency. A line may be too fast for the messages of the control unit: its
+    response to ``X`` is then unknown (see `measured`), that to speed and torque is not. In thesis mode all lines are
+    used, as the thesis did, and the remarks say what speaks against them.
 
     Parameters
     ----------
@@ -107,13 +107,13 @@ def estimate_spectra(
     names = ("n_set", *signals.speeds, "M_s")
     used_channels = [0, names.index(sensor.name), len(names) - 1]
     cuts, left_out = _cut_windows(signals, campaign)
-    measurements = [_measure(cut, names, method) for cut in cuts]
+    measurements = [_measure(signals, cut, names, method) for cut in cuts]
     check_frequency_unit(measurements)
     measurements, silent = _without_silent(signals, campaign, measurements)
     ratios = signal_to_noise(
-        [line.variances for line in measurements],
+        [line.variances if signals.rack is None else line.variances_with_rack for line in measurements],
         lines=tuple(line.window.line for line in measurements),
-        channels=names,
+        channels=names if signals.rack is None else (*names, "X"),
     )
     remarks, usable = _judge(signals, campaign, measurements, sensor, ratios.local_db[:, 0])
     drift = load_drift(measurements, speed=used_channels[1], torque=used_channels[2])
@@ -122,7 +122,7 @@ def estimate_spectra(
     load = np.ones(len(measurements)) if thesis else 1.0 + drift.delta
     return Spectra(
         response=replace(
-            _response(signals, measurements, used_channels, sensor, load),
+            response_of_lines(signals, measurements, channels=used_channels, sensor=sensor, load=load),
             used=used,
             remarks=remarks,
             load=load,
@@ -182,7 +182,7 @@ def _cut_windows(signals: "Signals", campaign: "Campaign") -> tuple[list[WindowS
     return cuts, left_out
 
 
-def _measure(cut: WindowSamples, names: Sequence[str], method: SineMethod) -> LineMeasurement:
+def _measure(signals: "Signals", cut: WindowSamples, names: Sequence[str], method: SineMethod) -> LineMeasurement:
     window = cut.window
     finite = np.isfinite(cut.values)
     if not finite.all():
@@ -197,7 +197,7 @@ def _measure(cut: WindowSamples, names: Sequence[str], method: SineMethod) -> Li
             f"{window.line}: expected {names[1 + int(np.argmax(still))]} to move, found a constant "
             f"between {window.start_s:g} and {window.stop_s:g} s: the sensor or its channel is dead."
         )
-    return measure_line(cut, method)
+    return measure_line(cut, method, None if signals.rack is None else cut_rack(signals.rack, window))
 
 
 def _expected_amplitude(signals: "Signals", campaign: "Campaign", line: LineMeasurement) -> float:
@@ -245,42 +245,9 @@ def _judge(
         aliased = line.window.frequency_hz > sensor.nyquist_hz
         if aliased:
             found.append(f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased")
+        if line.rack_remark:
+            found.append(line.rack_remark)
         if found:
             remarks[name] = "; ".join(found)
         usable[place] = finding.usable and not aliased
     return remarks, usable
-
-
-def _response(
-    signals: "Signals",
-    measurements: Sequence[LineMeasurement],
-    channels: list[int],
-    sensor: "SpeedSignal",
-    load: "FloatArray",
-) -> FrequencyResponse:
-    response = np.empty((2, 1, len(measurements)), dtype=np.complex128)
-    covariance = np.empty((len(measurements), 4, 4))
-    for place, line in enumerate(measurements):
-        scale = np.array([1.0, 1.0 / pick_up_gain(sensor, line.window.frequency_hz), 1.0])
-        amplitude = scale * line.amplitude[channels]
-        noise = scale[:, np.newaxis] * line.noise.covariance[np.ix_(channels, channels)] * scale
-        if signals.mode != "thesis":
-            amplitude, noise = without_cross_term(
-                amplitude,
-                noise,
-                harmonic=line.harmonic[0, channels[1]],
-                variance=line.harmonic_variance[0, channels[1]],
-                load=load[place],
-            )
-        values, spread = response_of_line(amplitude, noise, complex_samples=line.noise.complex_samples)
-        response[:, 0, place] = values
-        covariance[place] = with_common_error(spread, values, signals.dc_scale_std / signals.dc_scale)
-    return FrequencyResponse(
-        frequency_hz=np.array([line.window.frequency_hz for line in measurements]),
-        response=response,
-        covariance=covariance,
-        inputs=("n_set",),
-        outputs=("n", "M_s"),
-        lines=tuple(line.window.line for line in measurements),
-        degrees_of_freedom=np.array([2.0 * line.noise.complex_samples for line in measurements]),
-    )

@@ -1,0 +1,125 @@
+"""From measured lines to the response with its covariance."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
+from shaftprint.spectra._cross_term import without_cross_term
+from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._line_measurement import LineMeasurement
+from shaftprint.spectra._pick_up_gain import pick_up_gain
+from shaftprint.spectra._response_covariance import response_of_line, weight_factor, with_common_error
+
+if TYPE_CHECKING:
+    from shaftprint.signals import Signals, SpeedSignal
+
+NOT_MEASURED_STD = 100.0
+"""Standard deviation of real and imaginary part of a response that was not measured [-]: a line that is governed stays
+below a tenth of it, so that it has no weight for that output. Its correlation with the others is 0."""
+
+_SPEED_AND_TORQUE = 2
+_ROUNDING = 1e-15
+
+
+def measured(response: FrequencyResponse) -> BoolArray:
+    """Return which outputs were measured at which lines.
+
+    A line may show speed and torque and be too fast for the percent torque on the CAN bus. The value that the response
+    holds there says nothing; its standard deviation is `NOT_MEASURED_STD`.
+
+    Parameters
+    ----------
+    response
+        A response of one input.
+
+    Returns
+    -------
+    True where the response was measured, shape (outputs, lines).
+    """
+    variance = np.diagonal(response.covariance, axis1=1, axis2=2)[:, : len(response.outputs)]
+    known: BoolArray = variance.T < 0.5 * NOT_MEASURED_STD**2
+    return known
+
+
+def response_of_lines(
+    signals: "Signals",
+    measurements: Sequence[LineMeasurement],
+    *,
+    channels: list[int],
+    sensor: "SpeedSignal",
+    load: FloatArray,
+) -> FrequencyResponse:
+    """Return the response from set point to speed, torque and, where it was logged, fuel rack.
+
+    Parameters
+    ----------
+    signals
+        The prepared recording.
+    measurements
+        One entry a line.
+    channels
+        Places of set point, speed and torque.
+    sensor
+        The speed signal.
+    load
+        Propeller load of each window over that at the working point, shape (lines,).
+    """
+    outputs = ("n", "M_s") if signals.rack is None else ("n", "M_s", "X")
+    response = np.empty((len(outputs), 1, len(measurements)), dtype=np.complex128)
+    covariance = np.empty((len(measurements), 2 * len(outputs), 2 * len(outputs)))
+    for place, line in enumerate(measurements):
+        amplitude, noise = _amplitudes(line, channels, sensor)
+        if signals.mode != "thesis":
+            amplitude, noise = without_cross_term(
+                amplitude,
+                noise,
+                harmonic=line.harmonic[0, channels[1]],
+                variance=line.harmonic_variance[0, channels[1]],
+                load=load[place],
+            )
+        samples = line.noise.complex_samples
+        values, spread = response_of_line(amplitude, noise, complex_samples=samples, weighted=len(outputs))
+        # the common error takes part in the factor of the weights: speed and torque alone keep what they would have
+        more = weight_factor(samples, len(outputs)) / weight_factor(samples, _SPEED_AND_TORQUE)
+        spread = with_common_error(spread, values, signals.dc_scale_std / signals.dc_scale * np.sqrt(more))
+        if values.size < len(outputs):
+            values, spread = _with_unknown_output(values, spread)
+        if signals.rack is not None:
+            # a speed that is known well beside a rack that is not: rounding must leave the matrix positive definite
+            spread += _ROUNDING * spread.diagonal().max() * np.eye(len(spread))
+        response[:, 0, place] = values
+        covariance[place] = spread
+    return FrequencyResponse(
+        frequency_hz=np.array([line.window.frequency_hz for line in measurements]),
+        response=response,
+        covariance=covariance,
+        inputs=("n_set",),
+        outputs=outputs,
+        lines=tuple(line.window.line for line in measurements),
+        degrees_of_freedom=np.array([2.0 * line.noise.complex_samples for line in measurements]),
+    )
+
+
+def _amplitudes(line: LineMeasurement, channels: list[int], sensor: "SpeedSignal") -> tuple[ComplexArray, ComplexArray]:
+    """Return the amplitudes of set point, speed, torque and rack, as far as measured, and their noise."""
+    scale = np.array([1.0, 1.0 / pick_up_gain(sensor, line.window.frequency_hz), 1.0])
+    amplitude = line.amplitude[channels]
+    noise = line.noise.covariance[np.ix_(channels, channels)]
+    if line.rack is not None:
+        scale = np.append(scale, 1.0)
+        amplitude = np.append(amplitude, line.rack.amplitude)
+        own = line.rack.covariance[[*channels, -1]]
+        noise = np.block([[noise, own[:-1, np.newaxis].conj()], [own[np.newaxis]]])
+    return scale * amplitude, scale[:, np.newaxis] * noise * scale
+
+
+def _with_unknown_output(values: ComplexArray, covariance: FloatArray) -> tuple[ComplexArray, FloatArray]:
+    """Add one output that was not measured, after the others; its value is 1, which a logarithm can take."""
+    count = values.size
+    spread = np.zeros((2 * count + 2, 2 * count + 2))
+    kept = np.delete(np.arange(2 * count + 2), [count, 2 * count + 1])
+    spread[np.ix_(kept, kept)] = covariance
+    spread[[count, -1], [count, -1]] = NOT_MEASURED_STD**2
+    return np.append(values, 1.0), spread
