@@ -1,11 +1,17 @@
-"""A structure of one's own: does the propeller of this ship show dynamic inflow? Run `shaftprint demo` first.
+"""A structure of one's own for a ship: whether the shaft twists between the speed pick-up and the propeller.
 
-When the speed of a propeller changes, the water through it follows a moment later, and until then the torque is larger
-than the quadratic law says. Linearised, with the time ``tau_i`` that the water needs and the strength ``kappa``::
+This file is all that the command line needs; nothing in the package is touched. After `shaftprint demo`::
 
-    M_s / n = tau_dn s + k_q + kappa tau_i s / (tau_i s + 1)
+    shaftprint structures examples/own_structure.py:elastic_core
+    shaftprint identify demo/recording.nc --vessel demo/vessel.toml --campaign demo/campaign.toml -o elastic
+        --structure examples/own_structure.py:elastic_core        (all in one line)
 
-The block below is all that shaftprint does not have. Nothing in the package is touched.
+A torque ``M_s`` twists the shaft, so while it changes the engine is faster than the propeller. Linearised, with the
+compliance ``c`` of the shaft times ``M_s0 / (2 pi n_s0)``::
+
+    n = n_propeller + c s M_s        n_propeller / M_s = 1 / (tau_dn s + k_q)
+
+As a script it lets the recording of the demo decide between this structure and the shipped one of a stiff shaft.
 """
 
 from dataclasses import dataclass
@@ -13,49 +19,56 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint import campaign, identify, models, recording, signals, spectra, vessel
-from shaftprint.models import Block, Inverse, Parameter, Structure, TorqueBalance
+from shaftprint.models import Block, Delay, Inverse, Parameter, Shaft, Structure
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class DynamicInflow(Block):
-    """``kappa tau_i s / (tau_i s + 1)``, after Blanke, Lindegaard and Fossen, Dynamic model for thrust, 2000."""
+class Twist(Block):
+    """Speed lost in the shaft over its torque: ``c s``."""
 
-    strength: Parameter
-    time: Parameter
+    compliance: Parameter
 
     @property
     def parameters(self):
-        return (self.strength, self.time)
+        return (self.compliance,)
 
-    def transfer(self, s, kappa, tau_i):
-        return kappa * tau_i * s / (tau_i * s + 1.0)
+    def transfer(self, s, c):
+        return c * s
 
-    def derivatives(self, s, response, kappa, tau_i):
-        lag = tau_i * s + 1.0
-        return tau_i * s / lag, kappa * s / lag**2
+    def derivatives(self, s, response, c):
+        return (np.broadcast_to(s, response.shape),)
 
-    def ratio(self, kappa, tau_i):
-        return np.array([kappa * tau_i, 0.0]), np.array([tau_i, 1.0])
+    def ratio(self, c):
+        return np.array([c, 0.0]), np.array([1.0])
 
 
 TAU_DN = Parameter("tau_dn", "s", 0.0, 2.0, 0.3, "inertia time downstream of the torque gauge")
 K_Q = Parameter("k_q", "-", 1.0, 3.0, 2.0, "slope of the propeller torque")
-KAPPA = Parameter("kappa", "-", -1.0, 3.0, 0.5, "strength of the dynamic inflow")
-TAU_I = Parameter("tau_i", "s", 0.02, 0.5, 0.1, "time that the water needs to follow", held=True)
+COMPLIANCE = Parameter("c", "s", -0.01, 0.01, 0.001, "compliance of the shaft")
+T_GAUGE = Parameter("t_gauge", "s", -0.02, 0.02, 0.0, "error of the known latency of the torque telemetry")
 
-inflow = Structure(
-    name="INFLOW",
-    title="core propulsion with dynamic inflow",
-    input="M_s",
-    outputs={"n": Inverse(TorqueBalance(TAU_DN, K_Q) + DynamicInflow(KAPPA, TAU_I))},
-)
 
-tug, test = vessel.load_vessel("demo/vessel.toml"), campaign.load_campaign("demo/campaign.toml")
-with recording.read_recording("demo/recording.nc") as raw:
-    prepared = signals.prepare_signals(raw, tug, test)
-_, core = spectra.open_loop(spectra.estimate_response(prepared, test))
+def elastic_core():
+    """Return the core propulsion behind an elastic shaft."""
+    line = Shaft((TAU_DN,), K_Q) + Twist(COMPLIANCE)
+    return Structure(
+        name="ELASTIC-CORE",
+        title="core propulsion behind an elastic shaft",
+        input="M_s",
+        outputs={"n": line * Inverse(Delay(T_GAUGE))},
+    )
 
-for structure in (models.structure("GAUGE-CORE"), inflow):
-    found = identify.identify(structure, core, rng=np.random.default_rng(1))
-    numbers = ", ".join(f"{number.name} = {number.value:.4f} +/- {number.std:.4f}" for number in found.parameters)
-    print(f"{structure.name}: {numbers}; chi-square {2.0 * found.cost:.1f} for {found.degrees_of_freedom}")
+
+if __name__ == "__main__":
+    tug, test = vessel.load_vessel("demo/vessel.toml"), campaign.load_campaign("demo/campaign.toml")
+    with recording.read_recording("demo/recording.nc") as raw:
+        prepared = signals.prepare_signals(raw, tug, test)
+    _, core = spectra.open_loop(spectra.estimate_response(prepared, test))
+
+    stiff, elastic = models.structure("GAUGE-CORE"), elastic_core()
+    known = identify.Settings(priors=identify.priors_from_vessel(elastic, tug, prepared.working_point))
+    comparison = identify.compare_structures([stiff, elastic], core, rng=np.random.default_rng(1), settings=known)
+    for candidate in comparison.candidates:
+        numbers = ", ".join(f"{n.name} = {n.value:.4f} +/- {n.std:.4f}" for n in candidate.identification.parameters)
+        print(f"{candidate.name}: {numbers}")
+    print(*comparison.sentences, sep="\n")
