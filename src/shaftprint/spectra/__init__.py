@@ -19,6 +19,7 @@ open-loop forms.
 
 from shaftprint.spectra._arbitrary import Arbitrary
 from shaftprint.spectra._bin_selection import ExactBin, HighestPeak
+from shaftprint.spectra._closed_loop import plant_from_closed_loop
 from shaftprint.spectra._excitation import Excitation
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._from_arrays import response_from_arrays
@@ -59,6 +60,7 @@ __all__ = [
     "measured",
     "open_loop",
     "plan_windows",
+    "plant_from_closed_loop",
     "response_from_arrays",
     "whole_period_window",
 ]
