@@ -39,6 +39,7 @@ from shaftprint.identify._search_report import SearchReport, report_search
 from shaftprint.identify._settings import Settings, Stability
 from shaftprint.identify._stan_tug_noise import STAN_TUG_NOISE
 from shaftprint.identify._starts import Draw, LatinHypercube, Uniform
+from shaftprint.identify._suspects import Suspect, suspects_of
 from shaftprint.identify._weighting import MaximumLikelihood, StudentT, Unweighted, Weighting
 
 __all__ = [
@@ -74,6 +75,7 @@ __all__ = [
     "Settings",
     "Stability",
     "StudentT",
+    "Suspect",
     "Uniform",
     "Unweighted",
     "Weighting",
@@ -101,4 +103,5 @@ __all__ = [
     "scan",
     "scan_response",
     "stated_noise",
+    "suspects_of",
 ]
