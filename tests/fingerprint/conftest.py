@@ -195,5 +195,20 @@ def fit():
 
 
 @pytest.fixture(scope="session")
+def respond():
+    """A maker of responses with drawn noise, a share of the response in each part."""
+
+    def make(model, values, *, share, seed):
+        exact = exact_response(model, values, share)
+        std = np.sqrt(np.diagonal(exact.covariance, axis1=1, axis2=2)).T
+        parts = np.random.default_rng(seed).standard_normal(std.shape) * std
+        outputs = std.shape[0] // 2
+        noisy = exact.response + (parts[:outputs] + 1j * parts[outputs:])[:, None, :]
+        return replace(exact, response=noisy)
+
+    return make
+
+
+@pytest.fixture(scope="session")
 def truth():
     return dict(TRUTH)

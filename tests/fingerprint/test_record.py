@@ -93,8 +93,8 @@ def test_keeps_what_is_needed_to_judge_it_in_ten_years(fingerprint):
     assert (where.shaft_torque.value, where.shaft_torque.std) == (1725.0, 8.0)
     assert (where.set_point_v, where.speed_channel, where.mode) == (-5.05, "n_e", "shaftprint")
     assert fingerprint.structure == "GAUGE-CLOSED"
-    assert fingerprint.held == {"v": 1.0, "T_average": 0.0, "T_hold": 0.0, "t_pickup": 0.0}
-    assert {name: (belief.mean, belief.std) for name, belief in fingerprint.priors.items()} == {"g": (0.0, 0.1)}
+    assert fingerprint.held == {"v": 1.0, "T_average": 0.0, "T_hold": 0.0, "t_pickup": 0.0, "T_filter": 0.0}
+    assert fingerprint.priors == {"g": Prior(0.0, 0.1)}
 
 
 def test_parameters_are_the_truth_within_their_intervals(fingerprint, truth):

@@ -8,11 +8,12 @@ quantity            unit        meaning
 gain margin         -           factor on the loop gain that reaches instability
 phase margin        deg         smallest over all crossovers
 delay margin        s           smallest extra delay in the loop that reaches instability
+gauge zero share    %           zero offset of the torque gauge over the working-point torque; positive where it
+                                shows too much
 =================== =========== ==================================================================================
 """
 
 from shaftprint.fingerprint._fingerprint import (
-    Belief,
     Conditions,
     Fingerprint,
     Quality,
@@ -26,7 +27,6 @@ from shaftprint.fingerprint._physical import physical_quantities
 from shaftprint.fingerprint._take import take_fingerprint
 
 __all__ = [
-    "Belief",
     "Conditions",
     "Fingerprint",
     "Quality",

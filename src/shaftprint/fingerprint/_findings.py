@@ -3,21 +3,24 @@
 import numpy as np
 
 from shaftprint.fingerprint._fingerprint import Quantity
-from shaftprint.identify import Estimate, Identification
+from shaftprint.fingerprint._physical import GAUGE_ZERO
+from shaftprint.identify import Budget, Estimate, Identification
 from shaftprint.models import Parameter
 
 # A combination is worth naming when it is known this much better, relative to its size, than a parameter in it.
 BETTER_KNOWN = 0.4
 # Parameters whose standard deviation exceeds this share of their size are called hardly known.
 HARDLY_KNOWN = 0.1
-# 99 % point of the ratio chi-square / degrees of freedom is near 1 + 2.33 sqrt(2 / dof).
-NORMAL_99 = 2.326
+# A misfit that chance alone makes in fewer than this share of the tests is none of chance.
+UNLIKELY = 0.01
 # A search that fewer of its starts agree on than this share may have missed the optimum.
 FEW_STARTS = 0.1
 # So many standard deviations from what was expected are worth a sentence.
 SURPRISING = 3.0
-# A slope this close to 2 is as good as 2, however well it is known.
-SLOPE_TOLERANCE = 0.02
+# So many standard deviations of the gauge's zero from none are.
+OFF_ZERO = 2.0
+# A number rests on what was known beforehand when more than this share of its variance is from there.
+MOSTLY = 0.5
 AMPLE, SMALL = 2.0, 1.3
 WHY = {
     "I": " A torque gauge shows only the inertia downstream of it: compare with that, or fit a gauge-aware structure.",
@@ -26,7 +29,7 @@ WHY = {
 
 
 def findings_of(
-    identification: Identification, physical: tuple[Quantity, ...], left_out: dict[str, str]
+    identification: Identification, physical: tuple[Quantity, ...], stated: Budget, left_out: dict[str, str]
 ) -> tuple[str, ...]:
     """Return the findings of one identification, most important first."""
     return (
@@ -35,7 +38,8 @@ def findings_of(
         *_bounds(identification),
         *_search(identification),
         *_hardly_known(identification),
-        *_sensor_checks(identification),
+        *_known_beforehand(identification, stated),
+        *_gauge_zero(physical),
         *_against_expected(physical),
         *(f"Line {name} is left out: {reason}." for name, reason in left_out.items()),
     )
@@ -58,15 +62,13 @@ def _stability(identification: Identification) -> list[str]:
 
 
 def _misfit(identification: Identification) -> list[str]:
-    count = identification.degrees_of_freedom
-    if count <= 0 or not identification.is_likelihood:
-        return []
-    ratio = 2.0 * identification.cost / count
-    if ratio <= 1.0 + NORMAL_99 * np.sqrt(2.0 / count):
+    chance = identification.p_value
+    if chance is None or chance >= UNLIKELY:
         return []
     return [
         "The structure does not explain the data within their noise: chi-square is "
-        f"{2.0 * identification.cost:.0f} for {count} degrees of freedom; the standard deviations are too small for it."
+        f"{identification.chi_square:.0f} for {identification.degrees_of_freedom} degrees of freedom (p = "
+        f"{chance:.2g}); the standard deviations are too small for it."
     ]
 
 
@@ -117,12 +119,30 @@ def _is_better(combination: Estimate, estimate: Estimate, identification: Identi
     return share < BETTER_KNOWN * estimate.std / max(abs(estimate.value), 1e-300)
 
 
-def _sensor_checks(identification: Identification) -> list[str]:
+def _known_beforehand(identification: Identification, stated: Budget) -> list[str]:
+    """Return which numbers the test alone would not know: their variance is that of the priors, not of its noise."""
+    priors = identification.settings.priors
+    sources = {source for name, prior in priors.items() for source in prior.sources or (f"prior of {name}",)}
+    resting = [
+        row.name
+        for row in stated.rows
+        if row.name not in priors and sum(row.shares.get(source, 0.0) for source in sources) > MOSTLY
+    ]
+    if not resting:
+        return []
+    named = ", ".join(source for source in stated.sources if source in sources)
     return [
-        f"k_q = {_written(e)} instead of 2: the torque gauge has a zero offset, there is constant friction, or the "
-        "inflow is not zero."
-        for e in identification.parameters
-        if e.name == "k_q" and abs(e.value - 2.0) > max(SURPRISING * e.std, SLOPE_TOLERANCE)
+        f"{', '.join(resting)}: more than half of the variance comes from what was known beforehand ({named}), not "
+        "from the noise of this test."
+    ]
+
+
+def _gauge_zero(physical: tuple[Quantity, ...]) -> list[str]:
+    return [
+        f"{q.name} = {q.value:+.2f} +/- {q.std:.2g} %: the torque gauge has a zero offset, there is constant friction, "
+        "or the inflow is not zero."
+        for q in physical
+        if q.name == GAUGE_ZERO and abs(q.value) > OFF_ZERO * q.std
     ]
 
 

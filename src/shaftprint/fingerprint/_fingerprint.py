@@ -8,6 +8,7 @@ from pydantic import AwareDatetime, BaseModel, ConfigDict, ValidationError
 
 from shaftprint.errors import FingerprintError
 from shaftprint.files import written_whole
+from shaftprint.identify import Budget, Prior
 
 SCHEMA_VERSION: Final = 1
 
@@ -77,15 +78,6 @@ class Conditions(_Record):
     """Test lines that were not, with the reason."""
 
 
-class Belief(_Record):
-    """What was known of a parameter before the test: a normal distribution."""
-
-    mean: float
-    """Expected value."""
-    std: float
-    """Standard deviation."""
-
-
 class Quality(_Record):
     """How well the model explains the data, and how good the data were."""
 
@@ -99,6 +91,8 @@ class Quality(_Record):
     chi_square: float | None
     """Sum of squared weighted residuals, of the order of ``degrees_of_freedom`` when the model explains the data; None
     for a fit that was not weighted by the covariance."""
+    p_value: float | None
+    """Probability of a sum that large or larger if the model holds; None where there is nothing to test."""
     degrees_of_freedom: int
     """Number of data and priors minus the number of free parameters."""
     starts: int
@@ -134,7 +128,7 @@ class Fingerprint(_Record):
     """Free parameters, normalised."""
     held: dict[str, float]
     """Parameters that were held, with their values."""
-    priors: dict[str, Belief]
+    priors: dict[str, Prior]
     """Parameters of which something was known before the test; it counts in the standard deviations."""
     covariance: tuple[tuple[float, ...], ...]
     """Covariance of the free parameters, in their order."""
@@ -144,6 +138,9 @@ class Fingerprint(_Record):
     """Physical values, each with what was expected."""
     margins: tuple[Quantity, ...]
     """Stability margins; empty for a structure without feedback."""
+    budget: Budget
+    """Which source contributes how much to the variance of parameters, combinations, physical values and margins; a
+    number of which the test says nothing is left out."""
     calibration: tuple[Quantity, ...]
     """What the recording itself told of its sensors: the set-point line and the angles of the strips."""
     quality: Quality

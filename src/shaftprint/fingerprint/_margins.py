@@ -1,27 +1,17 @@
 """Stability margins with their standard deviations and intervals."""
 
-from collections.abc import Callable, Mapping
-from functools import cache
-
 import numpy as np
 
 from shaftprint.fingerprint._fingerprint import Quantity
-from shaftprint.identify import Identification, Profile
-from shaftprint.models import Margins, margins
+from shaftprint.fingerprint._margin_numbers import MEANINGS, margin_numbers, margin_values
+from shaftprint.identify import Budget, Identification, Profile, budget
 
-MARGINS: tuple[tuple[str, str, Callable[[Margins], float], str], ...] = (
-    ("gain margin", "-", lambda found: found.gain_margin, "factor on the loop gain that makes the line hunt"),
-    (
-        "phase margin",
-        "deg",
-        lambda found: float(np.degrees(found.phase_margin_rad)),
-        "smallest phase reserve over all crossovers",
-    ),
-    ("delay margin", "s", lambda found: found.delay_margin_s, "extra delay in the loop that makes the line hunt"),
-)
+UNKNOWN_STD = np.inf
 
 
-def margin_quantities(identification: Identification, profile: Profile | None = None) -> tuple[Quantity, ...]:
+def margin_quantities(
+    identification: Identification, profile: Profile | None = None, stated: Budget | None = None
+) -> tuple[Quantity, ...]:
     """Return gain, phase and delay margin with standard deviations to first order; nothing without feedback.
 
     A margin that does not exist, because no gain or delay reaches instability, is left out.
@@ -31,34 +21,32 @@ def margin_quantities(identification: Identification, profile: Profile | None = 
     identification
         The fit.
     profile
-        Its profile likelihood. The 95 % interval of a margin is its range over the parameter sets at the ends of all
-        intervals: a margin follows the valley in which the parameters trade, where a standard deviation does not.
+        Its profile likelihood with the margins among the numbers that were asked for; without it there is no interval.
+    stated
+        Its uncertainty budget with the margins among the numbers; made here when not given.
     """
-    if identification.structure.loop is None:
+    found = identification.margins
+    if found is None:
         return ()
-
-    names = identification.structure.names
-    experiment = identification.objective.experiments[0]
-
-    # all three margins are asked for at the same points, and each point costs a sweep of the loop
-    @cache
-    def at(values: tuple[float, ...]) -> Margins:
-        return margins(identification.structure, values)
-
-    def follow(number: Callable[[Margins], float]) -> Callable[[Mapping[str, float]], float]:
-        return lambda named: number(at(tuple(float(named[name]) for name in names)))
-
-    found = []
-    for name, unit, number, meaning in MARGINS:
-        estimate = identification.derived(name, unit, follow(number))
-        if not np.isfinite(estimate.value):
+    if stated is None:
+        own = identification.objective.experiments[0].own(identification.values)
+        stated = budget(identification, margin_numbers(identification.structure, own))
+    std = {row.name: row.std for row in stated.rows}
+    quantities = []
+    for name, value in margin_values(found).items():
+        if not np.isfinite(value):
             continue
-        points = [] if profile is None else [experiment.own(point).tolist() for point in profile.points]
-        reached = [number(at(tuple(point))) for point in points]
-        interval = (min(*reached, estimate.value), max(*reached, estimate.value)) if reached else None
-        found.append(
+        interval = None if profile is None else profile.intervals.get(name)
+        unit, meaning = MEANINGS[name]
+        quantities.append(
             Quantity(
-                name=name, unit=unit, value=estimate.value, std=estimate.std, interval_95=interval, meaning=meaning
+                name=name,
+                unit=unit,
+                value=value,
+                std=std.get(name, UNKNOWN_STD),
+                interval_95=None if interval is None else (interval.lower, interval.upper),
+                interval_open=(False, False) if interval is None else (interval.lower_open, interval.upper_open),
+                meaning=meaning,
             )
         )
-    return tuple(found)
+    return tuple(quantities)

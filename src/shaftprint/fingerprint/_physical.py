@@ -5,79 +5,109 @@ With the working point ``n_s0`` [rev/s] of the propeller shaft and ``M_s0`` [N m
     I      = tau M_s0 / (2 pi n_s0)                     inertia, thesis eq. 2.23
     K_Q    = M_s0 eta_R / (rho n_s0^2 D^5)              thesis eqs 2.9-2.11 at J = 0
     dM/dn  = v K_p M_s0 / n_e0                          proportional governor action on the shaft torque
+    zero   = 2 / k_q - 1                                zero offset of the gauge over M_s0
+
+A gauge that shows ``1 + e`` times the torque makes inertias and governor actions as much too large. The same ``e`` is
+in the prior of ``tau_up``, which divides an inertia in kg m2 by the torque that the gauge shows: both go into the
+budget with their signs. The scatter of the working point is in neither: ``M_s0`` divides the responses, the load of
+their windows and the prior, and multiplies what is found, whatever the load was when it was taken. It counts for
+``K_Q``, which is made of the working point itself.
 """
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
-from operator import itemgetter
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.arrays import FloatArray
 from shaftprint.fingerprint._fingerprint import Quantity
-from shaftprint.identify import Identification
+from shaftprint.identify import Budget, Identification, budget
+from shaftprint.models import Combination, Structure
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
     from shaftprint.signals import WorkingPoint
     from shaftprint.vessel import Vessel
 
+PERCENT = 100.0
+IDEAL_SLOPE = 2.0
+GAUGE_ZERO = "gauge zero share"
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class _Physical:
-    name: str
-    unit: str
-    needs: tuple[str, ...]
-    factor: float
-    torque_power: float
-    of: Callable[[Mapping[str, float]], float]
-    meaning: str
+class PhysicalNumber:
+    """A physical value as a number that follows from the parameters."""
+
+    number: Combination
+    """Its name, unit and formula."""
+    direct: Mapping[str, float] = field(default_factory=dict)
+    """Change, with sign, for one standard deviation of a source that enters the conversion."""
     expected: float | None = None
+    """Value of the vessel file."""
     expected_std: float | None = None
+    """Standard deviation of that value."""
+
+
+def physical_numbers(
+    identification: Identification, working_point: "WorkingPoint", vessel: "Vessel"
+) -> tuple[PhysicalNumber, ...]:
+    """Return the physical values that a fit gives, as numbers that follow from its parameters."""
+    structure = identification.structure
+    named = structure.named(identification.objective.experiments[0].own(identification.values))
+    scale = vessel.sensors.shaft_torque.scale_std_fraction or 0.0
+    plans = (*_inertias(working_point, vessel), *_governor_actions(working_point))
+    found = []
+    for needs, plan in plans:
+        if set(needs) <= set(named):
+            value = float(plan.number.of(named))
+            found.append(
+                PhysicalNumber(
+                    number=plan.number,
+                    direct={"gauge scale": value * scale} if scale else {},
+                    expected=plan.expected,
+                    expected_std=plan.expected_std,
+                )
+            )
+    return (*found, *_gauge_zero(structure), _torque_coefficient(working_point, vessel))
 
 
 def physical_quantities(
-    identification: Identification, working_point: "WorkingPoint", vessel: "Vessel"
+    identification: Identification, working_point: "WorkingPoint", vessel: "Vessel", stated: Budget | None = None
 ) -> tuple[Quantity, ...]:
     """Return physical values with standard deviations, beside the values of the vessel file where it has them.
 
-    The uncertainties of the fit, of the working-point torque and of the gauge's scale are added in quadrature, for
-    the torque coefficient also that of the gauge's zero and of the working-point speed.
+    Parameters
+    ----------
+    identification, working_point, vessel
+        The fit, where it was made, and what was tested.
+    stated
+        The uncertainty budget with the physical numbers among its rows; made here when not given.
     """
-    torque, sensor = working_point.shaft_torque_nm, vessel.sensors.shaft_torque
-    gauge = sensor.scale_std_fraction or 0.0
-    torque_share = float(np.hypot(working_point.shaft_torque_std_nm / torque, gauge))
-    structure = identification.structure
-    names = {*structure.names, *(tie.name for tie in structure.ties)}
+    numbers = physical_numbers(identification, working_point, vessel)
+    if stated is None:
+        direct = {item.number.name: item.direct for item in numbers}
+        stated = budget(identification, [item.number for item in numbers], direct=direct)
     found = []
-    for item in _catalogue(working_point, vessel):
-        if not set(item.needs) <= names:
-            continue
-        estimate = identification.derived(item.name, item.unit, item.of)
-        value = item.factor * estimate.value
-        std = float(np.hypot(item.factor * estimate.std, value * item.torque_power * torque_share))
+    for item in numbers:
+        row = stated.row(item.number.name)
         found.append(
             Quantity(
-                name=item.name,
-                unit=item.unit,
-                value=value,
-                std=std,
+                name=row.name,
+                unit=row.unit,
+                value=row.value,
+                std=row.std,
                 expected=item.expected,
                 expected_std=item.expected_std,
-                meaning=item.meaning,
+                meaning=item.number.meaning,
             )
         )
-    # a zero offset shifts the torque itself, but not its changes, of which all other values are made
-    zero_share = (sensor.zero_std_nm or 0.0) / torque
-    return (*found, _torque_coefficient(working_point, vessel, float(np.hypot(torque_share, zero_share))))
+    return tuple(found)
 
 
-def _catalogue(working_point: "WorkingPoint", vessel: "Vessel") -> tuple[_Physical, ...]:
-    return (*_inertias(working_point, vessel), *_governor_actions(working_point))
-
-
-def _inertias(working_point: "WorkingPoint", vessel: "Vessel") -> Iterator[_Physical]:
+def _inertias(working_point: "WorkingPoint", vessel: "Vessel") -> Iterator[tuple[tuple[str, ...], PhysicalNumber]]:
     shaft_rev_s = working_point.engine_speed_rev_s / vessel.gearbox.ratio
+    factor = working_point.shaft_torque_nm / (2.0 * np.pi * shaft_rev_s)
     upstream = (vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2)
     downstream = (vessel.inertia_downstream_kg_m2, vessel.inertia_downstream_std_kg_m2)
     for name, tau, (expected, expected_std), meaning in (
@@ -85,48 +115,61 @@ def _inertias(working_point: "WorkingPoint", vessel: "Vessel") -> Iterator[_Phys
         ("I_up", "tau_up", upstream, "inertia upstream of the torque gauge, at the propeller shaft"),
         ("I", "tau_n", upstream, "inertia that the thesis' shaft loop implies, at the propeller shaft"),
     ):
-        yield _Physical(
-            name=name,
-            unit="kg m2",
-            needs=(tau,),
-            factor=working_point.shaft_torque_nm / (2.0 * np.pi * shaft_rev_s),
-            torque_power=1.0,
-            of=itemgetter(tau),
-            meaning=meaning,
-            expected=expected,
-            expected_std=expected_std,
-        )
+        number = Combination(name=name, unit="kg m2", of=_product(factor, tau), meaning=meaning)
+        yield (tau,), PhysicalNumber(number=number, expected=expected, expected_std=expected_std)
 
 
-def _governor_actions(working_point: "WorkingPoint") -> Iterator[_Physical]:
+def _governor_actions(working_point: "WorkingPoint") -> Iterator[tuple[tuple[str, ...], PhysicalNumber]]:
+    factor = working_point.shaft_torque_nm / (working_point.engine_speed_rev_s * SECONDS_PER_MINUTE)
     for name, unit, gain, meaning in (
         ("governor proportional action", "N m/rpm", "K_p", "change of torque"),
         ("governor integral action", "N m/(rpm s)", "K_i", "rate of change of torque"),
     ):
-        yield _Physical(
-            name=name,
-            unit=unit,
-            needs=(gain, "v"),
-            factor=working_point.shaft_torque_nm / (working_point.engine_speed_rev_s * SECONDS_PER_MINUTE),
-            torque_power=1.0,
-            of=lambda p, gain=gain: p["v"] * p[gain],  # type: ignore[misc]
-            meaning=f"{meaning}, at the propeller shaft, for one rpm of engine-speed error",
+        text = f"{meaning}, at the propeller shaft, for one rpm of engine-speed error"
+        yield (
+            (gain, "v"),
+            PhysicalNumber(number=Combination(name=name, unit=unit, of=_product(factor, "v", gain), meaning=text)),
         )
 
 
-def _torque_coefficient(working_point: "WorkingPoint", vessel: "Vessel", torque_share: float) -> Quantity:
+def _product(factor: float, *names: str) -> Callable[[Mapping[str, FloatArray]], FloatArray]:
+    return lambda named: np.asarray(factor * np.prod([named[name] for name in names], axis=0))
+
+
+def _gauge_zero(structure: Structure) -> tuple[PhysicalNumber, ...]:
+    """Return the zero offset of the gauge over the working-point torque, where the fit is free to find it."""
+    if "k_q" not in [parameter.name for parameter in structure.free]:
+        return ()
+    number = Combination(
+        name=GAUGE_ZERO,
+        unit="%",
+        of=lambda named: PERCENT * (IDEAL_SLOPE / named["k_q"] - 1.0),
+        meaning="zero offset of the torque gauge, or constant friction, over the working-point torque",
+    )
+    return (PhysicalNumber(number=number),)
+
+
+def _torque_coefficient(working_point: "WorkingPoint", vessel: "Vessel") -> PhysicalNumber:
+    sensor, torque = vessel.sensors.shaft_torque, working_point.shaft_torque_nm
     shaft_rev_s = working_point.engine_speed_rev_s / vessel.gearbox.ratio
-    speed_share = working_point.engine_speed_std_rev_s / working_point.engine_speed_rev_s
     value = (
-        working_point.shaft_torque_nm
+        torque
         * vessel.propeller.relative_rotative_efficiency
         / (vessel.water_density_kg_m3 * shaft_rev_s**2 * vessel.propeller.diameter_m**5)
     )
-    return Quantity(
-        name="K_Q",
-        unit="-",
-        value=value,
-        std=float(value * np.hypot(torque_share, 2.0 * speed_share)),
+    shares = {
+        "gauge scale": sensor.scale_std_fraction or 0.0,
+        "gauge zero": (sensor.zero_std_nm or 0.0) / torque,
+        "working-point torque": working_point.shaft_torque_std_nm / torque,
+        "working-point speed": -2.0 * working_point.engine_speed_std_rev_s / working_point.engine_speed_rev_s,
+    }
+    return PhysicalNumber(
+        number=Combination(
+            name="K_Q",
+            unit="-",
+            of=lambda named: np.asarray(value),
+            meaning="torque coefficient of the propeller at the working point",
+        ),
+        direct={source: value * share for source, share in shares.items() if share},
         expected=vessel.propeller.torque_coefficient,
-        meaning="torque coefficient of the propeller at the working point",
     )

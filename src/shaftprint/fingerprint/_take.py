@@ -10,16 +10,16 @@ from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._calibration import calibration_quantities
 from shaftprint.fingerprint._findings import findings_of
 from shaftprint.fingerprint._fingerprint import (
-    Belief,
     Conditions,
     Fingerprint,
     Quality,
     Quantity,
     SourceFile,
 )
+from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
-from shaftprint.fingerprint._physical import physical_quantities
-from shaftprint.identify import Estimate, Identification, Interval, profile
+from shaftprint.fingerprint._physical import physical_numbers, physical_quantities
+from shaftprint.identify import Budget, Estimate, Identification, Interval, budget, profile
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
@@ -59,10 +59,18 @@ def take_fingerprint(
     """
     if now.tzinfo is None:
         raise FingerprintError("now: expected a time with time zone, such as datetime.now(UTC), found one without.")
-    physical = physical_quantities(identification, signals.working_point, vessel)
+    own = identification.objective.experiments[0].own(identification.values)
+    margins = margin_numbers(identification.structure, own)
+    numbers = physical_numbers(identification, signals.working_point, vessel)
+    stated = budget(
+        identification,
+        (*(item.number for item in numbers), *margins),
+        direct={item.number.name: item.direct for item in numbers},
+    )
+    physical = physical_quantities(identification, signals.working_point, vessel, stated)
     left_out = _left_out(identification)
     meanings = _meanings(identification)
-    profiled = profile(identification) if identification.is_likelihood else None
+    profiled = profile(identification, margins) if identification.is_likelihood else None
     intervals = {} if profiled is None else profiled.intervals
     return Fingerprint(
         shaftprint_version=shaftprint.__version__,
@@ -75,14 +83,15 @@ def take_fingerprint(
         structure=identification.structure.name,
         parameters=tuple(_quantity(e, meanings, intervals) for e in identification.parameters),
         held={p.name: p.value for p in identification.structure.parameters if p.held},
-        priors={n: Belief(mean=p.mean, std=p.std) for n, p in identification.settings.priors.items()},
+        priors=dict(identification.settings.priors),
         covariance=tuple(tuple(row) for row in identification.covariance.tolist()),
         combinations=tuple(_quantity(e, meanings, intervals) for e in identification.combinations),
         physical=physical,
-        margins=margin_quantities(identification, profiled),
+        margins=margin_quantities(identification, profiled, stated),
+        budget=Budget(sources=stated.sources, rows=tuple(row for row in stated.rows if row.variances)),
         calibration=calibration_quantities(signals),
         quality=_quality(identification, signals, signal_to_noise),
-        findings=findings_of(identification, physical, left_out),
+        findings=findings_of(identification, physical, stated, left_out),
     )
 
 
@@ -167,7 +176,8 @@ def _quality(identification: Identification, signals: "Signals", signal_to_noise
         weighting=type(identification.settings.weighting).__name__,
         fit_percent=dict(identification.fit_percent),
         fit_ceiling=dict(identification.fit_ceiling),
-        chi_square=2.0 * identification.cost if identification.is_likelihood else None,
+        chi_square=identification.chi_square if identification.is_likelihood else None,
+        p_value=identification.p_value,
         degrees_of_freedom=identification.degrees_of_freedom,
         starts=identification.settings.starts,
         starts_at_optimum=identification.reached,

@@ -12,6 +12,7 @@ covariance          mixed   of the free parameters, each in its own unit
 """
 
 from shaftprint.identify._accuracy import Accuracy, predict_accuracy, predict_joint_accuracy
+from shaftprint.identify._budget import Budget, BudgetRow, budget
 from shaftprint.identify._compare import compare_fits, compare_structures
 from shaftprint.identify._comparison import Candidate, Comparison
 from shaftprint.identify._covariance import estimate_covariance
@@ -46,6 +47,8 @@ __all__ = [
     "PRIOR_OF_G",
     "STAN_TUG_NOISE",
     "Accuracy",
+    "Budget",
+    "BudgetRow",
     "Candidate",
     "Cluster",
     "Comparison",
@@ -79,6 +82,7 @@ __all__ = [
     "Uniform",
     "Unweighted",
     "Weighting",
+    "budget",
     "compare_fits",
     "compare_structures",
     "criteria_of",

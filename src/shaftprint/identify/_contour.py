@@ -159,13 +159,14 @@ class _Position:
         cost, gradient, hessian = _parabola(numbers.objective, trial)
         value = self.side * asked.values(trial)
         excess = np.maximum(cost, self.limit) - np.maximum(self.cost, self.limit)
+        slope = self.side[:, None] * asked.slopes(trial, _diagonal(hessian))
+        known = np.isfinite(value) & np.isfinite(slope).all(axis=1)
+        moved = np.where(known, value, self.value) - self.value
         # Where bounds leave the number no way, or the parabola never comes down to the contour, the cost decides.
-        further = np.where(pull > 0.0, pull * (value - self.value) > PENALTY * excess, cost < self.cost)
-        good = further & np.isfinite(value)
+        good = known & np.where(pull > 0.0, pull * moved > PENALTY * excess, cost < self.cost)
         damping = np.where(good, RELIEF * self.damping, np.maximum(self.damping, FIRST_DAMPING) * self.growth)
         self.damping = np.maximum(damping, LEAST_DAMPING)
         self.growth = np.where(good, 1.0, 2.0 * self.growth)
-        slope = self.side[:, None] * asked.slopes(trial, _diagonal(hessian))
         if good.all():
             self.theta, self.gradient, self.slope, self.hessian = trial, gradient, slope, hessian
             self.cost, self.value = cost, value

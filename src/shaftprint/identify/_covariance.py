@@ -10,11 +10,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.identify._objective import Objective
-
-# Directions whose scaled information is below this share of the largest are not identifiable at all.
-RANK_TOLERANCE = 1e-12
-# A number depends on such a direction when more than this share of its scaled slope lies in it.
-LOST_SHARE = 1e-3
+from shaftprint.identify._pseudo_inverse import PseudoInverse
 
 
 def estimate_covariance(objective: Objective, theta: FloatArray, *, expected: bool = False) -> FloatArray:
@@ -27,8 +23,8 @@ def estimate_covariance(objective: Objective, theta: FloatArray, *, expected: bo
     expected
         Whether to average over the noise instead of taking the data as they are: for a test that is planned.
     """
-    covariance, unknown, _ = _known_part(objective, theta, expected=expected)
-    lost = np.linalg.norm(unknown, axis=1) > LOST_SHARE
+    covariance, information = _known_part(objective, theta, expected=expected)
+    lost = information.lost
     covariance[lost, lost] = np.inf
     return covariance
 
@@ -47,23 +43,13 @@ def variance_along(objective: Objective, theta: FloatArray, slopes: FloatArray, 
     expected
         See ``estimate_covariance``.
     """
-    covariance, unknown, scale = _known_part(objective, theta, expected=expected)
-    scaled = slopes / scale
-    if np.linalg.norm(unknown.T @ scaled) > LOST_SHARE * np.linalg.norm(scaled):
-        return float(np.inf)
-    return float(slopes @ covariance @ slopes)
+    covariance, information = _known_part(objective, theta, expected=expected)
+    return float(slopes @ covariance @ slopes) if information.knows(slopes) else float(np.inf)
 
 
-def _known_part(
-    objective: Objective, theta: FloatArray, *, expected: bool
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the covariance within the identifiable directions, the others as columns, and the scale they are in."""
+def _known_part(objective: Objective, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, PseudoInverse]:
+    """Return the covariance within the identifiable directions, and which they are."""
     rows, noise = objective.sensitivity(theta, expected=expected)
-    information, spread = rows @ rows.T, rows @ noise @ rows.T
-    scale = np.sqrt(np.diag(information))
-    scale[scale == 0.0] = 1.0
-    values, vectors = np.linalg.eigh(information / np.outer(scale, scale))
-    known = values > RANK_TOLERANCE * values[-1]
-    inverse = (vectors[:, known] / values[known]) @ vectors[:, known].T / np.outer(scale, scale)
-    covariance: FloatArray = inverse @ spread @ inverse
-    return 0.5 * (covariance + covariance.T), vectors[:, ~known], scale
+    information = PseudoInverse.of(rows)
+    covariance: FloatArray = information.inverse @ rows @ noise @ rows.T @ information.inverse
+    return 0.5 * (covariance + covariance.T), information

@@ -27,7 +27,8 @@ def priors_from_vessel(
     """Return what is known of a structure's ``g``, ``tau_up`` and ``t_gauge``, those of them that are free.
 
     The inertia time is ``tau_up = 2 pi I_up n_s0 / M_s0`` (thesis eq. 2.23). Its standard deviation holds that of
-    the TVC, of the working-point torque and of the gauge's scale.
+    the TVC and of the gauge's scale: a gauge that shows too much makes it too small. The scatter of the working point
+    is not in it, because ``M_s0`` is the number by which the responses are divided, whatever the load was.
 
     Parameters
     ----------
@@ -47,11 +48,14 @@ def priors_from_vessel(
         tau = 2.0 * np.pi * inertia * shaft_rev_s / torque
         sources = {
             "TVC": tau * vessel.inertia_upstream_std_kg_m2 / inertia,
-            "working-point torque": -tau * working_point.shaft_torque_std_nm / torque,
             "gauge scale": -tau * (gauge.scale_std_fraction or 0.0),
         }
         sources = {name: float(part) for name, part in sources.items() if part}
         found["tau_up"] = Prior(mean=float(tau), std=float(np.linalg.norm(list(sources.values()))), sources=sources)
     if "t_gauge" in names and gauge.latency_std_s:
-        found["t_gauge"] = Prior(mean=gauge.latency_s if mode == "thesis" else 0.0, std=gauge.latency_std_s)
+        found["t_gauge"] = Prior(
+            mean=gauge.latency_s if mode == "thesis" else 0.0,
+            std=gauge.latency_std_s,
+            sources={"telemetry latency": gauge.latency_std_s},
+        )
     return found

@@ -69,7 +69,8 @@ class Numbers:
             moves = np.eye(free)[:, None, :] * step[rows]
             ahead = self._combination(int(number) - free, (theta[rows] + moves).reshape(-1, free))
             behind = self._combination(int(number) - free, (theta[rows] - moves).reshape(-1, free))
-            found[rows] = (ahead - behind).reshape(free, -1).T / (2.0 * step[rows])
+            with np.errstate(invalid="ignore"):
+                found[rows] = (ahead - behind).reshape(free, -1).T / (2.0 * step[rows])
         return found
 
     def _combination(self, place: int, theta: FloatArray) -> FloatArray:

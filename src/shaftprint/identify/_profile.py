@@ -87,8 +87,10 @@ def profile(identification: Identification, numbers: Sequence[Combination] = ())
     best = identification.values[list(objective.free)]
     combinations = (*objective.combinations, *numbers)
     every = Numbers(objective, combinations, np.arange(len(names)))
-    finite = np.flatnonzero(np.isfinite(every.values(np.broadcast_to(best, (len(names), best.size)))))
     # A combination is infinite where a parameter that it divides by is at its bound 0: it has no end to look for.
+    at_best = np.broadcast_to(best, (len(names), best.size))
+    slopes = every.slopes(at_best, np.zeros_like(at_best))
+    finite = np.flatnonzero(np.isfinite(every.values(at_best)) & np.isfinite(slopes).all(axis=1))
     asked = every.chosen(np.repeat(finite, 2))
     side = np.tile([-1.0, 1.0], finite.size)
     ends = furthest(asked, best, side, np.full(side.size, profile_distance(identification)))
