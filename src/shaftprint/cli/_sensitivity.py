@@ -57,7 +57,7 @@ def ascending(context: click.Context, parameter: click.Parameter, span: tuple[fl
 def command(name: str, output: Path, suffix: str, span: tuple[float, float], force: bool, no_progress: bool) -> None:
     """Draw what each parameter of a structure does to its response.
 
-    One figure an output: the Bode families of STRUCTURE with each free parameter varied between its bounds. A
+    One figure an output and input: the Bode families of STRUCTURE with each free parameter varied between its bounds. A
     STRUCTURE such as my_ship.py:my_loop is one in a file of your own, which is Python and is run. With `thesis` for
     STRUCTURE, the sensitivity figures of the thesis (4.2 to 4.8, B.1 to B.4, D.1).
     """
@@ -73,10 +73,11 @@ def command(name: str, output: Path, suffix: str, span: tuple[float, float], for
 
 def _of_structure(name: str, span: tuple[float, float]) -> "Drawings":
     (chosen,) = chosen_structures([name])
-    return {
-        plain_name(f"{chosen.name}_{output}"): partial(plot_sensitivity, chosen, output=output, span_rad_s=span)
-        for output in chosen.outputs
-    }
+    found = {}
+    for output, cause in chosen.channels:
+        name = f"{chosen.name}_{output}" + (f"_{cause}" if len(chosen.inputs) > 1 else "")
+        found[plain_name(name)] = partial(plot_sensitivity, chosen, output=output, cause=cause, span_rad_s=span)
+    return found
 
 
 def _of_the_thesis() -> "Drawings":

@@ -1,12 +1,13 @@
 """Bode diagrams of measured responses and models, with intervals on data and bands on models."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report._bode_parts import draw_data, draw_trace, measured_phase_deg, trace_of
+from shaftprint.report._bode_parts import channel_of, draw_data, draw_trace, measured_phase_deg, trace_of
 from shaftprint.report._style import (
     REFERENCE,
     Handle,
@@ -46,6 +47,8 @@ class Column:
     """Title above the column."""
     output: str
     """Output that is drawn."""
+    cause: str | None = None
+    """Input to which it is drawn; the first where none is named."""
     curves: Sequence["Curve"] = ()
     """Models."""
     data: Mapping[str, "FrequencyResponse"] = field(default_factory=dict)
@@ -81,7 +84,7 @@ def plot_bode(
     aliasing_limit_hz
         Half the pulse rate of the speed sensor [Hz], drawn as a vertical line.
     outputs
-        Outputs to draw, one column each; all of the data or of the first model by default.
+        Outputs to draw, one column each and input; all of the data or of the first model by default.
     span_rad_s
         Frequencies to draw [rad/s]; a little more than the data by default.
     zoom_rad_s
@@ -95,15 +98,16 @@ def plot_bode(
     if not curves and data is None:
         raise ValueError("a Bode diagram needs a model or data, found neither.")
     names = outputs or (data.outputs if data is not None else tuple(curves[0].structure.outputs))
-    input_ = data.inputs[0] if data is not None else curves[0].structure.input
+    causes = data.inputs if data is not None else curves[0].structure.inputs
     measured = {} if data is None else {"data": data}
     columns = []
-    for name in names:
-        title = response_label(name, input_)
-        columns.append(Column(title=title, output=name, curves=curves, data=measured, span_rad_s=span_rad_s))
+    for name, cause in product(names, causes):
+        title = response_label(name, cause)
+        whole = Column(title=title, output=name, cause=cause, curves=curves, data=measured, span_rad_s=span_rad_s)
+        columns.append(whole)
         if zoom_rad_s is not None:
             title = f"{title}, {zoom_rad_s[0]:g} to {zoom_rad_s[1]:g} rad/s"
-            columns.append(Column(title=title, output=name, curves=curves, data=measured, span_rad_s=zoom_rad_s))
+            columns.append(replace(whole, title=title, span_rad_s=zoom_rad_s))
     return plot_columns(columns, aliasing_limit_hz=aliasing_limit_hz)
 
 
@@ -132,13 +136,15 @@ def _draw_column(pair: "tuple[Axes, Axes]", column: Column, aliasing_limit_hz: f
     span = column.span_rad_s or column.whole_span()
     whole = column.whole_span()
     omega = np.geomspace(min(span[0], whole[0]), max(span[1], whole[1]), GRID_POINTS)
-    traces = [trace_of(curve, column.output, omega) for curve in column.curves]
+    traces = [trace_of(curve, column.output, omega, column.cause) for curve in column.curves]
     for place, (curve, trace) in enumerate(zip(column.curves, traces, strict=True)):
-        entries |= draw_trace(pair, curve, trace, column.output, look(place))
+        entries |= draw_trace(pair, curve, trace, column.output, look(place), cause=column.cause)
     for place, (label, response) in enumerate(column.data.items()):
         style = look(place) if len(column.data) > 1 else None
         aside = SIDEWAYS ** (place - 0.5 * (len(column.data) - 1))
-        entries |= draw_data(pair, response, column.output, traces, style=style, label=label, sideways=aside)
+        entries |= draw_data(
+            pair, response, column.output, traces, style=style, label=label, sideways=aside, cause=column.cause
+        )
     for axes in pair:
         if aliasing_limit_hz is not None and 2.0 * np.pi * aliasing_limit_hz < span[1]:
             text = f"aliasing limit of the speed, {aliasing_limit_hz:.2f} Hz"
@@ -162,7 +168,7 @@ def _set_limits(
     magnitudes, phases = [np.empty(0)], [np.empty(0)]
     for response in column.data.values():
         inside = (response.omega_rad_s >= span[0]) & (response.omega_rad_s <= span[1])
-        place = response.outputs.index(column.output)
+        place = channel_of(response.outputs, response.inputs, column.output, column.cause)
         magnitudes.append(measured_points(response, place).magnitude_db[inside])
         phases.append(measured_phase_deg(response, place, traces)[inside])
     seen = [(trace.omega_rad_s >= span[0]) & (trace.omega_rad_s <= span[1]) for trace in traces]

@@ -1,6 +1,6 @@
 """Lines, bands, points and error bars of a Bode diagram."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -39,9 +39,14 @@ class Trace:
     """Unwrapped phase [deg], shape (frequencies,)."""
 
 
-def trace_of(curve: "Curve", output: str, omega_rad_s: FloatArray) -> Trace:
-    """Return magnitude and unwrapped phase of one output of a model."""
-    place = list(curve.structure.outputs).index(output)
+def channel_of(outputs: Iterable[str], inputs: Sequence[str], output: str, cause: str | None = None) -> int:
+    """Return the place of a response among all, outputs slowest; that to the first input where none is named."""
+    return list(outputs).index(output) * len(inputs) + (0 if cause is None else inputs.index(cause))
+
+
+def trace_of(curve: "Curve", output: str, omega_rad_s: FloatArray, cause: str | None = None) -> Trace:
+    """Return magnitude and unwrapped phase of one output of a model, to the first input where none is named."""
+    place = channel_of(curve.structure.outputs, curve.structure.inputs, output, cause)
     response = curve.structure.response(curve.values, 1j * omega_rad_s)[place]
     return Trace(
         omega_rad_s=omega_rad_s,
@@ -50,14 +55,14 @@ def trace_of(curve: "Curve", output: str, omega_rad_s: FloatArray) -> Trace:
     )
 
 
-def measured_phase_deg(data: "FrequencyResponse", output: int, traces: Sequence[Trace] = ()) -> FloatArray:
-    """Return the phase of a measured output [deg], whole turns chosen to agree with the closest model.
+def measured_phase_deg(data: "FrequencyResponse", channel: int, traces: Sequence[Trace] = ()) -> FloatArray:
+    """Return the phase of a measured response [deg], whole turns chosen to agree with the closest model.
 
     A measured phase is known up to whole turns only. Without a model the used lines are followed from one to the next:
     a step between -270 and 90 degrees, since a propulsion line lags more and more; the others follow the nearest used
     line below.
     """
-    phase = measured_points(data, output).phase_deg
+    phase = measured_points(data, channel).phase_deg
     if not traces:
         return _followed(phase, data.used)
     at = np.log(data.omega_rad_s)
@@ -78,13 +83,19 @@ def _followed(phase: FloatArray, used: BoolArray) -> FloatArray:
 
 
 def draw_trace(
-    pair: "tuple[Axes, Axes]", curve: "Curve", trace: Trace, output: str, style: LineLook
+    pair: "tuple[Axes, Axes]",
+    curve: "Curve",
+    trace: Trace,
+    output: str,
+    style: LineLook,
+    *,
+    cause: str | None = None,
 ) -> dict[str, Handle]:
     """Draw a model's line, and its band where it has a covariance; return what the legend must explain."""
     label = curve.label
     bands: list[Artist] = []
     if curve.covariance is not None:
-        place = list(curve.structure.outputs).index(output)
+        place = channel_of(curve.structure.outputs, curve.structure.inputs, output, cause)
         few = slice(None, None, BAND_STEP)
         band = model_band(curve.structure, curve.values, curve.covariance, trace.omega_rad_s[few])
         halves = (band.magnitude_db[place], band.phase_deg[place])
@@ -118,10 +129,11 @@ def draw_data(
     style: LineLook | None = None,
     label: str = "data",
     sideways: float = 1.0,
+    cause: str | None = None,
 ) -> dict[str, Handle]:
     """Draw a measured output with 95 % intervals, used lines filled, the others hollow; return the legend's entries."""
     entries: dict[str, Handle] = {}
-    place = data.outputs.index(output)
+    place = channel_of(data.outputs, data.inputs, output, cause)
     points = measured_points(data, place)
     phase = measured_phase_deg(data, place, traces)
     below = np.minimum(points.below_db, ENDLESS_DB)

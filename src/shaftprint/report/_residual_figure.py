@@ -31,7 +31,7 @@ LEAST_STD = 3.2
 
 
 def normalised_residuals(identification: "Identification") -> FloatArray:
-    """Return measured minus model over standard deviation, real parts first, shape (2 outputs, lines)."""
+    """Return measured minus model over standard deviation, real parts first, shape (2 channels, lines)."""
     data = identification.response
     left = _left(identification)
     std = np.sqrt(np.diagonal(data.covariance, axis1=1, axis2=2)).T
@@ -48,10 +48,10 @@ def line_chi_square(identification: "Identification") -> FloatArray:
 
 
 def _left(identification: "Identification") -> ComplexArray:
-    """Return measured minus model, shape (outputs, lines); the load of each window acts on ``k_q`` as in the fit."""
+    """Return measured minus model, shape (channels, lines); the load of each window acts on ``k_q`` as in the fit."""
     data = identification.response
     model = identification.structure.response(identification.values, 1j * data.omega_rad_s, factors={"k_q": data.load})
-    return np.asarray(data.response[:, 0] - model)
+    return np.asarray(data.response.reshape(model.shape) - model)
 
 
 def plot_residuals(identification: "Identification") -> "Figure":
@@ -76,9 +76,10 @@ def plot_residuals(identification: "Identification") -> "Figure":
 def _draw_residuals(axes: "Axes", identification: "Identification") -> None:
     data, fitted = identification.response, identification.fitted
     residuals = normalised_residuals(identification)
+    names = tuple(identification.fit_percent)
     axes.axhspan(-NORMAL_95, NORMAL_95, color="#dddddd", linewidth=0.0, label="95 % of a model that explains all")
     for row in range(residuals.shape[0]):
-        part, output = divmod(row, len(data.outputs))
+        part, channel = divmod(row, len(names))
         style = look(row)
         axes.plot(
             data.omega_rad_s[fitted],
@@ -87,7 +88,7 @@ def _draw_residuals(axes: "Axes", identification: "Identification") -> None:
             marker=style.marker,
             markersize=4.0,
             color=style.colour,
-            label=f"{'imaginary' if part else 'real'} part of {mathtext(data.outputs[output])}",
+            label=f"{'imaginary' if part else 'real'} part of {mathtext(names[channel])}",
         )
     largest = max(LEAST_STD, 1.1 * float(np.abs(residuals[:, fitted]).max()))
     axes.set_ylim(-largest, largest)
@@ -96,7 +97,7 @@ def _draw_residuals(axes: "Axes", identification: "Identification") -> None:
 
 def _draw_chi_square(axes: "Axes", identification: "Identification") -> None:
     chi_square = line_chi_square(identification)
-    size = 2 * len(identification.response.outputs)
+    size = 2 * len(identification.fit_percent)
     for chosen, fill, text in (
         (identification.fitted, "black", "fitted line"),
         (~identification.fitted, "white", "line not fitted"),

@@ -8,7 +8,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.report._bode_parts import draw_data, measured_phase_deg, trace_of
+from shaftprint.report._bode_parts import channel_of, draw_data, measured_phase_deg, trace_of
 from shaftprint.report._curve import Curve
 from shaftprint.report._style import RAMP_DASHES, house_style, new_figure, plain_log_axis, plain_number, ramp
 from shaftprint.report._symbols import mathtext, response_label, unit_text
@@ -46,6 +46,7 @@ def plot_sensitivity(
     structure: "Structure",
     *,
     output: str | None = None,
+    cause: str | None = None,
     vary: Sequence[str] | None = None,
     values: "Mapping[str, float] | None" = None,
     data: "FrequencyResponse | None" = None,
@@ -62,6 +63,8 @@ def plot_sensitivity(
         The structure; bounds and values are those of its parameters.
     output
         Output to draw; the first by default.
+    cause
+        Input to which it is drawn; the first by default.
     vary
         Names of the parameters to vary; the free ones by default.
     values
@@ -74,33 +77,32 @@ def plot_sensitivity(
     Raises
     ------
     StructureError
-        If output or parameters are not of the structure, or nothing is left to vary.
+        If output, input or parameters are not of the structure, or nothing is left to vary.
     """
-    name = output or next(iter(structure.outputs))
-    varied = _varied(structure, name, vary)
+    name, cause = output or next(iter(structure.outputs)), cause or structure.input
+    varied = _varied(structure, (name, cause), vary)
     base = structure.vector(values or {})
     count = len(varied)
     with house_style():
         figure = new_figure(ROW_CM * count + FOOT_CM)
         grid = figure.subplots(count, 2, squeeze=False, sharex=True)
         for row, parameter in enumerate(varied):
-            _draw_row((grid[row, 0], grid[row, 1]), structure, name, parameter, base, data, span_rad_s)
+            _draw_row((grid[row, 0], grid[row, 1]), structure, (name, cause), parameter, base, data, span_rad_s)
             letter = f"({chr(ord('a') + row)}) " if count > 1 else ""
             grid[row, 0].set_title(f"{letter}{mathtext(parameter.name)}: {_TAIL.sub('', parameter.meaning)}")
             grid[row, 0].set_ylabel("magnitude [dB re 1 s]" if name == "E_n" else "magnitude [dB]")
             grid[row, 1].set_ylabel("phase [deg]")
         for axes in grid[-1]:
             axes.set_xlabel("frequency [rad/s]")
-        figure.suptitle(f"{structure.title}: {response_label(name, structure.input)}", x=0.01, ha="left")
+        figure.suptitle(f"{structure.title}: {response_label(name, cause)}", x=0.01, ha="left")
         figure.align_ylabels()
         return figure
 
 
-def _varied(structure: "Structure", output: str, vary: Sequence[str] | None) -> "tuple[Parameter, ...]":
-    if output not in structure.outputs:
-        raise StructureError(
-            f"structure {structure.name} has no output {output}; it has {', '.join(structure.outputs)}."
-        )
+def _varied(structure: "Structure", channel: tuple[str, str], vary: Sequence[str] | None) -> "tuple[Parameter, ...]":
+    for kind, name, there in zip(("output", "input"), channel, (structure.outputs, structure.inputs), strict=True):
+        if name not in there:
+            raise StructureError(f"structure {structure.name} has no {kind} {name}; it has {', '.join(there)}.")
     known = {parameter.name: parameter for parameter in structure.parameters}
     wanted = [parameter.name for parameter in structure.free] if vary is None else list(vary)
     unknown = [name for name in wanted if name not in known]
@@ -115,7 +117,7 @@ def _varied(structure: "Structure", output: str, vary: Sequence[str] | None) -> 
 def _draw_row(
     pair: "tuple[Axes, Axes]",
     structure: "Structure",
-    output: str,
+    channel: tuple[str, str],
     parameter: "Parameter",
     base: FloatArray,
     data: "FrequencyResponse | None",
@@ -129,27 +131,27 @@ def _draw_row(
         table[place] = value
         label = f"{plain_number(value)} {unit_text(parameter.unit)}".strip()
         with np.errstate(divide="ignore"):
-            trace = trace_of(Curve(label=label, structure=structure, values=table), output, omega)
+            trace = trace_of(Curve(label=label, structure=structure, values=table), channel[0], omega, channel[1])
         silent = not np.any(np.isfinite(trace.magnitude_db))
         phase = np.full_like(trace.phase_deg, np.nan) if silent else trace.phase_deg
         pair[0].plot(omega, trace.magnitude_db, color=colour, linestyle=dashes)
         pair[1].plot(omega, phase, color=colour, linestyle=dashes, label=f"{label}, no response" if silent else label)
-    _limit(pair, data, output)
+    _limit(pair, data, channel)
     if data is not None:
-        draw_data(pair, data, output, (), label="data")
+        draw_data(pair, data, channel[0], (), label="data", cause=channel[1])
     for axes in pair:
         plain_log_axis(axes)
         axes.set_xlim(*span)
     pair[1].legend(loc="center left", bbox_to_anchor=(1.01, 0.5), title=mathtext(parameter.name), borderaxespad=0.0)
 
 
-def _limit(pair: "tuple[Axes, Axes]", data: "FrequencyResponse | None", output: str) -> None:
+def _limit(pair: "tuple[Axes, Axes]", data: "FrequencyResponse | None", channel: tuple[str, str]) -> None:
     """Let go of lines that leave all others, or the data, far behind."""
     low, high = pair[0].get_ylim()
     pair[0].set_ylim(max(low, high - DEPTH_DB), high)
     if data is None:
         return
-    place = data.outputs.index(output)
+    place = channel_of(data.outputs, data.inputs, *channel)
     for axes, points, beyond in (
         (pair[0], measured_points(data, place).magnitude_db, BEYOND_DATA_DB),
         (pair[1], measured_phase_deg(data, place), BEYOND_DATA_DEG),

@@ -69,7 +69,7 @@ def model_band(structure: "Structure", values: FloatArray, covariance: FloatArra
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class MeasuredPoints:
-    """One output of a measured response with 95 % intervals."""
+    """One channel of a measured response with 95 % intervals."""
 
     magnitude_db: FloatArray
     """Magnitude [dB], shape (lines,)."""
@@ -83,15 +83,15 @@ class MeasuredPoints:
     """Half length of the phase's error bar [deg], shape (lines,); 180 where nothing is known of it."""
 
 
-def measured_points(response: "FrequencyResponse", output: int) -> MeasuredPoints:
-    """Return magnitude and phase of one output with 95 % intervals (Student's t for the measured covariance).
+def measured_points(response: "FrequencyResponse", channel: int) -> MeasuredPoints:
+    """Return magnitude and phase of one response with 95 % intervals (Student's t for the measured covariance).
 
     The interval of the magnitude is ``|H| -/+ t s`` along the response, that of the phase ``asin(t s / |H|)`` with the
     standard deviation ``s`` across it: both stay right where noise is as large as the response.
     """
-    values: ComplexArray = response.response[output, 0]
     count = len(response.outputs) * len(response.inputs)
-    pair = [output * len(response.inputs), count + output * len(response.inputs)]
+    values: ComplexArray = response.response.reshape(count, -1)[channel]
+    pair = [channel, count + channel]
     covariance = response.covariance[:, pair][:, :, pair]
     size = np.abs(values)
     along = np.stack([values.real, values.imag], axis=-1) / size[:, None]
