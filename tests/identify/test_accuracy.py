@@ -145,6 +145,25 @@ def test_what_cannot_be_found_is_infinite(planned):
     assert "Not known: K_p, K_i, v." in found.sentences
 
 
+def test_second_working_point_breaks_the_common_factor(planned):
+    """At 3/4 of the speed ``tau``, the gains and ``g`` are 4/3 as large, but ``k_q`` is not: ``k_q - g`` tells."""
+    gauge = structure("GAUGE-CLOSED")
+    slow = gauge.scaled(**dict.fromkeys(("tau_dn", "tau_up", "K_p", "K_i", "g"), 4.0 / 3.0))
+    alone = predict_accuracy(gauge, planned, values=TRUTH)
+    both = predict_joint_accuracy([(gauge, planned), (slow, planned)], values=TRUTH)
+    assert [e.name for e in alone.parameters if np.isinf(e.std)] == ["K_p", "K_i", "tau_up", "g"]
+    assert all(np.isfinite(e.std) for e in both.parameters)
+    assert both.estimate("g").std < 0.05
+
+
+def test_latency_of_the_set_point_makes_the_delay_in_the_loop_known(thesis, planned):
+    """Their sum is known to 0.7 ms, so that of ``t_d`` little more than the latency's own 2 ms is left."""
+    priors = KNOWN | {"t_sp": Prior(TRUTH["t_sp"], 0.002)}
+    found = predict_accuracy(structure("GAUGE-CLOSED"), planned, values=TRUTH, priors=priors).estimate("t_d").std
+    assert 0.0018 < found < 0.0022
+    assert found < 0.15 * thesis.estimate("t_d").std
+
+
 # ---- words ----
 
 
