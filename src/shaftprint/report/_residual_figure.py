@@ -80,12 +80,12 @@ def _draw_residuals(axes: "Axes", identification: "Identification") -> None:
     axes.axhspan(-NORMAL_95, NORMAL_95, color="#dddddd", linewidth=0.0, label="95 % of a model that explains all")
     for row in range(residuals.shape[0]):
         part, channel = divmod(row, len(names))
-        style = look(row)
+        style = look(channel)
         axes.plot(
             data.omega_rad_s[fitted],
             residuals[row, fitted],
             linestyle="none",
-            marker=style.marker,
+            marker="x" if part else style.marker,
             markersize=4.0,
             color=style.colour,
             label=f"{'imaginary' if part else 'real'} part of {mathtext(names[channel])}",
