@@ -154,3 +154,12 @@ def test_pick_up_with_wrong_number_of_pulses(short_trip, refused, tmp_path):
     sentence = refused(short_trip.path, vessel=path)
     assert sentence.startswith("channels PTM_e and PTM_1: expected the same engine-side speed, found n_e1 / n_e = 2.0")
     assert sentence.endswith("check gearbox.ratio and pulses_per_revolution in the vessel file.")
+
+
+def test_rack_that_was_not_logged(short_trip, refused):
+    """The vessel file names percent torque on the CAN bus, the recording has none."""
+    sentence = refused(short_trip.path, vessel="stan-tug-1205-ecu")
+    assert sentence.startswith(
+        f'{short_trip.path}: expected a channel "X_percent" for the fuel rack, as the vessel file'
+    )
+    assert sentence.endswith("M_s; correct the name there, or take [sensors.rack] out where it was not logged.")

@@ -21,7 +21,9 @@ _SPOTS = 4
 _SPOT_SAMPLES = 65_536
 
 
-def find_channel(recording: "Recording", name: str, *, unit: str, use: str) -> "Channel":
+def find_channel(
+    recording: "Recording", name: str, *, unit: str, use: str, way_out: str = "correct the name there"
+) -> "Channel":
     """Return a channel that holds samples in the expected unit.
 
     Parameters
@@ -34,6 +36,8 @@ def find_channel(recording: "Recording", name: str, *, unit: str, use: str) -> "
         Unit that the vessel file gives for it; spaces and multiplication dots do not count.
     use
         What the channel is needed for, in words.
+    way_out
+        What to do where the channel is missing, in words.
 
     Raises
     ------
@@ -43,7 +47,7 @@ def find_channel(recording: "Recording", name: str, *, unit: str, use: str) -> "
     if name not in recording.channels:
         raise SignalError(
             f'{recording.path}: expected a channel "{name}" for the {use}, as the vessel file says, '
-            f"found {', '.join(recording.channels) or 'no channel at all'}; correct the name there."
+            f"found {', '.join(recording.channels) or 'no channel at all'}; {way_out}."
         )
     channel = recording.channels[name]
     if _plain(channel.unit) != _plain(unit):

@@ -171,7 +171,7 @@ def _working_point(inside: list[FloatArray], rate_hz: float, resolution: float) 
 
     The steps of the channel do not average out where the rack stands stiller than they are wide: with normal noise of
     deviation ``s`` a step ``q`` leaves ``exp(-2 pi^2 s^2 / q^2)`` of its error (Widrow and Kollar, "Quantization
-    Noise", chapter 4).
+    Noise", 2008).
     """
     length = max(round(_BLOCK_S * rate_hz), 1)
     long_enough = [values for values in inside if values.size >= 2 * length]

@@ -86,7 +86,15 @@ def find_sources(recording: "Recording", vessel: "Vessel") -> Sources:
         ),
         torque=find_channel(recording, torque.channel, unit=torque.unit, use="shaft torque"),
         set_point=find_channel(recording, set_point.channel, unit=set_point.unit, use="set point"),
-        rack=None if rack is None else find_channel(recording, rack.channel, unit=rack.unit, use="fuel rack"),
+        rack=None
+        if rack is None
+        else find_channel(
+            recording,
+            rack.channel,
+            unit=rack.unit,
+            use="fuel rack",
+            way_out="correct the name there, or take [sensors.rack] out where it was not logged",
+        ),
     )
 
 
