@@ -118,7 +118,7 @@ def test_lines_stand_close_where_the_response_turns_quickly_and_are_not_biased(e
     ring, ring_truth = resonance()
     found = []
     for _ in range(60):
-        u = rng.standard_normal(8_400)
+        u = rng.standard_normal(20_400)
         y = ring(u) + 0.02 * rng.standard_normal(u.size)
         found.append(response_from_arrays({"u": u[400:]}, {"y": y[400:]}, RATE_HZ))
     expect_honest(found, ring_truth)
@@ -126,6 +126,25 @@ def test_lines_stand_close_where_the_response_turns_quickly_and_are_not_biased(e
     peak = np.diff(lines)[(lines[1:] > 1.9) & (lines[1:] < 2.1)]
     assert peak.max() < 0.06
     assert np.diff(lines)[lines[1:] > 6.0].max() > 0.3
+
+
+def test_a_peak_too_narrow_for_the_record_widens_the_covariance():
+    # half of its power lies within 2 * 0.02 * 2 Hz = 0.08 Hz, a band needs 13 bins of 1 / 40 s = 0.33 Hz
+    rng = np.random.default_rng(12)
+    ring, ring_truth = resonance()
+    distance, far = [], []
+    for _ in range(150):
+        u = rng.standard_normal(1200)
+        y = ring(u) + 0.02 * rng.standard_normal(u.size)
+        found = response_from_arrays({"u": u[400:]}, {"y": y[400:]}, RATE_HZ)
+        error = (found.response - ring_truth(found.frequency_hz))[0, 0]
+        error = np.stack([error.real, error.imag], axis=1)
+        squares = np.einsum("li,lij,lj->l", error, np.linalg.inv(found.covariance), error)
+        near = np.abs(found.frequency_hz - 2.0) < 0.5
+        distance += squares[near].tolist()
+        far += squares[~near & (found.frequency_hz > 4.0)].tolist()
+    assert np.mean(distance) < 2.4
+    assert np.mean(far) == pytest.approx(2.0, rel=0.1)
 
 
 def test_a_parabola_is_smooth_and_a_narrow_peak_is_not():

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.errors import ResponseError
 from shaftprint.spectra._excitation import Excitation, LineEstimates
-from shaftprint.spectra._local_polynomial import Bands, Transform, is_smooth
+from shaftprint.spectra._local_polynomial import Bands, Transform, is_smooth, misfit
 from shaftprint.spectra._response_covariance import products, rounding_floor
 
 if TYPE_CHECKING:
@@ -24,6 +24,16 @@ _NEIGHBOURS = 2
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
+class _Band:
+    """The band of a line."""
+
+    low_hz: float
+    high_hz: float
+    smooth: bool
+    """Whether a band twice as wide was tested and found smooth."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
 class Arbitrary(Excitation):
     """The inputs move in any way: noise, a chirp, steps, a trapezoid, manual control.
 
@@ -31,10 +41,12 @@ class Arbitrary(Excitation):
     is independent. Each band gives one line in its middle, by the local polynomial method: response and transient are
     polynomials within the band, and the noise is what they leave. A band in which two orders more would find something
     is split, and every band is halved once more, so that what was just not found does not bias the middle: lines stand
-    close where the response turns quickly. Splitting costs little, since every bin is used in one line.
+    close where the response turns quickly. Splitting costs little, since every bin is used in one line. Details
+    narrower than about 14 over the duration of a record cannot be seen: where the response turns as quickly as that,
+    the covariance is widened by what two more orders change.
 
     The inputs are taken as exactly known and must not depend on the noise of the outputs: see ``response_from_arrays``
-    for closed loops. Details narrower than about 14 over the duration of a record cannot be seen.
+    for closed loops.
     """
 
     lines_per_decade: float = 20.0
@@ -72,10 +84,10 @@ class Arbitrary(Excitation):
         limits = max(band_hz[0], 0.5 * step), min(band_hz[1], 0.5 * records.rate_hz)
         if self.lines_hz is None:
             parents = self._parents(bands, limits, step)
-            borders = [border for low, high in parents for border in _split(bands, low, high, _MOST_SPLITS)]
+            chosen = [band for low, high in parents for band in _split(bands, low, high, _MOST_SPLITS)]
         else:
-            borders = [self._around(bands, place, limits) for place in range(len(self.lines_hz))]
-        return _fitted(bands, borders)
+            chosen = [self._around(bands, place, limits) for place in range(len(self.lines_hz))]
+        return _fitted(bands, chosen)
 
     def _parents(self, bands: Bands, limits: tuple[float, float], step: float) -> list[tuple[float, float]]:
         """Return wide bands: of two lines, or as wide as the fit needs where bins are few."""
@@ -95,7 +107,7 @@ class Arbitrary(Excitation):
             )
         return parents
 
-    def _around(self, bands: Bands, place: int, limits: tuple[float, float]) -> tuple[float, float]:
+    def _around(self, bands: Bands, place: int, limits: tuple[float, float]) -> _Band:
         """Return the band around a chosen line."""
         lines = np.asarray(self.lines_hz, dtype=np.float64)
         middle = float(lines[place])
@@ -109,14 +121,13 @@ class Arbitrary(Excitation):
                 f"line {middle:g} Hz: its band from {middle - widest:g} to {middle + widest:g} Hz, half way to the "
                 "next lines or borders, holds too few frequencies of the records: choose fewer lines, or record longer."
             )
+        smooth = False
         for _ in range(_MOST_SPLITS + 1):
-            if not bands.wide_enough(middle - 0.5 * half, middle + 0.5 * half):
+            if smooth or not bands.wide_enough(middle - 0.5 * half, middle + 0.5 * half):
                 break
             smooth = is_smooth(bands, middle - half, middle + half)
             half *= 0.5
-            if smooth:
-                break
-        return middle - half, middle + half
+        return _Band(low_hz=middle - half, high_hz=middle + half, smooth=smooth)
 
 
 def _transform(run: int, values: FloatArray, rate_hz: float, *, drift: bool) -> Transform:
@@ -131,19 +142,21 @@ def _transform(run: int, values: FloatArray, rate_hz: float, *, drift: bool) -> 
     return Transform(resolution_hz=rate_hz / count, values=spectrum)
 
 
-def _split(bands: Bands, low: float, high: float, splits: int) -> list[tuple[float, float]]:
+def _split(bands: Bands, low: float, high: float, splits: int) -> list[_Band]:
     """Return the bands of lines within a band: both halves, each split again where the whole is not smooth."""
     middle = 0.5 * (low + high)
     if not (bands.wide_enough(low, middle) and bands.wide_enough(middle, high)):
-        return [(low, high)]
-    if splits == 0 or is_smooth(bands, low, high):
-        return [(low, middle), (middle, high)]
+        return [_Band(low_hz=low, high_hz=high, smooth=False)]
+    smooth = is_smooth(bands, low, high)
+    if smooth or splits == 0:
+        halves = ((low, middle), (middle, high))
+        return [_Band(low_hz=first, high_hz=last, smooth=smooth) for first, last in halves]
     return _split(bands, low, middle, splits - 1) + _split(bands, middle, high, splits - 1)
 
 
-def _fitted(bands: Bands, borders: list[tuple[float, float]]) -> LineEstimates:
-    fits = [(0.5 * (low + high), bands.fit(low, high)) for low, high in borders]
-    known = [(middle, fit) for middle, fit in fits if fit.known]
+def _fitted(bands: Bands, chosen: list[_Band]) -> LineEstimates:
+    fits = [(band, bands.fit(band.low_hz, band.high_hz)) for band in chosen]
+    known = [(band, fit) for band, fit in fits if fit.known]
     if not known:
         raise ResponseError(
             "found no line at which every input moves, apart from the others and from transients: excite the inputs "
@@ -154,14 +167,28 @@ def _fitted(bands: Bands, borders: list[tuple[float, float]]) -> LineEstimates:
     power = np.stack([fit.power for _, fit in known]) / excess[:, np.newaxis]
     response = np.stack([fit.response for _, fit in known], axis=2)
     spread = products(noise + rounding_floor(power), np.stack([fit.inverse for _, fit in known]))
+    for row, (band, _) in enumerate(known):
+        if not band.smooth:
+            spread[row] = _widened(spread[row], misfit(bands, band.low_hz, band.high_hz).reshape(-1))
     variance = np.diagonal(spread, axis1=1, axis2=2).real.T
     return LineEstimates(
-        frequency_hz=np.array([middle for middle, _ in known]),
+        frequency_hz=np.array([0.5 * (band.low_hz + band.high_hz) for band, _ in known]),
         response=response,
         spread=spread,
         complex_samples=excess,
         lost=~_seen(np.abs(response.reshape(len(variance), -1)) ** 2, variance),
     )
+
+
+def _widened(spread: ComplexArray, missed: ComplexArray) -> ComplexArray:
+    """Return the covariance with a difference between two fits, less what noise alone makes of such a difference."""
+    std = np.sqrt(spread.diagonal().real)
+    relative = missed / std
+    square = np.vdot(relative, np.linalg.solve(spread / np.outer(std, std), relative)).real
+    if square <= missed.size:
+        return spread
+    widened: ComplexArray = spread + (1.0 - missed.size / square) * np.outer(missed, missed.conj())
+    return widened
 
 
 def _seen(power: FloatArray, variance: FloatArray) -> BoolArray:

@@ -11,7 +11,7 @@ records share the response and have each their own transient.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ from shaftprint.arrays import ComplexArray, FloatArray
 _SMALLEST_EXCESS = 6
 _TRIED = 2
 _ROUNDING = 1e-13
+_RIDGE = 1e-10
 # A test that fails more often without cause would select bands by their noise: with 1, covariances are 4 % too large.
 # What it then misses is 16 times smaller in the halves of the band, in which the response is measured.
 _STRICTNESS = 3.0
@@ -42,7 +43,7 @@ class BandFit:
     """The fit in one band."""
 
     response: ComplexArray
-    """Response at the middle of the band, shape (outputs, inputs)."""
+    """Response where it was wanted, shape (outputs, inputs)."""
     inverse: ComplexArray
     """Covariance of the response to each input for noise of variance 1, shape (inputs, inputs)."""
     noise: ComplexArray
@@ -79,13 +80,15 @@ class Bands:
         columns = (self.order + 1) * (self.inputs + len(bins))
         return bool(bins) and sum(bins) - columns >= _SMALLEST_EXCESS + self.outputs
 
-    def fit(self, low_hz: float, high_hz: float, *, more: int = 0) -> BandFit:
+    def fit(self, low_hz: float, high_hz: float, *, at_hz: float | None = None, more: int = 0) -> BandFit:
         """Fit a band from ``low_hz`` up to, but without, ``high_hz``.
 
         Parameters
         ----------
         low_hz, high_hz
             Borders of the band [Hz].
+        at_hz
+            Where the response is wanted [Hz]; in the middle when not given.
         more
             Number of orders more that are tried after the fit, see ``BandFit.finer``.
 
@@ -94,7 +97,8 @@ class Bands:
         The fit.
         """
         bins = self.in_band(low_hz, high_hz)
-        middle, half = 0.5 * (low_hz + high_hz), 0.5 * (high_hz - low_hz)
+        middle = 0.5 * (low_hz + high_hz) if at_hz is None else at_hz
+        half = 0.5 * (high_hz - low_hz)
         orders = self.order + more + 1
         total = sum(stop - start for start, stop in bins.values())
         transient = np.zeros((orders, len(bins), total), dtype=np.complex128)
@@ -171,8 +175,35 @@ def is_smooth(bands: Bands, low_hz: float, high_hz: float) -> bool:
     fit = bands.fit(low_hz, high_hz, more=_TRIED)
     records = len(bands.in_band(low_hz, high_hz))
     added = _TRIED * (bands.inputs + records)
-    # rounding of the fit: data without noise are not split without end
-    floor = np.diag(fit.power * _ROUNDING**2 + np.finfo(np.float64).tiny)
+    # rounding of the fit: neither noise-free outputs nor such as are multiples of each other have a determinant
+    floor = np.diag(fit.power * _ROUNDING**2 + fit.noise.diagonal().real * _RIDGE + np.finfo(np.float64).tiny)
     gain = float(np.linalg.slogdet(fit.noise + floor)[1] - np.linalg.slogdet(fit.finer + floor)[1])
     freedom = 2.0 * bands.outputs * added
     return (2.0 * fit.excess - added - bands.outputs) * gain <= freedom + _STRICTNESS * math.sqrt(2.0 * freedom)
+
+
+def misfit(bands: Bands, low_hz: float, high_hz: float) -> ComplexArray:
+    """Return by how much the polynomials of a narrow band may miss the response in its middle.
+
+    A band that cannot be split cannot be tested either: it has too few bins. Where a band around it, twice as wide, is
+    not smooth, the difference to a fit of that one with two orders more stands for what the narrow band misses.
+
+    Parameters
+    ----------
+    bands
+        The records.
+    low_hz, high_hz
+        Borders of the band [Hz].
+
+    Returns
+    -------
+    The difference, 0 where the wide band is smooth or has too few bins, shape (outputs, inputs).
+    """
+    width = high_hz - low_hz
+    low = max(low_hz - 0.5 * width, 0.5 * min(transform.resolution_hz for transform in bands.transforms))
+    high = low + 2.0 * width
+    finer = replace(bands, order=bands.order + _TRIED)
+    if not finer.wide_enough(low, high) or is_smooth(bands, low, high):
+        return np.zeros((bands.outputs, bands.inputs), dtype=np.complex128)
+    wide = finer.fit(low, high, at_hz=0.5 * (low_hz + high_hz))
+    return wide.response - bands.fit(low_hz, high_hz).response
