@@ -20,7 +20,6 @@ from shaftprint.models import (
     Combination,
     Delay,
     FunctionBlock,
-    Inverse,
     Parameter,
     PIGovernor,
     RationalBlock,
@@ -87,8 +86,8 @@ load = RationalBlock(lambda j, b: ([1.0], [j, b]), (J_2, B_2))
 hold = FunctionBlock(lambda s: -np.expm1(-s * STEP_S) / (s * STEP_S), ())
 
 # Belt and load behind each other carry the same torque; motor and what is behind it have the same speed.
-behind = Inverse(Inverse(belt) + load)
-motor_speed = Inverse(motor + behind)
+behind = 1 / (1 / belt + load)
+motor_speed = 1 / (motor + behind)
 late = Delay(T_D) * hold
 drive = Structure(
     name="BELT-DRIVE",

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint import campaign, identify, models, recording, signals, spectra, vessel
-from shaftprint.models import Block, Delay, Inverse, Parameter, Shaft, Structure
+from shaftprint.models import Block, Delay, Parameter, Shaft, Structure
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,7 +55,7 @@ def elastic_core():
         name="ELASTIC-CORE",
         title="core propulsion behind an elastic shaft",
         input="M_s",
-        outputs={"n": line * Inverse(Delay(T_GAUGE))},
+        outputs={"n": line / Delay(T_GAUGE)},
     )
 
 

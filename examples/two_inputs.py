@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from shaftprint.identify import identify, profile_intervals
-from shaftprint.models import Constant, FunctionBlock, Inverse, Parameter, RationalBlock, Structure
+from shaftprint.models import FunctionBlock, Parameter, RationalBlock, Structure
 from shaftprint.spectra import Periodic, response_from_arrays
 
 TRUE = {"m_1": 8.0, "m_2": 5.0, "k_g": 40e3, "k_c": 15e3, "beta": 1.5e-3}
@@ -61,7 +61,7 @@ coupling = RationalBlock(lambda k, d: ([d, k], [1.0]), (K_C, D_C))
 hold = FunctionBlock(lambda s: -np.expm1(-s * STEP_S) / (s * STEP_S), ())
 
 # The inverse of the two by two matrix, as on paper.
-over = hold * Inverse(one * two + Constant(-1.0) * coupling * coupling)
+over = hold / (one * two - coupling * coupling)
 frame = Structure(
     name="FRAME",
     title="two masses on a frame",

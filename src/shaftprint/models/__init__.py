@@ -20,7 +20,6 @@ Feedback is negative: the closed loop of forward ``G`` and back ``H`` is ``G / (
 
 from shaftprint.models._block import Block
 from shaftprint.models._blocks import (
-    Constant,
     FilteredDerivative,
     FirstOrderLag,
     Gain,
@@ -32,7 +31,7 @@ from shaftprint.models._catalogue import STRUCTURES, structure
 from shaftprint.models._check import check_structure
 from shaftprint.models._combination import Combination
 from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor
-from shaftprint.models._expression import Expression, Inverse, Sensitivity, feedback
+from shaftprint.models._expression import Constant, Expression, Inverse, Sensitivity, feedback
 from shaftprint.models._margins import Margins, margins, poles
 from shaftprint.models._nyquist import is_stable, loop_gain, stable_rows, unstable_poles
 from shaftprint.models._own_blocks import FunctionBlock, RationalBlock

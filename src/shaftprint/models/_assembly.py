@@ -22,14 +22,27 @@ def channel_paths(
         raise StructureError(f"structure {structure}: expected a named input and at least one output.")
     found: dict[tuple[str, str], Expression] = {}
     for output, response in outputs.items():
-        by_input = {inputs[0]: response} if isinstance(response, Expression) else response
+        by_input = response if isinstance(response, Mapping) else {inputs[0]: response}
         if set(by_input) != set(inputs):
             raise StructureError(
                 f"structure {structure}, output {output}: expected a response to each of {', '.join(inputs)}, found "
                 f"{', '.join(by_input)}."
             )
-        found |= {(output, name): by_input[name] for name in inputs}
+        for name in inputs:
+            if not isinstance(by_input[name], Expression):
+                cause = f" from {name}" if len(inputs) > 1 else ""
+                raise StructureError(
+                    f"structure {structure}, output {output}{cause}: expected an expression of blocks, found "
+                    f"{_words(by_input[name])}."
+                )
+            found[output, name] = by_input[name]
     return found
+
+
+def _words(found: object) -> str:
+    if isinstance(found, Parameter):
+        return f"a parameter; write Gain({found.name})"
+    return f"{found!r}"
 
 
 def block_parameters(structure: str, blocks: Iterable[Block]) -> dict[str, Parameter]:

@@ -11,30 +11,6 @@ from shaftprint.models._parameter import Parameter
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Constant(Block):
-    """A fixed number, such as the -1 of a difference."""
-
-    number: float
-
-    @property
-    def parameters(self) -> tuple[Parameter, ...]:
-        """No parameters."""
-        return ()
-
-    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
-        """Return the number at every frequency."""
-        return np.full(s.shape, self.number, dtype=np.complex128)
-
-    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
-        """Return nothing."""
-        return ()
-
-    def ratio(self, *values: float) -> Polynomials:
-        """Return the number over one."""
-        return np.array([self.number]), np.array([1.0])
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class Gain(Block):
     """A free gain ``k``, such as the fuel-rack gain ``v`` of the engine map (thesis eq. 2.18)."""
 

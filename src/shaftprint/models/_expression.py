@@ -16,16 +16,20 @@ places of one walk is evaluated once.
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TypeAlias
+from numbers import Real
+from typing import TypeAlias, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.errors import StructureError
+from shaftprint.models._parameter import Parameter
 
 Values: TypeAlias = Mapping[str, FloatArray]
 Gradient: TypeAlias = dict[str, ComplexArray]
 Dual: TypeAlias = tuple[ComplexArray, Gradient]
+Operand: TypeAlias = Union["Expression", float]
 Polynomials: TypeAlias = tuple[NDArray[np.floating], NDArray[np.floating]]
 
 
@@ -51,7 +55,7 @@ class Walk:
 
 
 class Expression(ABC):
-    """A response made of blocks; composed with ``*``, ``+`` and ``feedback``."""
+    """A response made of blocks; composed with ``* + - /``, numbers among them, and with ``feedback``."""
 
     __slots__ = ()
 
@@ -67,18 +71,77 @@ class Expression(ABC):
     def polynomials(self, values: Mapping[str, float]) -> Polynomials | None:
         """Return numerator and denominator in ``s``, highest power first; None where there is a delay."""
 
-    def __mul__(self, other: "Expression") -> "Expression":
-        """Put two expressions in series."""
-        return Series(self, other)
+    # numpy's numbers would otherwise take an expression for an array of one
+    __array_ufunc__ = None
 
-    def __add__(self, other: "Expression") -> "Expression":
+    def __mul__(self, other: "Operand") -> "Expression":
+        """Put two expressions in series."""
+        return NotImplemented if (right := _operand(other)) is None else Series(self, right)
+
+    def __rmul__(self, other: "Operand") -> "Expression":
+        """Put a number before an expression."""
+        return NotImplemented if (left := _operand(other)) is None else Series(left, self)
+
+    def __add__(self, other: "Operand") -> "Expression":
         """Put two expressions in parallel."""
-        return Parallel(self, other)
+        return NotImplemented if (right := _operand(other)) is None else Parallel(self, right)
+
+    def __radd__(self, other: "Operand") -> "Expression":
+        """Put a number beside an expression."""
+        return NotImplemented if (left := _operand(other)) is None else Parallel(left, self)
+
+    def __neg__(self) -> "Expression":
+        """Change the sign."""
+        return Series(Constant(-1.0), self)
+
+    def __sub__(self, other: "Operand") -> "Expression":
+        """Return the difference."""
+        return NotImplemented if (right := _operand(other)) is None else Parallel(self, -right)
+
+    def __rsub__(self, other: "Operand") -> "Expression":
+        """Return the difference to a number."""
+        return NotImplemented if (left := _operand(other)) is None else Parallel(left, -self)
+
+    def __truediv__(self, other: "Operand") -> "Expression":
+        """Put the inverse of the second expression behind the first."""
+        return NotImplemented if (right := _operand(other)) is None else Series(self, Inverse(right))
+
+    def __rtruediv__(self, other: "Operand") -> "Expression":
+        """Put a number before the inverse."""
+        return NotImplemented if (left := _operand(other)) is None else Series(left, Inverse(self))
 
     def nodes(self) -> "Iterator[Expression]":
         """Walk over this expression and all below it, children first, each object once."""
         seen: set[int] = set()
         yield from _nodes(self, seen)
+
+
+def _operand(other: "Operand") -> Expression | None:
+    """Return what stands beside a sign as an expression; None for what is neither expression nor number."""
+    if isinstance(other, Parameter):
+        raise StructureError(f"{other.name} is a parameter, not a block: write Gain({other.name}).")
+    if isinstance(other, Real):
+        return Constant(float(other))
+    return other if isinstance(other, Expression) else None
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Constant(Expression):
+    """A fixed number, such as the 1 of ``1 - G``; a number beside an expression becomes one."""
+
+    number: float
+
+    def evaluate(self, walk: Walk) -> Dual:
+        """Return the number at every frequency."""
+        return np.full(walk.s.shape, self.number, dtype=np.complex128), {}
+
+    def children(self) -> tuple[Expression, ...]:
+        """Return nothing."""
+        return ()
+
+    def polynomials(self, values: Mapping[str, float]) -> Polynomials:
+        """Return the number over one."""
+        return np.array([self.number]), np.array([1.0])
 
 
 def _nodes(node: Expression, seen: set[int]) -> Iterator[Expression]:

@@ -8,7 +8,7 @@ Two free bodies cut at the gauge::
 With ``tau_up = 0`` and no latencies they are those of the thesis.
 """
 
-from shaftprint.models._blocks import Constant, FirstOrderLag, Gain, PIGovernor, SecondOrderLag
+from shaftprint.models._blocks import FirstOrderLag, Gain, PIGovernor, SecondOrderLag
 from shaftprint.models._combination import Combination
 from shaftprint.models._delays import Delay, SpeedSensor
 from shaftprint.models._expression import Expression, Inverse, Sensitivity
@@ -58,7 +58,7 @@ def gauge_open() -> Structure:
     ``(M_s / n_set) / (1 - n / n_set)``.
     """
     speed, torque, _ = _measured(_rigid_shaft(), _rigid_load(), V_ONE)
-    error = Constant(1.0) + Constant(-1.0) * speed
+    error = 1.0 - speed
     return Structure(
         name="GAUGE-OPEN",
         title="gauge-aware governor and engine",
@@ -91,7 +91,7 @@ def gauge_inflow() -> Structure:
     fast change of speed meets more torque than a slow one. ``tau_dn`` holds the water too while ``tau_w`` is held at 0.
     """
     load = _rigid_load() + EntrainedWater(TAU_W) + DynamicInflow(KAPPA, TAU_I)
-    shaft = Inverse(load + Inertia(TAU_UP) + Constant(-1.0) * Gain(G))
+    shaft = Inverse(load + Inertia(TAU_UP) - Gain(G))
     speed, torque, _ = _measured(shaft, load, V_ONE)
     return Structure(
         name="GAUGE-INFLOW",

@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.models import Constant, Inverse, Sensitivity, Structure
+from shaftprint.models import Inverse, Sensitivity, Structure
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -60,7 +60,7 @@ def open_loop_curve(closed: Curve) -> Curve:
             f"structure {model.name}: expected outputs n and M_s of n_set to form M_s / e, found "
             f"{', '.join(model.outputs)} of {model.input}."
         )
-    error = Constant(1.0) + Constant(-1.0) * model.path("n")
+    error = 1.0 - model.path("n")
     structure = Structure(
         name=model.name,
         title=model.title,
