@@ -78,7 +78,7 @@ def test_dynamic_inflow_is_the_first_suspect_of_the_plain_gauge_structure(make_r
     settings = Settings(starts=20, priors=PRIORS)
     plain = identify(structure("GAUGE-CLOSED"), response, rng=np.random.default_rng(1), settings=settings)
     assert plain.p_value < 0.01
-    assert suspects_of(plain)[0].words == "dynamic inflow: the slipstream follows the propeller late"
+    assert suspects_of(plain)[0].words == "there is dynamic inflow: the slipstream follows the propeller late"
     right = identify(inflow, response, rng=np.random.default_rng(1), settings=settings)
     assert suspects_of(right) == ()
 
@@ -86,7 +86,7 @@ def test_dynamic_inflow_is_the_first_suspect_of_the_plain_gauge_structure(make_r
 BETTER = np.geomspace(0.0044, 3.4, 24)
 
 
-INFLOW = "dynamic inflow: the slipstream follows the propeller late"
+INFLOW = "there is dynamic inflow: the slipstream follows the propeller late"
 
 
 @pytest.mark.parametrize(

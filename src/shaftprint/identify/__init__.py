@@ -35,12 +35,14 @@ from shaftprint.identify._predicted_intervals import predict_intervals
 from shaftprint.identify._prior import Prior
 from shaftprint.identify._profile import Interval, Profile, profile, profile_intervals
 from shaftprint.identify._refit import Refits, refit
+from shaftprint.identify._requirements import Requirements
 from shaftprint.identify._scan import Minimum, Scan, scan, scan_response
 from shaftprint.identify._search_report import SearchReport, report_search
 from shaftprint.identify._settings import Settings, Stability
 from shaftprint.identify._stan_tug_noise import STAN_TUG_NOISE
 from shaftprint.identify._starts import Draw, LatinHypercube, Uniform
 from shaftprint.identify._suspects import Suspect, suspects_of
+from shaftprint.identify._verdict import Verdict, assess
 from shaftprint.identify._weighting import MaximumLikelihood, StudentT, Unweighted, Weighting
 
 __all__ = [
@@ -73,6 +75,7 @@ __all__ = [
     "Prior",
     "Profile",
     "Refits",
+    "Requirements",
     "Scan",
     "SearchReport",
     "Settings",
@@ -81,7 +84,9 @@ __all__ = [
     "Suspect",
     "Uniform",
     "Unweighted",
+    "Verdict",
     "Weighting",
+    "assess",
     "budget",
     "compare_fits",
     "compare_structures",

@@ -107,7 +107,7 @@ def _physics(structure: Structure, model: ComplexArray, s: ComplexArray) -> Iter
         yield Cause(words=LAG, unit="s", effect=_in_loop(structure, model, speed, -s), one_sided=True)
 
 
-INFLOW = "dynamic inflow: the slipstream follows the propeller late"
+INFLOW = "there is dynamic inflow: the slipstream follows the propeller late"
 UPSTREAM = "there is inertia between engine and torque gauge"
 LAG = "there is more delay or lag in the loop"
 

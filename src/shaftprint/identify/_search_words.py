@@ -15,10 +15,10 @@ def search_words(identification: Identification, optima: tuple[Optimum, ...]) ->
     others = optima[1:]
     return (
         _reached(optima),
-        *_wrong_basin(optima),
+        *wrong_basin_words(optima),
         *[_passed_over(optimum) for optimum in others if is_passed_over(optimum)][:1],
         *[_missed(optimum) for optimum in others if optimum.stable and optimum.distance < -SAME_COST * WITHIN][:1],
-        *[_rival(identification, optimum) for optimum in others if is_rival(optimum)][:1],
+        *[rival_words(identification, optimum) for optimum in others if is_rival(optimum)][:1],
         *_bounds(identification, optima[0]),
     )
 
@@ -42,7 +42,8 @@ def _starts(count: int) -> str:
     return "1 start" if count == 1 else f"{count} starts"
 
 
-def _wrong_basin(optima: tuple[Optimum, ...]) -> list[str]:
+def wrong_basin_words(optima: tuple[Optimum, ...]) -> list[str]:
+    """Return that another optimum attracted more starts than the result, where one did."""
     own = sum(o.starts for o in optima if o.connected)
     busiest = max(optima, key=lambda o: o.starts)
     if busiest.connected or busiest.starts <= own:
@@ -66,7 +67,7 @@ def _missed(optimum: Optimum) -> str:
     )
 
 
-def _rival(identification: Identification, rival: Optimum) -> str:
+def rival_words(identification: Identification, rival: Optimum) -> str:
     """Return that the result is not unique, with the parameters that differ most."""
     objective = identification.objective
     free = list(objective.free)

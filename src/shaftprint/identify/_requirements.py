@@ -1,0 +1,48 @@
+"""What a fit must satisfy before its numbers may be used."""
+
+from dataclasses import dataclass, fields
+
+from shaftprint.errors import IdentificationError
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Requirements:
+    """What a fit must satisfy; every number can be changed, and the defaults say where they come from."""
+
+    largest_line_std: float = 0.3
+    """A line is good where some channel of it is known better than this share of its size: a third, 10 dB."""
+    lowest_line_snr_db: float = 0.0
+    """A line is poor where the set point, or every other channel, has a lower local signal-to-noise ratio than this
+    [dB]: at 0 noise and signal have the same variance (thesis table 3.7)."""
+    data_per_parameter: float = 2.0
+    """Least number of good data, two a complex value, for each parameter that the data must find."""
+    largest_spacing: float = 5.0
+    """Largest ratio of the frequencies of neighbouring good lines between which the loop gain passes 1 or -1; the lines
+    of the thesis are a factor 2 apart."""
+    lowest_p_value: float = 0.01
+    """Probability below which a fit is rejected, and a line where it is that of the worst of all lines."""
+    gain_margin: float = 2.0
+    """Least gain margin of a well-tuned loop: 2 to 5 (Astrom and Murray, Feedback systems, section 9.3)."""
+    phase_margin_deg: float = 30.0
+    """Least phase margin of a well-tuned loop [deg]: 30 to 60 (same section)."""
+    delay_margin_share: float = 1.0
+    """Least delay margin over the delay in the loop. Injection and combustion take part of a turn of the engine, so
+    that the delay doubles when the speed is halved: a loop that would then hunt has little to spare."""
+    largest_std: float = 0.1
+    """A number is trusted where its standard deviation is at most this share of its value, or of the width between its
+    bounds where it may have either sign."""
+    largest_prior_share: float = 0.9
+    """A number with a larger share of the standard deviation that it had before the test was not measured by it."""
+
+    def __post_init__(self) -> None:
+        """Check the limits.
+
+        Raises
+        ------
+        IdentificationError
+            If one of them, but that in dB, is not positive.
+        """
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not field.name.endswith("_db") and not value > 0.0:
+                raise IdentificationError(f"requirement {field.name}: expected a positive number, found {value}.")
