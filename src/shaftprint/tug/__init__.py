@@ -11,6 +11,7 @@ quantity                     unit       meaning and sign
 ``X``                        1          fuel rack above zero-torque running; 1 gives rated torque at rated speed
 ``U``                        V          set-point voltage; more negative asks for more speed
 ``t_d``, ``t_sp``            s          delays inside the loop and before it
+``u``                        rev/s      slipstream velocity, as the shaft speed to which it belongs in steady running
 inertias                     kg m2      referred to the propeller shaft, split at the gauge
 ============================ ========== ==========================================================================
 """
