@@ -12,6 +12,8 @@ covariance          mixed   of the free parameters, each in its own unit
 """
 
 from shaftprint.identify._accuracy import Accuracy, predict_accuracy, predict_joint_accuracy
+from shaftprint.identify._band import ResponseBand, StepBand, model_band, response_band, step_band
+from shaftprint.identify._bootstrap import Bootstrap, BootstrapEstimate, bootstrap
 from shaftprint.identify._budget import Budget, BudgetRow, budget
 from shaftprint.identify._compare import compare_fits, compare_structures
 from shaftprint.identify._comparison import Candidate, Comparison
@@ -49,6 +51,8 @@ __all__ = [
     "PRIOR_OF_G",
     "STAN_TUG_NOISE",
     "Accuracy",
+    "Bootstrap",
+    "BootstrapEstimate",
     "Budget",
     "BudgetRow",
     "Candidate",
@@ -76,10 +80,12 @@ __all__ = [
     "Profile",
     "Refits",
     "Requirements",
+    "ResponseBand",
     "Scan",
     "SearchReport",
     "Settings",
     "Stability",
+    "StepBand",
     "StudentT",
     "Suspect",
     "Uniform",
@@ -87,6 +93,7 @@ __all__ = [
     "Verdict",
     "Weighting",
     "assess",
+    "bootstrap",
     "budget",
     "compare_fits",
     "compare_structures",
@@ -98,6 +105,7 @@ __all__ = [
     "identifiability",
     "identify",
     "identify_jointly",
+    "model_band",
     "noise_levels",
     "planned_lines",
     "planned_response",
@@ -109,8 +117,10 @@ __all__ = [
     "profile_intervals",
     "refit",
     "report_search",
+    "response_band",
     "scan",
     "scan_response",
     "stated_noise",
+    "step_band",
     "suspects_of",
 ]

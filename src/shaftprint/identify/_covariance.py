@@ -23,7 +23,7 @@ def estimate_covariance(objective: Objective, theta: FloatArray, *, expected: bo
     expected
         Whether to average over the noise instead of taking the data as they are: for a test that is planned.
     """
-    covariance, information = _known_part(objective, theta, expected=expected)
+    covariance, information = known_covariance(objective, theta, expected=expected)
     lost = information.lost
     covariance[lost, lost] = np.inf
     return covariance
@@ -43,11 +43,13 @@ def variance_along(objective: Objective, theta: FloatArray, slopes: FloatArray, 
     expected
         See ``estimate_covariance``.
     """
-    covariance, information = _known_part(objective, theta, expected=expected)
+    covariance, information = known_covariance(objective, theta, expected=expected)
     return float(slopes @ covariance @ slopes) if information.knows(slopes) else float(np.inf)
 
 
-def _known_part(objective: Objective, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, PseudoInverse]:
+def known_covariance(
+    objective: Objective, theta: FloatArray, *, expected: bool = False
+) -> tuple[FloatArray, PseudoInverse]:
     """Return the covariance within the identifiable directions, and which they are."""
     rows, noise = objective.sensitivity(theta, expected=expected)
     information = PseudoInverse.of(rows)

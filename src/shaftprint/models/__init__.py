@@ -37,6 +37,7 @@ from shaftprint.models._nyquist import is_stable, loop_gain, stable_rows, unstab
 from shaftprint.models._own_blocks import FunctionBlock, RationalBlock
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
+from shaftprint.models._step_response import step_response
 from shaftprint.models._structure import Structure
 from shaftprint.models._tie import Tie
 
@@ -75,6 +76,7 @@ __all__ = [
     "margins",
     "poles",
     "stable_rows",
+    "step_response",
     "structure",
     "unstable_poles",
 ]
