@@ -195,3 +195,19 @@ def test_records_must_tell_the_inputs_apart():
         response_from_arrays({"a": u, "b": -u}, {"y": u}, RATE_HZ, excitation=Periodic(period_s=20.0))
     with pytest.raises(ResponseError, match=r"no line .* inputs stand above their noise, differently in each record"):
         response_from_arrays([{"a": u, "b": -u}] * 2, [{"y": u}] * 2, RATE_HZ, excitation=Periodic(period_s=20.0))
+
+
+def test_single_periods_of_many_records_are_enough(expect_honest):
+    rng = np.random.default_rng(12)
+    lines, found = [1, 2, 4, 7, 11, 18], []
+    for _ in range(250):
+        inputs, outputs = [], []
+        for _ in range(14):
+            u = np.tile(multisine(rng, lines), 3)
+            noise = 0.1 * noise_of_three(rng, u.size)
+            inputs.append({"u": u})
+            outputs.append({"y": FAST(u) + noise[1], "z": SLOW(u) + noise[2]})
+        excitation = Periodic(period_s=6.4, settling_periods=2, between_records=True)
+        found.append(response_from_arrays(inputs, outputs, RATE_HZ, excitation=excitation))
+    assert (found[0].degrees_of_freedom == 26.0).all()
+    expect_honest(found, truth)

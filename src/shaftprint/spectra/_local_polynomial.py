@@ -19,6 +19,9 @@ from shaftprint.arrays import ComplexArray, FloatArray
 
 _SMALLEST_EXCESS = 6
 _TRIED = 2
+# Rows decomposed at a time. Measured on a million samples: 0.35 s, without blocks 2 s, with 512 rows, whose columns
+# collide in the cache, 6 s.
+_BLOCK = 200
 _ROUNDING = 1e-13
 _RIDGE = 1e-10
 # A test that fails more often without cause would select bands by their noise: with 1, covariances are 4 % too large.
@@ -137,7 +140,7 @@ def _least_squares(columns: ComplexArray, y: ComplexArray, inputs: int, count: i
     length = np.sqrt((np.abs(columns) ** 2).sum(axis=0))
     scale = np.where(length == 0.0, 1.0, length)
     # of the triangle, the part beside the columns holds the projections of the outputs, that below what is left of them
-    triangle: ComplexArray = np.asarray(np.linalg.qr(np.concatenate([columns / scale, y], axis=1), mode="r"))
+    triangle = _triangle(np.concatenate([columns / scale, y], axis=1))
     own, beside = slice(count - inputs, count), triangle[:, columns.shape[1] :]
     last, projected, left, finer = triangle[own, own], beside[own], beside[count:], beside[columns.shape[1] :]
     known = bool(np.all(length[own] > 0.0) and np.abs(np.diag(last)).min() > _LEAST_REST)
@@ -153,6 +156,17 @@ def _least_squares(columns: ComplexArray, y: ComplexArray, inputs: int, count: i
         excess=len(y) - count,
         known=known,
     )
+
+
+def _triangle(table: ComplexArray) -> ComplexArray:
+    """Return the triangle of a QR decomposition; tall tables block by block, which keeps them in the cache."""
+    columns = table.shape[1]
+    while len(table) >= 2 * _BLOCK > 4 * columns:
+        whole = len(table) // _BLOCK * _BLOCK
+        triangles = np.asarray(np.linalg.qr(table[:whole].reshape(-1, _BLOCK, columns), mode="r"))
+        table = np.concatenate([triangles.reshape(-1, columns), table[whole:]])
+    triangle: ComplexArray = np.asarray(np.linalg.qr(table, mode="r"))
+    return triangle
 
 
 def is_smooth(bands: Bands, low_hz: float, high_hz: float) -> bool:
