@@ -20,6 +20,7 @@ from shaftprint.identify._comparison import Candidate, Comparison
 from shaftprint.identify._covariance import estimate_covariance
 from shaftprint.identify._criteria import Criteria, criteria_of
 from shaftprint.identify._directions import Direction
+from shaftprint.identify._experiment import load_factors
 from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify._fit_test import FitTest, LineTest
 from shaftprint.identify._groups import Group
@@ -36,6 +37,7 @@ from shaftprint.identify._planned_response import expected_response, planned_lin
 from shaftprint.identify._predicted_intervals import predict_intervals
 from shaftprint.identify._prior import Prior
 from shaftprint.identify._profile import Interval, Profile, profile, profile_intervals
+from shaftprint.identify._profile_curve import ProfileCurve, profile_curve
 from shaftprint.identify._refit import Refits, refit
 from shaftprint.identify._requirements import Requirements
 from shaftprint.identify._scan import Minimum, Scan, scan, scan_response
@@ -78,6 +80,7 @@ __all__ = [
     "Part",
     "Prior",
     "Profile",
+    "ProfileCurve",
     "Refits",
     "Requirements",
     "ResponseBand",
@@ -105,6 +108,7 @@ __all__ = [
     "identifiability",
     "identify",
     "identify_jointly",
+    "load_factors",
     "model_band",
     "noise_levels",
     "planned_lines",
@@ -114,6 +118,7 @@ __all__ = [
     "predict_joint_accuracy",
     "priors_from_vessel",
     "profile",
+    "profile_curve",
     "profile_intervals",
     "refit",
     "report_search",

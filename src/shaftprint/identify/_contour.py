@@ -82,7 +82,7 @@ def furthest(numbers: Numbers, start: FloatArray, side: FloatArray, distance: Fl
             at, step = at.chosen(~done), step.chosen(~done)
             if at.rows.size == 0:
                 break
-        at.advance(numbers, np.minimum(np.maximum(at.theta + step.delta, lower), upper), step.pull)
+        at.advance(numbers, np.minimum(np.maximum(at.theta + step.delta, lower), upper), step)
     theta[at.rows], is_open[at.rows] = at.theta, at.root < (1.0 - SHARP) * at.distance
     return Ends(theta=theta, value=numbers.values(theta), is_open=is_open)
 
@@ -153,7 +153,7 @@ class _Position:
         """Return some of the rows."""
         return _Position(*(getattr(self, name)[rows] for name in self.__slots__))
 
-    def advance(self, numbers: Numbers, trial: FloatArray, pull: FloatArray) -> None:
+    def advance(self, numbers: Numbers, trial: FloatArray, step: _Step) -> None:
         """Go to the trials that lie further or nearer to the contour; damp the other rows."""
         asked = numbers.chosen(self.rows)
         cost, gradient, hessian = _parabola(numbers.objective, trial)
@@ -162,8 +162,10 @@ class _Position:
         slope = self.side[:, None] * asked.slopes(trial, _diagonal(hessian))
         known = np.isfinite(value) & np.isfinite(slope).all(axis=1)
         moved = np.where(known, value, self.value) - self.value
-        # Where bounds leave the number no way, or the parabola never comes down to the contour, the cost decides.
-        good = known & np.where(pull > 0.0, pull * moved > PENALTY * excess, cost < self.cost)
+        # Where the parabola never comes down to the contour, or bounds leave the number no way, the cost decides; a step
+        # that takes it to its bound inside the contour is good.
+        good = np.where(step.pull > 0.0, step.pull * moved > PENALTY * excess, cost < self.cost)
+        good = known & np.where(step.stuck & (moved > 0.0), cost <= self.limit, good)
         damping = np.where(good, RELIEF * self.damping, np.maximum(self.damping, FIRST_DAMPING) * self.growth)
         self.damping = np.maximum(damping, LEAST_DAMPING)
         self.growth = np.where(good, 1.0, 2.0 * self.growth)

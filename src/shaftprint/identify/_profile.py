@@ -77,11 +77,7 @@ def profile(identification: Identification, numbers: Sequence[Combination] = ())
     IdentificationError
         If the fit was not weighted by the covariance: its cost is no likelihood.
     """
-    if not identification.is_likelihood:
-        raise IdentificationError(
-            f"structure {identification.objective.name}: a profile likelihood needs a fit weighted by the "
-            "covariance; fit with MaximumLikelihood()."
-        )
+    expect_likelihood(identification)
     objective = identification.objective
     names = all_numbers(objective, numbers)
     best = identification.values[list(objective.free)]
@@ -104,3 +100,18 @@ def profile(identification: Identification, numbers: Sequence[Combination] = ())
             upper_open=bool(ends.is_open[2 * i + 1]),
         )
     return Profile(intervals=found, points=frozen_float(objective.complete(ends.theta)))
+
+
+def expect_likelihood(identification: Identification) -> None:
+    """Refuse a fit whose cost is no likelihood.
+
+    Raises
+    ------
+    IdentificationError
+        If it was not weighted by the covariance.
+    """
+    if not identification.is_likelihood:
+        raise IdentificationError(
+            f"structure {identification.objective.name}: a profile likelihood needs a fit weighted by the "
+            "covariance; fit with MaximumLikelihood()."
+        )
