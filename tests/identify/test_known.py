@@ -6,6 +6,7 @@ import pytest
 
 from shaftprint.identify import PRIOR_OF_G, Prior, priors_from_vessel
 from shaftprint.models import structure
+from shaftprint.vessel import load_vessel
 
 
 def vessel(inertia_std=2.7, scale_std=0.02, latency_std=0.002):
@@ -14,7 +15,8 @@ def vessel(inertia_std=2.7, scale_std=0.02, latency_std=0.002):
         inertia_upstream_std_kg_m2=inertia_std,
         gearbox=SimpleNamespace(ratio=3.82),
         sensors=SimpleNamespace(
-            shaft_torque=SimpleNamespace(scale_std_fraction=scale_std, latency_s=0.005, latency_std_s=latency_std)
+            shaft_torque=SimpleNamespace(scale_std_fraction=scale_std, latency_s=0.005, latency_std_s=latency_std),
+            rack=None,
         ),
     )
 
@@ -51,3 +53,13 @@ def test_only_free_parameters_of_gauge_aware_structures_have_priors():
     held = structure("GAUGE-CLOSED").held_at(tau_up=1.016, t_gauge=0.0)
     assert priors_from_vessel(held, vessel(), WORKING_POINT) == {}
     assert set(priors_from_vessel(structure("GAUGE-CORE"), vessel(), WORKING_POINT)) == {"t_gauge"}
+
+
+def test_latency_of_the_rack_is_known_as_the_vessel_file_says():
+    ecu = load_vessel("stan-tug-1205-ecu")
+    late, std = ecu.sensors.rack.latency_s, ecu.sensors.rack.latency_std_s
+    known = priors_from_vessel(structure("GAUGE-ECU"), ecu, WORKING_POINT)
+    assert known["t_rack"] == Prior(mean=0.0, std=std, sources={"rack latency": std})
+    in_thesis_mode = priors_from_vessel(structure("ENGINE"), ecu, WORKING_POINT, mode="thesis")
+    assert in_thesis_mode["t_rack"].mean == late
+    assert "t_rack" not in priors_from_vessel(structure("GAUGE-ECU"), load_vessel("stan-tug-1205"), WORKING_POINT)

@@ -19,6 +19,9 @@ from shaftprint.identify._weighting import Weighting
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 
+# Parameters that are slopes of the propeller torque: they grow with the load.
+LOADED = ("k_q", "kappa")
+
 
 class Term(ABC):
     """One part of the likelihood: residuals whose half square sum is its negative logarithm, up to a constant."""
@@ -203,11 +206,11 @@ def channels_of(response: FrequencyResponse) -> ComplexArray:
 def load_factors(response: FrequencyResponse, chosen: BoolArray | None = None) -> dict[str, FloatArray]:
     """Return what the propeller load of each line's window does to the parameters of a structure.
 
-    A propeller whose torque is ``M_s0 (1 + delta) (n / n_0)^2`` has the slope ``k_q (1 + delta)`` in values
-    normalised with one working point, and nothing else changes.
+    A propeller whose torque is ``M_s0 (1 + delta) (n / n_0)^2`` has the slopes ``k_q (1 + delta)`` and
+    ``kappa (1 + delta)`` in values normalised with one working point, and nothing else changes.
     """
     load = response.load if chosen is None else response.load[chosen]
-    return {} if np.all(load == 1.0) else {"k_q": load}
+    return {} if np.all(load == 1.0) else dict.fromkeys(LOADED, load)
 
 
 def _elements(weights: FloatArray) -> tuple[tuple[int, int, FloatArray], ...]:

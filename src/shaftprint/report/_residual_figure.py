@@ -6,6 +6,7 @@ import numpy as np
 from scipy.special import chdtri
 
 from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.identify import load_factors
 from shaftprint.normal import NORMAL_95
 from shaftprint.report._style import (
     REFERENCE,
@@ -50,7 +51,7 @@ def line_chi_square(identification: "Identification") -> FloatArray:
 def _left(identification: "Identification") -> ComplexArray:
     """Return measured minus model, shape (channels, lines); the load of each window acts on ``k_q`` as in the fit."""
     data = identification.response
-    model = identification.structure.response(identification.values, 1j * data.omega_rad_s, factors={"k_q": data.load})
+    model = identification.structure.response(identification.values, 1j * data.omega_rad_s, factors=load_factors(data))
     return np.asarray(data.response.reshape(model.shape) - model)
 
 
