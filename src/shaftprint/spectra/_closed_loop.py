@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
 from shaftprint.errors import ResponseError
+from shaftprint.spectra._conversion import converted, without_lines
 from shaftprint.spectra._frequency_response import FrequencyResponse
-from shaftprint.spectra._response_covariance import real_jacobian, weight_change
+from shaftprint.spectra._response_covariance import weight_change
 
 # Of a reciprocal the first orders of the noise are not enough: in simulated loops the mean square of the errors over
 # the covariance was 1.22 where lines down to three standard deviations were taken, 1.06 with five, 1.02 with seven.
@@ -56,25 +56,15 @@ def plant_from_closed_loop(
         raise ResponseError(f"{line}: expected {input} to differ from 0, found 0: leave the line out.")
     plant = y / u
     own = np.broadcast_to(np.eye(len(outputs)), (u.size, len(outputs), len(outputs)))
-    jacobian = real_jacobian(np.concatenate([-plant.T[:, :, np.newaxis], own], axis=2) / u[:, np.newaxis, np.newaxis])
+    jacobian = np.concatenate([-plant.T[:, :, np.newaxis], own], axis=2) / u[:, np.newaxis, np.newaxis]
+    found = converted(joint, plant[:, np.newaxis], jacobian, inputs=(input,), outputs=outputs)
     half = 1 + len(outputs)
     share = (joint.covariance[:, 0, 0] + joint.covariance[:, half, half]) / np.abs(u) ** 2
     # second order: noise that makes u large makes the stated covariance small
     change = (1.0 + 2.0 * share) * weight_change(joint.degrees_of_freedom, half, len(outputs))
-    covariance: FloatArray = jacobian @ joint.covariance @ np.swapaxes(jacobian, 1, 2)
-    covariance = change[:, np.newaxis, np.newaxis] * 0.5 * (covariance + np.swapaxes(covariance, 1, 2))
-    lost = share * _LEAST_INPUT_STD**2 > 1.0
-    remarks = dict(joint.remarks)
-    for place in np.flatnonzero(lost):
-        line = joint.lines[place]
-        remark = f"{input} is only {share[place] ** -0.5:.1f} times its noise, too little to divide by"
-        remarks[line] = "; ".join(filter(None, (remarks.get(line, ""), remark)))
-    return replace(
-        joint,
-        inputs=(input,),
-        outputs=outputs,
-        response=plant[:, np.newaxis],
-        covariance=covariance,
-        used=joint.used & ~lost,
-        remarks=remarks,
+    remark = f"{input} is only {{:.1f}} times its noise, too little to divide by"
+    lost = np.flatnonzero(share * _LEAST_INPUT_STD**2 > 1.0).tolist()
+    return without_lines(
+        replace(found, covariance=change[:, np.newaxis, np.newaxis] * found.covariance),
+        {place: remark.format(share[place] ** -0.5) for place in lost},
     )

@@ -1,14 +1,13 @@
 """From the response to the set point to the open-loop responses, with their covariance."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
+from shaftprint.arrays import BoolArray, ComplexArray
 from shaftprint.errors import ResponseError
+from shaftprint.spectra._conversion import converted, without_lines
 from shaftprint.spectra._frequency_response import FrequencyResponse
-from shaftprint.spectra._response_covariance import real_jacobian
 
 # Below this many standard deviations the error signal has no known phase, and its reciprocal no known mean.
 _LEAST_ERROR_STD = 3.0
@@ -124,28 +123,16 @@ def _converted(
     jacobian = np.zeros((len(response.lines), 1, len(response.outputs)), dtype=np.complex128)
     for name, values_of_lines in derivatives.items():
         jacobian[:, 0, response.outputs.index(name)] = values_of_lines
-    derivative = real_jacobian(jacobian)
-    covariance: FloatArray = derivative @ response.covariance @ np.swapaxes(derivative, 1, 2)
-    return replace(
-        response,
-        inputs=names[:1],
-        outputs=names[1:],
-        response=values[np.newaxis, np.newaxis, :],
-        covariance=0.5 * (covariance + np.swapaxes(covariance, 1, 2)),
-    )
+    return converted(response, values[np.newaxis, np.newaxis], jacobian, inputs=names[:1], outputs=names[1:])
 
 
 def _without_lost_lines(
-    converted: FrequencyResponse, response: FrequencyResponse, values: ComplexArray, *, signal: str = "e"
+    opened: FrequencyResponse, response: FrequencyResponse, values: ComplexArray, *, signal: str = "e"
 ) -> FrequencyResponse:
     """Mark the lines whose error signal or rack is lost in noise as not used."""
     place, name = (0, "error signal") if signal == "e" else (response.outputs.index(signal), "fuel rack")
     half = len(response.outputs)
     std = np.sqrt(response.covariance[:, place, place] + response.covariance[:, half + place, half + place])
     lost: BoolArray = np.abs(values) < _LEAST_ERROR_STD * std
-    remarks = dict(converted.remarks)
-    for row in np.flatnonzero(lost):
-        line = converted.lines[row]
-        remark = f"{name} is lost in noise (|{signal}/n_set| = {abs(values[row]):.2g})"
-        remarks[line] = "; ".join(filter(None, (remarks.get(line, ""), remark)))
-    return replace(converted, used=converted.used & ~lost, remarks=remarks)
+    remark = f"{name} is lost in noise (|{signal}/n_set| = {{:.2g}})"
+    return without_lines(opened, {row: remark.format(abs(values[row])) for row in np.flatnonzero(lost).tolist()})
