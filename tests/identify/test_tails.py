@@ -98,8 +98,8 @@ def test_derivatives_are_those_of_the_shaped_residuals(tails, scale):
         np.testing.assert_allclose(shaped[:, i], (ahead - behind) / (2.0 * step), rtol=1e-6, atol=1e-9)
 
 
-@pytest.mark.parametrize("tails", [estimated_tails(FREEDOM, 4), student_tails(FREEDOM, 4, 4.0)])
-def test_curvature_is_the_second_derivative_of_the_cost_of_a_linear_model(tails):
+def test_curvature_is_the_second_derivative_of_the_cost_of_a_linear_model():
+    tails = estimated_tails(FREEDOM, 4)
     plain = table(4, 3, 0.5)
     rows = tails.curvature(plain).reshape(3, -1)
     step = 1e-4
@@ -118,8 +118,18 @@ def test_curvature_is_the_second_derivative_of_the_cost_of_a_linear_model(tails)
 def test_a_line_so_far_off_that_its_cost_bends_down_has_no_curvature_along_its_residual():
     far = np.zeros((1, 2, 4, 1))
     far[0, 0, 0, 0], far[0, 1, 0, 0] = 100.0, 1.0
-    tails = student_tails(np.array([np.inf]), 4, 4.0)
-    np.testing.assert_allclose(tails.curvature(far), 0.0, atol=1e-9)
+    np.testing.assert_allclose(estimated_tails(np.array([12.0]), 4).curvature(far), 0.0, atol=1e-9)
+
+
+def test_heavy_tails_take_the_average_curvature_but_for_a_bad_line():
+    """``(1 + limit / 4) / (1 + 400 / 4)`` of it at 20 standard deviations, with a limit of 4 + 6 sqrt(8)."""
+    tails = student_tails(np.array([np.inf, np.inf]), 4, 4.0)
+    lines = np.zeros((1, 2, 4, 2))
+    lines[0, 0, 0] = [3.0, 20.0]
+    lines[0, 1] = 1.0
+    squares = tails.curvature(lines)[0, 0] ** 2
+    left = (1.0 + (4.0 + 6.0 * 8.0**0.5) / 4.0) / 101.0
+    np.testing.assert_allclose(squares, tails.information * [[1.0, left]] * np.ones((4, 1)), rtol=1e-12)
 
 
 # ---- averages ----

@@ -6,6 +6,10 @@ the complex form of Hotelling's (Giri, On the complex analogues of T^2- and R^2-
 right on average, ``m (nu - m) / (nu - m + 2) F(m, nu - m + 2)``. Its share of the sum is then
 ``(nu - m + 2) log(1 + d^2 / (nu - m))``, which is nearly a chi-square again: the sum of ``m / 2`` independent
 exponential variables of means ``2``, ``2 (nu - m + 2) / (nu - m + 4)``, ...
+
+A parameter that a bound stopped took nothing of the sum away: given which ones did, the rest is as if they had been
+held (Gourieroux, Holly and Monfort, Likelihood ratio test, Wald test, and Kuhn-Tucker test in linear models with
+inequality constraints on the regression parameters, 1982).
 """
 
 from dataclasses import dataclass
@@ -40,7 +44,7 @@ class FitTest:
     chi_square: float
     """Sum over all lines, and of the squared rows of priors."""
     degrees_of_freedom: int
-    """Number of data and prior rows minus the number of free parameters."""
+    """Number of data and prior rows minus the number of fitted parameters; one that a bound stopped is not fitted."""
     mean: float
     """What the sum is on average if the structure holds; the degrees of freedom where all covariances are known."""
     variance: float
@@ -81,7 +85,8 @@ def tested_fit(objective: Objective, values: FloatArray, whitened: tuple[FloatAr
     theta = values[list(objective.free)]
     index = objective.prior_rows[:, 0].astype(int)
     prior = (theta[index] - objective.prior_rows[:, 1]) * objective.prior_rows[:, 2] * objective.prior_counts
-    total, spare = float(prior @ prior), int(objective.prior_counts.sum()) - theta.size
+    fitted = (theta > objective.lower) & (theta < objective.upper)
+    total, spare = float(prior @ prior), int(objective.prior_counts.sum()) - int(fitted.sum())
     mean, variance = float(spare), 2.0 * spare
     lines: list[LineTest] = []
     for number, residuals in enumerate(whitened):

@@ -115,7 +115,7 @@ class Identification:
 
     @property
     def degrees_of_freedom(self) -> int:
-        """Number of data and prior rows minus the number of free parameters."""
+        """Number of data and prior rows minus the number of free parameters that no bound stopped."""
         return self.fit_test.degrees_of_freedom
 
     @property

@@ -26,6 +26,8 @@ NEAR = 1e-3
 NODES = 200
 # Where a covariance has hardly more degrees of freedom than numbers, its weight is that of one more (spectra).
 LEAST_EXCESS = 1.0
+# So many standard deviations of a squared distance above its mean is no normal noise.
+BAD_LINE = 6.0
 # A covariance of so many degrees of freedom is as good as known.
 LARGEST_EXCESS = 1e9
 
@@ -43,6 +45,8 @@ class Tails:
     """``1 / c`` of each line, shape (lines,)."""
     information: FloatArray
     """Information of each line over that of a known covariance without bad lines, on average, shape (lines,)."""
+    averaged: bool
+    """Whether the curvature is taken on average too: heavy tails follow the noise of few lines too closely."""
 
     @property
     def normal(self) -> bool:
@@ -71,7 +75,8 @@ class Tails:
     def curvature(self, table: FloatArray) -> FloatArray:
         """Return derivatives whose products are the second derivatives of the cost, but for those of the model.
 
-        A line so far off that its cost bends down has none along its residual.
+        A line so far off that its cost bends down has none along its residual. Where they are ``averaged`` only a bad
+        line, farther off than normal noise brings it, has less than the average.
 
         Parameters
         ----------
@@ -85,6 +90,11 @@ class Tails:
         residuals, slopes = table[:, 0], table[:, 1:]
         squares = np.einsum("smf,smf->sf", residuals, residuals)
         x = squares * self.bend
+        if self.averaged:
+            size = residuals.shape[1]
+            limit = size + BAD_LINE * np.sqrt(2.0 * size)
+            left = np.minimum((1.0 + limit * self.bend) / (1.0 + x), 1.0)
+            return np.asarray(np.sqrt(self.information * left)[:, None, None, :] * slopes)
         weight = np.sqrt(self.gain / (1.0 + x))
         beside = np.sqrt(np.maximum(1.0 - x, 0.0) / (1.0 + x)) - 1.0
         share = np.divide(beside, squares, out=np.zeros_like(squares), where=squares > 0.0)
@@ -106,7 +116,7 @@ def estimated_tails(degrees_of_freedom: FloatArray, size: int) -> Tails:
     """
     excess = excess_freedom(degrees_of_freedom, size)
     bend = 1.0 / excess
-    return Tails(gain=1.0 + 2.0 * bend, bend=bend, information=1.0 - size / (excess + size + 2.0))
+    return Tails(gain=1.0 + 2.0 * bend, bend=bend, information=1.0 - size / (excess + size + 2.0), averaged=False)
 
 
 def student_tails(degrees_of_freedom: FloatArray, size: int, shape: float) -> Tails:
@@ -124,7 +134,7 @@ def student_tails(degrees_of_freedom: FloatArray, size: int, shape: float) -> Ta
     of_density = np.minimum(shape, excess + 2.0)
     bend = (1.0 + 2.0 / excess) / of_density
     curvature, variance = _averages(bend, excess, size)
-    return Tails(gain=curvature / variance, bend=bend, information=curvature**2 / variance)
+    return Tails(gain=curvature / variance, bend=bend, information=curvature**2 / variance, averaged=True)
 
 
 def excess_freedom(degrees_of_freedom: FloatArray, size: int) -> FloatArray:
