@@ -15,6 +15,9 @@ load drift ``delta``        -       propeller load of a window over that at the 
 
 `estimate_spectra` gives all of it, `estimate_response` the response alone, `open_loop` and `governor_and_engine` its
 open-loop forms.
+
+For drives that are no ships `response_from_arrays` makes a response from plain time series, in the units of the arrays,
+`plant_from_closed_loop` takes a plant out of its loop, and `FrequencyResponse` holds what another program has measured.
 """
 
 from shaftprint.spectra._arbitrary import Arbitrary
