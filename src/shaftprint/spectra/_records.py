@@ -99,7 +99,10 @@ def _row(name: str, samples: ArrayLike) -> FloatArray:
     except (TypeError, ValueError):
         raise ResponseError(f"{name}: expected an array of numbers.") from None
     if row.ndim != 1 or row.size == 0:
-        raise ResponseError(f"{name}: expected one row of samples, found an array of shape {row.shape}.")
+        raise ResponseError(
+            f"{name}: expected one row of samples, found an array of shape {row.shape}: give every channel its own name, "
+            "and flatten a column with ravel()."
+        )
     lost = ~np.isfinite(row)
     if lost.any():
         place = int(np.argmax(lost))
