@@ -100,8 +100,8 @@ def _row(name: str, samples: ArrayLike) -> FloatArray:
         raise ResponseError(f"{name}: expected an array of numbers.") from None
     if row.ndim != 1 or row.size == 0:
         raise ResponseError(
-            f"{name}: expected one row of samples, found an array of shape {row.shape}: give every channel its own name, "
-            "and flatten a column with ravel()."
+            f"{name}: expected one row of samples, found an array of shape {row.shape}: give every channel its own "
+            "name, and flatten a column with ravel()."
         )
     lost = ~np.isfinite(row)
     if lost.any():
