@@ -115,7 +115,7 @@ def test_where_the_law_of_maximum_likelihood_does_not_hold_draws_are_made(make_r
     assert found.p_value > 0.01
     wrong = identify(structure("CL4").held_at(t_d=0.05), response, rng=rng, settings=own)
     found = likelihood_ratio(wrong, large, nesting(wrong, large, rng=rng), rng=rng, draws=99)
-    assert found.p_value == pytest.approx(0.01)
+    assert found.p_value <= 0.01 + 1e-12
 
 
 @pytest.mark.parametrize(("at_bound", "weights"), [((), (0.0, 0.0, 1.0)), (("t",), (0.0, 0.5, 0.5))])

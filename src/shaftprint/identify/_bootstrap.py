@@ -81,7 +81,7 @@ def bootstrap(
     if count < FEWEST:
         raise IdentificationError(f"bootstrap: expected {FEWEST} repeats or more, found {count}.")
     objective = identification.objective
-    drawn = [_drawn(experiment, identification.values, count, rng) for experiment in objective.experiments]
+    drawn = [drawn_test(experiment, identification.values, count, rng) for experiment in objective.experiments]
     responses, covariances = [response for response, _ in drawn], [covariance for _, covariance in drawn]
     single = len(drawn) == 1
     found = refit(
@@ -104,7 +104,7 @@ def bootstrap(
     )
 
 
-def _drawn(
+def drawn_test(
     experiment: Experiment, values: FloatArray, count: int, rng: np.random.Generator
 ) -> tuple[ComplexArray, FloatArray]:
     """Return responses, shape (repeats, channels, lines), and covariances, shape (repeats, lines, size, size).

@@ -65,15 +65,14 @@ def _explanation(candidate: Candidate) -> str:
 
 
 def _ratio(ratio: LikelihoodRatio) -> str:
-    more = "parameter" if ratio.extra == 1 else "parameters"
     drawn = f" from {ratio.draws} drawn tests, since {ratio.reason}" if ratio.draws else ""
-    verdict = "are needed" if ratio.p_value < NEEDED else "are not needed"
-    if ratio.extra == 1:
-        verdict = verdict.replace("are", "is", 1)
-    return (
-        f"{ratio.large} holds {ratio.small} as a special case; its {ratio.extra} {more} more lower the deviance by "
-        f"{ratio.statistic:.1f} and {verdict} ({probability(ratio.p_value)}{drawn})."
+    needed = "needed" if ratio.p_value < NEEDED else "not needed"
+    more = (
+        f"one more parameter lowers the deviance by {ratio.statistic:.1f} and is {needed}"
+        if ratio.extra == 1
+        else f"{ratio.extra} more parameters lower the deviance by {ratio.statistic:.1f} and are {needed}"
     )
+    return f"{ratio.large} holds {ratio.small} as a special case: {more} ({probability(ratio.p_value)}{drawn})."
 
 
 def _foretelling(candidates: Sequence[Candidate]) -> list[str]:

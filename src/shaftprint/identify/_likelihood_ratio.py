@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.arrays import FloatArray
+from shaftprint.identify._bootstrap import drawn_test
 from shaftprint.identify._chi_square import chi_square_tail
 from shaftprint.identify._identification import Identification
 from shaftprint.identify._nesting import Nesting
@@ -24,6 +25,8 @@ from shaftprint.identify._weighting import MaximumLikelihood
 DRAWS = 199
 # A bound on the p-value this much below the smallest that draws can give needs no draws.
 FAR = 0.1
+# More values than these of a parameter make no difference to a response.
+VALUES = 1000
 # Starts of the larger structure in each draw where a parameter means nothing or stands at a bound.
 PLACES = 6
 # How far from its bound such a start stands, as a share of the width.
@@ -68,12 +71,11 @@ def likelihood_ratio(
     """
     fall = _deviance(small, np.array(small.cost)) - _deviance(large, np.array(large.cost))
     statistic = float(np.maximum(fall, 0.0))
-    bounds = _bounds_in_the_way(small, nested)
-    reason = _no_law(small, large, nested) or bounds
-    at_most = chi_square_tail(statistic, nested.extra + len(nested.at_bound))
+    reason = _no_law(small, large, nested)
+    at_most = _at_most(large, nested, statistic)
     if not reason:
         p_value, drawn = nested.p_value(statistic), 0
-    elif reason == bounds and at_most < FAR / (draws + 1.0):
+    elif at_most < FAR / (draws + 1.0):
         p_value, drawn = at_most, 0
     else:
         reached = _drawn(small, large, nested, rng, draws) >= statistic
@@ -90,7 +92,7 @@ def likelihood_ratio(
 
 
 def _no_law(small: Identification, large: Identification, nested: Nesting) -> str:
-    """Return why nothing is known of the statistic's distribution, in words; nothing where it is."""
+    """Return why the law does not hold as it is, in words; nothing where it does."""
     if not isinstance(large.settings.weighting, MaximumLikelihood):
         return "the fits are not weighted by maximum likelihood"
     if nested.meaningless:
@@ -99,15 +101,24 @@ def _no_law(small: Identification, large: Identification, nested: Nesting) -> st
     known = [name for name in large.settings.priors if name not in own]
     if known:
         return f"something is known beforehand of {', '.join(known)}"
-    return ""
-
-
-def _bounds_in_the_way(small: Identification, nested: Nesting) -> str:
-    """Return which bounds break the law, in words; a chi-square with a freedom more for each of them exceeds it."""
-    own = {p.name for p in small.structure.free}
     if len(nested.at_bound) > 1 or own & set(nested.at_bound):
         return f"{', '.join(nested.at_bound)} stand at a bound in {small.structure.name}"
     return ""
+
+
+def _at_most(large: Identification, nested: Nesting, statistic: float) -> float:
+    """Return an upper bound of the p-value; 1 where none is known.
+
+    A chi-square with a degree of freedom more for every bound exceeds the statistic, and what is known beforehand only
+    holds it down. Where a parameter is meaningless the statistic is the largest of as many as it has values that make a
+    difference; no response has a thousand of them.
+    """
+    if not isinstance(large.settings.weighting, MaximumLikelihood):
+        return 1.0
+    known = sum(1 for name in large.settings.priors if name in {p.name for p in large.objective.free_parameters})
+    freedom = nested.extra + len(nested.at_bound) + len(nested.meaningless) + known
+    tail = chi_square_tail(statistic, freedom)
+    return tail * VALUES ** len(nested.meaningless)
 
 
 def _deviance(fit: Identification, cost: FloatArray) -> FloatArray:
@@ -118,35 +129,30 @@ def _drawn(
     small: Identification, large: Identification, nested: Nesting, rng: np.random.Generator, draws: int
 ) -> FloatArray:
     """Return the statistic of tests drawn from the smaller structure, shape (draws,)."""
-    responses = _responses(small, rng, draws)
+    experiment = small.objective.experiments[0]
+    responses, covariances = drawn_test(experiment, small.values, draws, rng)
+    estimated = bool(np.isfinite(experiment.freedom).any())
     luck = rng.standard_normal((draws, len(small.objective.parameters) + len(large.objective.parameters)))
     names = list(dict.fromkeys((*small.objective.names, *large.objective.names)))
     noise = {name: luck[:, i] for i, name in enumerate(names)}
     own = small.values[list(small.objective.free)]
-    few = refit(small, responses, prior_means=_prior_means(small, own, noise, own=set(noise))).cost
-    shared = set(small.objective.names)
-    means = _prior_means(large, nested.values, noise, own=shared)
+    few = refit(
+        small,
+        responses,
+        prior_means=_prior_means(small, own, noise, own=set(noise)),
+        covariances=covariances if estimated else None,
+    ).cost
+    means = _prior_means(large, nested.values, noise, own=set(small.objective.names))
     starts = _starts(large, nested)
     many = refit(
         large,
         np.tile(responses, (len(starts), 1, 1)),
         start=np.repeat(starts, draws, axis=0),
         prior_means=np.tile(means, (len(starts), 1)),
+        covariances=np.tile(covariances, (len(starts), 1, 1, 1)) if estimated else None,
     ).cost.reshape(len(starts), draws)
-    many = many.min(axis=0)
-    return np.maximum(_deviance(small, few) - _deviance(large, np.minimum(many, few)), 0.0)
-
-
-def _responses(small: Identification, rng: np.random.Generator, draws: int) -> ComplexArray:
-    """Return responses of the smaller structure with the noise of the data, shape (draws, channels, lines)."""
-    experiment = small.objective.experiments[0]
-    model = experiment.structure.response(experiment.own(small.values), experiment.s, factors=experiment.factors)
-    channels, lines = model.shape
-    root = np.linalg.cholesky(experiment.covariance)
-    noise = np.einsum("lab,dlb->dal", root, rng.standard_normal((draws, lines, 2 * channels)))
-    found = np.zeros((draws, channels, small.fitted.size), dtype=np.complex128)
-    found[:, :, small.fitted] = model + noise[:, :channels] + 1j * noise[:, channels:]
-    return found
+    lowest = np.minimum(many.min(axis=0), few)
+    return np.maximum(_deviance(small, few) - _deviance(large, lowest), 0.0)
 
 
 def _prior_means(fit: Identification, theta: FloatArray, noise: dict[str, FloatArray], own: set[str]) -> FloatArray:

@@ -20,6 +20,8 @@ from shaftprint.spectra import FrequencyResponse
 
 # Squared distance over the square of the response itself below which nothing is left.
 SAME_RESPONSE = 1e-9
+# Without noise the optimum is found from few starts.
+STARTS = 20
 # Places beside the optimum: shares of the way to the middle of the bounds.
 BESIDE = (0.03, 0.1)
 # Share of the width between its bounds within which a parameter stands at one.
@@ -111,7 +113,9 @@ def _imitation(
     small: Identification, large: Identification, values: FloatArray, rng: np.random.Generator
 ) -> FloatArray | None:
     """Return the free parameters with which the larger structure gives the smaller one's response; None if none do."""
-    neutral = replace(large.settings, priors={}, regularisation={}, stability="ignored")
+    neutral = replace(
+        large.settings, priors={}, regularisation={}, stability="ignored", starts=min(large.settings.starts, STARTS)
+    )
     data = response_of(small, values)
     names = [name for name, fitted in zip(data.lines, small.fitted, strict=True) if fitted]
     try:

@@ -46,7 +46,8 @@ def _doubt(
         return "the data say nothing about it"
     prior = identification.settings.priors.get(estimate.name)
     if prior is not None and std > requirements.largest_prior_share * prior.std:
-        return f"it was known beforehand and hardly measured: {100.0 * std / prior.std:.0f} % of that deviation is left"
+        left = min(100.0 * std / prior.std, 100.0)
+        return f"it was known beforehand and hardly measured: {left:.0f} % of that deviation is left"
     size = _size(identification, estimate)
     if std > requirements.largest_std * size:
         return f"it is known to {100.0 * std / size:.0f} % only" if size > 0.0 else "it cannot be told from 0"
