@@ -30,8 +30,9 @@ from shaftprint.models._blocks import (
 from shaftprint.models._catalogue import STRUCTURES, structure
 from shaftprint.models._check import check_structure
 from shaftprint.models._combination import Combination
-from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor
+from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor, ZeroOrderHold
 from shaftprint.models._expression import Constant, Expression, Inverse, Sensitivity, feedback
+from shaftprint.models._held import Held
 from shaftprint.models._margins import Margins, margins, poles
 from shaftprint.models._nyquist import is_stable, loop_gain, stable_rows, unstable_poles
 from shaftprint.models._own_blocks import FunctionBlock, RationalBlock
@@ -54,6 +55,7 @@ __all__ = [
     "FirstOrderLag",
     "FunctionBlock",
     "Gain",
+    "Held",
     "Inertia",
     "Integrator",
     "Inverse",
@@ -69,6 +71,7 @@ __all__ = [
     "Structure",
     "Tie",
     "TorqueBalance",
+    "ZeroOrderHold",
     "check_structure",
     "feedback",
     "is_stable",
