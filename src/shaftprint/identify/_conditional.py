@@ -63,27 +63,32 @@ class Conditional:
         """
         lower, upper = self.objective.lower, self.objective.upper
         if not self.searched:
-            theta = np.tile(0.5 * (lower + upper), (at.size, 1))
-            theta[:, self.held] = at
-            return self._solved(theta)
+            return self._solved_at(at)
         places = np.concatenate([spread(starts, lower, upper), known])
-        theta = np.repeat(places[None], at.size, axis=0)
-        theta[:, :, self.held] = at[:, None]
-        theta, cost = self._descended(self._solved(theta.reshape(-1, lower.size))[0], COARSE)
-        best = np.argmin(cost.reshape(at.size, -1), axis=1)
-        theta = theta.reshape(at.size, -1, lower.size)[np.arange(at.size), best]
-        return self._carried(*self._descended(theta, FINE))
+        return self.carried(*self._best_of(at, np.repeat(places[None], at.size, axis=0)))
 
-    def slope(self, theta: FloatArray) -> FloatArray:
-        """Return how the lowest cost changes with the held parameter at optima of the others, shape (rows,).
+    def between(self, at: FloatArray, left: FloatArray, right: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the best free parameters of values between others whose optima are known, and their cost.
 
-        There the others' share vanishes: it is the derivative of the cost alone.
+        Parameters
+        ----------
+        at
+            Values of the held parameter, shape (values,).
+        left, right
+            Free parameters of the optima on both sides of each value, shape (values, free).
         """
-        residuals, slopes = self.objective.residuals(theta)
-        return np.asarray(np.vecdot(slopes[:, self.held], residuals))
+        return self._best_of(at, np.stack([left, right], axis=1)) if self.searched else self._solved_at(at)
 
-    def _carried(self, theta: FloatArray, cost: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the optima after each value has tried those of its neighbours, as long as that helps."""
+    def carried(self, theta: FloatArray, cost: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the optima after each value has tried those of its neighbours, as long as that helps.
+
+        Parameters
+        ----------
+        theta, cost
+            Best free parameters and cost of ascending values of the held parameter; they are changed.
+        """
+        if not self.searched:
+            return theta, cost
         for step in (1, -1):
             fresh = np.arange(cost.size)
             while fresh.size:
@@ -96,6 +101,28 @@ class Conditional:
                 fresh = to[better]
                 theta[fresh], cost[fresh] = trial[better], lower[better]
         return theta, cost
+
+    def _solved_at(self, at: FloatArray) -> tuple[FloatArray, FloatArray]:
+        theta = np.tile(0.5 * (self.objective.lower + self.objective.upper), (at.size, 1))
+        theta[:, self.held] = at
+        return self._solved(theta)
+
+    def _best_of(self, at: FloatArray, places: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the best optimum that several starts of each value, shape (values, starts, free), lead to."""
+        theta = places.copy()
+        theta[:, :, self.held] = at[:, None]
+        size = theta.shape[2]
+        theta, cost = self._descended(self._solved(theta.reshape(-1, size))[0], COARSE)
+        best = np.argmin(cost.reshape(at.size, -1), axis=1)
+        return self._descended(theta.reshape(at.size, -1, size)[np.arange(at.size), best], FINE)
+
+    def slope(self, theta: FloatArray) -> FloatArray:
+        """Return how the lowest cost changes with the held parameter at optima of the others, shape (rows,).
+
+        There the others' share vanishes: it is the derivative of the cost alone.
+        """
+        residuals, slopes = self.objective.residuals(theta)
+        return np.asarray(np.vecdot(slopes[:, self.held], residuals))
 
     def _solved(self, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the rows with the closed-form parameters at their best, and the cost."""

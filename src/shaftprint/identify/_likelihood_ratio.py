@@ -118,7 +118,7 @@ def _at_most(large: Identification, nested: Nesting, statistic: float) -> float:
     known = sum(1 for name in large.settings.priors if name in {p.name for p in large.objective.free_parameters})
     freedom = nested.extra + len(nested.at_bound) + len(nested.meaningless) + known
     tail = chi_square_tail(statistic, freedom)
-    return tail * VALUES ** len(nested.meaningless)
+    return tail * float(VALUES ** len(nested.meaningless))
 
 
 def _deviance(fit: Identification, cost: FloatArray) -> FloatArray:

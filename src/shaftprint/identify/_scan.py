@@ -29,6 +29,8 @@ FIRST_POINTS = 65
 LEVELS = 5
 # An interval is resolved when its middle lies within this share of the curve's height of the cubic through its ends.
 RESOLVED = 2e-3
+# Optima of the fit that are starts of the search at each value.
+KNOWN = 6
 POLISH_TOLERANCE, POLISH_ITERATIONS = 1e-14, 200
 # Optima closer than this share of the width between the bounds are one.
 SAME_PLACE = 1e-6
@@ -108,7 +110,8 @@ def scan(identification: Identification, parameter: str, *, grid: ArrayLike | No
             f"{', '.join(names)}; free another with free_between()."
         )
     conditional = Conditional.of(objective, names.index(parameter))
-    known = np.array([cluster.values for cluster in identification.clusters])[:, list(objective.free)]
+    found = identification.clusters[:KNOWN]
+    known = np.array([cluster.values for cluster in found])[:, list(objective.free)]
     if grid is None:
         at, theta, cost = _refined(conditional, known, starts)
     else:
@@ -192,8 +195,7 @@ def _refined(conditional: Conditional, known: FloatArray, starts: int) -> tuple[
         slope, width = conditional.slope(theta), np.diff(at)[left]
         foretold = 0.5 * (cost[left] + cost[left + 1]) + width * (slope[left] - slope[left + 1]) / 8.0
         middle = 0.5 * (at[left] + at[left + 1])
-        nearest = np.unique(np.concatenate([known, theta[np.argsort(cost)[:1]]]), axis=0)
-        between, lowest = conditional.lowest(middle, nearest, starts=starts)
+        between, lowest = conditional.between(middle, theta[left], theta[left + 1])
         height = float(np.ptp(np.concatenate([cost, lowest])))
         rough = np.abs(lowest - foretold) > RESOLVED * height
         open_ends = np.repeat(False, at.size - 1)
@@ -201,6 +203,7 @@ def _refined(conditional: Conditional, known: FloatArray, starts: int) -> tuple[
         open_ends = np.insert(open_ends, left + 1, rough)
         at, cost = np.insert(at, left + 1, middle), np.insert(cost, left + 1, lowest)
         theta = np.insert(theta, left + 1, between, axis=0)
+    theta, cost = conditional.carried(theta, cost)
     return at, theta, cost
 
 
