@@ -56,14 +56,14 @@ def test_bounds_out_of_order_are_refused(lower, upper):
 
 @pytest.mark.parametrize("value", [-0.1, 10.1, float("nan")])
 def test_value_outside_its_bounds_is_refused(value):
-    with pytest.raises(StructureError, match=r"parameter K_p: expected a value from 0\.0 to 10\.0 -, found"):
+    with pytest.raises(StructureError, match=r"parameter K_p: expected a value from 0\.0 to 10\.0, found"):
         parameter("K_p", value)
 
 
 def test_a_parameter_is_held_within_its_bounds_only():
     held = parameter("K_p").held_at(8.0)
     assert (held.lower, held.upper, held.value, held.held) == (0.0, 10.0, 8.0, True)
-    with pytest.raises(StructureError, match=r"K_p: expected a value from 0\.0 to 10\.0 -, found 12\.0"):
+    with pytest.raises(StructureError, match=r"K_p: expected a value from 0\.0 to 10\.0, found 12\.0"):
         parameter("K_p").held_at(12.0)
 
 

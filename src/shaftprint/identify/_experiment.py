@@ -262,7 +262,11 @@ def _of_structure(structure: Structure, response: FrequencyResponse) -> Frequenc
     if structure.inputs != response.inputs or not set(outputs) <= set(response.outputs):
         raise IdentificationError(
             f"structure {structure.name} goes from {', '.join(structure.inputs)} to {', '.join(outputs)}, the "
-            f"response from {', '.join(response.inputs)} to {', '.join(response.outputs)}: choose a structure with "
-            "these channels, or convert the response with open_loop()."
+            f"response from {', '.join(response.inputs)} to {', '.join(response.outputs)}: "
+            + (
+                "choose a structure with these channels, or convert the response with open_loop()."
+                if response.inputs == ("n_set",)
+                else "give both the same names."
+            )
         )
     return response if outputs == response.outputs else response.of_outputs(*outputs)

@@ -94,6 +94,7 @@ def _identified(
     settings: Settings,
     lines: Sequence[str] | None,
 ) -> Identification:
+    _expect_right_kinds(pairs, rng)
     objective = build_joint_objective(
         [(with_sensor(structure, response), response) for structure, response in pairs],
         weighting=settings.weighting,
@@ -127,6 +128,20 @@ def _identified(
         fit_test=tested_fit(objective, winner.values, whitened),
         clusters=clusters,
     )
+
+
+def _expect_right_kinds(pairs: Sequence[tuple[Structure, FrequencyResponse]], rng: np.random.Generator) -> None:
+    for pair in pairs:
+        if not isinstance(pair, tuple) or len(pair) != 2:
+            raise IdentificationError(f"joint fit: expected pairs (structure, response), found {type(pair).__name__}.")
+        kinds = tuple(type(item) for item in pair)
+        if not (issubclass(kinds[0], Structure) and issubclass(kinds[1], FrequencyResponse)):
+            raise IdentificationError(
+                f"fit: expected a Structure and a FrequencyResponse, found {' and '.join(k.__name__ for k in kinds)}; "
+                "models.structure() gives a shipped structure by its name."
+            )
+    if not isinstance(rng, np.random.Generator):
+        raise IdentificationError(f"rng: expected numpy.random.default_rng(seed), found {rng!r}.")
 
 
 def _part(experiment: Experiment, values: FloatArray, residuals: FloatArray) -> Part:

@@ -291,6 +291,12 @@ def _expect_solvable(objective: Objective, known: Sequence[str]) -> None:
         raise IdentificationError(
             f"prior of {', '.join(unknown)}: structure {objective.name} has the free parameters {', '.join(names)}."
         )
+    for p in objective.free_parameters:
+        if not (np.isfinite(p.lower) and np.isfinite(p.upper)):
+            raise IdentificationError(
+                f"parameter {p.name} of structure {objective.name}: expected finite bounds of a free parameter, found "
+                f"{p.lower} to {p.upper}; starts are drawn between them."
+            )
     if not names:
         raise IdentificationError(
             f"structure {objective.name} has no free parameter: free one with free_between(), or compare its response."

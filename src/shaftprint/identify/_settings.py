@@ -34,13 +34,16 @@ class Settings:
     """Whether an unstable model may win: sorted out ``after`` the search, kept out ``during`` it, or ``ignored``."""
 
     def __post_init__(self) -> None:
-        """Check the counts.
+        """Check counts and kinds.
 
         Raises
         ------
         IdentificationError
-            If starts, iterations or tolerance are not positive, or the stability rule is unknown.
+            If starts, iterations or tolerance are not positive, the stability rule is unknown, or a prior is none.
         """
+        for name, prior in (*self.priors.items(), *self.regularisation.items()):
+            if not isinstance(prior, Prior):
+                raise IdentificationError(f"prior of {name}: expected Prior(mean, std), found {prior!r}.")
         if self.starts < 1 or self.max_iterations < 1 or not self.tolerance > 0.0:
             raise IdentificationError(
                 f"search settings: expected positive starts, iterations and tolerance, found {self.starts}, "

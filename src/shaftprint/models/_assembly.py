@@ -2,10 +2,15 @@
 
 from collections.abc import Iterable, Mapping
 
+import numpy as np
+
+from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
+from shaftprint.models._combination import Combination
 from shaftprint.models._expression import Expression, Sensitivity
 from shaftprint.models._parameter import Parameter
+from shaftprint.models._tie import Tie
 
 
 def channel_paths(
@@ -18,6 +23,14 @@ def channel_paths(
     StructureError
         If there is no output, an input has no name, or an output does not name each input.
     """
+    if isinstance(inputs, str):
+        raise StructureError(
+            f'structure {structure}: expected a tuple of inputs such as ("{inputs}",), found the text.'
+        )
+    if not isinstance(outputs, Mapping):
+        raise StructureError(
+            f'structure {structure}: expected outputs by name such as {{"y": ...}}, found {outputs!r}.'
+        )
     if not outputs or not all(inputs):
         raise StructureError(f"structure {structure}: expected a named input and at least one output.")
     found: dict[tuple[str, str], Expression] = {}
@@ -51,16 +64,68 @@ def block_parameters(structure: str, blocks: Iterable[Block]) -> dict[str, Param
     Raises
     ------
     StructureError
-        If two blocks describe a parameter of one name differently.
+        If two blocks describe a parameter of one name differently, or something else stands for a parameter.
     """
     found: dict[str, Parameter] = {}
-    for parameter in (p for block in blocks for p in block.parameters):
+    for block, parameter in ((owner, p) for owner in blocks for p in owner.parameters):
+        if not isinstance(parameter, Parameter):
+            raise StructureError(
+                f"structure {structure}, block {type(block).__name__}: expected a Parameter, found {parameter!r}; a "
+                "number stands beside a block, as in 2.0 * block, or is a Parameter with held=True."
+            )
         if found.setdefault(parameter.name, parameter) != parameter:
             raise StructureError(
                 f"structure {structure}: parameter {parameter.name} occurs twice with different bounds, values or "
                 "units; use one Parameter for both."
             )
     return found
+
+
+def expect_combinations(
+    structure: str, combinations: tuple[Combination, ...], values: Mapping[str, FloatArray]
+) -> None:
+    """Check that combinations are made of parameters that there are.
+
+    Parameters
+    ----------
+    values
+        Every parameter by name.
+
+    Raises
+    ------
+    StructureError
+        If one is not.
+    """
+    if isinstance(combinations, Combination):
+        raise StructureError(f"structure {structure}: expected a tuple of combinations such as ({combinations.name},).")
+    for combination in combinations:
+        try:
+            with np.errstate(all="ignore"):
+                combination.of(values)
+        except KeyError as missing:
+            raise StructureError(
+                f"structure {structure}, combination {combination.name}: it names a parameter {missing}; the structure "
+                f"has {', '.join(values)}."
+            ) from None
+
+
+def expect_tie(structure: str, ties: Iterable[Tie], name: str, new: Iterable[object]) -> None:
+    """Check that a parameter can be tied, and that what comes with it are parameters.
+
+    Raises
+    ------
+    StructureError
+        If not.
+    """
+    others = [item for item in new if not isinstance(item, Parameter)]
+    if others:
+        raise StructureError(f"tied parameter {name}: expected new parameters, found {others[0]!r}.")
+    followers = [tie.name for tie in ties if name in tie.arguments]
+    if followers:
+        raise StructureError(
+            f"structure {structure}: {name} cannot be tied, since {', '.join(followers)} follows from it; write both "
+            "formulas in other parameters."
+        )
 
 
 def outermost_loop(structure: str, nodes: Iterable[Expression]) -> Expression | None:

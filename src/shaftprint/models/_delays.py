@@ -1,10 +1,12 @@
-"""Blocks that are late: exact delay, its Pade approximation, and the pick-up that gives a mean too late."""
+"""Blocks that are late: exact delay, its Pade approximation, a computer's hold, the pick-up with its mean."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
 from shaftprint.models._expression import Polynomials
 from shaftprint.models._parameter import Parameter
@@ -66,6 +68,44 @@ class PadeDelay(Block):
         """Return numerator and denominator in ``s``."""
         powers = np.array(PADE_5) * values[0] ** np.arange(6)
         return (powers * (-1.0) ** np.arange(6))[::-1], powers[::-1]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ZeroOrderHold(Block):
+    """A computer's output that keeps its value for one step ``T``: ``(1 - exp(-s T)) / (s T)``.
+
+    Between samples of the computer's output and of what follows it, the images at multiples of the sample rate ``f_s``
+    add to this: a share of up to ``3.3 (f / f_s)^2`` where the response falls like ``1 / s``, far less where it falls
+    faster or the logger has a filter against them.
+    """
+
+    step_s: float
+    """Step of the computer [s]."""
+
+    def __post_init__(self) -> None:
+        """Check the step.
+
+        Raises
+        ------
+        StructureError
+            If it is not positive and finite.
+        """
+        if not 0.0 < self.step_s < math.inf:
+            raise StructureError(f"hold: expected a step above 0 s, found {self.step_s}.")
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """No parameters."""
+        return ()
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return ``(1 - exp(-s T)) / (s T)``."""
+        x = s * self.step_s
+        return np.asarray(-np.expm1(-x) / x)
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return nothing."""
+        return ()
 
 
 @dataclass(frozen=True, slots=True, eq=False)

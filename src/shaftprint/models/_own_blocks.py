@@ -1,7 +1,8 @@
 """Blocks that a user makes from a function, without a class."""
 
+import inspect
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -32,6 +33,16 @@ class FunctionBlock(Block):
     of: tuple[Parameter, ...]
     """Its parameters, in the order in which the function takes them."""
 
+    def __post_init__(self) -> None:
+        """Check that function and parameters belong together.
+
+        Raises
+        ------
+        StructureError
+            If they do not.
+        """
+        expect_function(self.function, ("s",), self.of)
+
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """The parameters."""
@@ -56,6 +67,16 @@ class RationalBlock(Block):
     of: tuple[Parameter, ...]
     """Its parameters, in the order in which ``coefficients`` takes them."""
 
+    def __post_init__(self) -> None:
+        """Check that formulas and parameters belong together.
+
+        Raises
+        ------
+        StructureError
+            If they do not.
+        """
+        expect_function(self.coefficients, (), self.of)
+
     @property
     def parameters(self) -> tuple[Parameter, ...]:
         """The parameters."""
@@ -63,12 +84,12 @@ class RationalBlock(Block):
 
     def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
         """Return ``N(s) / D(s)``."""
-        numerator, denominator = self.coefficients(*values)
+        numerator, denominator = self._lists(*values)
         return _polynomial(numerator, s) / _polynomial(denominator, s)
 
     def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
         """Return ``(dN - H dD) / D`` for each parameter."""
-        _, denominator = self.coefficients(*values)
+        _, denominator = self._lists(*values)
         inverse = 1.0 / _polynomial(denominator, s)
         found = []
         for place, value in enumerate(values):
@@ -79,19 +100,72 @@ class RationalBlock(Block):
 
     def ratio(self, *values: float) -> Polynomials:
         """Return the coefficients."""
-        numerator, denominator = self.coefficients(*values)
+        numerator, denominator = self._lists(*values)
         return np.array(numerator, dtype=np.float64), np.array(denominator, dtype=np.float64)
+
+    def _lists(self, *values: ArrayLike) -> tuple[Sequence[ArrayLike], Sequence[ArrayLike]]:
+        """Return both lists of coefficients.
+
+        Raises
+        ------
+        StructureError
+            If there are not two, each a list: an array alone would be taken for the list of its rows.
+        """
+        found = self.coefficients(*values)
+        if isinstance(found, list | tuple) and [isinstance(part, list | tuple) for part in found] == [True, True]:
+            return found[0], found[1]
+        raise StructureError(
+            f"{block_words(self.of)}: expected two lists, numerator and denominator, highest power first, such as "
+            "([K], [T, 1.0])."
+        )
 
     def _moved(self, place: int, values: tuple[ArrayLike, ...]) -> tuple[Sequence[ArrayLike], Sequence[ArrayLike]]:
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("error", np.exceptions.ComplexWarning)
-                return self.coefficients(*values)
+                return self._lists(*values)
         except (TypeError, np.exceptions.ComplexWarning) as error:
             raise StructureError(
-                f"block of {', '.join(p.name for p in self.of)}: the coefficients could not be differentiated to "
+                f"{block_words(self.of)}: the coefficients could not be differentiated to "
                 f"{self.of[place].name} ({error}): use arithmetic and NumPy functions only, or a FunctionBlock."
             ) from None
+
+
+def expect_function(function: object, first: tuple[str, ...], of: Iterable[Parameter] | Parameter) -> None:
+    """Check that a function takes as many values as there are parameters.
+
+    Parameters
+    ----------
+    first
+        What it takes before the parameters.
+    of
+        Parameters, in the order in which it takes them.
+
+    Raises
+    ------
+    StructureError
+        If it does not, or the parameters are not parameters.
+    """
+    if isinstance(of, Parameter):
+        raise StructureError(f"block of {of.name}: expected a tuple of parameters, such as ({of.name},).")
+    parameters: tuple[Parameter, ...] = tuple(of)
+    if not callable(function):
+        raise StructureError(f"{block_words(parameters)}: expected a function, found {function!r}.")
+    if isinstance(function, np.ufunc):
+        return
+    taken = inspect.signature(function).parameters.values()
+    if any(p.kind is inspect.Parameter.VAR_POSITIONAL for p in taken):
+        return
+    needed = [p.name for p in taken if p.default is inspect.Parameter.empty]
+    if not len(needed) <= len(first) + len(parameters) <= len(taken):
+        wanted, found = (", ".join(names) or "nothing" for names in ((*first, *(p.name for p in parameters)), needed))
+        raise StructureError(f"{block_words(parameters)}: expected a function of {wanted}, found one of {found}.")
+
+
+def block_words(parameters: Sequence[Parameter]) -> str:
+    """Return what to call a block of some parameters."""
+    names = ", ".join(getattr(p, "name", repr(p)) for p in parameters)
+    return f"block of {names}" if names else "block without parameters"
 
 
 def _polynomial(coefficients: Sequence[ArrayLike], s: ComplexArray) -> ComplexArray:

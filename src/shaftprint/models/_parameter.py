@@ -30,16 +30,22 @@ class Parameter:
         Raises
         ------
         StructureError
-            If the bounds are not in order or the value lies outside them.
+            If the bounds are not in order or the value lies outside them, or a text stands where a number belongs.
         """
+        texts, numbers = (self.unit, self.meaning), (self.lower, self.upper, self.value)
+        if not all(isinstance(text, str) for text in texts) or any(isinstance(number, str) for number in numbers):
+            raise StructureError(
+                f"parameter {self.name}: expected name, unit, lower bound, upper bound, value and meaning in this "
+                f"order, found {self.unit!r}, {', '.join(map(repr, numbers))}, {self.meaning!r} after the name."
+            )
         if not self.lower < self.upper:
             raise StructureError(
                 f"parameter {self.name}: expected lower bound < upper bound, found {self.lower} and {self.upper}."
             )
         if not self.lower <= self.value <= self.upper:
             raise StructureError(
-                f"parameter {self.name}: expected a value from {self.lower} to {self.upper} {self.unit}, "
-                f"found {self.value}; change the value or the bounds."
+                f"parameter {self.name}: expected a value from {self.lower} to {self.upper}"
+                f"{'' if self.unit == '-' else f' {self.unit}'}, found {self.value}; change the value or the bounds."
             )
 
     def held_at(self, value: float) -> "Parameter":

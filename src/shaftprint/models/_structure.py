@@ -8,7 +8,13 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.models._assembly import block_parameters, channel_paths, outermost_loop
+from shaftprint.models._assembly import (
+    block_parameters,
+    channel_paths,
+    expect_combinations,
+    expect_tie,
+    outermost_loop,
+)
 from shaftprint.models._block import Block
 from shaftprint.models._combination import Combination
 from shaftprint.models._expression import Expression, Walk
@@ -53,12 +59,12 @@ class Structure:
         Raises
         ------
         StructureError
-            If two blocks describe a parameter of one name differently, an input has no expression, a tie names an
-            unknown parameter, or there is more than one outermost feedback loop.
+            If two blocks describe a parameter of one name differently, an input has no expression, a tie or a
+            combination names an unknown parameter, or there is more than one outermost feedback loop.
         """
         object.__setattr__(self, "inputs", self.inputs or (self.input,))
-        object.__setattr__(self, "input", self.inputs[0])
         paths = channel_paths(self.name, self.outputs, self.inputs)
+        object.__setattr__(self, "input", self.inputs[0])
         object.__setattr__(self, "channels", tuple(paths))
         object.__setattr__(self, "paths", tuple(paths.values()))
         nodes = self._nodes()
@@ -69,6 +75,7 @@ class Structure:
             object.__setattr__(self, "parameters", tuple(p for p in found.values() if p.name not in tied))
         for tie in self.ties:
             self._expect_names(tie.arguments)
+        expect_combinations(self.name, self.combinations, self.named(self.vector({})))
         object.__setattr__(self, "loop", outermost_loop(self.name, nodes))
 
     def _nodes(self) -> list[Expression]:
@@ -140,6 +147,7 @@ class Structure:
         StructureError
             If a name is not a parameter, or a new parameter is there already.
         """
+        expect_tie(self.name, self.ties, name, new)
         self._expect_names([name])
         known = [parameter.name for parameter in new if parameter.name in self.names]
         if known:

@@ -28,7 +28,18 @@ class Tie:
 
     @classmethod
     def from_formula(cls, name: str, formula: Callable[..., FloatArray]) -> "Tie":
-        """Return the tie of a formula whose argument names are parameter names."""
+        """Return the tie of a formula whose argument names are parameter names.
+
+        Raises
+        ------
+        StructureError
+            If it is no formula.
+        """
+        if not callable(formula):
+            raise StructureError(
+                f"tied parameter {name}: expected a formula such as lambda K: 2.0 * K, found {formula!r}; hold a "
+                "parameter at a number with held_at()."
+            )
         return cls(name=name, of=formula, arguments=tuple(inspect.signature(formula).parameters))
 
     def value(self, values: Mapping[str, FloatArray]) -> FloatArray:
