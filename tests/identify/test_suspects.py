@@ -53,6 +53,14 @@ def test_what_was_built_in_is_the_first_suspect_with_its_size(data, change, word
     assert found[0].share > 0.5
 
 
+def test_a_cause_that_is_not_of_first_order_has_no_size(data):
+    """A pick-up that is 0.1 s late turns the fastest line by two radians."""
+    found = suspects_of(cl4(changed(data, {"n": lambda s: np.exp(-0.1 * s)})))
+    assert found[0].words == "the speed pick-up comes late"
+    assert found[0].rough
+    assert found[0].sentence.endswith("% of the misfit would go if the speed pick-up comes late.")
+
+
 def test_a_late_set_point_is_the_first_suspect(data):
     """0.1 s of it: the delay inside the loop takes a part, so that the size is too small."""
     late = changed(data, {"n": lambda s: np.exp(-0.1 * s), "M_s": lambda s: np.exp(-0.1 * s)})

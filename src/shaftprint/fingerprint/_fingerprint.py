@@ -8,7 +8,7 @@ from pydantic import AwareDatetime, BaseModel, ConfigDict, ValidationError
 
 from shaftprint.errors import FingerprintError
 from shaftprint.files import written_whole
-from shaftprint.identify import Budget, Prior
+from shaftprint.identify import Budget, Prior, Verdict
 
 SCHEMA_VERSION: Final = 1
 
@@ -145,6 +145,8 @@ class Fingerprint(_Record):
     """What the recording itself told of its sensors: the set-point line and the angles of the strips."""
     quality: Quality
     """Fit and data quality."""
+    verdict: Verdict
+    """Whether the numbers may be used, and which of them."""
     findings: tuple[str, ...]
     """What a reader must know, in words."""
 

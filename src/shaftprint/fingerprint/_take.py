@@ -19,7 +19,7 @@ from shaftprint.fingerprint._fingerprint import (
 from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._physical import physical_numbers, physical_quantities
-from shaftprint.identify import Budget, Estimate, Identification, Interval, budget, profile
+from shaftprint.identify import Budget, Estimate, Identification, Interval, assess, budget, profile
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
@@ -91,6 +91,7 @@ def take_fingerprint(
         budget=Budget(sources=stated.sources, rows=tuple(row for row in stated.rows if row.variances)),
         calibration=calibration_quantities(signals),
         quality=_quality(identification, signals, signal_to_noise),
+        verdict=assess(identification, profile=profiled, signal_to_noise=signal_to_noise),
         findings=findings_of(identification, physical, stated, left_out),
     )
 

@@ -35,6 +35,6 @@ def spans(names: Collection[str], order: Sequence[str]) -> str:
     return listed(words)
 
 
-def number(value: float, unit: str) -> str:
-    """Return a value to four digits with its unit, where it has one."""
-    return f"{value:.4g}" if unit == "-" else f"{value:.4g} {unit}"
+def number(value: float, unit: str, *, digits: int = 4) -> str:
+    """Return a value with its unit, where it has one."""
+    return f"{value:.{digits}g}" if unit == "-" else f"{value:.{digits}g} {unit}"

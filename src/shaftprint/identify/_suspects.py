@@ -15,6 +15,7 @@ from shaftprint.identify._causes import Cause, causes_of
 from shaftprint.identify._experiment import Experiment
 from shaftprint.identify._identification import Identification
 from shaftprint.identify._misfit import REJECTED, explained
+from shaftprint.identify._phrases import number
 
 MOST = 3
 # A cause is worth naming where it takes away this share of the misfit beyond the noise, and chi-square with one degree
@@ -24,6 +25,8 @@ LEAST_SHARE, LEAST_FALL = 0.2, 19.5
 NEARLY = 0.97
 # A direction of which less than this share is left beside the free parameters is one of theirs.
 OWN = 1e-4
+# A cause that changes the response by more than itself is not of first order.
+FIRST_ORDER = 1.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -40,6 +43,15 @@ class Suspect:
     """Unit of the size."""
     share: float
     """Share of the misfit beyond the noise that it takes away, given those named before it."""
+    rough: bool
+    """Whether the size is so large that a first-order estimate of it says little."""
+
+    @property
+    def sentence(self) -> str:
+        """The suspicion in words, with its size where that can be told."""
+        share = 100.0 * min(self.share, 1.0)
+        size = "" if self.rough else f" (by about {number(self.estimate, self.unit, digits=2)})"
+        return f"A hint: {share:.0f} % of the misfit would go if {self.words}{size}."
 
 
 def suspects_of(identification: Identification, *, rejected: float = REJECTED) -> tuple[Suspect, ...]:
@@ -70,19 +82,29 @@ def suspects_of(identification: Identification, *, rejected: float = REJECTED) -
             break
         best = int(np.flatnonzero(falls >= NEARLY * falls.max())[0])
         cause, _ = causes.pop(best)
+        estimate = float(pulls[best] / left[best])
         found.append(
             Suspect(
                 words=cause.words,
-                estimate=float(pulls[best] / left[best]),
+                estimate=estimate,
                 std=float(1.0 / left[best]),
                 unit=cause.unit,
                 share=float(falls[best] / beyond),
+                rough=_changes(identification, cause, estimate) > FIRST_ORDER,
             )
         )
         along = beside[best] / left[best]
         misfit = misfit - (along @ misfit) * along
         basis = np.column_stack([basis, along])
     return tuple(found)
+
+
+def _changes(identification: Identification, cause: Cause, size: float) -> float:
+    """Return the largest share by which a cause of some size changes the first response."""
+    experiment = identification.objective.experiments[0]
+    own = experiment.own(identification.values)
+    model = experiment.structure.response(own, experiment.s, factors=experiment.factors)
+    return float(np.max(np.abs(size * cause.effect) / np.abs(model)))
 
 
 def _misfit(identification: Identification) -> tuple[FloatArray, FloatArray]:

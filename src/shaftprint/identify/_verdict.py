@@ -113,7 +113,7 @@ def _refused(
     return Verdict(
         trustworthy=False,
         reason=reason,
-        sentences=(reason, *(_suspicion(suspect) for suspect in suspects)),
+        sentences=(reason, *(suspect.sentence for suspect in suspects)),
         trusted=(),
         not_trusted=dict.fromkeys(names, NOT_BEFORE) if doubts is None else doubts,
         loop=evidence.loop,
@@ -154,11 +154,3 @@ def _why_trusted(evidence: Evidence) -> str:
 
 def _worded(doubts: Mapping[str, str]) -> str:
     return "; ".join(f"{name}: {reason}" for name, reason in doubts.items())
-
-
-def _suspicion(suspect: Suspect) -> str:
-    unit = "" if suspect.unit == "-" else f" {suspect.unit}"
-    return (
-        f"A hint: {100.0 * min(suspect.share, 1.0):.0f} % of the misfit would go if {suspect.words} (by about "
-        f"{suspect.estimate:.2g}{unit})."
-    )
