@@ -12,11 +12,11 @@ import numpy as np
 from scipy.linalg import expm
 
 from shaftprint.identify import identifiability, identify, profile_intervals
-from shaftprint.models import FunctionBlock, Gain, Parameter, RationalBlock, Sensitivity, Structure
+from shaftprint.models import Gain, Held, Parameter, RationalBlock, Sensitivity, Structure
 from shaftprint.spectra import Periodic, response_from_arrays
 
 TRUE = {"R": 1.7, "L": 0.004, "K": 0.08, "J": 2.5e-4, "b": 3e-4}
-STEP_S, PERIOD_S, PERIODS = 0.25e-3, 4.0, 6
+STEP_S, PERIOD_S, PERIODS = 1e-3, 4.0, 12
 
 
 def simulate(voltage, rng):
@@ -57,8 +57,6 @@ B = Parameter("b", "N m s", 1e-5, 1e-2, 1e-3, "viscous friction")
 winding = RationalBlock(lambda R, L: ([1.0], [L, R]), (R, L))
 rotor = RationalBlock(lambda J, b: ([1.0], [J, b]), (J, B))
 constant = Gain(K)
-# The computer holds each voltage until the next sample. This belongs into the model of sampled data.
-hold = FunctionBlock(lambda s: -np.expm1(-s * STEP_S) / (s * STEP_S), ())
 
 to_speed = winding * constant * rotor
 left_of_voltage = Sensitivity(to_speed * constant)
@@ -66,9 +64,10 @@ motor = Structure(
     name="MOTOR",
     title="DC motor, from voltage to current and speed",
     input="voltage",
+    # The computer holds each voltage until the next sample, which belongs into the model of sampled data.
     outputs={
-        "current": hold * winding * left_of_voltage,
-        "speed": hold * to_speed * left_of_voltage,
+        "current": Held(winding * left_of_voltage, STEP_S),
+        "speed": Held(to_speed * left_of_voltage, STEP_S),
     },
 )
 

@@ -18,7 +18,6 @@ import numpy as np
 from shaftprint.identify import identify, profile_intervals
 from shaftprint.models import (
     Delay,
-    FunctionBlock,
     Gain,
     Integrator,
     Parameter,
@@ -26,6 +25,7 @@ from shaftprint.models import (
     RationalBlock,
     Sensitivity,
     Structure,
+    ZeroOrderHold,
     margins,
 )
 from shaftprint.spectra import Periodic, plant_from_closed_loop, response_from_arrays
@@ -81,7 +81,7 @@ K_P = Parameter("K_p", "N s/m", 0.0, 1e4, GAINS["K_p"], "proportional gain of th
 K_I = Parameter("K_i", "N/m", 0.0, 1e6, GAINS["K_i"], "integral gain of the velocity controller", held=True)
 
 controller = PIGovernor(K_P, K_I)
-hold = FunctionBlock(lambda s: -np.expm1(-s * STEP_S) / (s * STEP_S), ())
+hold = ZeroOrderHold(STEP_S)
 axis = RationalBlock(lambda m, d: ([1.0], [m, d]), (MASS, FRICTION))
 
 velocity_loop = controller * Delay(DELAY) * hold * axis

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from shaftprint.identify import identify, profile_intervals
-from shaftprint.models import FunctionBlock, Parameter, RationalBlock, Structure
+from shaftprint.models import Parameter, RationalBlock, Structure, ZeroOrderHold
 from shaftprint.spectra import Periodic, response_from_arrays
 
 TRUE = {"m_1": 8.0, "m_2": 5.0, "k_g": 40e3, "k_c": 15e3, "beta": 1.5e-3}
@@ -58,7 +58,7 @@ BETA = Parameter("beta", "s", 0.0, 0.01, 0.001, "damping over stiffness")
 one = RationalBlock(lambda m, k, c, d_g, d_c: ([m, d_g + d_c, k + c], [1.0]), (M_1, K_G, K_C, D_G, D_C))
 two = RationalBlock(lambda m, k, c, d_g, d_c: ([m, d_g + d_c, k + c], [1.0]), (M_2, K_G, K_C, D_G, D_C))
 coupling = RationalBlock(lambda k, d: ([d, k], [1.0]), (K_C, D_C))
-hold = FunctionBlock(lambda s: -np.expm1(-s * STEP_S) / (s * STEP_S), ())
+hold = ZeroOrderHold(STEP_S)
 
 # The inverse of the two by two matrix, as on paper.
 over = hold / (one * two - coupling * coupling)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.linalg import expm
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -45,15 +46,14 @@ def test_dc_motor(run, capsys):
 
 
 def test_the_dc_motor_answers_as_its_equations_say(run):
-    motor, true = run("dc_motor.py")["motor"], run("dc_motor.py")["TRUE"]
-    step = run("dc_motor.py")["STEP_S"]
+    motor, true, step = (run("dc_motor.py")[name] for name in ("motor", "TRUE", "STEP_S"))
+    r, l, k, j, b = (true[name] for name in ("R", "L", "K", "J", "b"))  # noqa: E741
+    matrix = np.array([[-r / l, -k / l], [k / j, -b / j]])
+    onward = expm(matrix * step)
+    pushed = np.linalg.solve(matrix, (onward - np.eye(2)) @ np.array([1.0 / l, 0.0]))
     for omega in (0.3, 7.0, 400.0):
-        s = 1j * omega
-        # voltages around the winding and torques on the rotor, as two equations in current and speed
-        matrix = [[true["L"] * s + true["R"], true["K"]], [-true["K"], true["J"] * s + true["b"]]]
-        held = (1.0 - np.exp(-s * step)) / (s * step)
-        expected = np.linalg.solve(matrix, [held, 0.0])
-        np.testing.assert_allclose(motor.response(motor.vector(true), s)[:, 0], expected, rtol=1e-9)
+        expected = np.linalg.solve(np.exp(1j * omega * step) * np.eye(2) - onward, pushed)
+        np.testing.assert_allclose(motor.response(motor.vector(true), 1j * omega)[:, 0], expected, rtol=1e-6)
 
 
 def test_servo(run, capsys):

@@ -44,5 +44,5 @@ def test_a_held_loop_has_the_margin_of_its_delay():
 
 @pytest.mark.parametrize("step", [0.0, -1.0, float("nan"), float("inf")])
 def test_a_step_that_is_none_is_refused(step):
-    with pytest.raises(StructureError, match=r"hold: expected a step above 0 s, found"):
+    with pytest.raises(StructureError, match=r"hold: expected a period above 0 s, found"):
         ZeroOrderHold(step)

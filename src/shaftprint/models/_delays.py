@@ -72,26 +72,26 @@ class PadeDelay(Block):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ZeroOrderHold(Block):
-    """A computer's output that keeps its value for one step ``T``: ``(1 - exp(-s T)) / (s T)``.
+    """A computer's output that keeps its value for one period ``T``: ``(1 - exp(-s T)) / (s T)``.
 
-    Between samples of the computer's output and of what follows it, the images at multiples of the sample rate ``f_s``
-    add to this: a share of up to ``3.3 (f / f_s)^2`` where the response falls like ``1 / s``, far less where it falls
-    faster or the logger has a filter against them.
+    It stands in a loop. From samples to samples of a drive, ``Held`` is exact; this leaves out the images at multiples
+    of the sample rate ``f_s``, a share of up to ``3.3 (f / f_s)^2`` where the response falls like ``1 / s``, and far
+    less where it falls faster.
     """
 
-    step_s: float
-    """Step of the computer [s]."""
+    period_s: float
+    """Time between two outputs of the computer [s]."""
 
     def __post_init__(self) -> None:
-        """Check the step.
+        """Check the period.
 
         Raises
         ------
         StructureError
             If it is not positive and finite.
         """
-        if not 0.0 < self.step_s < math.inf:
-            raise StructureError(f"hold: expected a step above 0 s, found {self.step_s}.")
+        if not 0.0 < self.period_s < math.inf:
+            raise StructureError(f"hold: expected a period above 0 s, found {self.period_s}.")
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -100,7 +100,7 @@ class ZeroOrderHold(Block):
 
     def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
         """Return ``(1 - exp(-s T)) / (s T)``."""
-        x = s * self.step_s
+        x = s * self.period_s
         return np.asarray(-np.expm1(-x) / x)
 
     def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
