@@ -106,6 +106,17 @@ def test_a_source_that_enters_twice_may_cancel(make_response):
     assert added.sources == ("noise of y", "TVC", "gauge scale", "air")
 
 
+def test_what_moves_all_outputs_of_a_line_together_is_told_apart(make_response):
+    """Two outputs of unit noise and a common error of 0.5 on both: weights 1/2, variance (1 + 1) / 4 + 0.25."""
+    both = gains("one", "two")
+    response = make_response(both, {"k": 5.0}, frequency_hz=np.array([1.0]), names=("only",))
+    common = np.full((2, 1, 1), 0.5 + 0.0j)
+    covariance = np.eye(4)[None] + np.outer([0.5, 0.5, 0.0, 0.0], [0.5, 0.5, 0.0, 0.0])
+    told = replace(response, covariance=covariance, common={"set-point calibration": common})
+    row = budget(identify(both, told, rng=np.random.default_rng(1))).row("k")
+    assert row.variances == pytest.approx({"noise of one": 0.25, "noise of two": 0.25, "set-point calibration": 0.25})
+
+
 # ---- laws ----
 
 

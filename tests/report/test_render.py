@@ -274,7 +274,7 @@ def test_a_large_picture_becomes_png(tmp_path, nouns, monkeypatch):
     monkeypatch.setattr(render_module, "_sections", lambda inputs: [make(inputs) for make in sections])
     page = render_report(tmp_path / "report", **nouns)
     images = Page(page.read_text(encoding="utf-8")).all("img")
-    assert {image["src"] for image in images} == {"figures/fit.png", "figures/residuals.png"}
+    assert {image["src"] for image in images} == {"figures/fit.png", "figures/residuals.png", "figures/step.png"}
     for image in images:
         assert (page.parent / image["src"]).read_bytes().startswith(b"\x89PNG")
 

@@ -61,7 +61,7 @@ def test_fit_table_without_a_likelihood(fingerprint):
     unweighted = fingerprint.model_copy(update={"quality": quality})
     assert fit_table(unweighted).note.startswith("10 of 10 starts") or "of 10 starts" in fit_table(unweighted).note
     assert "not weighted by the noise" in _explained(unweighted)
-    bad = fingerprint.model_copy(update={"quality": fingerprint.quality.model_copy(update={"chi_square": 900.0})})
+    bad = fingerprint.model_copy(update={"quality": fingerprint.quality.model_copy(update={"p_value": 0.009})})
     assert "does not explain" in _explained(bad)
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.report._uncertainty import measured_points, model_band
+from shaftprint.report._uncertainty import measured_points
 from shaftprint.spectra import FrequencyResponse
 
 
@@ -14,47 +14,6 @@ def single(value, covariance, dof=np.inf):
         outputs=("M_s",),
         degrees_of_freedom=np.array([dof]),
     )
-
-
-def test_band_equals_propagation_by_finite_differences(identification):
-    omega = np.geomspace(0.05, 60.0, 40)
-    model, values = identification.structure, identification.values
-    band = model_band(model, values, identification.covariance, omega)
-    slopes = []
-    for parameter in model.free:
-        place = model.names.index(parameter.name)
-        width = 1e-5 * max(abs(values[place]), 1e-2)
-        table = np.stack([values, values])
-        table[:, place] += (-width, width)
-        behind, ahead = model.response(table, 1j * omega)
-        db = 20.0 * np.log10(np.abs(ahead) / np.abs(behind)) / (2.0 * width)
-        degrees = np.degrees(np.angle(ahead / behind)) / (2.0 * width)
-        slopes.append(np.stack([db, degrees]))
-    variance = np.einsum("ipow,ij,jpow->pow", slopes, identification.covariance, slopes)
-    np.testing.assert_allclose(band.magnitude_db, 1.959964 * np.sqrt(variance[0]), rtol=1e-4, atol=1e-9)
-    np.testing.assert_allclose(band.phase_deg, 1.959964 * np.sqrt(variance[1]), rtol=1e-4, atol=1e-8)
-
-
-def test_band_covers_the_truth_as_often_as_it_says(identification):
-    """Draws from the covariance leave the band of one frequency in 5 % of the cases."""
-    omega = np.array([0.5])
-    rng = np.random.default_rng(8)
-    free = [identification.structure.names.index(p.name) for p in identification.structure.free]
-    small = 1e-4 * identification.covariance
-    table = np.tile(identification.values, (4000, 1))
-    table[:, free] += rng.multivariate_normal(np.zeros(len(free)), small, size=4000)
-    drawn = 20.0 * np.log10(np.abs(identification.structure.response(table, 1j * omega)[:, 0, 0]))
-    middle = 20.0 * np.log10(np.abs(identification.structure.response(identification.values, 1j * omega)[0, 0]))
-    half = model_band(identification.structure, identification.values, small, omega).magnitude_db[0, 0]
-    assert np.mean(np.abs(drawn - middle) <= half) == pytest.approx(0.95, abs=0.012)
-
-
-def test_a_parameter_of_infinite_variance_leaves_no_band_where_it_matters(fits):
-    core = fits["OL1"]
-    unknown = np.full_like(core.covariance, np.inf)
-    band = model_band(core.structure, core.values, unknown, np.array([1.0]))
-    assert np.isnan(band.magnitude_db).all()
-    assert np.isnan(band.phase_deg).all()
 
 
 def test_interval_along_and_across_the_response():

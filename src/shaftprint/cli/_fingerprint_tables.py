@@ -9,6 +9,8 @@ from shaftprint.cli._tables import print_table
 from shaftprint.fingerprint import Conditions, Fingerprint, Quantity
 
 NO_TRUTH: Mapping[str, float] = {}
+PERCENT = 100.0
+SMALLEST_PERCENT = 0.5
 
 
 def print_fingerprint(fingerprint: Fingerprint, *, truth: Mapping[str, float] = NO_TRUTH) -> None:
@@ -30,6 +32,7 @@ def print_fingerprint(fingerprint: Fingerprint, *, truth: Mapping[str, float] = 
     _print_priors(fingerprint)
     if fingerprint.margins:
         _print_quantities("Stability margins", fingerprint.margins, truth)
+    _print_budget(fingerprint)
     _print_quantities("What the recording tells of its sensors", fingerprint.calibration, truth)
     _print_quality(fingerprint)
     print_findings("Findings", (*fingerprint.findings, *fingerprint.quality.remarks))
@@ -111,6 +114,28 @@ def _against(quantity: Quantity, truth: Mapping[str, float]) -> list[str]:
     return [f"{true:.6g}", f"{off:+.1f}"]
 
 
+def _print_budget(fingerprint: Fingerprint) -> None:
+    """Print which source contributes what to the variance of every number."""
+    stated = fingerprint.budget
+    rows = [
+        (row.name, *(_share(PERCENT * row.shares.get(source, 0.0)) for source in stated.sources))
+        for row in stated.rows
+        if row.shares
+    ]
+    if rows:
+        print_table(
+            "Where the uncertainty comes from: share of the variance [%]",
+            ("quantity", *stated.sources),
+            rows,
+            numbers=range(1, len(stated.sources) + 1),
+        )
+
+
+def _share(percent: float) -> str:
+    """Return a share without decimals; nothing for one that would be printed as 0."""
+    return f"{percent:.0f}" if abs(percent) >= SMALLEST_PERCENT else ""
+
+
 def _print_quality(fingerprint: Fingerprint) -> None:
     quality = fingerprint.quality
     rows = [
@@ -119,7 +144,8 @@ def _print_quality(fingerprint: Fingerprint) -> None:
     ]
     print_table("How well the model explains the data", ("output", "FitPercent", "perfect model"), rows, numbers=(1, 2))
     square = "" if quality.chi_square is None else f"chi-square {quality.chi_square:.1f} for "
+    chance = "" if quality.p_value is None else f" (p = {quality.p_value:.2g})"
     click.echo(
-        f"  {square}{quality.degrees_of_freedom} degrees of freedom; "
+        f"  {square}{quality.degrees_of_freedom} degrees of freedom{chance}; "
         f"{quality.starts_at_optimum} of {quality.starts} starts reached this optimum\n"
     )

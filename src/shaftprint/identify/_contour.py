@@ -162,8 +162,8 @@ class _Position:
         slope = self.side[:, None] * asked.slopes(trial, _diagonal(hessian))
         known = np.isfinite(value) & np.isfinite(slope).all(axis=1)
         moved = np.where(known, value, self.value) - self.value
-        # Where the parabola never comes down to the contour, or bounds leave the number no way, the cost decides; a step
-        # that takes it to its bound inside the contour is good.
+        # Where the parabola never comes down to the contour, or bounds leave the number no way, the cost decides; a
+        # step that takes it to its bound inside the contour is good.
         good = np.where(step.pull > 0.0, step.pull * moved > PENALTY * excess, cost < self.cost)
         good = known & np.where(step.stuck & (moved > 0.0), cost <= self.limit, good)
         damping = np.where(good, RELIEF * self.damping, np.maximum(self.damping, FIRST_DAMPING) * self.growth)

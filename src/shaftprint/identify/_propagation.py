@@ -5,10 +5,11 @@ The estimate follows its data by ``d theta = -A^-1 J dr`` with the change ``dr``
 mean of a prior, known to ``s``, that moves by ``dm`` gives ``A^-1 e dm / s^2`` with the unit vector ``e`` of its
 parameter. Both together are the covariance of the estimates, exactly.
 
-Noise of speed and of torque is correlated. Each output has its own rows and columns of the covariance, and half of what
-it shares with others: their parts add up, and one may be negative where errors of two outputs make up for each other
-(as in the allocation of risk by its gradient, Tasche, Capital allocation to business units and sub-portfolios: the
-Euler principle, 2008).
+What moves all outputs of a line together, such as an error of the set-point scale, is taken out of the noise by name.
+The noise of speed and of torque is correlated all the same. Each output has its own rows and columns of the covariance,
+and half of what it shares with others: their parts add up, and one may be negative where errors of two outputs make up
+for each other (as in the allocation of risk by its gradient, Tasche, Capital allocation to business units and
+sub-portfolios: the Euler principle, 2008).
 """
 
 from collections.abc import Mapping
@@ -71,7 +72,7 @@ def propagation(identification: Identification) -> Propagation:
 
 
 def _noise_parts(experiment: Experiment, rows: FloatArray) -> dict[str, FloatArray]:
-    """Return the part of the covariance that the noise of each output gives.
+    """Return the part of the covariance that the noise of each output gives, and each cause that moves all of them.
 
     Parameters
     ----------
@@ -83,11 +84,18 @@ def _noise_parts(experiment: Experiment, rows: FloatArray) -> dict[str, FloatArr
     likelihood = experiment.weighting.is_likelihood
     covariance = experiment.covariance if likelihood else experiment.noise_covariance
     outputs = np.array([output for output, _ in experiment.structure.channels] * 2)
-    found = {}
+    common = {}
+    for name, change in experiment.response.common.items():
+        channels = change.reshape(size // 2, -1)[:, experiment.fitted]
+        direction = np.concatenate([channels.real, channels.imag]).T
+        moved = np.einsum("lia,la->li", by_line, direction)
+        common[name] = moved.T @ moved
+        covariance = covariance - direction[:, :, None] * direction[:, None, :]
+    noise = {}
     for name in dict.fromkeys(outputs.tolist()):
         part = np.einsum("lia,lab,ljb->ij", by_line * (outputs == name), covariance, by_line)
-        found[f"noise of {name}"] = 0.5 * (part + part.T)
-    return found
+        noise[f"noise of {name}"] = 0.5 * (part + part.T)
+    return noise | common
 
 
 def _prior_effects(identification: Identification, information: PseudoInverse) -> dict[str, FloatArray]:

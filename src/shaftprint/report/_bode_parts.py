@@ -8,8 +8,9 @@ import numpy as np
 from matplotlib.artist import Artist
 
 from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.identify import model_band
 from shaftprint.report._style import DATA, Handle, LineLook
-from shaftprint.report._uncertainty import measured_points, model_band
+from shaftprint.report._uncertainty import measured_points
 from shaftprint.units import decibel
 
 if TYPE_CHECKING:
@@ -97,10 +98,14 @@ def draw_trace(
     if curve.covariance is not None:
         place = channel_of(curve.structure.outputs, curve.structure.inputs, output, cause)
         few = slice(None, None, BAND_STEP)
-        band = model_band(curve.structure, curve.values, curve.covariance, trace.omega_rad_s[few])
-        halves = (band.magnitude_db[place], band.phase_deg[place])
-        known = bool(np.all(np.isfinite(halves[0])))
-        label += ", 95 % band" if known else ", no band"
+        frequency = trace.omega_rad_s[few] / (2.0 * np.pi)
+        band = model_band(curve.structure, curve.values, curve.covariance, frequency)
+        halves = (
+            (band.magnitude_upper_db - band.magnitude_db)[place],
+            (band.phase_upper_deg - band.phase_deg)[place],
+        )
+        known = bool(np.isfinite(halves).all())
+        label += f", {100.0 * band.coverage:g} % band" if known else ", no band"
         if known:
             bands = [
                 axes.fill_between(

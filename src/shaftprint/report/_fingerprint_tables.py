@@ -106,8 +106,8 @@ def physical_table(fingerprint: "Fingerprint", truth: Mapping[str, float]) -> Ta
         header=("quantity", "value ± std", "95 % interval", *beside, "difference", "unit", "meaning"),
         rows=tuple(rows),
         note=(
-            "Standard deviations hold the scale of the torque gauge and the scatter of the working point too. The "
-            "difference is that from the vessel file."
+            "Standard deviations hold the scale of the torque gauge too, with the sign with which it enters; that of "
+            "K_Q holds its zero and the scatter of the working point. The difference is that from the vessel file."
         ),
     )
 

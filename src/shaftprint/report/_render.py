@@ -22,6 +22,7 @@ from shaftprint.report._result_sections import fit_section, parameter_section, s
 from shaftprint.report._sections import Inputs, Picture, Section
 from shaftprint.report._style import save_figure
 from shaftprint.report._table import sentence_html
+from shaftprint.report._uncertainty_sections import uncertainty_section
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
@@ -120,6 +121,7 @@ def _sections(inputs: Inputs) -> list[Section]:
     return [
         summary_section(inputs),
         parameter_section(inputs),
+        *uncertainty_section(inputs),
         fit_section(inputs),
         *stability_section(inputs),
         quality_section(inputs),

@@ -16,10 +16,11 @@ from shaftprint.report._fingerprint_tables import (
     physical_table,
     truth_of_combinations,
 )
-from shaftprint.report._numbers import plain, with_deviation
+from shaftprint.report._numbers import plain, rounded, with_deviation
 from shaftprint.report._nyquist import plot_nyquist
 from shaftprint.report._residual_figure import plot_residuals
 from shaftprint.report._sections import Inputs, Picture, Section
+from shaftprint.report._step_band_figure import plot_step_band
 from shaftprint.report._symbols import unit_text
 
 if TYPE_CHECKING:
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 
 # A parameter with a smaller standard deviation, as a share of its value, is called well known.
 WELL_KNOWN = 0.03
-# 99 % point of the normal distribution, one-sided: chi-square may exceed its degrees of freedom by that much.
-NORMAL_99 = 2.326
+# A misfit that chance alone makes in fewer than this share of the tests is none of chance.
+UNLIKELY = 0.01
 
 
 def summary_section(inputs: Inputs) -> Section:
@@ -63,11 +64,12 @@ def _explained(fingerprint: "Fingerprint") -> str:
     )
     if quality.chi_square is None:
         return f"The fit was not weighted by the noise, so it says nothing of the model's validity. FitPercent: {fit}."
-    limit = quality.degrees_of_freedom + NORMAL_99 * math.sqrt(2.0 * quality.degrees_of_freedom)
-    words = "explains" if quality.chi_square <= limit else "does not explain"
+    chance = quality.p_value
+    words = "explains" if chance is None or chance >= UNLIKELY else "does not explain"
+    tested = "" if chance is None else f", p = {rounded(chance, 2)}"
     return (
         f"The model {words} the measured responses within their noise (chi-square {plain(quality.chi_square, 0)} for "
-        f"{quality.degrees_of_freedom} degrees of freedom). FitPercent: {fit}."
+        f"{quality.degrees_of_freedom} degrees of freedom{tested}). FitPercent: {fit}."
     )
 
 
@@ -165,6 +167,15 @@ def fit_section(inputs: Inputs) -> Section:
                 caption="What the model leaves, over its standard deviation, and chi-square of each line.",
                 alt="Two panels: normalised residuals and chi-square of each test line.",
                 draw=lambda: plot_residuals(inputs.identification),
+            ),
+            Picture(
+                name="step",
+                caption=(
+                    "What the identified linear model does after a step of its input, delays exact, with its 95 % band "
+                    "at each time."
+                ),
+                alt="Response of every output to a step of the input, with a band around it.",
+                draw=lambda: plot_step_band(inputs.identification),
             ),
         ),
     )

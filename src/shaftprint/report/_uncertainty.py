@@ -1,12 +1,6 @@
-"""Uncertainty of a complex response as the reader of a Bode diagram sees it: decibel and degree.
+"""Uncertainty of a measured response as the reader of a Bode diagram sees it: decibel and degree.
 
-For a model ``H(theta)`` the exact derivatives give ``d ln H = (dH / d theta) / H``: the real part is the relative
-change of the magnitude, the imaginary part the change of the phase [rad]. With the covariance ``C`` of the free
-parameters (delta method)
-
-    var(ln |H|) = Re(d ln H) C Re(d ln H)^T,     var(arg H) = Im(d ln H) C Im(d ln H)^T.
-
-For measured lines the covariance of [Re, Im] is turned into the direction of the response and across it.
+The covariance of [Re, Im] of a line is turned into the direction of the response and across it.
 """
 
 from dataclasses import dataclass
@@ -20,51 +14,9 @@ from shaftprint.normal import NORMAL_95
 from shaftprint.units import decibel
 
 if TYPE_CHECKING:
-    from shaftprint.models import Structure
     from shaftprint.spectra import FrequencyResponse
 
-DECIBEL_PER_NEPER = 20.0 / np.log(10.0)
 COVERAGE = 0.95
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Band:
-    """Half widths of a 95 % band around a model's response."""
-
-    magnitude_db: FloatArray
-    """Half width of the magnitude [dB], shape (outputs, frequencies); nan where it is not known."""
-    phase_deg: FloatArray
-    """Half width of the phase [deg], shape (outputs, frequencies); nan where it is not known."""
-
-
-def model_band(structure: "Structure", values: FloatArray, covariance: FloatArray, omega_rad_s: FloatArray) -> Band:
-    """Return the 95 % band of a model from the covariance of its free parameters.
-
-    Parameters
-    ----------
-    structure
-        The structure.
-    values
-        All parameters, shape (parameters,).
-    covariance
-        Covariance of the free parameters, shape (free, free).
-    omega_rad_s
-        Frequencies [rad/s], shape (frequencies,).
-
-    Returns
-    -------
-        Half widths; nan at frequencies where a parameter with infinite variance has an influence.
-    """
-    response, slopes = structure.gradient(values, 1j * omega_rad_s)
-    relative = slopes / response
-    known = np.isfinite(np.diag(covariance))
-    inner = covariance[np.ix_(known, known)]
-    lost = np.any(relative[~known] != 0.0, axis=0)
-    half = []
-    for part in (relative.real, relative.imag):
-        variance = np.einsum("iow,ij,jow->ow", part[known], inner, part[known])
-        half.append(NORMAL_95 * np.sqrt(np.where(lost, np.nan, np.maximum(variance, 0.0))))
-    return Band(magnitude_db=DECIBEL_PER_NEPER * half[0], phase_deg=np.degrees(half[1]))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -36,6 +36,11 @@ def converted(
     The response with the covariance carried through to first order; everything else is as before.
     """
     derivative = real_jacobian(jacobian)
+    lines = len(response.lines)
+    common = {
+        name: np.einsum("lij,jl->il", jacobian, part.reshape(-1, lines)).reshape(values.shape)
+        for name, part in response.common.items()
+    }
     covariance: FloatArray = derivative @ response.covariance @ np.swapaxes(derivative, 1, 2)
     return replace(
         response,
@@ -43,6 +48,7 @@ def converted(
         outputs=outputs,
         response=values,
         covariance=0.5 * (covariance + np.swapaxes(covariance, 1, 2)),
+        common=common,
     )
 
 

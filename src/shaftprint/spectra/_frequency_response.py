@@ -53,6 +53,9 @@ class FrequencyResponse:
     """Why a line is not used, by line name."""
     load: FloatArray = field(default_factory=lambda: np.empty(0))
     """Propeller load of each line's window over that at the working point [-], shape (lines,); 1 when not given."""
+    common: Mapping[str, ComplexArray] = field(default_factory=dict)
+    """Causes that move all outputs of a line together, by name: change of the response when the cause changes by its
+    standard deviation, shape (outputs, inputs, lines). The covariance contains them."""
     averaging_s: float = 0.0
     """Window over which the speed output is a mean [s]; see ``SpeedSignal``."""
     hold_s: float = 0.0
@@ -92,6 +95,10 @@ class FrequencyResponse:
         ):
             _expect_shape(name, array, shape)
             object.__setattr__(self, name, array)
+        common = {name: frozen_complex(change) for name, change in self.common.items()}
+        for name, change in common.items():
+            _expect_shape(f"common error {name}", change, self.response.shape)
+        object.__setattr__(self, "common", common)
         self._check_values()
 
     def _check_values(self) -> None:
@@ -146,6 +153,7 @@ class FrequencyResponse:
             outputs=tuple(names),
             response=self.response[places],
             covariance=change[:, np.newaxis, np.newaxis] * self.covariance[:, both[:, np.newaxis], both],
+            common={name: np.sqrt(change) * part[places] for name, part in self.common.items()},
         )
 
     def of_lines(self, *names: str) -> "FrequencyResponse":
@@ -204,6 +212,7 @@ class FrequencyResponse:
             used=self.used[places],
             remarks={name: remark for name, remark in self.remarks.items() if name in names},
             load=self.load[places],
+            common={name: part[:, :, places] for name, part in self.common.items()},
         )
 
 

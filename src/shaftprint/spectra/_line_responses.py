@@ -19,6 +19,9 @@ NOT_MEASURED_STD = 100.0
 """Standard deviation of real and imaginary part of a response that was not measured [-]: a line that is governed stays
 below a tenth of it, so that it has no weight for that output. Its correlation with the others is 0."""
 
+SET_POINT_CALIBRATION = "set-point calibration"
+"""Name of the error of the set-point scale among the common errors of a response."""
+
 _SPEED_AND_TORQUE = 2
 _ROUNDING = 1e-15
 
@@ -68,6 +71,7 @@ def response_of_lines(
     """
     outputs = ("n", "M_s") if signals.rack is None else ("n", "M_s", "X")
     response = np.empty((len(outputs), 1, len(measurements)), dtype=np.complex128)
+    common = np.zeros_like(response)
     covariance = np.empty((len(measurements), 2 * len(outputs), 2 * len(outputs)))
     for place, line in enumerate(measurements):
         amplitude, noise = _amplitudes(line, channels, sensor)
@@ -83,7 +87,9 @@ def response_of_lines(
         values, spread = response_of_line(amplitude, noise, complex_samples=samples, weighted=len(outputs))
         # the common error takes part in the factor of the weights: speed and torque alone keep what they would have
         more = weight_factor(samples, len(outputs)) / weight_factor(samples, _SPEED_AND_TORQUE)
-        spread = with_common_error(spread, values, signals.dc_scale_std / signals.dc_scale * np.sqrt(more))
+        share = signals.dc_scale_std / signals.dc_scale * np.sqrt(more)
+        spread = with_common_error(spread, values, share)
+        common[: values.size, 0, place] = share * values
         if values.size < len(outputs):
             values, spread = _with_unknown_output(values, spread)
         if signals.rack is not None:
@@ -99,6 +105,7 @@ def response_of_lines(
         outputs=outputs,
         lines=tuple(line.window.line for line in measurements),
         degrees_of_freedom=np.array([2.0 * line.noise.complex_samples for line in measurements]),
+        common={SET_POINT_CALIBRATION: common},
     )
 
 
