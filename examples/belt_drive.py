@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import expm
 
-from shaftprint.identify import identifiability, identify, profile_intervals
+from shaftprint.identify import assess, identifiability, identify, profile
 from shaftprint.models import (
     Block,
     Combination,
@@ -114,14 +114,25 @@ response = response_from_arrays(
 )
 
 found = identify(drive, response, rng=rng)
-intervals = profile_intervals(found)
-print(f"\nchi-square {found.chi_square:.1f} for {found.degrees_of_freedom} degrees of freedom, p = {found.p_value:.2f}")
+profiled = profile(found)
+intervals = profiled.intervals
+print()
 for number in (*found.parameters, *found.combinations):
     interval = intervals[number.name]
     print(
         f"{number.name:14}{number.value:10.5g} +/- {number.std:<9.2g}"
         f"95 %: {interval.lower:.5g} to {interval.upper:.5g} {number.unit}"
     )
+
+verdict = assess(found, profile=profiled)
+print(*verdict.sentences, sep="\n")
+
+# The same for a structure that is wrong: a belt that does not stretch.
+J = Parameter("J", "kg m2", 1e-4, 0.1, 0.01, "inertia of all")
+body = late * RationalBlock(lambda j, b: ([1.0], [j, b]), (J, B_1))
+stiff = Structure(name="STIFF-DRIVE", title="one mass", input="torque", outputs={"w_1": body, "w_2": body})
+stiff_verdict = assess(identify(stiff, response, rng=rng))
+print(*stiff_verdict.sentences, sep="\n")
 
 # The same blocks in a loop that was never tested: a speed controller on the motor's side.
 K_P = Parameter("K_p", "N m s", 0.0, 10.0, 1.0, "proportional gain", held=True)

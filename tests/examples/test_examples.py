@@ -75,6 +75,12 @@ def test_belt_drive(run, capsys):
     margin, std = map(float, re.search(r"gain margin .*: ([\d.]+) \+/- ([\d.]+)", capsys.readouterr().out).groups())
     assert margin == pytest.approx(true_gain_margin(defined), abs=3.0 * std)
     assert std < 0.02 * margin
+    # friction is hardly seen beside the inertias; all else is known to a few per cent
+    verdict = defined["verdict"]
+    assert verdict.trustworthy
+    assert set(verdict.trusted) == {"J_1", "J_2", "k", "c", "t_d", "sqrt(k / J_2)"}
+    assert not defined["stiff_verdict"].trustworthy
+    assert "does not explain the data" in defined["stiff_verdict"].reason
 
 
 def true_gain_margin(defined):

@@ -27,10 +27,10 @@ def defined(tmp_path_factory):
 
 
 def test_the_fan_is_found(defined):
-    found = defined["profile_intervals"](defined["found"])
+    found = defined["profiled"].intervals
     for name, true in (("K", 12.0), ("T", 0.8), ("t_d", 0.05)):
         assert found[name].lower <= true <= found[name].upper, name
-    assert defined["found"].p_value > 0.01
+    assert defined["assess"](defined["found"]).trusted == ("K", "T", "t_d")
     assert {"fan.svg", "fan_residuals.svg"} <= defined["files"]
 
 
