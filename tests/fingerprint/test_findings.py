@@ -165,12 +165,21 @@ def test_numbers_that_rest_on_what_was_known_beforehand(sharp):
         BudgetRow(name=name, unit="-", value=1.0, variances={"noise of n": 1.0 - share, "prior of g": share})
         for name, share in (("g", 0.99), ("K_p", 0.6), ("zeta", 0.4), ("gain margin", 0.51))
     )
-    text = one(found(sharp, stated=Budget(sources=("noise of n", "prior of g"), rows=rows)), "K_p, gain margin: ")
+    text = one(found(sharp, stated=Budget(sources=("noise of n", "prior of g"), rows=rows)), "K_p (prior of g")
     assert text == (
-        "K_p, gain margin: more than half of the variance comes from what was known beforehand (prior of g), not from "
-        "the noise of this test."
+        "K_p (prior of g 60 %), gain margin (prior of g 51 %): more than half of the variance comes from what was "
+        "known beforehand, the largest part in brackets, not from the noise of this test."
     )
-    assert none(found(sharp, stated=Budget(sources=("noise of n",), rows=rows[2:3])), "beforehand")
+    assert none(found(sharp, stated=Budget(sources=("noise of n", "prior of g"), rows=rows[2:3])), "beforehand")
+
+
+def test_the_working_point_and_the_set_point_are_measured(sharp, gauge_fit):
+    variances = {"noise of n": 0.1, "working-point torque": 0.6, "set-point calibration": 0.3}
+    rows = (BudgetRow(name="K_Q", unit="-", value=1.0, variances=variances),)
+    common = {"set-point calibration": np.zeros(gauge_fit.response.response.shape)}
+    part = replace(gauge_fit.experiments[0], response=replace(gauge_fit.response, common=common))
+    told = replace(sharp, experiments=(part,))
+    assert none(found(told, stated=Budget(sources=tuple(variances), rows=rows)), "beforehand")
 
 
 def test_a_fit_without_priors_rests_on_nothing(fit, truth):

@@ -21,6 +21,9 @@ SURPRISING = 3.0
 OFF_ZERO = 2.0
 # A number rests on what was known beforehand when more than this share of its variance is from there.
 MOSTLY = 0.5
+# What the test itself measures: sources whose names begin so.
+MEASURED = ("noise of ", "working-point ")
+PERCENT = 100.0
 AMPLE, SMALL = 2.0, 1.3
 WHY = {
     "I": " A torque gauge shows only the inertia downstream of it: compare with that, or fit a gauge-aware structure.",
@@ -120,21 +123,24 @@ def _is_better(combination: Estimate, estimate: Estimate, identification: Identi
 
 
 def _known_beforehand(identification: Identification, stated: Budget) -> list[str]:
-    """Return which numbers the test alone would not know: their variance is that of the priors, not of its noise."""
-    priors = identification.settings.priors
-    sources = {source for name, prior in priors.items() for source in prior.sources or (f"prior of {name}",)}
-    resting = [
-        row.name
-        for row in stated.rows
-        if row.name not in priors and sum(row.shares.get(source, 0.0) for source in sources) > MOSTLY
-    ]
+    """Return which numbers more or better lines would hardly improve: their variance is not that of this test."""
+    told = [name for name in stated.sources if not name.startswith(MEASURED) and name not in _common(identification)]
+    resting = []
+    for row in stated.rows:
+        shares = {source: row.shares.get(source, 0.0) for source in told}
+        if row.name not in identification.settings.priors and sum(shares.values()) > MOSTLY:
+            largest = max(shares, key=lambda source: shares[source])
+            resting.append(f"{row.name} ({largest} {PERCENT * shares[largest]:.0f} %)")
     if not resting:
         return []
-    named = ", ".join(source for source in stated.sources if source in sources)
     return [
-        f"{', '.join(resting)}: more than half of the variance comes from what was known beforehand ({named}), not "
-        "from the noise of this test."
+        f"{', '.join(resting)}: more than half of the variance comes from what was known beforehand, the largest part "
+        "in brackets, not from the noise of this test."
     ]
+
+
+def _common(identification: Identification) -> set[str]:
+    return {name for part in identification.experiments for name in part.response.common}
 
 
 def _gauge_zero(physical: tuple[Quantity, ...]) -> list[str]:
