@@ -14,6 +14,7 @@ from shaftprint.models import (
     Integrator,
     Parameter,
     PIGovernor,
+    RationalBlock,
     SecondOrderLag,
     Shaft,
     Structure,
@@ -265,3 +266,37 @@ def test_two_feedback_loops_in_one_structure_are_refused():
     lag = SecondOrderLag(free("omega_n"), free("zeta"))
     with pytest.raises(StructureError, match="expected one outermost feedback loop, found 2"):
         Structure(name="two", title="", input="r", outputs={"a": feedback(governor), "b": feedback(lag)})
+
+
+def open_structure(expression):
+    return Structure(name="open", title="open", input="u", outputs={"y": expression})
+
+
+def test_poles_of_an_inverse_without_a_loop_are_the_zeros_of_what_is_inverted():
+    # J s + b - g: a machine whose torque rises faster with speed than its friction runs away, at (g - b) / J
+    inertia, friction, rise = (Parameter(name, "-", 0.0, 10.0, 1.0, name) for name in ("J", "b", "g"))
+    machine = open_structure(1 / (RationalBlock(lambda j, b: ([j, b], [1.0]), (inertia, friction)) - Gain(rise)))
+    assert is_stable(machine, machine.vector({"J": 2.0, "b": 3.0, "g": 2.9}))
+    assert unstable_poles(machine, machine.vector({"J": 2.0, "b": 3.0, "g": 3.5})) == 1
+    np.testing.assert_allclose(poles(machine, machine.vector({"J": 2.0, "b": 3.0, "g": 3.5})), [0.25])
+
+
+def test_a_block_below_a_fraction_gives_zeros_not_poles():
+    # 1 / (1 / (s - 1)) = s - 1 has no pole, and 1 / ((s - 1) / (s + 2)) has the pole 1 of its numerator
+    spring = RationalBlock(lambda: ([1.0], [1.0, -1.0]), ())
+    assert is_stable(open_structure(1 / spring), [])
+    assert poles(open_structure(1 / spring), []).size == 0
+    quotient = open_structure(1 / RationalBlock(lambda: ([1.0, -1.0], [1.0, 2.0]), ()))
+    np.testing.assert_allclose(poles(quotient, []), [1.0])
+    assert not is_stable(quotient, [])
+
+
+def test_a_belt_between_two_masses_has_the_poles_of_its_equations():
+    # J_1 s w_1 = T - M, J_2 s w_2 = M - b w_2, M = (c + k / s) (w_1 - w_2)
+    j_1, j_2, k, c, b = 0.004, 0.015, 60.0, 0.05, 0.02
+    matrix = np.array([[-c / j_1, c / j_1, -k / j_1], [c / j_2, -(b + c) / j_2, k / j_2], [1.0, -1.0, 0.0]])
+    motor = RationalBlock(lambda: ([j_1, 0.0], [1.0]), ())
+    belt, load = RationalBlock(lambda: ([c, k], [1.0, 0.0]), ()), RationalBlock(lambda: ([1.0], [j_2, b]), ())
+    drive = open_structure(1 / (motor + 1 / (1 / belt + load)))
+    expected = [p for p in np.linalg.eigvals(matrix) if p.imag >= 0.0]
+    np.testing.assert_allclose(poles(drive, []), sorted(expected, key=lambda p: -p.real), rtol=1e-9)

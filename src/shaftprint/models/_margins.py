@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_complex
-from shaftprint.models._nyquist import BISECTIONS, loop_gain, loop_of, plain_values, swept, unstable_poles
+from shaftprint.models._nyquist import BISECTIONS, loop_gain, loop_of, plain_values, swept, unstable_poles, with_poles
 from shaftprint.models._structure import Structure
 
 NEWTON_STEPS = 30
@@ -94,7 +94,7 @@ def poles(structure: Structure, values: ArrayLike) -> ComplexArray:
     named = plain_values(structure, table)
     expression = structure.loop
     if expression is None:
-        ratios = [block.polynomials(named) for block in structure.blocks]
+        ratios = [node.polynomials(named) for node in with_poles(structure)]
         found = np.concatenate([np.roots(r[1]) for r in ratios if r is not None] or [np.empty(0)])
         return _tidied(found.astype(np.complex128))
     ratio = expression.polynomials(named)

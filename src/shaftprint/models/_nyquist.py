@@ -32,7 +32,7 @@ COMMON_SWEEP = np.geomspace(LOWEST_RAD_S, HIGHEST_RAD_S, 1501)
 def unstable_poles(structure: Structure, values: ArrayLike) -> int:
     """Return the number of poles with positive real part, delays exact (Nyquist count); 0 for a stable structure.
 
-    A structure without feedback is counted by the poles of its blocks.
+    A structure without feedback is counted by the poles of its blocks and inverses.
 
     Raises
     ------
@@ -41,7 +41,7 @@ def unstable_poles(structure: Structure, values: ArrayLike) -> int:
     """
     table = np.asarray(values, dtype=np.float64)
     if structure.loop is None:
-        return sum(_unstable_open(block, structure, table) for block in structure.blocks)
+        return sum(_unstable_open(node, structure, table) for node in with_poles(structure))
     return _unstable_closed(structure.loop, structure, table)
 
 
@@ -128,6 +128,12 @@ def swept(loop: Expression, structure: Structure, table: FloatArray) -> tuple[Fl
     count = int(min(2e6, max(2.0, last * delay / PHASE_STEP_RAD)))
     omega = np.union1d(coarse, np.linspace(coarse[0], last, count))
     return omega, evaluate(loop, structure, table, 1j * omega)
+
+
+def with_poles(structure: Structure) -> list[Expression]:
+    """Return the blocks, inverses and loops whose poles the paths of a structure have, each once."""
+    seen: set[int] = set()
+    return [node for path in structure.paths for node in _poles_of(path, seen)]
 
 
 def _unstable_closed(loop: Expression, structure: Structure, table: FloatArray) -> int:
