@@ -8,7 +8,7 @@ output weights only.
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -146,6 +146,12 @@ class Experiment(Term):
         share = np.where(known, 1.0, excess_freedom(self.freedom, size) / np.where(known, 1.0, self.freedom))
         return share[:, None, None] * self.covariance
 
+    @property
+    def least_deviation(self) -> float:
+        """Smallest standard deviation of a datum, as a share of the value it belongs to."""
+        std = np.sqrt(np.diagonal(self.covariance, axis1=1, axis2=2))
+        return float(np.min(std / np.maximum(np.tile(np.abs(self.measured).T, 2), np.finfo(np.float64).tiny)))
+
     def _stacked(self, theta: FloatArray, measured: ComplexArray | None) -> ComplexArray:
         stacked = self.structure.stacked(self.complete(theta), self.s, factors=self.factors)
         stacked[:, 0] -= self.measured if measured is None else measured
@@ -196,6 +202,21 @@ def build_experiment(
         places=tuple(names.index(p.name) for p in structure.free),
         columns=tuple(free.index(p.name) for p in structure.free),
     )
+
+
+def with_floor(experiment: Experiment, floor: float) -> Experiment:
+    """Return the experiment as if no value were known better than to a share of itself.
+
+    Parameters
+    ----------
+    floor
+        The share, added to the covariance as an independent standard deviation.
+    """
+    size = experiment.data.shape[1]
+    least = (floor * np.tile(np.abs(experiment.measured).T, 2)) ** 2
+    covariance = experiment.covariance + least[:, :, None] * np.eye(size)
+    weights = experiment.weighting.matrices(experiment.response, covariance)
+    return replace(experiment, covariance=covariance, weights=weights, elements=_elements(weights))
 
 
 def channels_of(response: FrequencyResponse) -> ComplexArray:

@@ -11,9 +11,10 @@ from shaftprint.identify._experiment import Experiment
 from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify._fit_test import tested_fit, whitened_residuals
 from shaftprint.identify._identification import Cluster, Identification
-from shaftprint.identify._levenberg_marquardt import Descent, descend
+from shaftprint.identify._levenberg_marquardt import Descent
 from shaftprint.identify._objective import Objective, build_joint_objective
 from shaftprint.identify._part import Part, channel_names
+from shaftprint.identify._search import polish, search
 from shaftprint.identify._sensor import with_sensor
 from shaftprint.identify._settings import Settings
 from shaftprint.models import Structure, is_stable
@@ -25,7 +26,6 @@ SAME_COST = 1e-3
 SAME_COST_OF_NOTHING = 1e-9
 # ... and no parameter differs by more than this share of the width between its bounds.
 SAME_PLACE = 0.02
-POLISH_TOLERANCE = 1e-14
 
 
 def identify(
@@ -102,16 +102,7 @@ def _identified(
         regularisation=settings.regularisation,
         lines=lines,
     )
-    start = settings.draw.starts(objective.lower, objective.upper, settings.starts, rng)
-    descent = descend(
-        objective.of_starts,
-        start,
-        objective.lower,
-        objective.upper,
-        tolerance=settings.tolerance,
-        max_iterations=settings.max_iterations,
-        leader_tolerance=POLISH_TOLERANCE,
-    )
+    descent = search(objective, settings, rng)
     sharp = bool(descent.converged[np.argmin(descent.cost)])
     clusters, winner = _judged(objective, _clustered(objective, descent), settings, sharp=sharp)
     whitened = whitened_residuals(objective, winner.values)
@@ -195,14 +186,7 @@ def _judged(
             continue
         place, lowest = theta, cost
         if clusters or not sharp:
-            polished = descend(
-                objective.of_starts,
-                theta[None, :],
-                objective.lower,
-                objective.upper,
-                tolerance=POLISH_TOLERANCE,
-                max_iterations=settings.max_iterations,
-            )
+            polished = polish(objective, theta, settings)
             place, lowest = polished.theta[0], float(polished.cost[0])
         values = frozen_float(objective.complete(place))
         stable = all(is_stable(e.structure, e.own(values)) for e in objective.experiments)

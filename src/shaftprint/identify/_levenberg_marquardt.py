@@ -10,7 +10,8 @@ Where a step gains much more than ``A`` foretells, the cost is flatter than ``A`
 time four times as far, until one gains less than foretold. Without it a model that cannot follow the data creeps, such
 as a pure delay between two wraps of the fast lines' phase.
 
-All starts go through the same array operations; those that have converged are left out of the next step.
+All starts go through the same array operations; those that have converged are left out of the next step. A step to
+where the parameters are not allowed to be is refused as one that raises the cost is.
 """
 
 from collections.abc import Callable
@@ -21,6 +22,7 @@ import numpy as np
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
 
 Residuals = Callable[[FloatArray, IntArray], tuple[FloatArray, FloatArray]]
+Allowed = Callable[[FloatArray], BoolArray]
 
 FIRST_DAMPING = 0.1
 FIRST_GROWTH = 2.0
@@ -38,6 +40,8 @@ SINGLE_PASSES = 13
 # 64 ulp of the cost: below it a gain cannot be told from rounding.
 ROUNDING = 1.5e-14
 TINY = 1e-300
+# A gain is compared with no less than this share of the cost, lest the quotient overflow.
+LEAST_SHARE = 1e-30
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -52,6 +56,8 @@ class Descent:
     """Number of steps taken or tried, shape (starts,)."""
     converged: BoolArray
     """Whether the tolerance was reached before the limit of iterations, shape (starts,)."""
+    refused: BoolArray
+    """Whether a step to a lower cost led to where the parameters are not allowed to be, shape (starts,)."""
 
 
 def descend(
@@ -63,6 +69,7 @@ def descend(
     tolerance: float,
     max_iterations: int,
     leader_tolerance: float | None = None,
+    allowed: Allowed | None = None,
 ) -> Descent:
     """Minimise half the sum of squared residuals from every start.
 
@@ -81,11 +88,15 @@ def descend(
         Limit of steps for each start.
     leader_tolerance
         The same for the start of lowest cost, which polishes its optimum while others are still on their way.
+    allowed
+        Tells where parameters, shape (rows, free), may be, shape (rows,); everywhere within the bounds when not given.
+        The starts must be there.
     """
     theta = np.clip(start, lower, upper)
     starts = np.arange(theta.shape[0])
     iterations = np.full(starts.size, max_iterations)
-    cost, converged = np.empty(starts.size), np.zeros(starts.size, dtype=np.bool_)
+    cost = np.empty(starts.size)
+    converged, refused = np.zeros((2, starts.size), dtype=np.bool_)
     # The old Jacobian lives until the new one is there: freed before, its memory would go back and be faulted in again.
     r, jacobian = residuals(theta, starts)
     at, lowest = _Position.at_start(theta, r, jacobian), np.inf
@@ -103,15 +114,15 @@ def descend(
             lowest = min(lowest, at.cost[flat].min())
             done, moving = at.starts[flat], ~flat
             theta[done], cost[done] = at.theta[flat], at.cost[flat]
-            iterations[done], converged[done] = iteration, True
+            iterations[done], converged[done], refused[done] = iteration, True, at.refused[flat]
             at, step, predicted = at.chosen(moving), step[moving], predicted[moving]
             if at.starts.size == 0:
                 break
         trial = np.minimum(np.maximum(at.theta + at.stretch[:, None] * step, lower), upper)
         r, jacobian = residuals(trial, at.starts)
-        at.advance(trial, r, jacobian, predicted)
-    theta[at.starts], cost[at.starts] = at.theta, at.cost
-    return Descent(theta=theta, cost=cost, iterations=iterations, converged=converged)
+        at.advance(trial, r, jacobian, predicted, allowed)
+    theta[at.starts], cost[at.starts], refused[at.starts] = at.theta, at.cost, at.refused
+    return Descent(theta=theta, cost=cost, iterations=iterations, converged=converged, refused=refused)
 
 
 @dataclass(slots=True, eq=False)
@@ -127,6 +138,7 @@ class _Position:
     damping: FloatArray
     growth: FloatArray
     stretch: FloatArray
+    refused: BoolArray
 
     @classmethod
     def at_start(cls, theta: FloatArray, r: FloatArray, jacobian: FloatArray) -> "_Position":
@@ -142,17 +154,25 @@ class _Position:
             damping=np.full(cost.size, FIRST_DAMPING),
             growth=np.full(cost.size, FIRST_GROWTH),
             stretch=np.ones(cost.size),
+            refused=np.zeros(cost.size, dtype=np.bool_),
         )
 
     def chosen(self, rows: BoolArray) -> "_Position":
         """Return some of the rows."""
         return _Position(*(getattr(self, name)[rows] for name in self.__slots__))
 
-    def advance(self, trial: FloatArray, r: FloatArray, jacobian: FloatArray, predicted: FloatArray) -> None:
+    def advance(
+        self, trial: FloatArray, r: FloatArray, jacobian: FloatArray, predicted: FloatArray, allowed: Allowed | None
+    ) -> None:
         """Take the trials that lower the cost; change damping and stretch by how well their gain was predicted."""
         cost, gradient, hessian = _quadratic(r, jacobian)
         good = (cost < self.cost) & (predicted > 0.0)
-        gain = np.where(good, (self.cost - cost) / np.maximum(predicted * self.stretch, TINY), 0.0)
+        if allowed is not None:
+            lower = good.copy()
+            good[lower] = allowed(trial[lower])
+            self.refused = self.refused | (lower & ~good)
+        foretold = np.maximum(predicted * self.stretch, LEAST_SHARE * self.cost + TINY)
+        gain = np.where(good, (self.cost - cost) / foretold, 0.0)
         # A stretched step that fails says nothing against the step itself.
         failed = ~good & (self.stretch == 1.0)
         surplus = 2.0 * gain - 1.0

@@ -14,12 +14,10 @@ from shaftprint.arrays import ComplexArray, FloatArray, IntArray
 from shaftprint.errors import IdentificationError
 from shaftprint.identify._experiment import Experiment, build_experiment
 from shaftprint.identify._prior import Prior
+from shaftprint.identify._united_parameters import united_parameters
 from shaftprint.identify._weighting import Weighting
 from shaftprint.models import Combination, Parameter, Structure
 from shaftprint.spectra import FrequencyResponse
-
-# Held parameters that belong to the pick-up of an experiment: they may differ from one to the other.
-OF_PICK_UP = ("T_average", "T_hold", "t_pickup")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -229,7 +227,7 @@ def build_joint_objective(
     if not pairs:
         raise IdentificationError("joint fit: expected at least one pair of structure and response, found none.")
     weighting.expect_outputs(list(dict.fromkeys(name for structure, _ in pairs for name in structure.outputs)))
-    parameters = _united([structure for structure, _ in pairs])
+    parameters = united_parameters([structure for structure, _ in pairs])
     names = [p.name for p in parameters]
     free = [p.name for p in parameters if not p.held]
     experiments = tuple(
@@ -248,40 +246,6 @@ def build_joint_objective(
     _expect_solvable(objective, [name for name, _ in known])
     rows = [[free.index(name), prior.mean, 1.0 / prior.std] for name, prior in known]
     return replace(objective, prior_rows=np.array(rows).reshape(-1, 3))
-
-
-def _united(structures: Sequence[Structure]) -> tuple[Parameter, ...]:
-    """Return the parameters of all structures, each once."""
-    found: dict[str, tuple[Parameter, Structure]] = {}
-    for structure in structures:
-        for parameter in structure.parameters:
-            first, owner = found.setdefault(parameter.name, (parameter, structure))
-            if _described(first) != _described(parameter):
-                raise IdentificationError(
-                    f"joint fit: parameter {first.name} is {_words(first)} in structure {owner.name} and "
-                    f"{_words(parameter)} in {structure.name}; describe it alike, or give one of them another name."
-                )
-    tied = {tie.name: structure for structure in structures for tie in structure.ties}
-    both = [name for name in tied if name in found]
-    if both:
-        raise IdentificationError(
-            f"joint fit: parameter {both[0]} is tied to others in structure {tied[both[0]].name} and a parameter of "
-            f"its own in {found[both[0]][1].name}; tie it in both, or give one of them another name."
-        )
-    return tuple(parameter for parameter, _ in found.values())
-
-
-def _described(parameter: Parameter) -> tuple[object, ...]:
-    """Return what must be the same for two parameters to be one."""
-    if parameter.held:
-        return (parameter.unit, None if parameter.name in OF_PICK_UP else parameter.value)
-    return (parameter.unit, parameter.lower, parameter.upper)
-
-
-def _words(parameter: Parameter) -> str:
-    if parameter.held:
-        return f"held at {parameter.value} {parameter.unit}"
-    return f"free from {parameter.lower} to {parameter.upper} {parameter.unit}"
 
 
 def _expect_solvable(objective: Objective, known: Sequence[str]) -> None:

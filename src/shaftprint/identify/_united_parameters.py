@@ -1,0 +1,49 @@
+"""The parameters of several structures: those of one name are one parameter."""
+
+from collections.abc import Sequence
+
+from shaftprint.errors import IdentificationError
+from shaftprint.models import Parameter, Structure
+
+# Held parameters that belong to the pick-up of an experiment: they may differ from one to the other.
+OF_PICK_UP = ("T_average", "T_hold", "t_pickup")
+
+
+def united_parameters(structures: Sequence[Structure]) -> tuple[Parameter, ...]:
+    """Return the independent parameters of all structures, each once, those of the first structure first.
+
+    Raises
+    ------
+    IdentificationError
+        If two structures describe a parameter differently.
+    """
+    found: dict[str, tuple[Parameter, Structure]] = {}
+    for structure in structures:
+        for parameter in structure.parameters:
+            first, owner = found.setdefault(parameter.name, (parameter, structure))
+            if _described(first) != _described(parameter):
+                raise IdentificationError(
+                    f"joint fit: parameter {first.name} is {_words(first)} in structure {owner.name} and "
+                    f"{_words(parameter)} in {structure.name}; describe it alike, or give one of them another name."
+                )
+    tied = {tie.name: structure for structure in structures for tie in structure.ties}
+    both = [name for name in tied if name in found]
+    if both:
+        raise IdentificationError(
+            f"joint fit: parameter {both[0]} is tied to others in structure {tied[both[0]].name} and a parameter of "
+            f"its own in {found[both[0]][1].name}; tie it in both, or give one of them another name."
+        )
+    return tuple(parameter for parameter, _ in found.values())
+
+
+def _described(parameter: Parameter) -> tuple[object, ...]:
+    """Return what must be the same for two parameters to be one."""
+    if parameter.held:
+        return (parameter.unit, None if parameter.name in OF_PICK_UP else parameter.value)
+    return (parameter.unit, parameter.lower, parameter.upper)
+
+
+def _words(parameter: Parameter) -> str:
+    if parameter.held:
+        return f"held at {parameter.value} {parameter.unit}"
+    return f"free from {parameter.lower} to {parameter.upper} {parameter.unit}"
