@@ -61,12 +61,7 @@ def take_fingerprint(
         raise FingerprintError("now: expected a time with time zone, such as datetime.now(UTC), found one without.")
     own = identification.objective.experiments[0].own(identification.values)
     margins = margin_numbers(identification.structure, own)
-    numbers = physical_numbers(identification, signals.working_point, vessel)
-    stated = budget(
-        identification,
-        (*(item.number for item in numbers), *margins),
-        direct={item.number.name: item.direct for item in numbers},
-    )
+    stated = _budget(identification, signals.working_point, vessel, margins)
     physical = physical_quantities(identification, signals.working_point, vessel, stated)
     left_out = _left_out(identification)
     meanings = _meanings(identification)
@@ -94,6 +89,15 @@ def take_fingerprint(
         verdict=assess(identification, profile=profiled, signal_to_noise=signal_to_noise),
         findings=findings_of(identification, physical, stated, left_out),
     )
+
+
+def _budget(
+    identification: Identification, working_point: "WorkingPoint", vessel: "Vessel", margins: tuple[Combination, ...]
+) -> Budget:
+    """Return the budget of parameters, combinations, physical values and margins."""
+    numbers = physical_numbers(identification, working_point, vessel)
+    direct = {item.number.name: item.direct for item in numbers}
+    return budget(identification, (*(item.number for item in numbers), *margins), direct=direct)
 
 
 def _left_out(identification: Identification) -> dict[str, str]:

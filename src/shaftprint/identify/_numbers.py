@@ -80,20 +80,6 @@ class Numbers:
             return np.broadcast_to(self.combinations[place].of(named), theta.shape[:1])
 
 
-def one_number(objective: Objective, combination: Combination, theta: FloatArray) -> tuple[float, FloatArray]:
-    """Return one number at one parameter set, with its derivatives to the free parameters, shape (free,).
-
-    Parameters
-    ----------
-    theta
-        Free parameters, shape (free,).
-    """
-    asked = Numbers(objective, (combination,), np.array([theta.size]))
-    _, jacobian = objective.residuals(theta[None, :])
-    curvature = np.einsum("sfr,sfr->sf", jacobian, jacobian)
-    return float(asked.values(theta[None, :])[0]), asked.slopes(theta[None, :], curvature)[0]
-
-
 def all_numbers(objective: Objective, more: Sequence[Combination] = ()) -> tuple[str, ...]:
     """Return the names of the free parameters, of the structures' combinations and of more numbers, in this order."""
     return (
