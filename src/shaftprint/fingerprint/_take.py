@@ -20,6 +20,7 @@ from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._physical import physical_numbers, physical_quantities
 from shaftprint.identify import Budget, Estimate, Identification, Interval, assess, budget, profile
+from shaftprint.models import Combination
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
