@@ -7,6 +7,8 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._chain import Measurement, fingerprint_of, measure
+from shaftprint.cli._comparison_tables import print_comparison
+from shaftprint.cli._comparisons import comparisons_of
 from shaftprint.cli._demo_summary import print_summary
 from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.cli._fingerprint_tables import print_fingerprint
@@ -48,6 +50,7 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
         truth = _sail(folder, trial, campaign, seed=seed, steps=steps)
         found = _identify(folder / RECORDING, trial, seed=seed, steps=steps)
         true = fingerprint_truth(truth, found.fits[0].structure, found.measurement.signals)
+        comparisons = comparisons_of(found.fits, seed=seed, steps=steps)
         write_results(
             folder,
             folder / RECORDING,
@@ -56,10 +59,13 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
             found.fits,
             found.fingerprint,
             steps=steps,
+            comparisons=comparisons,
             thesis=found.thesis,
             truth=true,
         )
     _print(found, true)
+    for comparison in comparisons:
+        print_comparison(comparison)
     print_summary(found.fingerprint, true, found.thesis.identifications["OL1"])
     click.echo(_where(output))
 

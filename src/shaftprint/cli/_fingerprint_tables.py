@@ -7,6 +7,7 @@ import click
 from shaftprint.cli._numbers import plain, with_uncertainty
 from shaftprint.cli._tables import print_table
 from shaftprint.fingerprint import Conditions, Fingerprint, Quantity
+from shaftprint.identify import Verdict
 
 NO_TRUTH: Mapping[str, float] = {}
 PERCENT = 100.0
@@ -14,7 +15,7 @@ SMALLEST_PERCENT = 0.5
 
 
 def print_fingerprint(fingerprint: Fingerprint, *, truth: Mapping[str, float] = NO_TRUTH) -> None:
-    """Print conditions, parameters, physical values, margins, quality and findings.
+    """Print verdict, conditions, parameters, physical values, margins, quality and findings.
 
     Parameters
     ----------
@@ -23,6 +24,7 @@ def print_fingerprint(fingerprint: Fingerprint, *, truth: Mapping[str, float] = 
     truth
         True values by the names of parameters, combinations and physical values, where they are known.
     """
+    _print_verdict(fingerprint.verdict)
     _print_conditions(fingerprint)
     normalised = (*fingerprint.parameters, *fingerprint.combinations)
     _print_quantities(f"{fingerprint.structure}: parameters, normalised at the working point", normalised, truth)
@@ -36,6 +38,11 @@ def print_fingerprint(fingerprint: Fingerprint, *, truth: Mapping[str, float] = 
     _print_quantities("What the recording tells of its sensors", fingerprint.calibration, truth)
     _print_quality(fingerprint)
     print_findings("Findings", (*fingerprint.findings, *fingerprint.quality.remarks))
+
+
+def _print_verdict(verdict: Verdict) -> None:
+    words = "trustworthy" if verdict.trustworthy else "not trustworthy"
+    print_findings(f"Verdict: {words}", verdict.sentences)
 
 
 def print_findings(title: str, findings: Sequence[str]) -> None:

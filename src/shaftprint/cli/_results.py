@@ -7,7 +7,7 @@ from shaftprint.cli._chain import Measurement
 from shaftprint.cli._inputs import Trial
 from shaftprint.cli._progress import Steps
 from shaftprint.fingerprint import Fingerprint, write_fingerprint
-from shaftprint.identify import Identification
+from shaftprint.identify import Comparison, Identification
 from shaftprint.recording import read_recording
 from shaftprint.report import ThesisMode, render_report
 from shaftprint.spectra import ExactBin, FrequencyResponse, HighestPeak, estimate_response
@@ -25,6 +25,7 @@ def write_results(
     fingerprint: Fingerprint,
     *,
     steps: Steps,
+    comparisons: Sequence[Comparison] = (),
     thesis: ThesisMode | None = None,
     truth: Mapping[str, float] | None = None,
 ) -> None:
@@ -42,6 +43,8 @@ def write_results(
         What is kept.
     steps
         Progress of the command.
+    comparisons
+        Which of several structures the data want.
     thesis
         The same recording done the thesis' way, to compare.
     truth
@@ -60,6 +63,7 @@ def write_results(
             campaign=trial.campaign,
             recording=opened,
             fits={found.structure.name: found for found in fits[1:]},
+            comparisons=comparisons,
             thesis=thesis,
             truth=truth,
             line_selection=_line_selection(trial, measurement),

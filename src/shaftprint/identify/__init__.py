@@ -102,6 +102,7 @@ __all__ = [
     "compare_structures",
     "criteria_of",
     "estimate_covariance",
+    "expect_comparable",
     "expected_response",
     "fit_ceiling",
     "fit_percent",

@@ -57,7 +57,7 @@ def compare_structures(
     IdentificationError
         If the structures differ in input or outputs or share a name, there are fewer than two, or none can be fitted.
     """
-    _expect_comparable(structures)
+    expect_comparable(structures)
     fits: list[Identification] = []
     failed: dict[str, str] = {}
     for structure, own in zip(structures, rng.spawn(len(structures)), strict=True):
@@ -94,7 +94,7 @@ def compare_fits(
     IdentificationError
         If the structures differ in input or outputs or share a name, or the fits are of different data.
     """
-    _expect_comparable([fit.structure for fit in fits], least=1)
+    expect_comparable([fit.structure for fit in fits], least=1)
     _expect_same_data(fits)
     left_out = list(rng.spawn(len(fits)))
     candidates = [
@@ -116,7 +116,21 @@ def compare_fits(
     )
 
 
-def _expect_comparable(structures: Sequence[Structure], *, least: int = 2) -> None:
+def expect_comparable(structures: Sequence[Structure], *, least: int = 2) -> None:
+    """Check that structures can be compared by likelihood.
+
+    Parameters
+    ----------
+    structures
+        The structures.
+    least
+        Least number of them.
+
+    Raises
+    ------
+    IdentificationError
+        If they differ in input or outputs or share a name, or there are too few.
+    """
     if len(structures) < least:
         raise IdentificationError(f"comparison: expected {least} or more structures, found {len(structures)}.")
     first = structures[0]

@@ -40,6 +40,7 @@ from shaftprint.report._response_figures import (
     plot_line_selection,
     plot_open_loop_responses,
 )
+from shaftprint.report._scan_figure import plot_scan
 from shaftprint.report._sensitivity import plot_sensitivity
 from shaftprint.report._signal_to_noise_figure import plot_signal_to_noise
 from shaftprint.report._step_figure import plot_step_delays
@@ -81,6 +82,7 @@ __all__ = [
     "plot_open_loop_responses",
     "plot_outliers",
     "plot_residuals",
+    "plot_scan",
     "plot_sensitivity",
     "plot_signal_to_noise",
     "plot_staircase",

@@ -19,15 +19,17 @@ from shaftprint.report._model_sections import (
     thesis_section,
 )
 from shaftprint.report._result_sections import fit_section, parameter_section, stability_section, summary_section
+from shaftprint.report._search_sections import comparison_section, search_section
 from shaftprint.report._sections import Inputs, Picture, Section
 from shaftprint.report._style import save_figure
 from shaftprint.report._table import sentence_html
 from shaftprint.report._uncertainty_sections import uncertainty_section
+from shaftprint.report._verdict_sections import verdict_section
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
     from shaftprint.fingerprint import Fingerprint
-    from shaftprint.identify import Identification
+    from shaftprint.identify import Comparison, Identification
     from shaftprint.models import Structure
     from shaftprint.recording import Recording
     from shaftprint.report._thesis_mode import ThesisMode
@@ -54,6 +56,7 @@ def render_report(
     thesis: "ThesisMode | None" = None,
     truth: Mapping[str, float] | None = None,
     line_selection: "Mapping[str, FrequencyResponse] | None" = None,
+    comparisons: "Sequence[Comparison]" = (),
     sensitivity: "Sequence[Structure]" = (),
     overwrite: bool = False,
     progress: Callable[[float], None] | None = None,
@@ -78,6 +81,8 @@ def render_report(
         True values by parameter name, in the parameters' units, where they are known.
     line_selection
         Responses by other ways to measure the sines, by name of the way, the spectra's own among them.
+    comparisons
+        Which of several structures the data want.
     sensitivity
         Structures whose Bode families are shown.
     overwrite
@@ -102,6 +107,7 @@ def render_report(
         thesis=thesis,
         truth=truth or {},
         line_selection=line_selection or {},
+        comparisons=comparisons,
         sensitivity=sensitivity,
     )
     sections = _sections(inputs)
@@ -119,11 +125,14 @@ def render_report(
 
 def _sections(inputs: Inputs) -> list[Section]:
     return [
+        verdict_section(inputs),
         summary_section(inputs),
         parameter_section(inputs),
         *uncertainty_section(inputs),
         fit_section(inputs),
         *stability_section(inputs),
+        search_section(inputs),
+        *comparison_section(inputs),
         quality_section(inputs),
         response_section(inputs),
         signal_section(inputs),

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from shaftprint.campaign import Campaign
     from shaftprint.fingerprint import Fingerprint
-    from shaftprint.identify import Identification
+    from shaftprint.identify import Comparison, Identification
     from shaftprint.models import Structure
     from shaftprint.recording import Recording
     from shaftprint.report._thesis_mode import ThesisMode
@@ -35,6 +35,7 @@ class Inputs:
     thesis: "ThesisMode | None"
     truth: Mapping[str, float]
     line_selection: Mapping[str, "FrequencyResponse"]
+    comparisons: Sequence["Comparison"]
     sensitivity: Sequence["Structure"]
 
     @property

@@ -1,0 +1,148 @@
+"""Verdict, search and comparison in the report: what they say and show."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from shaftprint.identify import Settings, Unweighted, compare_fits, identify, scan
+from shaftprint.models import structure
+from shaftprint.report import plot_scan
+from shaftprint.report._search_sections import comparison_section, search_section
+from shaftprint.report._verdict_sections import verdict_section
+
+
+def cells(table):
+    return [[str(cell) for cell in row] for row in table.rows]
+
+
+# ---- verdict ----
+
+
+def test_the_verdict_comes_in_words_the_reason_first(fingerprint):
+    section = verdict_section(SimpleNamespace(fingerprint=fingerprint))
+    assert section.title == "Verdict: the fit is trustworthy"
+    assert section.paragraphs == (fingerprint.verdict.reason,)
+    assert section.points == fingerprint.verdict.sentences[1:]
+    assert section.points[0].startswith("Trusted: ")
+
+
+def test_a_fit_that_is_not_trustworthy_says_so_in_the_heading(fingerprint):
+    verdict = replace(
+        fingerprint.verdict, trustworthy=False, reason="It fails.", sentences=("It fails.", "A hint: look there.")
+    )
+    section = verdict_section(SimpleNamespace(fingerprint=fingerprint.model_copy(update={"verdict": verdict})))
+    assert section.title == "Verdict: the fit is not trustworthy"
+    assert (section.paragraphs, section.points) == (("It fails.",), ("A hint: look there.",))
+
+
+# ---- search ----
+
+
+def test_every_optimum_has_a_row_with_its_parameters(fits):
+    section = search_section(SimpleNamespace(identification=fits["OL3"]))
+    (table,) = section.tables
+    assert [str(cell) for cell in table.header[:5]] == [
+        "optimum", "starts", "cost", "deviance above the result", "stable"
+    ]  # fmt: skip
+    assert [str(cell) for cell in table.header[5:]] == [
+        "<i>K</i><sub>p</sub> [-]", "<i>K</i><sub>i</sub> [s⁻¹]", "<i>t</i><sub>d</sub> [s]"
+    ]  # fmt: skip
+    rows = cells(table)
+    assert rows[0][0] == "the result"
+    assert rows[0][3] == "–"
+    assert sum(int(row[1]) for row in rows) <= fits["OL3"].settings.starts
+    assert float(rows[0][5]) == pytest.approx(fits["OL3"].value("K_p"), rel=1e-3)
+    assert section.points[0].endswith(".")
+
+
+def test_more_optima_than_fit_on_a_page_are_counted(fits, monkeypatch):
+    monkeypatch.setattr("shaftprint.report._search_sections.MOST_OPTIMA", 1)
+    table = search_section(SimpleNamespace(identification=fits["OL3"])).tables[0]
+    assert len(table.rows) == 1
+    assert "more of higher cost are not shown" in table.note
+
+
+def test_the_cost_along_every_free_delay_is_drawn(fits):
+    names = {
+        name: [p.name for p in search_section(SimpleNamespace(identification=fits[name])).pictures] for name in fits
+    }
+    assert names["OL1"] == names["OL2"] == names["CL1"] == []
+    assert names["OL3"] == names["OL5"] == names["CL4"] == ["scan_t_d"]
+    figure = search_section(SimpleNamespace(identification=fits["OL3"])).pictures[0].draw()
+    assert figure.axes[0].get_xlabel() == r"$t_{\mathrm{d}}$ [s]"
+
+
+def test_the_curve_is_the_root_of_the_deviance_and_its_optima_lie_on_it(fits):
+    fit = fits["OL3"]
+    scanned = scan(fit, "t_d")
+    axes = plot_scan(scanned, fit).axes[0]
+    curve, optima, limit = axes.lines
+    assert curve.get_ydata() == pytest.approx(
+        np.sqrt(np.maximum(2.0 * (scanned.cost - scanned.best.cost), 0.0)), abs=1e-9
+    )
+    assert optima.get_ydata()[0] == 0.0
+    assert list(optima.get_xdata()) == [minimum.value for minimum in scanned.minima]
+    assert limit.get_ydata() == pytest.approx([1.96, 1.96], abs=1e-4)
+
+
+def test_without_weights_the_curve_is_that_of_one_unknown_variance(response, open_responses):
+    governor, _ = open_responses
+    settings = Settings(weighting=Unweighted(), starts=12)
+    fit = identify(structure("OL3"), governor, rng=np.random.default_rng(3), settings=settings)
+    scanned = scan(fit, "t_d", grid=[0.0, 0.2])
+    curve = plot_scan(scanned, fit).axes[0].lines[0]
+    expected = np.sqrt(24.0 * np.log(scanned.cost / scanned.best.cost))
+    assert curve.get_ydata() == pytest.approx(expected, rel=1e-9)
+
+
+# ---- which structure ----
+
+
+def test_structures_of_the_same_channels_are_compared_in_words_and_numbers(fits):
+    compared = compare_fits([fits["OL2"], fits["OL3"]], rng=np.random.default_rng(1))
+    (section,) = comparison_section(SimpleNamespace(comparisons=(compared,)))
+    assert section.title == "Which structure"
+    assert list(section.points) == list(compared.sentences)
+    criteria, nested = section.tables
+    rows = cells(criteria)
+    assert [row[0] for row in rows] == [candidate.name for candidate in compared.candidates]
+    assert criteria.caption == "Structures of M_s from e, lowest BIC first"
+    assert "24 data" in criteria.note
+    (ratio,) = cells(nested)
+    assert ratio[:3] == ["OL2", "OL3", "1"]
+
+
+def test_what_is_not_known_of_a_structure_is_left_blank(fits, open_responses):
+    governor, _ = open_responses
+    settings = Settings(weighting=Unweighted(), starts=5)
+    plain = [
+        identify(structure(name), governor, rng=np.random.default_rng(3), settings=settings) for name in ("OL2", "OL4")
+    ]
+    compared = compare_fits(plain, rng=np.random.default_rng(1), folds=0)
+    (section,) = comparison_section(SimpleNamespace(comparisons=(compared,)))
+    assert len(section.tables) == 1
+    for row in cells(section.tables[0]):
+        assert row[2] == row[4] == row[-1] == row[-2] == "–"
+
+
+def test_without_comparisons_there_is_no_section():
+    assert comparison_section(SimpleNamespace(comparisons=())) == []
+
+
+def test_where_a_p_value_comes_from_is_told(fits, open_responses):
+    governor, _ = open_responses
+    settings = Settings(weighting=Unweighted(), starts=5)
+    pair = [
+        identify(structure(name), governor, rng=np.random.default_rng(3), settings=settings) for name in ("OL2", "OL3")
+    ]
+    compared = compare_fits(pair, rng=np.random.default_rng(1), folds=0, draws=9)
+    (section,) = comparison_section(SimpleNamespace(comparisons=(compared,)))
+    assert cells(section.tables[1])[0][-1] == "9 drawn tests"
+    bound = replace(compared.ratios[0], draws=0)
+    (section,) = comparison_section(SimpleNamespace(comparisons=(replace(compared, ratios=(bound,)),)))
+    assert cells(section.tables[1])[0][-1] == "an upper bound"
+    law = replace(bound, reason="")
+    (section,) = comparison_section(SimpleNamespace(comparisons=(replace(compared, ratios=(law,)),)))
+    assert cells(section.tables[1])[0][-1] == "chi-square"
