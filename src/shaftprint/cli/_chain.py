@@ -9,12 +9,22 @@ import numpy as np
 
 from shaftprint.cli._inputs import Trial
 from shaftprint.cli._progress import Steps
+from shaftprint.errors import StructureError
 from shaftprint.fingerprint import Fingerprint, take_fingerprint
 from shaftprint.identify import Identification, Prior, Settings, identify, priors_from_vessel
 from shaftprint.models import Structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import Mode, Signals, prepare_signals
-from shaftprint.spectra import ExactBin, FrequencyResponse, Spectra, WholePeriodSine, estimate_spectra, open_loop
+from shaftprint.spectra import (
+    ExactBin,
+    FrequencyResponse,
+    Spectra,
+    WholePeriodSine,
+    estimate_spectra,
+    governor_and_engine,
+    open_loop,
+    plant_from_closed_loop,
+)
 from shaftprint.vessel import Vessel
 
 
@@ -26,8 +36,8 @@ class Measurement:
     """The prepared recording."""
     spectra: Spectra
     """Responses and signal-to-noise ratios."""
-    responses: Mapping[str, FrequencyResponse]
-    """Responses by the name of their input: ``n_set``, ``e`` and ``M_s``."""
+    responses: tuple[FrequencyResponse, ...]
+    """What structures are fitted to: the measured response, and what follows from it."""
 
 
 def measure(recording: Path, trial: Trial, *, mode: Mode, steps: Steps) -> Measurement:
@@ -44,9 +54,34 @@ def measure(recording: Path, trial: Trial, *, mode: Mode, steps: Steps) -> Measu
     steps.begin("Measuring the test lines")
     method = ExactBin() if mode == "thesis" else WholePeriodSine()
     spectra = estimate_spectra(signals, trial.campaign, method=method)
-    governor, core = open_loop(spectra.response)
-    responses = {"n_set": spectra.response, "e": governor, "M_s": core}
-    return Measurement(signals=signals, spectra=spectra, responses=responses)
+    return Measurement(signals=signals, spectra=spectra, responses=responses_of(spectra.response))
+
+
+def responses_of(response: FrequencyResponse) -> tuple[FrequencyResponse, ...]:
+    """Return a measured response and its open-loop forms: with a logged fuel rack also those to and from the rack."""
+    found = (response, *open_loop(response))
+    if "X" not in response.outputs:
+        return found
+    governor, _ = governor_and_engine(response)
+    return (*found, governor, plant_from_closed_loop(response, input="X", output=("n", "M_s")))
+
+
+def response_of(structure: Structure, responses: Sequence[FrequencyResponse]) -> FrequencyResponse:
+    """Return the response that a structure describes, by the names of its input and outputs.
+
+    Raises
+    ------
+    StructureError
+        If there is none.
+    """
+    for response in responses:
+        if structure.inputs == response.inputs and set(structure.outputs) <= set(response.outputs):
+            return response
+    there = "; ".join(f"{', '.join(r.inputs)} to {', '.join(r.outputs)}" for r in responses)
+    raise StructureError(
+        f"structure {structure.name} goes from {', '.join(structure.inputs)} to {', '.join(structure.outputs)}, which "
+        f"this recording does not give; it gives {there}."
+    )
 
 
 def known_beforehand(
@@ -64,7 +99,7 @@ def fit(
     seed: int,
     steps: Steps,
 ) -> tuple[Identification, ...]:
-    """Fit every structure to the response of its input.
+    """Fit every structure to the response that it describes.
 
     Parameters
     ----------
@@ -81,6 +116,8 @@ def fit(
 
     Raises
     ------
+    StructureError
+        If the recording does not give the response that a structure describes.
     IdentificationError
         If a structure cannot be fitted.
     """
@@ -88,7 +125,7 @@ def fit(
     found = []
     for structure in structures:
         rng = np.random.default_rng(seed)
-        response = measurement.responses[structure.input]
+        response = response_of(structure, measurement.responses)
         found.append(identify(structure, response, rng=rng, settings=settings[structure.name]))
         steps.advance(1.0)
     return tuple(found)

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._chain import fingerprint_of, fit, known_beforehand, measure
+from shaftprint.cli._chain import fingerprint_of, fit, known_beforehand, measure, response_of
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_tables import print_fits
 from shaftprint.cli._inputs import campaign_option, load_trial, structure_sources, vessel_option
 from shaftprint.cli._known_values import named_prior, named_value
 from shaftprint.cli._output_folder import force_option, output_folder
-from shaftprint.cli._own_structure import OWN_FILE_HELP, chosen_structures, expect_response
+from shaftprint.cli._own_structure import OWN_FILE_HELP, chosen_structures
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._results import where, write_results
 from shaftprint.errors import StructureError
@@ -94,7 +94,7 @@ def command(
         measurement = measure(recording, trial, mode=mode, steps=steps)
         settings = {}
         for chosen in structures:
-            expect_response(chosen, measurement.responses)
+            response_of(chosen, measurement.responses)
             given = _given(chosen, structures, dict(priors))
             known = known_beforehand(chosen, trial.vessel, measurement.signals, given)
             settings[chosen.name] = Settings(

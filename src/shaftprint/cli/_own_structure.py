@@ -3,19 +3,15 @@
 import inspect
 import sys
 import traceback
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from importlib.machinery import SourceFileLoader
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import CodeType, ModuleType
-from typing import TYPE_CHECKING
 
 from shaftprint.errors import ShaftprintError, StructureError
 from shaftprint.models import STRUCTURES, Structure, check_structure, structure
-
-if TYPE_CHECKING:
-    from shaftprint.spectra import FrequencyResponse
 
 SUFFIX = ".py"
 OWN_FILE_HELP = "a shipped one, or my_ship.py:my_loop for one of your own file, which is Python and is run"
@@ -47,28 +43,6 @@ def chosen_structures(texts: Sequence[str]) -> tuple[Structure, ...]:
             found[key] = _taken(modules[path], path, name)
     _expect_different_names(found)
     return tuple(found.values())
-
-
-def expect_response(chosen: Structure, responses: Mapping[str, "FrequencyResponse"]) -> None:
-    """Check that a recording gives the response that a structure describes.
-
-    Parameters
-    ----------
-    responses
-        What the recording gives, by the name of the input.
-
-    Raises
-    ------
-    StructureError
-        If the recording does not give it.
-    """
-    given = responses.get(chosen.input) if len(chosen.inputs) == 1 else None
-    if given is None or not set(chosen.outputs) <= set(given.outputs):
-        there = "; ".join(f"{name} to {', '.join(response.outputs)}" for name, response in responses.items())
-        raise StructureError(
-            f"structure {chosen.name} goes from {', '.join(chosen.inputs)} to {', '.join(chosen.outputs)}, which this "
-            f"recording does not give; it gives {there}."
-        )
 
 
 def own_file(text: str) -> tuple[Path, str] | None:

@@ -147,7 +147,7 @@ def _recorded(path: Path, vessel: str, campaign: str, chosen: Structure, *, no_p
     signals = measurement.signals
     slope = abs(signals.calibration.slope_rev_s_per_v) * signals.dc_scale
     noise = noise_levels(
-        measurement.responses["n_set"],
+        measurement.spectra.response,
         trial.campaign,
         set_point_per_v=slope / signals.working_point.engine_speed_rev_s,
     )
