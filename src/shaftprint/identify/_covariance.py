@@ -53,5 +53,5 @@ def known_covariance(
     """Return the covariance within the identifiable directions, and which they are."""
     rows, noise = objective.sensitivity(theta, expected=expected)
     information = PseudoInverse.of(rows)
-    covariance: FloatArray = information.inverse @ rows @ noise @ rows.T @ information.inverse
-    return 0.5 * (covariance + covariance.T), information
+    half = information.inverse @ noise
+    return half @ half.T, information

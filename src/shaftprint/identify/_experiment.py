@@ -40,7 +40,7 @@ class Term(ABC):
 
     @abstractmethod
     def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
-        """Return rows whose products are the information, and what their noise is.
+        """Return rows whose products are the information, and rows whose products are the variance of the slope.
 
         Parameters
         ----------
@@ -51,8 +51,8 @@ class Term(ABC):
 
         Returns
         -------
-            Derivatives ``J``, shape (free, rows), so that ``J J^T`` is the second derivative of the cost, and ``V``,
-            shape (rows, rows), so that ``J V J^T`` is the covariance of its slope.
+            ``J`` and ``N``, each of shape (free, rows): ``J J^T`` is the second derivative of the cost, and ``N N^T``
+            the covariance of its slope, the same for a likelihood.
         """
 
 
@@ -95,7 +95,8 @@ class Experiment(Term):
 
     def complete(self, theta: FloatArray) -> FloatArray:
         """Return all parameters of the structure, shape (..., parameters), from its free ones, shape (..., free)."""
-        values = np.broadcast_to(self.held, (*theta.shape[:-1], self.held.size)).copy()
+        values = np.empty((*theta.shape[:-1], self.held.size))
+        values[...] = self.held
         values[..., self.free] = theta
         return values
 
@@ -121,17 +122,18 @@ class Experiment(Term):
         return shaped.reshape(*shaped.shape[:2], -1)
 
     def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
-        """Return rows whose products are the information, and ``W C W^T`` in their order, or 1 for a likelihood."""
+        """Return the weighted derivatives, and where they are no likelihood's the same times a root of ``W C W^T``."""
         table = _weighted(self._stacked(theta[None, :], None), self.elements)
-        rows = np.sqrt(self.tails.information) * table[:, 1:] if expected else self.tails.curvature(table)
-        lines, size = self.data.shape
+        slopes = table[0, 1:]
+        if not self.tails.normal:
+            shaped = np.sqrt(self.tails.information) * slopes if expected else self.tails.curvature(table)[0]
+            rows = shaped.reshape(theta.size, -1)
+            return rows, rows
+        rows = slopes.reshape(theta.size, -1)
         if self.weighting.is_likelihood:
-            return rows.reshape(theta.size, -1), np.eye(lines * size)
-        noise = np.zeros((lines * size, lines * size))
-        place = np.arange(size)[None, :] * lines + np.arange(lines)[:, None]
-        blocks = self.weights @ self.noise_covariance @ self.weights.swapaxes(1, 2)
-        noise[place[:, :, None], place[:, None, :]] = blocks
-        return rows.reshape(theta.size, -1), noise
+            return rows, rows
+        roots = np.linalg.cholesky(self.weights @ self.noise_covariance @ self.weights.swapaxes(1, 2))
+        return rows, np.einsum("kaf,fab->kbf", slopes, roots).reshape(theta.size, -1)
 
     @property
     def freedom(self) -> FloatArray:

@@ -32,9 +32,16 @@ class LineTest:
     name: str
     """Name of the line."""
     distance: float
-    """Squared distance ``d^2 = (y - f)^T C^-1 (y - f)``: of the order of the number of real data of a line."""
-    p_value: float
-    """Probability that the true model is that far away or farther; the fitted one is a little nearer."""
+    """Squared distance ``d^2 = (y - f)^T C^-1 (y - f)``: of the order of the number of data."""
+    data_count: int
+    """Number of real data of the line."""
+    excess: float
+    """Degrees of freedom of its covariance beyond the number of data; infinite for a known one."""
+
+    @property
+    def p_value(self) -> float:
+        """Probability that the true model is that far away or farther; the fitted one is a little nearer."""
+        return f_tail(self.distance * (1.0 + 2.0 / self.excess) / self.data_count, self.data_count, self.excess + 2.0)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -123,8 +130,7 @@ def _line_tests(objective: Objective, number: int, squares: FloatArray, excess: 
     experiment = objective.experiments[number]
     size = experiment.data.shape[1]
     names = [name for name, taken in zip(experiment.response.lines, experiment.fitted, strict=True) if taken]
-    scaled = squares * (1.0 + 2.0 / excess) / size
     return [
-        LineTest(experiment=number, name=name, distance=float(d), p_value=f_tail(float(f), size, float(k) + 2.0))
-        for name, d, f, k in zip(names, squares, scaled, excess, strict=True)
+        LineTest(experiment=number, name=name, distance=distance, data_count=size, excess=k)
+        for name, distance, k in zip(names, squares.tolist(), excess.tolist(), strict=True)
     ]

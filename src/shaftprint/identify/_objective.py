@@ -102,7 +102,8 @@ class Objective:
 
     def complete(self, theta: FloatArray) -> FloatArray:
         """Return all parameters, shape (..., parameters), from the free ones, shape (..., free)."""
-        values = np.broadcast_to(self.held, (*theta.shape[:-1], self.held.size)).copy()
+        values = np.empty((*theta.shape[:-1], self.held.size))
+        values[...] = self.held
         values[..., self.free] = theta
         return values
 
@@ -139,7 +140,7 @@ class Objective:
         return table[:, 0], table[:, 1:]
 
     def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
-        """Return rows whose products are the information, and the covariance of their noise.
+        """Return rows whose products are the information, and rows whose products are the variance of the slope.
 
         Parameters
         ----------
@@ -150,24 +151,22 @@ class Objective:
 
         Returns
         -------
-            Shape (free, rows), and (rows, rows); rows that only regularise have no noise.
+            See ``Term.sensitivity``, each of shape (free, rows); rows that only regularise have no noise.
         """
-        parts = [
-            experiment.sensitivity(theta[list(experiment.columns)], expected=expected)
-            for experiment in self.experiments
-        ]
-        count = sum(rows.shape[1] for rows, _ in parts)
-        total = count + self.prior_counts.size
-        rows, noise = np.zeros((theta.size, total)), np.zeros((total, total))
-        first = 0
-        for experiment, (own, covariance) in zip(self.experiments, parts, strict=True):
-            last = first + own.shape[1]
-            rows[experiment.columns, first:last] = own
-            noise[first:last, first:last] = covariance
-            first = last
-        rows[:, count:] = self._prior_part(theta[None, :], self.prior_rows[:, 1])[0, 1:]
-        np.fill_diagonal(noise[count:, count:], self.prior_counts)
-        return rows, noise
+        knowledge = self._prior_part(theta[None, :], self.prior_rows[:, 1])[0, 1:]
+        parts = [self._spread(e, theta, expected=expected) for e in self.experiments]
+        parts.append((knowledge, knowledge * self.prior_counts))
+        rows, noise = zip(*parts, strict=True)
+        return np.concatenate(rows, axis=1), np.concatenate(noise, axis=1)
+
+    def _spread(self, experiment: Experiment, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
+        """Return the sensitivity of one experiment with a row for every free parameter."""
+        found = []
+        for own in experiment.sensitivity(theta[list(experiment.columns)], expected=expected):
+            spread = np.zeros((theta.size, own.shape[1]))
+            spread[list(experiment.columns)] = own
+            found.append(spread)
+        return found[0], found[1]
 
     def _part(self, number: int, theta: FloatArray, redrawn: Redrawn | None) -> FloatArray:
         """Return residuals of one experiment and below them their derivatives to all free parameters."""
