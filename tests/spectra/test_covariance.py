@@ -59,6 +59,41 @@ def test_stated_covariance_is_the_scatter_over_repeats(make_window, coloured, pe
     assert weighed.mean() == pytest.approx(2.0, rel=0.15)
 
 
+@pytest.mark.parametrize("periods", [14, 30])
+def test_noise_that_comes_through_the_shaft_is_not_noise_of_the_torque(make_window, coloured, periods):
+    """Speed noise near a peak, torque noise (2 + tau s) times it and a little of its own, as steep as a ship's.
+
+    Inertia and load slope come from their ratio: its stated variance is the scatter, a tenth of what the torque alone
+    has and less, although the inertia turns the ratio from bin to bin.
+    """
+    rng = np.random.default_rng(periods)
+    f, rate, repeats = 0.05, 1.0, 400
+    error, stated, alone = [], [], []
+    for _ in range(repeats):
+        count = int(np.ceil(periods / f * rate))
+        engine = coloured(rng, count, slope=0)[0]
+        load = coloured(rng, count, slope=2)[1] * f
+        frequency = np.fft.rfftfreq(count, 1.0 / rate)
+        through = np.fft.irfft((2.0 + 2.4j * frequency / f) * np.fft.rfft(engine), count)
+        window = make_window(
+            lambda t: np.cos(2.0 * np.pi * f * t),
+            lambda t, n=engine: 0.9 * np.cos(2.0 * np.pi * f * t) + 0.05 * n,
+            lambda t, n=through, m=load: (0.9 * (2.0 + 2.4j) * np.exp(2j * np.pi * f * t)).real + 0.05 * n + 0.02 * m,
+            frequency_hz=f,
+            periods=periods,
+            rate_hz=rate,
+        )
+        line = measure_line(window, WholePeriodSine())
+        taken = np.array([0.0, -(2.0 + 2.4j), 1.0])
+        error.append(taken @ line.amplitude)
+        stated.append((taken @ line.noise.covariance @ taken.conj()).real)
+        alone.append(line.noise.covariance[2, 2].real)
+    scatter = np.mean(np.abs(error) ** 2)
+    # 400 complex samples know a variance to 5 %
+    assert np.mean(stated) == pytest.approx(scatter, rel=0.2)
+    assert np.mean(alone) > 10.0 * scatter
+
+
 def test_plain_mean_of_neighbours_would_be_wrong_under_four_periods(make_window, coloured):
     # the reason for the slope: bins 2, 3, 5 and 6 of 1/f^2 noise have 1.7 times the density of bin 4 on average
     place = np.array([2.0, 3.0, 5.0, 6.0])

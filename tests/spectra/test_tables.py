@@ -9,9 +9,12 @@ from shaftprint.spectra import ExactBin, WholePeriodSine
 from shaftprint.spectra._harmonics import collect_harmonics
 from shaftprint.spectra._line_measurement import measure_line, strongest_frequency_hz
 from shaftprint.spectra._load_drift import load_drift
-from shaftprint.spectra._noise import residual_spectrum, stretch_amplitudes, without_modulation
+from shaftprint.spectra._modulation import without_modulation
+from shaftprint.spectra._noise import ShaftRelation, residual_spectrum
 from shaftprint.spectra._pick_up_gain import pick_up_gain
 from shaftprint.spectra._signal_to_noise import signal_to_noise
+
+UNRELATED = ShaftRelation(speed=1, torque=2, ratio=0.0)
 
 
 def tone(amplitude, cycles, phase_rad=0.0):
@@ -132,22 +135,34 @@ def test_sidebands_of_a_drifting_load_are_not_noise(make_window):
     )
     fit = WholePeriodSine().fit(window)
     raw = residual_spectrum(fit)
-    spectrum, stretches = without_modulation(raw, stretch_amplitudes(fit), window)
+    spectrum = without_modulation(raw, window.values[-1], UNRELATED, periods=30)
     sidebands = [25, 28, 32, 35]
     assert np.abs(raw[2, sidebands]) == pytest.approx(0.125 * np.array([0.01, 0.02, 0.02, 0.01]), rel=0.1)
     assert np.abs(spectrum[1, sidebands]).max() < 2e-5
     # the parabola in the fit spreads a little of the load itself over the bins of the torque
     assert np.abs(spectrum[2, sidebands]).max() < 1.2e-4
-    # what remains is the white noise of 1e-4 and the slow load itself, which a stretch does not quite keep out
-    assert np.abs(stretch_amplitudes(fit)[1]).max() > 5e-4
-    assert np.abs(stretches[1]).max() < 1e-4
-    # slow bins and neighbours of a line of 20 periods overlap
-    few = make_window(*[tone(0.1, 20)] * 3, frequency_hz=0.2, periods=20, rate_hz=10.0)
-    fit = WholePeriodSine().fit(few)
-    raw, before = residual_spectrum(fit), stretch_amplitudes(fit)
-    after = without_modulation(raw, before, few)
-    assert after[0] is raw
-    assert after[1] is before
+    # two slow bins and eight neighbours: too few to tell one from the other
+    few = make_window(*[tone(0.1, 8)] * 3, frequency_hz=0.2, periods=8, rate_hz=10.0)
+    raw = residual_spectrum(WholePeriodSine().fit(few))
+    assert without_modulation(raw, few.values[-1], UNRELATED, periods=8) is raw
+
+
+def test_taking_sidebands_out_leaves_the_noise_as_strong_as_it_was(make_window):
+    """White noise and nothing else: what least squares take of it by chance is given back on average."""
+    rng = np.random.default_rng(9)
+    before, after = 0.0, 0.0
+    for _ in range(200):
+        noise = rng.standard_normal((3, 500))
+        window = make_window(
+            *[lambda t, n=row: tone(1.0, 10)(t) + 1e-3 * n for row in noise], frequency_hz=0.2, periods=10, rate_hz=10.0
+        )
+        raw = residual_spectrum(WholePeriodSine().fit(window))
+        cleaned = without_modulation(raw, window.values[-1], UNRELATED, periods=10)
+        beside = [6, 7, 8, 9, 11, 12, 13, 14]
+        before += float(np.sum(np.abs(raw[1, beside]) ** 2))
+        after += float(np.sum(np.abs(cleaned[1, beside]) ** 2))
+    # 1600 complex samples: 2.5 %
+    assert after / before == pytest.approx(1.0, abs=0.06)
 
 
 @pytest.mark.parametrize("place", [0.1, 0.2, 0.32, 0.45])

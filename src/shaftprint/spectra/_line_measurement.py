@@ -6,15 +6,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.spectra._noise import (
-    LineNoise,
-    line_noise,
-    residual_spectrum,
-    stretch_amplitudes,
-    without_modulation,
-)
+from shaftprint.spectra._modulation import without_modulation
+from shaftprint.spectra._noise import LineNoise, ShaftRelation, line_noise, residual_spectrum
 from shaftprint.spectra._rack_line import RackLine, RackWindow, measure_rack
 from shaftprint.spectra._signal_to_noise import LineVariances, line_variances
+from shaftprint.spectra._stretches import stretch_amplitudes
 
 if TYPE_CHECKING:
     from shaftprint.spectra._line_fit import SineMethod, WindowSamples
@@ -87,16 +83,17 @@ def measure_line(samples: "WindowSamples", method: "SineMethod", rack: RackWindo
     window = samples.window
     fit = method.fit(samples)
     spectrum = residual_spectrum(fit)
-    residual_stretches = stretch_amplitudes(fit)
+    relation = _shaft_relation(fit.amplitude[0])
     variances = line_variances(fit.amplitude[0], samples.values, spectrum, periods=window.periods)
     channels = len(samples.values)
     harmonic = np.full((len(HARMONIC_ORDERS), channels), np.nan + 0j)
     harmonic_variance = np.full((len(HARMONIC_ORDERS), channels), np.nan)
     for row, order in enumerate(HARMONIC_ORDERS):
         if order <= len(fit.amplitude):
-            noise = line_noise(spectrum, residual_stretches, periods=window.periods, order=order)
+            noise = line_noise(spectrum, periods=window.periods, order=order)
             harmonic[row] = fit.amplitude[order - 1]
             harmonic_variance[row] = noise.covariance.diagonal().real
+    cleaned = without_modulation(spectrum, samples.values[-1], relation, periods=window.periods)
     dominant = variances.signal[0] > 0.5 * variances.overall[0]
     return LineMeasurement(
         window=window,
@@ -104,14 +101,22 @@ def measure_line(samples: "WindowSamples", method: "SineMethod", rack: RackWindo
         harmonic=harmonic,
         harmonic_variance=harmonic_variance,
         mean=fit.mean,
-        noise=line_noise(*without_modulation(spectrum, residual_stretches, samples), periods=window.periods),
+        noise=line_noise(cleaned, periods=window.periods, relation=relation),
         variances=variances,
-        stretches=fit.amplitude[0][:, np.newaxis] + residual_stretches,
+        stretches=fit.amplitude[0][:, np.newaxis] + stretch_amplitudes(fit),
         set_point_frequency_hz=(
             window.frequency_hz if dominant else strongest_frequency_hz(samples.values[0], samples.rate_hz)
         ),
-        rack=None if rack is None else measure_rack(rack, samples, method, spectrum, residual_stretches),
+        rack=None if rack is None else measure_rack(rack, samples, method, spectrum, relation),
         rack_remark="" if rack is None else rack.remark,
+    )
+
+
+def _shaft_relation(amplitude: ComplexArray) -> ShaftRelation:
+    """Return how the last channel, the torque, goes with the first speed."""
+    still = amplitude[1] == 0.0
+    return ShaftRelation(
+        speed=1, torque=len(amplitude) - 1, ratio=0.0 if still else complex(amplitude[-1] / amplitude[1])
     )
 
 

@@ -12,7 +12,8 @@ import numpy as np
 
 from shaftprint.arrays import ComplexArray
 from shaftprint.spectra._line_fit import LineFit, SineMethod, WindowSamples, cut_window
-from shaftprint.spectra._noise import line_noise, stretch_amplitudes, without_modulation
+from shaftprint.spectra._modulation import without_modulation
+from shaftprint.spectra._noise import ShaftRelation, line_noise
 from shaftprint.spectra._signal_to_noise import NEIGHBOUR_BINS, LineVariances, line_variances
 
 if TYPE_CHECKING:
@@ -96,7 +97,7 @@ def cut_rack(rack: "RackSignal", window: "Window") -> RackWindow:
 
 
 def measure_rack(
-    rack: RackWindow, samples: WindowSamples, method: SineMethod, spectrum: ComplexArray, stretches: ComplexArray
+    rack: RackWindow, samples: WindowSamples, method: SineMethod, spectrum: ComplexArray, relation: ShaftRelation
 ) -> RackLine | None:
     """Measure one line in the fuel rack, with its noise and that of the other channels.
 
@@ -110,8 +111,8 @@ def measure_rack(
         The way to measure the sine.
     spectrum
         Fourier amplitudes of the residual of the other channels, shape (channels, bins).
-    stretches
-        Amplitudes of their residual in stretches of whole periods, shape (channels, stretches).
+    relation
+        How the torque among them goes with the speed.
 
     Returns
     -------
@@ -121,12 +122,12 @@ def measure_rack(
         return None
     fit = method.fit(rack.samples)
     own = _residual_at_bins(fit, samples, spectrum.shape[1])
-    together = np.concatenate([spectrum, own]), np.concatenate([stretches, stretch_amplitudes(fit)])
-    cleaned = without_modulation(*together, samples)
+    together = np.concatenate([spectrum, own])
+    cleaned = without_modulation(together, samples.values[-1], relation, periods=samples.window.periods)
     # a torque without noise has no slow changes to look for in the rack: what was found then is rounding, enlarged
-    if np.vdot(cleaned[1][-1], cleaned[1][-1]).real > _ENLARGED * np.vdot(together[1][-1], together[1][-1]).real:
+    if np.vdot(cleaned[-1], cleaned[-1]).real > _ENLARGED * np.vdot(own, own).real:
         cleaned = together
-    noise = line_noise(*cleaned, periods=samples.window.periods)
+    noise = line_noise(cleaned, periods=samples.window.periods, relation=relation)
     amplitude = complex(fit.amplitude[0, 0] / rack.gain)
     covariance = noise.covariance[-1] / rack.gain
     seen = float(noise.covariance[-1, -1].real) / abs(rack.gain) ** 2

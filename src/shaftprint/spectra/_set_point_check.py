@@ -8,7 +8,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import ResponseError
-from shaftprint.spectra._noise import stretch_periods
+from shaftprint.spectra._stretches import stretch_periods
 
 if TYPE_CHECKING:
     from shaftprint.spectra._line_measurement import LineMeasurement
