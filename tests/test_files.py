@@ -1,6 +1,6 @@
 import pytest
 
-from shaftprint.files import written_whole
+from shaftprint.files import plain_name, written_whole
 
 
 def _write(path, text, *, overwrite=False, then=lambda: None):
@@ -52,3 +52,17 @@ def test_a_file_that_appeared_meanwhile_is_kept(tmp_path):
         _write(path, "mine", then=lambda: path.write_text("somebody else's"))
     assert [entry.name for entry in tmp_path.iterdir()] == ["result.txt"]
     assert path.read_text() == "somebody else's"
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ("CL4_n", "CL4_n"),
+        ("MY/LOOP", "MY-LOOP"),
+        (r"a\b:c*d?e", "a-b-c-d-e"),
+        ("speed / voltage", "speed-voltage"),
+        ('"x"<y>|z', "-x-y-z"),
+    ],
+)
+def test_a_text_becomes_a_name_that_every_system_takes(text, name):
+    assert plain_name(text) == name
