@@ -5,7 +5,8 @@ import pytest
 
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Draw, Settings, identify, identify_jointly
-from shaftprint.identify._levenberg_marquardt import descend
+from shaftprint.identify._border import beside_border
+from shaftprint.identify._levenberg_marquardt import Descent, descend
 from shaftprint.identify._stability import stable_models
 from shaftprint.models import Delay, Parameter, PIGovernor, Sensitivity, Shaft, Structure, is_stable, structure
 
@@ -170,3 +171,33 @@ def test_a_step_to_where_parameters_may_not_be_is_refused():
 def test_an_unknown_rule_is_refused():
     with pytest.raises(IdentificationError, match="expected stability after, during, ignored, found 'never'"):
         Settings(stability="never")
+
+
+def test_a_border_is_looked_for_only_where_there_is_feedback(make_response):
+    """Starts of a structure without a loop that claim to have been refused stay where they are."""
+    fit = identify(structure("OL5"), make_response("OL5", noise=0.02), rng=np.random.default_rng(6))
+    theta = fit.values[None, :]
+    stopped = Descent(
+        theta=theta,
+        cost=np.ones(1),
+        iterations=np.ones(1, dtype=int),
+        converged=np.ones(1, dtype=bool),
+        refused=np.ones(1, dtype=bool),
+    )
+    found = beside_border(fit.objective, stopped, DURING, stable_models(fit.objective))
+    assert found.cost.tolist() == [np.inf]
+    np.testing.assert_array_equal(found.theta, theta)
+
+
+def test_a_border_without_a_stable_side_gives_nothing(make_response):
+    own = delayed_loop()
+    fit = identify(own, make_response(own, UNSTABLE, noise=0.05), rng=np.random.default_rng(3))
+    stopped = Descent(
+        theta=np.array([[0.4, 0.5, 0.5, 0.1]]),
+        cost=np.ones(1),
+        iterations=np.ones(1, dtype=int),
+        converged=np.ones(1, dtype=bool),
+        refused=np.ones(1, dtype=bool),
+    )
+    nowhere = beside_border(fit.objective, stopped, DURING, lambda theta: np.zeros(len(theta), dtype=bool))
+    assert nowhere.cost.tolist() == [np.inf]
