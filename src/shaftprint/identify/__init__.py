@@ -15,7 +15,7 @@ from shaftprint.identify._accuracy import Accuracy, predict_accuracy, predict_jo
 from shaftprint.identify._band import ResponseBand, StepBand, model_band, response_band, step_band
 from shaftprint.identify._bootstrap import Bootstrap, BootstrapEstimate, bootstrap
 from shaftprint.identify._budget import Budget, BudgetRow, budget
-from shaftprint.identify._compare import compare_fits, compare_structures
+from shaftprint.identify._compare import compare_fits, compare_structures, expect_comparable
 from shaftprint.identify._comparison import Candidate, Comparison
 from shaftprint.identify._covariance import estimate_covariance
 from shaftprint.identify._criteria import Criteria, criteria_of
