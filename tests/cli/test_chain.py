@@ -67,3 +67,19 @@ def test_a_structure_of_several_inputs_is_refused():
     two = Structure(name="TWO", title="t", inputs=("n_set", "M_s"), outputs={"n": {"n_set": gain, "M_s": gain}})
     with pytest.raises(StructureError, match="TWO goes from n_set, M_s to n, which this recording does not give"):
         response_of(two, responses_of(measured()))
+
+
+def test_the_governor_alone_sees_the_set_point_late():
+    """With 0.05 s before the governor its error is ``exp(-0.05 s) n_set - n``; the engine does not care."""
+    late = np.exp(-0.05 * S)
+    seen = FrequencyResponse(
+        frequency_hz=S.imag / (2.0 * np.pi),
+        response=measured().response * late,
+        covariance=measured().covariance,
+        inputs=("n_set",),
+        outputs=("n", "M_s", "X"),
+    )
+    found = responses_of(seen, set_point_latency_s=0.05)
+    np.testing.assert_allclose(response_of(structure("GOVERNOR"), found).response[0, 0], RACK, rtol=1e-9)
+    plain = response_of(structure("GOVERNOR"), responses_of(seen)).response[0, 0]
+    assert np.abs(plain / RACK - 1.0).max() > 0.05

@@ -16,6 +16,7 @@ def vessel(inertia_std=2.7, scale_std=0.02, latency_std=0.002):
         gearbox=SimpleNamespace(ratio=3.82),
         sensors=SimpleNamespace(
             shaft_torque=SimpleNamespace(scale_std_fraction=scale_std, latency_s=0.005, latency_std_s=latency_std),
+            set_point=SimpleNamespace(latency_s=None, latency_std_s=None),
             rack=None,
         ),
     )
@@ -63,3 +64,12 @@ def test_latency_of_the_rack_is_known_as_the_vessel_file_says():
     in_thesis_mode = priors_from_vessel(structure("ENGINE"), ecu, WORKING_POINT, mode="thesis")
     assert in_thesis_mode["t_rack"].mean == late
     assert "t_rack" not in priors_from_vessel(structure("GAUGE-ECU"), load_vessel("stan-tug-1205"), WORKING_POINT)
+
+
+def test_a_measured_latency_of_the_set_point_is_known():
+    measured = vessel()
+    measured.sensors.set_point = SimpleNamespace(latency_s=0.05, latency_std_s=0.005)
+    known = priors_from_vessel(structure("GAUGE-CLOSED"), measured, WORKING_POINT)
+    assert known["t_sp"] == Prior(mean=0.05, std=0.005, sources={"set-point latency": 0.005})
+    measured.sensors.set_point = SimpleNamespace(latency_s=0.05, latency_std_s=None)
+    assert "t_sp" not in priors_from_vessel(structure("GAUGE-CLOSED"), measured, WORKING_POINT)

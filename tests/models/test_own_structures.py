@@ -160,6 +160,13 @@ def test_some_outputs_keep_the_parameters_that_they_show():
     assert "t_pickup" not in torque.names
 
 
+def test_a_combination_of_a_tied_parameter_stays_with_its_output():
+    full = structure("GAUGE-CLOSED").tied("K_i", lambda K_p, T_i: K_p / T_i, free("T_i", 0.1, 10.0))
+    names = [c.name for c in full.of_outputs("n").combinations]
+    assert "K_i" in names
+    assert "K_p / K_i" in names
+
+
 def test_several_inputs_and_outputs_lie_in_channel_order():
     # two masses on a spring: forces on each, positions of each
     mass, stiff = free("m"), free("k")

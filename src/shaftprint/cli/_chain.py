@@ -54,15 +54,26 @@ def measure(recording: Path, trial: Trial, *, mode: Mode, steps: Steps) -> Measu
     steps.begin("Measuring the test lines")
     method = ExactBin() if mode == "thesis" else WholePeriodSine()
     spectra = estimate_spectra(signals, trial.campaign, method=method)
-    return Measurement(signals=signals, spectra=spectra, responses=responses_of(spectra.response))
+    latency = trial.vessel.sensors.set_point.latency_s or 0.0
+    responses = responses_of(spectra.response, set_point_latency_s=latency)
+    return Measurement(signals=signals, spectra=spectra, responses=responses)
 
 
-def responses_of(response: FrequencyResponse) -> tuple[FrequencyResponse, ...]:
-    """Return a measured response and its open-loop forms: with a logged fuel rack also those to and from the rack."""
+def responses_of(response: FrequencyResponse, *, set_point_latency_s: float = 0.0) -> tuple[FrequencyResponse, ...]:
+    """Return a measured response and its open-loop forms: with a logged fuel rack also those to and from the rack.
+
+    Parameters
+    ----------
+    response
+        Response from ``n_set``.
+    set_point_latency_s
+        Time after which the governor has the set point, as far as it is known [s]. The error of the governor alone is
+        formed with it; that of ``M_s / e`` is the measured one, since GAUGE-OPEN has the latency as a parameter.
+    """
     found = (response, *open_loop(response))
     if "X" not in response.outputs:
         return found
-    governor, _ = governor_and_engine(response)
+    governor, _ = governor_and_engine(response, set_point_latency_s=set_point_latency_s)
     return (*found, governor, plant_from_closed_loop(response, input="X", output=("n", "M_s")))
 
 

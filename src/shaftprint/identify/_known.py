@@ -24,7 +24,7 @@ PRIOR_OF_G = Prior(mean=0.0, std=0.1)
 def priors_from_vessel(
     structure: Structure, vessel: "Vessel", working_point: "WorkingPoint", *, mode: "Mode" = "shaftprint"
 ) -> dict[str, Prior]:
-    """Return what is known of a structure's ``g``, ``tau_up``, ``t_gauge`` and ``t_rack``, those that are free.
+    """Return what is known of a structure's ``g``, ``tau_up``, ``t_sp``, ``t_gauge``, ``t_rack``, those that are free.
 
     The inertia time is ``tau_up = 2 pi I_up n_s0 / M_s0`` (thesis eq. 2.23). Its standard deviation holds that of
     the TVC and of the gauge's scale: a gauge that shows too much makes it too small. The scatter of the working point
@@ -57,6 +57,13 @@ def priors_from_vessel(
             mean=gauge.latency_s if mode == "thesis" else 0.0,
             std=gauge.latency_std_s,
             sources={"telemetry latency": gauge.latency_std_s},
+        )
+    set_point = vessel.sensors.set_point
+    if "t_sp" in names and set_point.latency_s is not None and set_point.latency_std_s is not None:
+        found["t_sp"] = Prior(
+            mean=set_point.latency_s,
+            std=set_point.latency_std_s,
+            sources={"set-point latency": set_point.latency_std_s},
         )
     rack = vessel.sensors.rack
     if "t_rack" in names and rack is not None and rack.latency_std_s:

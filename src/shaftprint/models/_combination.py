@@ -21,11 +21,11 @@ class Combination:
     meaning: str
     """What it stands for, in a few words."""
 
-    def is_defined_by(self, values: Mapping[str, float]) -> bool:
+    def is_defined_by(self, values: Mapping[str, FloatArray]) -> bool:
         """Return whether the values name every parameter that the combination is made of."""
         try:
             with np.errstate(all="ignore"):
-                self.of({name: np.asarray(value) for name, value in values.items()})
+                self.of(values)
         except KeyError:
             return False
         return True

@@ -194,12 +194,14 @@ class Structure:
         ties = tuple(tie for tie in self.ties if tie.name in shown)
         shown |= {argument for tie in ties for argument in tie.arguments}
         kept = tuple(p for p in self.parameters if p.name in shown)
+        known = {p.name: np.asarray(p.value) for p in kept}
+        known |= {tie.name: tie.value(known) for tie in ties}
         return replace(
             self,
             outputs={name: self.outputs[name] for name in names},
             parameters=kept,
             ties=ties,
-            combinations=tuple(c for c in self.combinations if c.is_defined_by({p.name: p.value for p in kept})),
+            combinations=tuple(c for c in self.combinations if c.is_defined_by(known)),
         )
 
     def named(self, values: ArrayLike) -> dict[str, FloatArray]:

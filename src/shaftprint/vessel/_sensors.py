@@ -107,6 +107,10 @@ class SetPointSensor(Settings):
     """Unit of the channel."""
     noise_v: NotNegativeNumber | None = None
     """Standard deviation of the logger's noise [V]."""
+    latency_s: NotNegativeNumber | None = None
+    """Time from the voltage to the demanded speed that the engine's control unit has [s]; None where not measured."""
+    latency_std_s: PositiveNumber | None = None
+    """Standard deviation of that time [s]."""
 
 
 class RackSensor(Settings):
