@@ -47,8 +47,8 @@ def exact(name, rng, *, share=1e-6, spread=0.0):
 @pytest.mark.parametrize("spread", [0.0, 2.0], ids=["even", "uneven"])
 @pytest.mark.parametrize("name", TRUTHS)
 def test_fifty_starts_find_the_truth(name, spread):
-    """Six truths each; seeds 3 and 8 of the uneven GAUGE-CLOSED end elsewhere where the search goes straight down."""
-    for seed in (1, 2, 3, 8, 11, 18):
+    """Three truths each; seeds 3 and 8 of the uneven GAUGE-CLOSED end elsewhere where the search goes straight down."""
+    for seed in (3, 8, 18):
         shipped, truth, response = exact(name, np.random.default_rng(seed), spread=spread)
         priors = {}
         if name == "GAUGE-CLOSED":
