@@ -21,6 +21,7 @@ def test_commands_are_those_that_were_asked_for():
         "inspect",
         "predict",
         "identify",
+        "compare-structures",
         "structures",
         "sensitivity",
         "explain",
@@ -31,7 +32,7 @@ def test_commands_are_those_that_were_asked_for():
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_table_of_commands_agrees_with_each_command(name):
-    command = importlib.import_module(f"shaftprint.cli._{name}").command
+    command = importlib.import_module(f"shaftprint.cli._{name.replace('-', '_')}").command
     assert isinstance(command, click.Command)
     assert command.name == name
     assert command.get_short_help_str(limit=200) == COMMANDS[name]
@@ -41,7 +42,7 @@ def test_table_of_commands_agrees_with_each_command(name):
 def test_every_option_has_a_help(run, name):
     result = run(name, "--help")
     assert result.exit_code == 0
-    command = importlib.import_module(f"shaftprint.cli._{name}").command
+    command = importlib.import_module(f"shaftprint.cli._{name.replace('-', '_')}").command
     for parameter in command.params:
         if isinstance(parameter, click.Option):
             assert parameter.help, f"{name} {parameter.name}"

@@ -17,6 +17,7 @@ COMMANDS = {
     "predict": "Say what a test would find, before it is made.",
     "inspect": "Say what is in a recording and whether it is good enough.",
     "identify": "Identify the fingerprint from a recording.",
+    "compare-structures": "Say which of several structures a recording wants, and why.",
     "explain": "Say where the numbers of the thesis' way come from on one recording.",
     "show": "Print a saved fingerprint.",
     "structures": "List the model structures with their parameters and bounds.",
@@ -37,7 +38,7 @@ class CommandGroup(click.Group):
         """Import a command; None if there is none of that name."""
         if cmd_name not in COMMANDS:
             return None
-        module = importlib.import_module(f"shaftprint.cli._{cmd_name}")
+        module = importlib.import_module(f"shaftprint.cli._{cmd_name.replace('-', '_')}")
         command: click.Command = module.command
         return command
 

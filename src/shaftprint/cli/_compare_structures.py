@@ -1,0 +1,82 @@
+"""``shaftprint compare-structures``: which of several structures a recording wants."""
+
+from pathlib import Path
+
+import click
+import numpy as np
+
+from shaftprint.cli._chain import measure, response_of
+from shaftprint.cli._comparison_tables import print_comparison
+from shaftprint.cli._fit_options import fit_options, settings_of, structures_of
+from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
+from shaftprint.cli._own_structure import OWN_FILE_HELP
+from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.identify import Prior, compare_structures, expect_comparable
+from shaftprint.signals import Mode
+
+
+@click.command("compare-structures")
+@click.argument("recording", type=click.Path(path_type=Path))
+@vessel_option
+@campaign_option
+@click.option(
+    "--structure",
+    "names",
+    multiple=True,
+    required=True,
+    metavar="NAME",
+    help=f"Model structure, two or more of the same input and outputs: {OWN_FILE_HELP}.",
+)
+@click.option(
+    "--folds",
+    type=click.IntRange(min=0),
+    default=5,
+    show_default=True,
+    help="Parts into which the lines are dealt, each to be foretold from the others; 0 for none.",
+)
+@fit_options
+@no_progress_option
+def command(
+    recording: Path,
+    vessel: str,
+    campaign: str,
+    names: tuple[str, ...],
+    folds: int,
+    priors: tuple[tuple[str, Prior], ...],
+    freed: tuple[str, ...],
+    held: tuple[tuple[str, float], ...],
+    mode: Mode,
+    unweighted: bool,
+    starts: int,
+    seed: int,
+    no_progress: bool,
+) -> None:
+    """Say which of several structures a recording wants, and why.
+
+    Each structure is fitted to the same lines. It wins that explains them with the fewest parameters (BIC);
+    beside it stand a test of each fit, of each structure within a larger one, and how well each foretells
+    lines that were left out. --structure, --prior, --free and --hold may be repeated.
+    """
+    structures = structures_of(names, dict(held), freed)
+    expect_comparable(structures)
+    trial = load_trial(vessel, campaign)
+    with progress(hidden=no_progress) as steps:
+        measurement = measure(recording, trial, mode=mode, steps=steps)
+        settings = settings_of(
+            structures,
+            measurement,
+            trial,
+            priors=dict(priors),
+            freed=freed,
+            unweighted=unweighted,
+            starts=starts,
+        )
+        steps.begin("Comparing the structures")
+        comparison = compare_structures(
+            structures,
+            response_of(structures[0], measurement.responses),
+            rng=np.random.default_rng(seed),
+            settings=settings,
+            folds=folds,
+        )
+    print_comparison(comparison)

@@ -1,0 +1,118 @@
+"""The options of the commands that fit structures: which, what is known, how they are weighed and searched."""
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import reduce
+from typing import Any
+
+import click
+
+from shaftprint.cli._chain import Measurement, known_beforehand, response_of
+from shaftprint.cli._inputs import Trial
+from shaftprint.cli._known_values import named_prior, named_value
+from shaftprint.cli._own_structure import chosen_structures
+from shaftprint.errors import StructureError
+from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted
+from shaftprint.models import Structure
+
+_OPTIONS = (
+    click.option(
+        "--prior",
+        "priors",
+        metavar="NAME=MEAN+-STD",
+        type=named_prior,
+        multiple=True,
+        help="What is known of a parameter beforehand, such as g=0+-0.1; instead of what the vessel file knows.",
+    ),
+    click.option(
+        "--free",
+        "freed",
+        metavar="NAME",
+        multiple=True,
+        help="Take nothing as known of a parameter, such as tau_up, of which the vessel file knows the inertia.",
+    ),
+    click.option(
+        "--hold", "held", metavar="NAME=VALUE", type=named_value, multiple=True, help="Hold a parameter at a value."
+    ),
+    click.option(
+        "--mode",
+        type=click.Choice(["shaftprint", "thesis"]),
+        default="shaftprint",
+        show_default=True,
+        help="How signals and lines are prepared; the thesis' way is there to compare.",
+    ),
+    click.option("--unweighted", is_flag=True, help="Weigh all lines alike, as the thesis did; intervals are wider."),
+    click.option("--starts", type=click.IntRange(min=1), default=50, show_default=True, help="Starts of each search."),
+    click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the starts."),
+)
+
+
+def fit_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add ``--prior``, ``--free``, ``--hold``, ``--mode``, ``--unweighted``, ``--starts`` and ``--seed``."""
+    return reduce(lambda wrapped, option: option(wrapped), reversed(_OPTIONS), command)
+
+
+def structures_of(names: Sequence[str], held: Mapping[str, float], freed: Sequence[str]) -> tuple[Structure, ...]:
+    """Return the structures with what is held in those that have it; each name given must be of use in one.
+
+    Raises
+    ------
+    StructureError
+        If there is no such structure, or a parameter that is held or freed is in none of them.
+    """
+    chosen = chosen_structures(names)
+    unused = [name for name in held if not any(name in found.names for found in chosen)]
+    if unused:
+        raise StructureError(
+            f"--hold {', '.join(unused)}: expected a parameter of {', '.join(found.name for found in chosen)}, "
+            f"which have {', '.join(sorted({name for found in chosen for name in found.names}))}."
+        )
+    taken = tuple(
+        found.held_at(**{name: value for name, value in held.items() if name in found.names}) for found in chosen
+    )
+    anywhere = _free_names(taken)
+    unknown = [name for name in freed if name not in anywhere]
+    if unknown:
+        raise StructureError(
+            f"--free {', '.join(unknown)}: expected a free parameter, one of {', '.join(sorted(anywhere))}."
+        )
+    return taken
+
+
+def settings_of(
+    structures: Sequence[Structure],
+    measurement: Measurement,
+    trial: Trial,
+    *,
+    priors: Mapping[str, Prior],
+    freed: Sequence[str],
+    unweighted: bool,
+    starts: int,
+) -> dict[str, Settings]:
+    """Return how each structure is fitted, by name: with what the vessel file knows of it and what the user states.
+
+    Raises
+    ------
+    StructureError
+        If the recording does not give the response that a structure describes.
+    """
+    found = {}
+    for chosen in structures:
+        response_of(chosen, measurement.responses)
+        given = _given(chosen, structures, priors)
+        known = known_beforehand(chosen, trial.vessel, measurement.signals, given)
+        found[chosen.name] = Settings(
+            weighting=Unweighted() if unweighted else MaximumLikelihood(),
+            starts=starts,
+            priors={name: prior for name, prior in known.items() if name not in freed},
+        )
+    return found
+
+
+def _given(chosen: Structure, structures: Sequence[Structure], given: Mapping[str, Prior]) -> dict[str, Prior]:
+    """Return the priors that concern a structure; one that no structure has is passed on, to be refused."""
+    free, anywhere = _free_names([chosen]), _free_names(structures)
+    return {name: prior for name, prior in given.items() if name in free or name not in anywhere}
+
+
+def _free_names(structures: Sequence[Structure]) -> set[str]:
+    return {parameter.name for found in structures for parameter in found.free}

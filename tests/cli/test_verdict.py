@@ -1,0 +1,38 @@
+"""The verdict comes first on the terminal, and structures beside each other are compared."""
+
+
+def test_the_verdict_comes_first(run, demo):
+    """The simulated line of the demo: all but delay and priors is found, the governor has little to spare."""
+    folder, result = demo
+    shown = run("show", folder).output
+    lines = shown.splitlines()
+    assert lines[0] == "Verdict: trustworthy"
+    assert lines[1].startswith(
+        "  * The fit can be trusted: GAUGE-CLOSED explains 10 good lines within their noise (p = "
+    )
+    assert lines[2].startswith("  * Trusted: ")
+    assert "k_q" in lines[2]
+    assert lines[3].startswith("  * Not trusted: ")
+    assert "The loop has little to spare: a gain margin of 1." in shown
+    assert "Verdict: trustworthy" in result.output
+
+
+def test_the_demo_says_which_structure_the_data_want(demo):
+    _, result = demo
+    assert "Which structure: GAUGE-CLOSED\n  * GAUGE-CLOSED wins: its BIC is " in result.output
+    assert "CL4 is rejected" in result.output
+
+
+def test_a_structure_that_does_not_fit_is_not_trustworthy(run, recording, tmp_path):
+    given = ("--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress", "--starts", 20)
+    structures = ("--structure", "CL4", "--structure", "CL3")
+    result = run("identify", recording, *given, *structures, "-o", tmp_path / "out")
+    assert result.exit_code == 0
+    lines = result.output.splitlines()
+    assert lines[0] == "Verdict: not trustworthy"
+    assert lines[1].startswith("  * The structure CL4 does not explain the data within their noise (chi-square ")
+    assert "would go if there is inertia between engine and torque gauge" in lines[2]
+    assert "Which structure: CL4" in result.output
+    page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    assert "Verdict: the fit is not trustworthy" in page
+    assert "Which structure" in page
