@@ -130,7 +130,7 @@ def _share(estimate: Estimate) -> float:
 
 def _together(objective: Objective, first: str, second: str, named: Sequence[Combination]) -> list[Combination]:
     """Return what might be known of two parameters together: named combinations, sums, products, quotients."""
-    values = {name: float(value) for name, value in objective.named(objective.held).items()}
+    values = objective.named(objective.held)
     own = [c for c in named if not any(c.is_defined_by(_without(values, name)) for name in (first, second))]
     one, other = (_term(objective, name, order) for order, name in enumerate((first, second)))
     formulas = [Formula(factors=((one, 1), (other, power))) for power in (1, -1)]
@@ -142,7 +142,7 @@ def _together(objective: Objective, first: str, second: str, named: Sequence[Com
     return [*own, *(Combination(name=f.name, unit=f.unit, of=f.of, meaning=MEANING) for f in formulas)]
 
 
-def _without(values: dict[str, float], name: str) -> dict[str, float]:
+def _without(values: dict[str, FloatArray], name: str) -> dict[str, FloatArray]:
     return {key: value for key, value in values.items() if key != name}
 
 
