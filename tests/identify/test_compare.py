@@ -36,7 +36,7 @@ def test_the_true_structure_wins_and_the_report_says_why(make_response):
     needed = next(s for s in text if s.startswith("CL4 holds CL3 as a special case: one more parameter lowers"))
     assert needed.endswith("is needed (p < 1e-12).")
     foretold = next(s for s in text if s.startswith("Lines left out"))
-    assert foretold.index("CL4 to") < foretold.index("CL3 to") < foretold.index("CL1 to")
+    assert foretold.index("by CL4") < foretold.index("by CL3") < foretold.index("by CL1")
     assert sum(found.weights.values()) == pytest.approx(1.0)
     assert found.weights["CL4"] > 1.0 - 1e-9
 
@@ -112,7 +112,7 @@ def test_leaving_lines_out_may_speak_against_bic(make_response):
     first = replace(first, foretold=Foretold(square=1.3, expected=1.1, folds=5))
     second = replace(second, foretold=Foretold(square=1.2, expected=1.1, folds=5))
     *_, told, against = comparison_words([first, second], {}, [])
-    assert told.endswith(f"by {second.name} to 1.2 (1.1 expected), {first.name} to 1.3 (1.1 expected).")
+    assert told.endswith(f"of 1.2 by {second.name} (1.1 expected), 1.3 by {first.name} (1.1 expected).")
     assert against.startswith(f"{second.name} foretells left-out lines better than {first.name}, which BIC prefers")
 
 

@@ -81,8 +81,10 @@ def _foretelling(candidates: Sequence[Candidate]) -> list[str]:
     if len(told) < 2:
         return []
     ordered = sorted(told, key=lambda pair: pair[1].square)
-    words = ", ".join(f"{c.name} to {f.square:.3g} ({f.expected:.3g} expected)" for c, f in ordered)
-    found = [f"Lines left out of the fit are foretold, in units of their noise variance, by {words}."]
+    words = ", ".join(f"{f.square:.3g} by {c.name} ({f.expected:.3g} expected)" for c, f in ordered)
+    found = [
+        f"Lines left out of the fit are foretold with a mean squared error, over their noise variance, of {words}."
+    ]
     if ordered[0][0] is not candidates[0]:
         found.append(
             f"{ordered[0][0].name} foretells left-out lines better than {candidates[0].name}, which BIC prefers: "

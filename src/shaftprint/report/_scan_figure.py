@@ -39,7 +39,10 @@ def plot_scan(scan: "Scan", identification: "Identification") -> "Figure":
             _distance(np.array([minimum.cost for minimum in scan.minima]), lowest, identification),
             color=points.colour,
             marker=points.marker,
+            markersize=4.0,
             linestyle="none",
+            clip_on=False,
+            zorder=3.0,
             label="optimum",
         )
         axes.axhline(
