@@ -67,6 +67,10 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
         limit_torque_nm=np.array(vessel.engine.full_load_torque_nm),
         motoring_torque_nm=tug.motoring_torque_nm,
         motoring_speed_rev_s=speed,
+        deadband_rev_s=rev_s_from_rpm(tug.governor_deadband_rpm),
+        rack_rate_limit_per_s=np.inf if tug.rack_rate_limit_per_s is None else tug.rack_rate_limit_per_s,
+        air_share=tug.unboosted_torque_share,
+        turbocharger_lag_s=tug.turbocharger_lag_s,
     )
 
 
@@ -95,6 +99,13 @@ def equilibrium(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
     return state
 
 
+def steady_boost(plant: Plant, engine_speed_rev_s: float) -> float:
+    """Return the boost in steady running at an engine speed [rev/s]: the share of the full-load torque, at most 1."""
+    speed_s = engine_speed_rev_s / plant.gear_ratio
+    brake = plant.propeller_nm_s2 * speed_s * abs(speed_s) / (plant.gear_ratio * plant.efficiency)
+    return min(brake / float(np.interp(engine_speed_rev_s, plant.limit_speed_rev_s, plant.limit_torque_nm)), 1.0)
+
+
 def shaft_time_constant_s(inertia_kg_m2: float, tug: Tug, vessel: Vessel) -> float:
     """Return ``tau = 2 pi I n_s0 / M_s0`` [s] of an inertia referred to the propeller shaft."""
     speed, torque = working_point(tug, vessel)
@@ -115,6 +126,9 @@ def _check(tug: Tug) -> None:
         "demand_resolution_rpm",
         "demand_rate_limit_rpm_per_s",
         "inflow_time_s",
+        "rack_rate_limit_per_s",
+        "unboosted_torque_share",
+        "turbocharger_lag_s",
     )
     for name in positive:
         value = getattr(tug, name)
@@ -128,8 +142,18 @@ def _check(tug: Tug) -> None:
         "entrained_water_kg_m2",
         "inflow_gain",
         "rack_latency_s",
+        "governor_deadband_rpm",
     )
     for name in not_negative:
         value = getattr(tug, name)
         if value is not None and not value >= 0.0:
             raise SettingsError(f"tug: expected {name} of at least 0, found {value:g}; give 0 or a positive value.")
+    if tug.unboosted_torque_share > 1.0:
+        raise SettingsError(
+            f"tug: expected unboosted_torque_share of at most 1, found {tug.unboosted_torque_share:g}; "
+            "it is a share of the full-load torque."
+        )
+    if tug.rack_rate_limit_per_s is not None and tug.governor_delay_s == 0.0:
+        raise SettingsError(
+            "tug: expected a governor_delay_s with rack_rate_limit_per_s, found 0; give a delay or no limit."
+        )

@@ -14,6 +14,10 @@ propeller has dynamic inflow, the slipstream follows it late and the blades meet
 Lindegaard and Fossen, "Dynamic model for thrust generation of marine propellers" (2000): torque ``Q_nn n |n| - Q_nu
 |n| u``, momentum of the water accelerated by the thrust and lost by ``u |u|``. Linear at the working point it is
 ``Q* = (2 + kappa) n* - kappa u*`` with ``tau_i du*/dt = n* - u*``.
+
+A smoke limiter lets the engine burn no more than the boost gives air for: ``M_b <= M_full (a + (1 - a) b)`` with the
+boost ``b`` of a turbocharger that follows the torque late, ``tau_tc db/dt = M_b / M_full - b``: steady running is never
+limited, a fast rise is. A limit of the rate of the rack holds for what the governor gives, before delay and actuation.
 """
 
 from typing import NamedTuple
@@ -63,6 +67,14 @@ class Plant(NamedTuple):
     motoring_torque_nm: float
     """Brake torque without fuel at ``motoring_speed_rev_s``, as a positive number [N m]."""
     motoring_speed_rev_s: float
+    deadband_rev_s: float = 0.0
+    """Speed error within which the governor does nothing [rev/s], half of the whole band."""
+    rack_rate_limit_per_s: float = np.inf
+    """Fastest change of the rack that the governor gives [1/s]."""
+    air_share: float = 1.0
+    """Full-load torque without boost, as a fraction of that with full boost; 1 without a smoke limiter."""
+    turbocharger_lag_s: float = 1.0
+    """Time in which the boost follows the torque [s]."""
 
 
 @njit(inline="always", cache=True)
@@ -87,26 +99,41 @@ def _torque_limits(speed, plant):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always", cache=True)
-def governor_rack(speed_s, integral, demand, plant):  # type: ignore[no-untyped-def]
-    """Return the rack that the governor asks for, before and after the limiter of the ECU."""
+def _felt(error, plant):  # type: ignore[no-untyped-def]
+    """Return the speed error [rev/s] that the governor feels beyond its deadband."""
+    if plant.deadband_rev_s == 0.0:
+        return error
+    return error - min(max(error, -plant.deadband_rev_s), plant.deadband_rev_s)
+
+
+@njit(inline="always", cache=True)
+def governor_rack(speed_s, integral, demand, plant, air=1.0):  # type: ignore[no-untyped-def]
+    """Return the rack that the governor asks for, before and after the limiter of the ECU.
+
+    ``air`` is the share of the full-load torque for which the boost gives air.
+    """
     speed = plant.gear_ratio * speed_s
-    wanted = plant.proportional_s * (demand - speed) + integral
+    wanted = plant.proportional_s * _felt(demand - speed, plant) + integral
     lowest, highest = _torque_limits(speed, plant)
+    highest *= air
     rest = plant.speed_slope_nm_s * speed + plant.rack_offset_nm
     given = min(max(wanted, (lowest - rest) / plant.rack_slope_nm), (highest - rest) / plant.rack_slope_nm)
     return wanted, given
 
 
 @njit(inline="always", cache=True)
-def derivatives(state, demand, rack_delayed, propeller_noise, engine_noise, plant):  # type: ignore[no-untyped-def]
+def derivatives(  # type: ignore[no-untyped-def]
+    state, demand, rack_delayed, propeller_noise, engine_noise, plant, air=1.0
+):
     """Return the rates of the states without the angle, then rack given, ``M_s``, ``M_b`` and whether it is limited."""
     speed_s, integral, rack, rack_rate, slipstream = state[0], state[1], state[2], state[3], state[4]
     speed = plant.gear_ratio * speed_s
-    wanted, given = governor_rack(speed_s, integral, demand, plant)
+    wanted, given = governor_rack(speed_s, integral, demand, plant, air)
     if plant.delay_s == 0.0:
         rack_delayed = given
     asked = plant.speed_slope_nm_s * speed + plant.rack_slope_nm * rack + plant.rack_offset_nm
     lowest, highest = _torque_limits(speed, plant)
+    highest *= air
     brake = min(max(asked, lowest), highest)
     load = plant.propeller_nm_s2 * speed_s * abs(speed_s)
     hydrodynamic = load
@@ -118,7 +145,7 @@ def derivatives(state, demand, rack_delayed, propeller_noise, engine_noise, plan
     drive = plant.gear_ratio * plant.efficiency * brake + load * engine_noise
     acceleration = (drive - propeller) / (2.0 * np.pi * (plant.inertia_upstream_kg_m2 + plant.inertia_downstream_kg_m2))
     gauge = propeller + 2.0 * np.pi * plant.inertia_downstream_kg_m2 * acceleration
-    integral_rate = plant.integral * (demand - speed) + (given - wanted) / plant.anti_windup_s
+    integral_rate = plant.integral * _felt(demand - speed, plant) + (given - wanted) / plant.anti_windup_s
     omega = plant.natural_frequency_rad_s
     rack_acceleration = omega * (omega * (rack_delayed - rack) - 2.0 * plant.damping_ratio * rack_rate)
     limited = given != wanted or brake != asked
@@ -160,6 +187,8 @@ class Carried(NamedTuple):
     """Ring of the racks given at the nodes; its size is a power of two."""
     counter: IntArray
     """Nodes passed, shape (1,)."""
+    boost: FloatArray
+    """Boost as the share of the full-load torque to which it belongs in steady running, shape (1,)."""
 
 
 class Delay(NamedTuple):
@@ -195,17 +224,17 @@ def _moved(x, h, rates):  # type: ignore[no-untyped-def]
 
 
 @njit(inline="always", cache=True)
-def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant):  # type: ignore[no-untyped-def]
+def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant, air):  # type: ignore[no-untyped-def]
     """Return the state after a step of the classical fourth-order method, whose first rates ``k1`` are known.
 
     ``demand``, ``past``, ``propeller`` and ``engine`` hold the inputs at the start, middle and end of the step.
     """
     x2 = _moved(x, 0.5 * h, k1)
-    k2 = derivatives(x2, demand[1], past[1], propeller[1], engine[1], plant)
+    k2 = derivatives(x2, demand[1], past[1], propeller[1], engine[1], plant, air)
     x3 = _moved(x, 0.5 * h, k2)
-    k3 = derivatives(x3, demand[1], past[1], propeller[1], engine[1], plant)
+    k3 = derivatives(x3, demand[1], past[1], propeller[1], engine[1], plant, air)
     x4 = _moved(x, h, k3)
-    k4 = derivatives(x4, demand[2], past[2], propeller[2], engine[2], plant)
+    k4 = derivatives(x4, demand[2], past[2], propeller[2], engine[2], plant, air)
     part = h / 6.0
     return (
         x[0] + part * (k1[0] + 2.0 * k2[0] + 2.0 * k3[0] + k4[0]),
@@ -230,6 +259,7 @@ def advance(  # type: ignore[no-untyped-def]
     x = (state[0], state[1], state[2], state[3], state[4], state[5])
     k = carried.counter[0]
     mask = history.size - 1
+    largest_change = plant.rack_rate_limit_per_s * step_s
     for j in range(traces.limited.size):
         propeller = (propeller_noise[j], 0.5 * (propeller_noise[j] + propeller_noise[j + 1]), propeller_noise[j + 1])
         engine = (engine_noise[j], 0.5 * (engine_noise[j] + engine_noise[j + 1]), engine_noise[j + 1])
@@ -239,15 +269,22 @@ def advance(  # type: ignore[no-untyped-def]
             _past(history, mask, k + delay.first[1], delay.weights[1]),
             _past(history, mask, k + delay.first[2], delay.weights[2]),
         )
-        rates = derivatives(x, asked[0], past[0], propeller[0], engine[0], plant)
-        history[k & mask] = rates[5]
+        air = plant.air_share + (1.0 - plant.air_share) * carried.boost[0]
+        rates = derivatives(x, asked[0], past[0], propeller[0], engine[0], plant, air)
+        # the limiter of the rate keeps no state of its own: it starts from the rack that it gave last
+        last = history[(k - 1) & mask]
+        given = min(max(rates[5], last - largest_change), last + largest_change)
+        history[k & mask] = given
         traces.shaft_speed_rev_s[j] = x[0]
         traces.shaft_angle_rev[j] = x[5]
-        traces.rack_given[j] = rates[5]
+        traces.rack_given[j] = given
         traces.shaft_torque_nm[j] = rates[6]
         traces.brake_torque_nm[j] = rates[7]
-        traces.limited[j] = rates[8]
-        x = _runge_kutta(step_s, x, rates, asked, past, propeller, engine, plant)
+        traces.limited[j] = rates[8] or given != rates[5]
+        if plant.air_share < 1.0:
+            _, full_load = _torque_limits(plant.gear_ratio * x[0], plant)
+            carried.boost[0] += step_s / plant.turbocharger_lag_s * (rates[7] / full_load - carried.boost[0])
+        x = _runge_kutta(step_s, x, rates, asked, past, propeller, engine, plant, air)
         k += 1
     state[0], state[1], state[2], state[3], state[4], state[5] = x
     carried.counter[0] = k

@@ -106,6 +106,8 @@ def rack_latency_s(tug: Tug, sensor: RackSensor) -> float:
 def physical_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
     """Return the physical constants with their units in the names."""
     plant = build_plant(tug, vessel)
+    rate = tug.rack_rate_limit_per_s
+    limited = {} if rate is None else {"rack_rate_limit_per_s": rate}
     return {
         "inertia_upstream_kg_m2": plant.inertia_upstream_kg_m2,
         "inertia_downstream_kg_m2": plant.inertia_downstream_kg_m2,
@@ -118,10 +120,13 @@ def physical_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
         "governor_integral_per_rev": plant.integral,
         "anti_windup_s": plant.anti_windup_s,
         "motoring_torque_nm": plant.motoring_torque_nm,
+        "deadband_rev_s": plant.deadband_rev_s,
+        "unboosted_torque_share": plant.air_share,
+        "turbocharger_lag_s": plant.turbocharger_lag_s,
         "gear_ratio": plant.gear_ratio,
         "transmission_efficiency": plant.efficiency,
         "torque_zero_offset_nm": tug.torque_zero_offset_nm,
-    }
+    } | limited
 
 
 def tell_truth(

@@ -47,6 +47,10 @@ class Tug:
     """Time constant of the back-calculation that empties the integrator at the limits [s]."""
     governor_delay_s: float = 0.0703
     """Transport delay ``t_d`` between governor output and fuel rack, inside the loop [s]; 0 or three time steps."""
+    governor_deadband_rpm: float = 0.0
+    """Speed error within which the governor does nothing [rpm], half of the whole band; 0: none."""
+    rack_rate_limit_per_s: float | None = None
+    """Fastest change of the rack that the governor gives [1/s], rack as a fraction; ``None``: no limit."""
     natural_frequency_rad_s: float = 10.3
     """Natural frequency ``omega_n`` of the fuel actuation [rad/s]."""
     damping_ratio: float = 0.47
@@ -75,6 +79,13 @@ class Tug:
     -197 N m, with noise to -253 N m, and the sines shall stay unclipped so that they show a linear line. The chirps
     C11 and C23 still touch both limits where they pass the closed-loop peak near 1.2 Hz, and the staircases do.
     """
+    unboosted_torque_share: float = 1.0
+    """Torque that a smoke limiter gives without boost, over the full-load torque; 1: no smoke limiter.
+
+    Turbocharged engines give about 0.45 to 0.6 of their torque before the boost arrives.
+    """
+    turbocharger_lag_s: float = 1.0
+    """Time in which the boost follows the torque [s]; 0.5 to 2 s at this size. It acts with a smoke limiter alone."""
     torque_zero_offset_nm: float = 0.0
     """What the torque gauge shows beyond the zero that the vessel file knows of [N m]."""
     rack_latency_s: float | None = None

@@ -10,7 +10,7 @@ from shaftprint.campaign import Campaign
 from shaftprint.errors import SettingsError
 from shaftprint.tug._demand import Demand
 from shaftprint.tug._disturbance import Disturbance
-from shaftprint.tug._physics import build_plant, equilibrium
+from shaftprint.tug._physics import build_plant, equilibrium, steady_boost
 from shaftprint.tug._plant import RACK, Carried, Delay, Traces, advance, interpolation_weights
 from shaftprint.tug._tug import Tug
 from shaftprint.vessel import Vessel
@@ -89,7 +89,8 @@ def voyage(
     )
     state = equilibrium(plant, demand.first)
     ring = np.full(1 << int(np.ceil(np.log2(delay_steps + 8.0))), state[RACK])
-    carried = Carried(state=state, history=ring, counter=np.zeros(1, dtype=np.int64))
+    boost = np.array([steady_boost(plant, demand.first)])
+    carried = Carried(state=state, history=ring, counter=np.zeros(1, dtype=np.int64), boost=boost)
     done = 0
     while done < steps:
         count = min(chunk, steps - done)
