@@ -62,7 +62,8 @@ def test_torque_waits_for_the_boost(vessel: Vessel, quiet_tug: Tug, ask: Make) -
     up = slice(round(25.0 * 2000.0), round(27.0 * 2000.0))
     # the torque rests on the limit for longer than a tenth of a second
     assert np.count_nonzero(used[up] > 0.99 * allowed[up]) > 0.1 * 2000.0
-    assert rpm[-1] == pytest.approx(1183.8 + -250.97 * (-4.0 - -5.0), rel=1e-4)
+    # steady running is not limited: the level of -4 V is reached before the staircase stops
+    assert rpm[round(64.9 * 2000.0)] == pytest.approx(1183.8 - 250.97, rel=1e-4)
 
 
 def test_up_is_slower_than_down_behind_a_smoke_limiter(vessel: Vessel, quiet_tug: Tug, ask: Make) -> None:
