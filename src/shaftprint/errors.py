@@ -7,8 +7,10 @@
     ├── RecordingError        a logger file that cannot be read
     ├── SignalError           a channel that does not give a usable signal
     ├── ResponseError         a test line or response that cannot be estimated
+    ├── PropellerError        a propeller or speed for which no curve was measured
     ├── StructureError        a model structure or parameter that makes no sense
     ├── IdentificationError   a fit that cannot be set up or has no acceptable result
+    ├── ValidationError       a model that cannot be held against a record
     └── FingerprintError      a fingerprint file that cannot be read or compared
 
 Every message says which file, channel, second or field, what was expected, what was found and what to do.
@@ -35,12 +37,20 @@ class ResponseError(ShaftprintError):
     """A test line or a frequency response cannot be estimated."""
 
 
+class PropellerError(ShaftprintError):
+    """A propeller or a working point lies outside of what was measured."""
+
+
 class StructureError(ShaftprintError):
     """A model structure or one of its parameters makes no sense."""
 
 
 class IdentificationError(ShaftprintError):
     """A fit cannot be set up or has no acceptable result."""
+
+
+class ValidationError(ShaftprintError):
+    """A model cannot be held against a record."""
 
 
 class FingerprintError(ShaftprintError):
