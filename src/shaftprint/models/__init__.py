@@ -33,10 +33,12 @@ from shaftprint.models._combination import Combination
 from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor, ZeroOrderHold
 from shaftprint.models._expression import Constant, Expression, Inverse, Sensitivity, feedback
 from shaftprint.models._held import Held
+from shaftprint.models._known_propeller import KnownPropeller, with_known_propeller
 from shaftprint.models._margins import Margins, margins, poles
 from shaftprint.models._nyquist import is_stable, loop_gain, stable_rows, unstable_poles
 from shaftprint.models._own_blocks import FunctionBlock, RationalBlock
 from shaftprint.models._parameter import Parameter
+from shaftprint.models._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
 from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
 from shaftprint.models._step_response import step_response
 from shaftprint.models._structure import Structure
@@ -59,14 +61,19 @@ __all__ = [
     "Inertia",
     "Integrator",
     "Inverse",
+    "KnownPropeller",
     "Margins",
     "PIGovernor",
     "PadeDelay",
     "Parameter",
+    "PitchSpeed",
     "RationalBlock",
+    "SailingShaft",
+    "SailingTorque",
     "SecondOrderLag",
     "Sensitivity",
     "Shaft",
+    "ShipSpeed",
     "SpeedSensor",
     "Structure",
     "Tie",
@@ -82,4 +89,5 @@ __all__ = [
     "step_response",
     "structure",
     "unstable_poles",
+    "with_known_propeller",
 ]
