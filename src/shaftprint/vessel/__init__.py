@@ -10,6 +10,9 @@ shaft torque ``M_s``  N m          on the propeller shaft at the gauge, positive
                                    drives the propeller
 inertia               kg m2        of a row on its own shaft; the sums are referred to the
                                    propeller shaft (engine-side rows times ``i`` squared)
+stiffness, damping    N m/rad,     of a link between two rows, at the speed of the shaft of those rows
+                      N m s/rad
+``psi``               1            energy that an elastic link loses in a cycle over its largest elastic energy
 ``K_Q``               1            effective torque coefficient at zero advance,
                                    ``Q / (rho n^2 D^5)``
 fuel rack ``X``       1            1 gives rated torque at rated speed; 100 % on the CAN bus
@@ -20,6 +23,7 @@ The torque gauge sits on the propeller shaft: *upstream* of it is what lies towa
 """
 
 from shaftprint.vessel._inertia import InertiaRow
+from shaftprint.vessel._links import ShaftLink
 from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, RackMap, WorkingPoint
 from shaftprint.vessel._sensors import (
     Logger,
@@ -41,6 +45,7 @@ __all__ = [
     "RackSensor",
     "Sensors",
     "SetPointSensor",
+    "ShaftLink",
     "ShaftTorqueSensor",
     "SpeedSensor",
     "Vessel",

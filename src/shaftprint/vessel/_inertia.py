@@ -20,6 +20,8 @@ class InertiaRow(Settings):
     """Which shaft it turns with."""
     gauge: Literal["upstream", "downstream"]
     """Whether it lies towards the engine or towards the propeller, seen from the torque gauge."""
+    part: Literal["propeller", "water"] | None = None
+    """Whether it is the dry propeller or the entrained water, for estimates of the water."""
     source: Literal["table", "reconstructed", "assumed", "estimated"]
     """Read from a table, derived from its other numbers, assumed, or estimated with a formula."""
 

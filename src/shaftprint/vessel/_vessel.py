@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from shaftprint.settings import Name, PositiveNumber, Settings, load_settings
 from shaftprint.vessel._inertia import InertiaRow
+from shaftprint.vessel._links import ShaftLink, wrong_links
 from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, WorkingPoint
 from shaftprint.vessel._sensors import Logger, Sensors
 
@@ -30,13 +31,15 @@ class Vessel(Settings):
     """Expected steady state between the test signals."""
     inertia: tuple[InertiaRow, ...] = Field(min_length=2)
     """Rotating masses from the damper to the water around the propeller."""
+    links: tuple[ShaftLink, ...] = ()
+    """What joins them, for torsional vibration; none where only the sums are wanted."""
     sensors: Sensors
     """What was measured."""
     logger: Logger | None = None
     """The instrument that recorded."""
 
     @model_validator(mode="after")
-    def _inertia_on_both_sides(self) -> Self:
+    def _masses_make_a_line(self) -> Self:
         names = [row.name for row in self.inertia]
         twice = sorted({name for name in names if names.count(name) > 1})
         found = []
@@ -48,6 +51,7 @@ class Vessel(Settings):
         ):
             if value <= 0.0:
                 found.append(f"expected some inertia {side} of the torque gauge, found none.")
+        found += wrong_links(self.links, self.inertia)
         if found:
             raise ValueError(" ".join(found))
         return self

@@ -1,0 +1,207 @@
+"""Inertias and inertia times that the vessel file lets expect, each with its uncertainty by source."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from shaftprint.torsion._entrained_water import WaterEstimate, water_estimates
+from shaftprint.units import rev_s_from_rpm
+
+if TYPE_CHECKING:
+    from shaftprint.vessel import InertiaRow, Vessel
+
+GAUGE_SCALE = "gauge scale"
+SIDES: tuple[tuple[Literal["upstream", "downstream"], str], ...] = (("upstream", "up"), ("downstream", "dn"))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ExpectedValue:
+    """A number by calculation, with what its uncertainty is made of."""
+
+    name: str
+    """Symbol, such as ``tau_dn``."""
+    unit: str
+    """Unit."""
+    value: float
+    """Expected value."""
+    changes: Mapping[str, float]
+    """Change of the number, with sign, for one standard deviation of each source; the sources are independent."""
+    meaning: str
+    """What it stands for."""
+
+    @property
+    def std(self) -> float:
+        """Standard deviation of all sources together."""
+        return math.hypot(*self.changes.values())
+
+    @property
+    def shares(self) -> dict[str, float]:
+        """Share of each source in the variance, largest first; they add up to 1."""
+        total = self.std**2
+        shares = {name: change**2 / total for name, change in self.changes.items()} if total > 0.0 else {}
+        return dict(sorted(shares.items(), key=lambda item: -item[1]))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class WetLine:
+    """What one estimate of the entrained water makes of the downstream side."""
+
+    water: WaterEstimate
+    """The estimate."""
+    downstream_kg_m2: float
+    """``I_dn`` [kg m2] with it instead of the water row."""
+    downstream_std_kg_m2: float
+    """Its standard deviation [kg m2]."""
+    tau_dn_s: float
+    """``tau_dn`` [s]."""
+    tau_dn_std_s: float
+    """Its standard deviation [s]."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ExpectedInertia:
+    """What the inertia table of a vessel lets expect of a test."""
+
+    sums: tuple[ExpectedValue, ...]
+    """Sums of the table, at the propeller shaft [kg m2]."""
+    times: tuple[ExpectedValue, ...]
+    """``tau_up`` and ``tau_dn`` [s] at the working point."""
+    wet: tuple[WetLine, ...]
+    """The downstream side by each estimate of the entrained water."""
+
+    def value(self, name: str) -> ExpectedValue | None:
+        """Return a sum or inertia time by its name; None if there is none."""
+        return next((item for item in (*self.sums, *self.times) if item.name == name), None)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Beside:
+    """An expected number beside the one that a test found."""
+
+    expected: ExpectedValue
+    """By calculation."""
+    found: float
+    """By the test."""
+    found_std: float
+    """Its standard deviation."""
+    independent: bool
+    """Whether the test found it without being told beforehand."""
+
+    @property
+    def deviations(self) -> float:
+        """Difference over its standard deviation, found minus expected; not a number where they are not independent."""
+        together = math.hypot(self.expected.std, self.found_std)
+        return (self.found - self.expected.value) / together if self.independent and together > 0.0 else math.nan
+
+
+def expected_inertia(
+    vessel: "Vessel", *, engine_speed_rev_s: float | None = None, shaft_torque_nm: float | None = None
+) -> ExpectedInertia:
+    """Return inertia sums, inertia times and the entrained water of a vessel.
+
+    ``tau = 2 pi I n_s0 / M_s0`` (thesis eq. 2.23). Every row of the table is a source of its own. A gauge that shows
+    too much makes the inertia times too small; it counts in them as it does in ``priors_from_vessel``.
+
+    Parameters
+    ----------
+    vessel
+        The installation.
+    engine_speed_rev_s, shaft_torque_nm
+        Measured working point; that of the vessel file when not given.
+    """
+    point = vessel.working_point
+    speed = rev_s_from_rpm(point.engine_speed_rpm) if engine_speed_rev_s is None else engine_speed_rev_s
+    torque = point.shaft_torque_nm if shaft_torque_nm is None else shaft_torque_nm
+    factor = 2.0 * math.pi * speed / vessel.gearbox.ratio / torque
+    scale = vessel.sensors.shaft_torque.scale_std_fraction or 0.0
+    sides = {side: [row for row in vessel.inertia if row.gauge == side] for side, _ in SIDES}
+    times = tuple(_time(vessel, sides[side], index, side, factor, scale) for side, index in SIDES)
+    return ExpectedInertia(sums=_sums(vessel), times=times, wet=_wet(vessel, sides["downstream"], factor, scale))
+
+
+def beside_identified(
+    expected: ExpectedInertia, found: Mapping[str, tuple[float, float]], *, told: frozenset[str] = frozenset()
+) -> tuple[Beside, ...]:
+    """Return expected numbers beside those of a test that have the same name.
+
+    Parameters
+    ----------
+    found
+        Value and standard deviation by name, such as ``tau_dn``.
+    told
+        Names of numbers that the test was told beforehand.
+    """
+    rows = ((item, found[item.name]) for item in (*expected.times, *expected.sums) if item.name in found)
+    return tuple(
+        Beside(expected=item, found=value, found_std=std, independent=item.name not in told)
+        for item, (value, std) in rows
+    )
+
+
+def _sum(
+    vessel: "Vessel", rows: "list[InertiaRow]", name: str, meaning: str, *, own_shaft: bool = False
+) -> ExpectedValue:
+    ratio = 1.0 if own_shaft else vessel.gearbox.ratio
+    return ExpectedValue(
+        name=name,
+        unit="kg m2",
+        value=math.fsum(row.referred_kg_m2(ratio) for row in rows),
+        changes={row.name: row.referred_std_kg_m2(ratio) for row in rows if row.std_kg_m2},
+        meaning=meaning,
+    )
+
+
+def _sums(vessel: "Vessel") -> tuple[ExpectedValue, ...]:
+    rows = vessel.inertia
+    engine = [row for row in rows if row.shaft == "engine"]
+    upstream = [row for row in rows if row.gauge == "upstream"]
+    downstream = [row for row in rows if row.gauge == "downstream"]
+    propeller = [row for row in rows if row.part == "propeller"]
+    found = [
+        _sum(vessel, engine, "I_e", "all on the engine shaft, at the engine shaft", own_shaft=True),
+        _sum(vessel, engine, "I_e i^2", "the same at the propeller shaft"),
+        _sum(vessel, upstream, "I_up", "upstream of the torque gauge"),
+    ]
+    if propeller:
+        found.append(_sum(vessel, propeller, "I_p", "propeller as in the table"))
+        found.append(_sum(vessel, [*upstream, *propeller], "I_up + I_p", "the table's total: upstream and propeller"))
+    return (
+        *found,
+        _sum(vessel, downstream, "I_dn", "downstream of the torque gauge, with shaft and water"),
+        _sum(vessel, list(rows), "I_up + I_dn", "the whole line"),
+    )
+
+
+def _time(
+    vessel: "Vessel", rows: "list[InertiaRow]", index: str, side: str, factor: float, scale: float
+) -> ExpectedValue:
+    inertia = _sum(vessel, rows, f"I_{index}", side)
+    changes = {name: factor * change for name, change in inertia.changes.items()}
+    value = factor * inertia.value
+    return ExpectedValue(
+        name=f"tau_{index}",
+        unit="s",
+        value=value,
+        changes=changes | ({GAUGE_SCALE: -value * scale} if scale else {}),
+        meaning=f"inertia time {side} of the torque gauge",
+    )
+
+
+def _wet(vessel: "Vessel", rows: "list[InertiaRow]", factor: float, scale: float) -> tuple[WetLine, ...]:
+    dry = _sum(vessel, [row for row in rows if row.part != "water"], "I_dn", "without water")
+    found = []
+    for water in water_estimates(vessel):
+        inertia = dry.value + water.water_kg_m2
+        std = math.hypot(dry.std, water.std_kg_m2)
+        tau = factor * inertia
+        found.append(
+            WetLine(
+                water=water,
+                downstream_kg_m2=inertia,
+                downstream_std_kg_m2=std,
+                tau_dn_s=tau,
+                tau_dn_std_s=math.hypot(factor * std, tau * scale),
+            )
+        )
+    return tuple(found)
