@@ -131,6 +131,39 @@ def engine(s, p):
     return pick_up(s, p) * speed, (p["tau_dn"] * s + p["k_q"]) * telemetry(s, p) * speed
 
 
+def sailing(s, p, n_set=1, theta_set=0):
+    """Speed, torque and speed of the ship of the free-sailing line, with ``v`` eliminated by hand.
+
+    That they follow from the equations of shaft, governor, propeller and ship is shown where those are solved as they
+    stand, in the tests of free sailing.
+    """
+    lag = p["omega_n"] ** 2 / (s**2 + 2 * p["zeta"] * p["omega_n"] * s + p["omega_n"] ** 2)
+    drive = (p["K_p"] + p["K_i"] / s) * p["v"] * mp.exp(-s * p["t_d"]) * lag
+    settling = p["tau_u"] * s + p["e"] - p["a"]
+    load = p["tau_dn"] * s + 2 - p["b"] + p["sigma"] * p["b"] * (2 - p["a"]) / settling
+    forced, pushed = mp.zero, mp.zero
+    if theta_set:
+        theta = theta_set / (p["tau_th"] * s + 1)
+        pushed = p["sigma"] * p["p"] * theta / settling
+        forced = p["q"] * theta + p["b"] * pushed
+    demand = n_set * p["c_set"] * mp.exp(-s * p["t_sp"])
+    speed = (drive * demand - forced) / (p["tau_up"] * s - p["g"] + load + drive)
+    ship = p["sigma"] * (2 - p["a"]) / settling * speed + pushed
+    late = mp.exp(-s * p["t_log"]) if "t_log" in p else 1
+    return pick_up(s, p) * speed, telemetry(s, p) * (load * speed + forced), late * ship
+
+
+def sailing_core(s, p):
+    ship = p["tau_u"] * s + p["e"] - p["a"]
+    speed = ship / ((p["tau_dn"] * s + 2 - p["b"]) * ship + p["sigma"] * p["b"] * (2 - p["a"]))
+    return (pick_up(s, p) / telemetry(s, p) * speed,)
+
+
+def sailing_pitch(s, p):
+    by_set_point, by_pitch = sailing(s, p), sailing(s, p, n_set=0, theta_set=1)
+    return tuple(x for pair in zip(by_set_point, by_pitch, strict=True) for x in pair)
+
+
 FORMS = {
     "OL1": lambda s, p: (core(s, p),),
     "OL2": lambda s, p: (governor(s, p),),
@@ -151,6 +184,10 @@ FORMS = {
     "GAUGE-ECU": gauge_ecu,
     "GOVERNOR": lambda s, p: ((p["K_p"] + p["K_i"] / s) * mp.exp(-s * p["t_rack"]),),
     "ENGINE": engine,
+    "FREE-CORE": sailing_core,
+    "FREE-CLOSED": lambda s, p: sailing(s, p)[:2],
+    "FREE-LOG": sailing,
+    "FREE-PITCH": sailing_pitch,
 }
 
 # A block's own zero is where formulas lose digits or divide by zero: no gain, no delay, no window.
@@ -221,8 +258,8 @@ def test_a_batch_is_a_loop(name):
     shipped = structure(name)
     table = np.array([[random_values(shipped, 10 * i + j) for j in range(3)] for i in range(2)])
     response, slopes = shipped.gradient(table, 1j * OMEGA)
-    assert response.shape == (2, 3, len(shipped.outputs), OMEGA.size)
-    assert slopes.shape == (2, 3, len(shipped.free), len(shipped.outputs), OMEGA.size)
+    assert response.shape == (2, 3, len(shipped.channels), OMEGA.size)
+    assert slopes.shape == (2, 3, len(shipped.free), len(shipped.channels), OMEGA.size)
     for i, j in np.ndindex(2, 3):
         alone, alone_slopes = shipped.gradient(table[i, j], 1j * OMEGA)
         np.testing.assert_allclose(response[i, j], alone, rtol=1e-14)
