@@ -27,17 +27,21 @@ from shaftprint.models._blocks import (
     PIGovernor,
     SecondOrderLag,
 )
+from shaftprint.models._calculus import derivatives, postorder, replaced
 from shaftprint.models._catalogue import STRUCTURES, structure
 from shaftprint.models._check import check_structure
 from shaftprint.models._combination import Combination
 from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor, ZeroOrderHold
 from shaftprint.models._expression import Constant, Expression, Inverse, Sensitivity, feedback
+from shaftprint.models._free_response import free_responses
 from shaftprint.models._held import Held
 from shaftprint.models._known_propeller import KnownPropeller, with_known_propeller
 from shaftprint.models._margins import Margins, margins, poles
 from shaftprint.models._nyquist import is_stable, loop_gain, stable_rows, unstable_poles
 from shaftprint.models._own_blocks import FunctionBlock, RationalBlock
 from shaftprint.models._parameter import Parameter
+from shaftprint.models._program import Computed, Late, Program, program_of
+from shaftprint.models._quantity import Quantity, choose, clip, maximum, minimum, table
 from shaftprint.models._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
 from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
 from shaftprint.models._step_response import step_response
@@ -48,6 +52,7 @@ __all__ = [
     "STRUCTURES",
     "Block",
     "Combination",
+    "Computed",
     "Constant",
     "Delay",
     "DynamicInflow",
@@ -62,11 +67,14 @@ __all__ = [
     "Integrator",
     "Inverse",
     "KnownPropeller",
+    "Late",
     "Margins",
     "PIGovernor",
     "PadeDelay",
     "Parameter",
     "PitchSpeed",
+    "Program",
+    "Quantity",
     "RationalBlock",
     "SailingShaft",
     "SailingTorque",
@@ -80,14 +88,24 @@ __all__ = [
     "TorqueBalance",
     "ZeroOrderHold",
     "check_structure",
+    "choose",
+    "clip",
+    "derivatives",
     "feedback",
+    "free_responses",
     "is_stable",
     "loop_gain",
     "margins",
+    "maximum",
+    "minimum",
     "poles",
+    "postorder",
+    "program_of",
+    "replaced",
     "stable_rows",
     "step_response",
     "structure",
+    "table",
     "unstable_poles",
     "with_known_propeller",
 ]

@@ -2,12 +2,17 @@
 
 from abc import abstractmethod
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.errors import StructureError
 from shaftprint.models._expression import Dual, Expression, Gradient, Polynomials, Walk
+from shaftprint.models._flow import Flow
 from shaftprint.models._parameter import Parameter
+from shaftprint.models._quantity import Quantity
+from shaftprint.models._realisation import Ratio, coefficients, realised
 
 # Share of a parameter by which it is moved to find a derivative: errors of rounding and of the formula are alike.
 STEP = 1e-3
@@ -52,6 +57,34 @@ class Block(Expression):
     def ratio(self, *values: float) -> Polynomials | None:
         """Return numerator and denominator in ``s``, highest power first, or None where it is not rational."""
         return None
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the block does to a sum of signals what it does to each."""
+        return True
+
+    def flow(self, flow: Flow, signal: Quantity) -> Quantity:
+        """Return what the block makes of a signal in time; from its ratio where it has no equations of its own.
+
+        Raises
+        ------
+        StructureError
+            If it has neither.
+        """
+        ratio = self.coefficients_in(flow)
+        if ratio is None:
+            raise StructureError(
+                f"{type(self).__name__} of {', '.join(p.name for p in self.parameters) or 'no parameters'} has no "
+                "equations in time: give it a method flow, or make it a RationalBlock."
+            )
+        return realised(flow, signal, ratio, type(self).__name__)
+
+    def coefficients_in(self, flow: Flow) -> Ratio | None:
+        """Return numerator and denominator with formulas as coefficients; None where it is not rational."""
+        # formulas take the place of numbers
+        values: list[Any] = [flow.parameter(parameter.name) for parameter in self.parameters]
+        found = self.ratio(*values)
+        return None if found is None else (coefficients(list(found[0])), coefficients(list(found[1])))
 
     def evaluate(self, walk: Walk) -> Dual:
         """Return the response and the wanted derivatives."""

@@ -9,7 +9,9 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
 from shaftprint.models._expression import Polynomials
+from shaftprint.models._flow import Flow
 from shaftprint.models._parameter import Parameter
+from shaftprint.models._quantity import Quantity
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,6 +33,10 @@ class Delay(Block):
     def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
         """Return ``-s exp(-s t)``."""
         return (-s * response,)
+
+    def flow(self, flow: Flow, signal: Quantity) -> Quantity:
+        """Return what the signal was ``t`` ago."""
+        return flow.delayed(signal, flow.parameter(self.time.name))
 
 
 PADE_5 = (30240.0, 15120.0, 3360.0, 420.0, 30.0, 1.0)
@@ -107,6 +113,10 @@ class ZeroOrderHold(Block):
         """Return nothing."""
         return ()
 
+    def flow(self, flow: Flow, signal: Quantity) -> Quantity:
+        """Return the mean over the last period: what the hold is without the images of its sampling."""
+        return flow.mean(signal, self.period_s)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SpeedSensor(Block):
@@ -142,6 +152,20 @@ class SpeedSensor(Block):
             lagged * _sinhc(mean) * _sinhc_slope(held),
             -s * response,
         )
+
+    def flow(self, flow: Flow, signal: Quantity) -> Quantity:
+        """Return the late mean."""
+        return flow.delayed(self.means(flow, signal), self.lateness(flow))
+
+    def means(self, flow: Flow, signal: Quantity) -> Quantity:
+        """Return the mean over both windows, which end now."""
+        once = flow.mean(signal, flow.parameter(self.averaging.name))
+        return flow.mean(once, flow.parameter(self.hold.name))
+
+    def lateness(self, flow: Flow) -> Quantity:
+        """Return the delay that the means do not have already."""
+        windows = flow.parameter(self.averaging.name) + flow.parameter(self.hold.name)
+        return flow.parameter(self.delay.name) - 0.5 * windows
 
 
 SERIES_BELOW = 0.02

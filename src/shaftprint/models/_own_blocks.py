@@ -14,6 +14,7 @@ from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
 from shaftprint.models._expression import Polynomials
 from shaftprint.models._parameter import Parameter
+from shaftprint.models._quantity import Quantity
 
 Coefficients: TypeAlias = Callable[..., tuple[Sequence[ArrayLike], Sequence[ArrayLike]]]
 
@@ -101,7 +102,9 @@ class RationalBlock(Block):
     def ratio(self, *values: float) -> Polynomials:
         """Return the coefficients."""
         numerator, denominator = self._lists(*values)
-        return np.array(numerator, dtype=np.float64), np.array(denominator, dtype=np.float64)
+        # of formulas instead of numbers where the equations in time are wanted
+        kind = object if any(isinstance(value, Quantity) for value in values) else np.float64
+        return np.array(numerator, dtype=kind), np.array(denominator, dtype=kind)
 
     def _lists(self, *values: ArrayLike) -> tuple[Sequence[ArrayLike], Sequence[ArrayLike]]:
         """Return both lists of coefficients.

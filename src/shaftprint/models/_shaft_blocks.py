@@ -48,8 +48,9 @@ class Shaft(Block):
 
     def ratio(self, *values: float) -> Polynomials:
         """Return ``1 / (tau s + k_q - g)``."""
-        tau, slope = self._totals(tuple(np.asarray(value) for value in values))
-        return np.array([1.0]), np.array([float(tau), float(slope)])
+        count = len(self.inertia)
+        slope = values[count] if self.engine_slope is None else values[count] - values[count + 1]
+        return np.array([1.0]), np.array([sum(values[1:count], start=values[0]), slope])
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -22,7 +22,7 @@ from shaftprint.models._parameter import Parameter
 from shaftprint.models._tie import Tie, through_ties
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, weakref_slot=True)
 class Structure:
     """A grey-box model structure with one or more inputs and outputs, and its parameters."""
 

@@ -1,0 +1,142 @@
+"""Derivatives and replacements in formulas of the time domain."""
+
+from collections.abc import Callable, Iterable, Iterator
+
+from shaftprint.models._quantity import Quantity, choose, number, power
+
+Replacement = Callable[[Quantity], Quantity | None]
+
+
+def postorder(roots: Iterable[Quantity]) -> Iterator[Quantity]:
+    """Walk over formulas and all they are made of, parts first, each object once."""
+    seen: set[int] = set()
+    for root in roots:
+        stack = [(root, False)]
+        while stack:
+            node, done = stack.pop()
+            if done:
+                yield node
+            elif id(node) not in seen:
+                seen.add(id(node))
+                stack.append((node, True))
+                stack.extend((part, False) for part in reversed(node.of))
+
+
+def rebuilt(node: Quantity, parts: tuple[Quantity, ...]) -> Quantity:
+    """Return the same operation on other parts, simplified where one became a number."""
+    if all(new is old for new, old in zip(parts, node.of, strict=True)):
+        return node
+    if node.operation == "add":
+        return parts[0] + parts[1]
+    if node.operation == "multiply":
+        return parts[0] * parts[1]
+    if node.operation == "divide":
+        return parts[0] / parts[1]
+    if node.operation == "power":
+        return power(parts[0], node.value)
+    return Quantity(node.operation, parts, node.name, node.value, node.place, node.points)
+
+
+def replaced(roots: Iterable[Quantity], by: Replacement) -> list[Quantity]:
+    """Return formulas in which some parts stand for others; what replaces is not walked again.
+
+    Parameters
+    ----------
+    by
+        What to put in the place of a part, or None to keep it.
+    """
+    roots = list(roots)
+    found: dict[int, Quantity] = {}
+    keep: list[Quantity] = []
+    for node in postorder(roots):
+        new = by(node)
+        if new is None:
+            new = rebuilt(node, tuple(found[id(part)] for part in node.of))
+        keep.append(new)
+        found[id(node)] = new
+    return [found[id(root)] for root in roots]
+
+
+def depends(root: Quantity, on: Quantity) -> bool:
+    """Return whether a formula contains a leaf, other than in how fast something changes."""
+    (marked,) = replaced([root], lambda node: number(0.0) if node.operation == "rate" else None)
+    return any(is_leaf(node, on) for node in postorder([marked]))
+
+
+def is_leaf(node: Quantity, leaf: Quantity) -> bool:
+    """Return whether two leaves stand for the same."""
+    return node.operation == leaf.operation and node.place == leaf.place
+
+
+def derivative(root: Quantity, to: Quantity) -> Quantity:
+    """Return the derivative of a formula to a leaf."""
+    return derivatives([root], to)[0]
+
+
+def derivatives(roots: Iterable[Quantity], to: Quantity) -> list[Quantity]:
+    """Return the derivatives of several formulas to one leaf."""
+    return swept(roots, lambda node: number(1.0) if is_leaf(node, to) else None)
+
+
+def swept(roots: Iterable[Quantity], of_leaf: Replacement) -> list[Quantity]:
+    """Return the derivatives of formulas along a direction.
+
+    Parameters
+    ----------
+    of_leaf
+        Derivative of a leaf; None where it is zero.
+    """
+    roots = list(roots)
+    found: dict[int, Quantity] = {}
+    zero = number(0.0)
+    for node in postorder(roots):
+        if not node.of or node.operation == "rate":
+            slope = of_leaf(node)
+            found[id(node)] = zero if slope is None else slope
+            continue
+        slopes = [found[id(part)] for part in node.of]
+        found[id(node)] = zero if all(slope.equals(0.0) for slope in slopes) else _chain(node, slopes)
+    return [found[id(root)] for root in roots]
+
+
+def _chain(node: Quantity, slopes: list[Quantity]) -> Quantity:
+    """Return the derivative of an operation from those of what it operates on."""
+    parts = node.of
+    match node.operation:
+        case "add":
+            return slopes[0] + slopes[1]
+        case "multiply":
+            return slopes[0] * parts[1] + parts[0] * slopes[1]
+        case "divide":
+            return (slopes[0] - node * slopes[1]) / parts[1]
+        case "minimum":
+            return choose(parts[0], parts[1], slopes[0], slopes[1])
+        case "maximum":
+            return choose(parts[1], parts[0], slopes[0], slopes[1])
+        case "choose":
+            return choose(parts[0], parts[1], slopes[2], slopes[3])
+    return _slope(node) * slopes[0]
+
+
+def _slope(node: Quantity) -> Quantity:
+    """Return the derivative of a function of one quantity to it."""
+    x = node.of[0]
+    match node.operation:
+        case "power":
+            return node.value * power(x, node.value - 1.0)
+        case "sqrt":
+            return 0.5 / node
+        case "exp":
+            return node
+        case "log":
+            return 1.0 / x
+        case "sin":
+            return x.cos()
+        case "cos":
+            return -x.sin()
+        case "tanh":
+            return 1.0 - node * node
+        case "absolute":
+            return choose(x, 0.0, -1.0, 1.0)
+    # the slope of a table is constant between its corners
+    return Quantity("table slope", (x,), points=node.points) if node.operation == "table" else number(0.0)

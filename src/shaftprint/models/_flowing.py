@@ -1,0 +1,162 @@
+"""From the expression of a response to equations in time.
+
+A product is read from left to right: what stands first acts first, which matters as soon as a block is not linear. A
+loop is closed where its forward blocks and their sensitivity meet: of ``A * G * S(G H)`` the error is ``e = A u - H(G
+e)`` and the result ``G e``, without a second copy of ``G``.
+"""
+
+from collections.abc import Sequence
+
+from shaftprint.errors import StructureError
+from shaftprint.models._block import Block
+from shaftprint.models._calculus import depends, derivative, replaced
+from shaftprint.models._delays import Delay, SpeedSensor
+from shaftprint.models._expression import Constant, Expression, Inverse, Parallel, Sensitivity, Series
+from shaftprint.models._flow import Flow
+from shaftprint.models._quantity import Quantity, number
+from shaftprint.models._realisation import Ratio, product, realised, total
+
+
+def factors(expression: Expression) -> list[Expression]:
+    """Return the parts of a product in their order, the inverse of a late product taken apart."""
+    if isinstance(expression, Series):
+        return [*factors(expression.first), *factors(expression.second)]
+    if isinstance(expression, Inverse) and isinstance(expression.of, Series):
+        parts = factors(expression.of)
+        if any(isinstance(part, Delay) for part in parts):
+            return [Inverse(part) for part in reversed(parts)]
+    return [expression]
+
+
+def through(flow: Flow, expression: Expression, signal: Quantity) -> Quantity:
+    """Return what an expression makes of a signal.
+
+    Raises
+    ------
+    StructureError
+        If a part has no equations in time.
+    """
+    return along(flow, factors(expression), signal)
+
+
+def along(flow: Flow, chain: Sequence[Expression], signal: Quantity) -> Quantity:
+    """Return what a chain of expressions makes of a signal, closing the loops in it."""
+    closings = [(i, part) for i, part in enumerate(chain) if isinstance(part, Sensitivity)]
+    if not closings:
+        for part in chain:
+            signal = _of_part(flow, part, signal)
+        return signal
+    last, sensitivity = closings[-1]
+    loop = factors(sensitivity.loop)
+    before = list(chain[:last])
+    shared = _shared(before, loop)
+    signal = along(flow, before[: len(before) - shared], signal)
+    error = _error(flow, sensitivity, loop, signal)
+    return along(flow, [*before[len(before) - shared :], *chain[last + 1 :]], error)
+
+
+def _shared(before: list[Expression], loop: list[Expression]) -> int:
+    """Return how many of the last parts are the first of the loop."""
+    for count in range(min(len(before), len(loop)), 0, -1):
+        if all(a is b for a, b in zip(before[-count:], loop[:count], strict=True)):
+            return count
+    return 0
+
+
+def _error(flow: Flow, sensitivity: Sensitivity, loop: list[Expression], signal: Quantity) -> Quantity:
+    """Return what feedback leaves of a signal."""
+    key = (id(sensitivity), id(signal))
+    if key in flow.known:
+        return flow.known[key]
+    error = flow.unknown()
+    flow.kept += [sensitivity, signal]
+    flow.known[key] = error
+    return flow.close(error, signal - along(flow, loop, error), "feedback")
+
+
+def _of_part(flow: Flow, part: Expression, signal: Quantity) -> Quantity:
+    key = (id(part), id(signal))
+    if key not in flow.known:
+        flow.kept += [part, signal]
+        flow.known[key] = _fresh(flow, part, signal)
+    return flow.known[key]
+
+
+def _fresh(flow: Flow, part: Expression, signal: Quantity) -> Quantity:
+    if isinstance(part, Constant):
+        return part.number * signal
+    if isinstance(part, Parallel):
+        return through(flow, part.first, signal) + through(flow, part.second, signal)
+    if isinstance(part, Block):
+        return part.flow(flow, signal)
+    if isinstance(part, Inverse):
+        return _inverse(flow, part, signal)
+    raise StructureError(f"{type(part).__name__} has no equations in time; it can be fitted, but not simulated.")
+
+
+def _inverse(flow: Flow, part: Inverse, signal: Quantity) -> Quantity:
+    ratio = ratio_of(flow, part.of)
+    if ratio is not None:
+        return realised(flow, signal, (ratio[1], ratio[0]), "inverse")
+    found = flow.unknown()
+    made = through(flow, part.of, found)
+    slope = derivative(made, found)
+    if slope.equals(0.0) or depends(slope, found):
+        raise StructureError("the inverse of a response that is late or falls off would need the future of a signal.")
+    (rest,) = replaced([made], lambda node: number(0.0) if node is found else None)
+    return flow.close(found, (signal - rest) / slope, "inverse")
+
+
+def ratio_of(flow: Flow, expression: Expression) -> Ratio | None:
+    """Return numerator and denominator with formulas as coefficients; None where there is no such ratio."""
+    if isinstance(expression, Constant):
+        return [number(expression.number)], [number(1.0)]
+    if isinstance(expression, Block):
+        return expression.coefficients_in(flow)
+    if isinstance(expression, Inverse):
+        found = ratio_of(flow, expression.of)
+        return None if found is None else (found[1], found[0])
+    if isinstance(expression, Sensitivity):
+        found = ratio_of(flow, expression.loop)
+        return None if found is None else (found[1], total(found[1], found[0]))
+    if not isinstance(expression, Series | Parallel):
+        return None
+    one, two = ratio_of(flow, expression.first), ratio_of(flow, expression.second)
+    if one is None or two is None:
+        return None
+    bottom = product(one[1], two[1])
+    if isinstance(expression, Series):
+        return product(one[0], two[0]), bottom
+    return total(product(one[0], two[1]), product(two[0], one[1])), bottom
+
+
+def split_shift(flow: Flow, expression: Expression, signal: Quantity) -> tuple[Quantity, Quantity]:
+    """Return the output of an expression without the delays at its end, and their sum, which may be negative.
+
+    What only shifts an output is taken off the simulated signal afterwards, so that a latency that was corrected by
+    too much needs no future.
+    """
+    parts = factors(expression)
+    end = len(parts)
+    while end and _is_linear(parts[end - 1]):
+        end -= 1
+    shift = number(0.0)
+    found = along(flow, parts[:end], signal)
+    for part in parts[end:]:
+        if isinstance(part, SpeedSensor):
+            shift = shift + part.lateness(flow)
+            found = part.means(flow, found)
+        elif isinstance(part, Delay):
+            shift = shift + flow.parameter(part.time.name)
+        elif isinstance(part, Inverse) and isinstance(part.of, Delay):
+            shift = shift - flow.parameter(part.of.time.name)
+        else:
+            found = along(flow, [part], found)
+    return found, shift
+
+
+def _is_linear(part: Expression) -> bool:
+    """Return whether a part may change places with a delay: no loop is closed at it, and its blocks are linear."""
+    if isinstance(part, Sensitivity):
+        return False
+    return all(node.is_linear for node in part.nodes() if isinstance(node, Block))

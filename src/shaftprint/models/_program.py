@@ -1,0 +1,220 @@
+"""The equations of a structure, complete: what is simulated, linearised and exported."""
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from shaftprint.errors import StructureError
+from shaftprint.models._calculus import replaced, swept
+from shaftprint.models._expression import Expression
+from shaftprint.models._flow import Flow
+from shaftprint.models._flowing import split_shift, through
+from shaftprint.models._quantity import Quantity, number, quantity
+from shaftprint.models._structure import Structure
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Late:
+    """A signal that the equations ask for as it was some time ago."""
+
+    signal: Quantity
+    """The signal."""
+    change: Quantity
+    """How fast it changes."""
+    drift: Quantity
+    """How fast it changes in steady running: not at all, but for sums that go on for ever."""
+    delay: Quantity
+    """The time; a formula of parameters, or of signals where it varies."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Computed:
+    """A value that a computer takes every period and holds."""
+
+    value: Quantity
+    """What it takes."""
+    period: Quantity
+    """The period; a formula of parameters."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Program:
+    """Equations ``dx/dt = f(x, u, past, parameters)`` and ``y = g(...)`` with exact delays.
+
+    Leaves of the formulas are numbers, parameters, inputs and how fast they change, states, pasts and how fast they
+    change, and samples; their ``place`` is their place in these lists.
+    """
+
+    name: str
+    """Name of the structure."""
+    inputs: tuple[str, ...]
+    """Names of the inputs."""
+    parameters: tuple[str, ...]
+    """Names of the structure's parameters."""
+    states: tuple[str, ...]
+    """What each state is."""
+    rates: tuple[Quantity, ...]
+    """How fast each state changes."""
+    running: tuple[bool, ...]
+    """Whether each state goes on for ever in steady running."""
+    pasts: tuple[Late, ...]
+    """Signals that are asked for late."""
+    samples: tuple[Computed, ...]
+    """Values that a computer holds."""
+    outputs: tuple[str, ...]
+    """Names of the outputs."""
+    signals: tuple[Quantity, ...]
+    """The outputs, before their shift."""
+    shifts: tuple[Quantity, ...]
+    """Time by which each output is late, a formula of parameters; negative where it is early."""
+
+
+def program_of(structure: Structure, zeros: Iterable[str] = ()) -> Program:
+    """Return the equations of a structure.
+
+    Parameters
+    ----------
+    zeros
+        Names of parameters that are zero for good: a lag without time constant or a delay of nothing has no equations.
+
+    Raises
+    ------
+    StructureError
+        If a block has no equations in time, or a loop depends on itself at once.
+    """
+    flow = Flow(parameters=_leaves(structure, frozenset(zeros)))
+    inputs = {name: Quantity("input", name=name, place=i) for i, name in enumerate(structure.inputs)}
+    outputs = tuple(structure.outputs)
+    found = [_output(flow, structure, name, inputs) for name in outputs]
+    return _complete(flow, structure, [signal for signal, _ in found], [shift for _, shift in found])
+
+
+def _leaves(structure: Structure, zeros: frozenset[str]) -> dict[str, Quantity]:
+    """Return every parameter as the blocks take it: a leaf, a formula where it is tied, times its factor."""
+    leaves = {
+        name: number(0.0) if name in zeros else Quantity("parameter", name=name, place=i)
+        for i, name in enumerate(structure.names)
+    }
+    # a tie is a formula of whatever it is given
+    found = dict(leaves)
+    for tie in structure.ties:
+        formula: Callable[..., Any] = tie.of
+        found[tie.name] = quantity(formula(*(leaves[argument] for argument in tie.arguments)))
+    return {name: value * structure.factors.get(name, 1.0) for name, value in found.items()}
+
+
+def _output(flow: Flow, structure: Structure, output: str, inputs: Mapping[str, Quantity]) -> tuple[Quantity, Quantity]:
+    """Return an output and its shift."""
+    paths = {
+        source: path for (name, source), path in zip(structure.channels, structure.paths, strict=True) if name == output
+    }
+    if len(paths) == 1:
+        ((source, path),) = paths.items()
+        return split_shift(flow, path, inputs[source])
+    return _sum(flow, paths, inputs), number(0.0)
+
+
+def _sum(flow: Flow, paths: Mapping[str, Expression], inputs: Mapping[str, Quantity]) -> Quantity:
+    found = number(0.0)
+    for source, path in paths.items():
+        found = found + through(flow, path, inputs[source])
+    return found
+
+
+def _complete(flow: Flow, structure: Structure, signals: list[Quantity], shifts: list[Quantity]) -> Program:
+    resolver = _Resolver(flow, structure.name)
+    missing = [state.name for state in flow.states if state.place not in flow.rates]
+    if missing:
+        raise StructureError(f"structure {structure.name}: no rate is given for the state {', '.join(missing)}.")
+    # resolving may find further pasts no more: all were asked for while the blocks were walked
+    return Program(
+        name=structure.name,
+        inputs=structure.inputs,
+        parameters=structure.names,
+        states=tuple(state.name for state in flow.states),
+        rates=tuple(resolver.rate(i) for i in range(len(flow.states))),
+        running=tuple(i in flow.running for i in range(len(flow.states))),
+        pasts=tuple(
+            Late(
+                signal=(signal := resolver(past.signal)),
+                change=resolver.change(signal),
+                drift=resolver.drift(signal),
+                delay=resolver(past.delay),
+            )
+            for past in flow.pasts
+        ),
+        samples=tuple(Computed(value=resolver(s.value), period=resolver(s.period)) for s in flow.samples),
+        outputs=tuple(structure.outputs),
+        signals=tuple(resolver(signal) for signal in signals),
+        shifts=tuple(resolver(shift) for shift in shifts),
+    )
+
+
+class _Resolver:
+    """Puts what is known by now into formulas: what unknown signals are, and how fast signals change."""
+
+    def __init__(self, flow: Flow, name: str) -> None:
+        self._flow = flow
+        self._name = name
+        self._done: dict[tuple[str, int], Quantity] = {}
+        self._open: set[tuple[str, int]] = set()
+        self._kept: list[Quantity] = []
+        self._rates: dict[int, Quantity] = {}
+
+    def __call__(self, formula: Quantity) -> Quantity:
+        """Return the formula without unknown signals and without rates of change."""
+        return replaced([formula], self._leaf)[0]
+
+    def rate(self, state: int) -> Quantity:
+        """Return how fast a state changes."""
+        if state not in self._rates:
+            rate = self._flow.rates[state]
+            self._rates[state] = self._once(("state", state), lambda: self(rate))
+        return self._rates[state]
+
+    def change(self, formula: Quantity) -> Quantity:
+        """Return how fast a formula changes that has been resolved.
+
+        Inputs are straight between their points, so that the change of their change is none.
+        """
+        return swept([formula], self._slope_in_time)[0]
+
+    def drift(self, formula: Quantity) -> Quantity:
+        """Return how fast a formula changes while only sums that go on for ever do."""
+        running = self._flow.running
+        return swept(
+            [formula],
+            lambda leaf: self.rate(leaf.place) if leaf.operation == "state" and leaf.place in running else None,
+        )[0]
+
+    def _slope_in_time(self, leaf: Quantity) -> Quantity | None:
+        if leaf.operation == "state":
+            return self.rate(leaf.place)
+        if leaf.operation == "input":
+            return Quantity("input rate", name=leaf.name, place=leaf.place)
+        if leaf.operation == "past":
+            return Quantity("past rate", name=leaf.name, place=leaf.place)
+        return None
+
+    def _leaf(self, node: Quantity) -> Quantity | None:
+        if node.operation == "unknown":
+            value = self._flow.unknowns[node.place]
+            return self._once(("unknown", node.place), lambda: self(value))
+        if node.operation == "rate":
+            self._kept.append(node)
+            return self._once(("change", id(node)), lambda: self.change(self(node.of[0])))
+        return None
+
+    def _once(self, key: tuple[str, int], make: Callable[[], Quantity]) -> Quantity:
+        if key in self._done:
+            return self._done[key]
+        if key in self._open:
+            raise StructureError(
+                f"structure {self._name}: a loop depends on itself at once through the change of a signal; put a lag "
+                "or a delay into it."
+            )
+        self._open.add(key)
+        found = make()
+        self._open.discard(key)
+        self._done[key] = found
+        return found

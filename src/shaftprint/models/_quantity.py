@@ -1,0 +1,256 @@
+"""Scalar formulas of the time domain: what an equation is made of, before any number is known.
+
+A block states its equations in quantities; from the same formulas come the compiled simulation, its derivatives, the
+linearisation and the source text of an exported model. A quantity is a node of a graph: an operation on other
+quantities, or a leaf: a number, a parameter, an input, a state, or the past of a signal.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from numbers import Real
+from typing import TypeAlias, Union
+
+from shaftprint.errors import StructureError
+
+Number: TypeAlias = Union["Quantity", float]
+
+LEAVES = ("number", "parameter", "input", "input rate", "state", "past", "unknown", "sample")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Quantity:
+    """A scalar formula; composed with ``+ - * / **`` and the functions of this module."""
+
+    operation: str
+    """``add``, ``multiply``, ``divide``, ``power``, ``minimum`` ..., or the kind of leaf."""
+    of: tuple["Quantity", ...] = ()
+    """What it operates on."""
+    name: str = ""
+    """Name of a leaf; of a table the name of nothing."""
+    value: float = 0.0
+    """Number of a leaf that is one; exponent of a power."""
+    place: int = 0
+    """Number of a state, past or unknown."""
+    points: tuple[tuple[float, float], ...] = field(default=())
+    """Corner points of a table, ascending."""
+
+    def __add__(self, other: Number) -> "Quantity":
+        """Return the sum."""
+        return NotImplemented if (right := _quantity(other)) is None else add(self, right)
+
+    def __radd__(self, other: Number) -> "Quantity":
+        """Return the sum."""
+        return NotImplemented if (left := _quantity(other)) is None else add(left, self)
+
+    def __sub__(self, other: Number) -> "Quantity":
+        """Return the difference."""
+        return NotImplemented if (right := _quantity(other)) is None else add(self, -right)
+
+    def __rsub__(self, other: Number) -> "Quantity":
+        """Return the difference."""
+        return NotImplemented if (left := _quantity(other)) is None else add(left, -self)
+
+    def __neg__(self) -> "Quantity":
+        """Return the opposite."""
+        return multiply(number(-1.0), self)
+
+    def __pos__(self) -> "Quantity":
+        """Return the quantity."""
+        return self
+
+    def __mul__(self, other: Number) -> "Quantity":
+        """Return the product."""
+        return NotImplemented if (right := _quantity(other)) is None else multiply(self, right)
+
+    def __rmul__(self, other: Number) -> "Quantity":
+        """Return the product."""
+        return NotImplemented if (left := _quantity(other)) is None else multiply(left, self)
+
+    def __truediv__(self, other: Number) -> "Quantity":
+        """Return the quotient."""
+        return NotImplemented if (right := _quantity(other)) is None else divide(self, right)
+
+    def __rtruediv__(self, other: Number) -> "Quantity":
+        """Return the quotient."""
+        return NotImplemented if (left := _quantity(other)) is None else divide(left, self)
+
+    def __pow__(self, exponent: float) -> "Quantity":
+        """Return a power with a fixed exponent."""
+        if not isinstance(exponent, Real):
+            return NotImplemented
+        return power(self, float(exponent))
+
+    def __bool__(self) -> bool:
+        """Refuse: a formula is neither true nor false.
+
+        Raises
+        ------
+        StructureError
+            Always.
+        """
+        raise StructureError(
+            "equations: a quantity was compared or used in an 'if'; use minimum, maximum, clip or choose instead."
+        )
+
+    def __lt__(self, other: Number) -> bool:
+        """Refuse, see ``__bool__``."""
+        return bool(self)
+
+    __le__ = __gt__ = __ge__ = __lt__
+
+    # numpy calls these on objects, so that formulas may be written with np.sqrt and the like
+
+    def sqrt(self) -> "Quantity":
+        """Return the square root."""
+        return _of("sqrt", self)
+
+    def exp(self) -> "Quantity":
+        """Return the exponential."""
+        return _of("exp", self)
+
+    def log(self) -> "Quantity":
+        """Return the natural logarithm."""
+        return _of("log", self)
+
+    def sin(self) -> "Quantity":
+        """Return the sine."""
+        return _of("sin", self)
+
+    def cos(self) -> "Quantity":
+        """Return the cosine."""
+        return _of("cos", self)
+
+    def tanh(self) -> "Quantity":
+        """Return the hyperbolic tangent."""
+        return _of("tanh", self)
+
+    def __abs__(self) -> "Quantity":
+        """Return the absolute value."""
+        return _of("absolute", self)
+
+    @property
+    def is_number(self) -> bool:
+        """Whether this is a plain number."""
+        return self.operation == "number"
+
+    def equals(self, value: float) -> bool:
+        """Return whether this is the plain number given."""
+        return self.operation == "number" and self.value == value
+
+
+def number(value: float) -> Quantity:
+    """Return a plain number."""
+    return Quantity("number", value=float(value))
+
+
+def quantity(value: Number) -> Quantity:
+    """Return a number or a quantity as a quantity.
+
+    Raises
+    ------
+    StructureError
+        If it is neither.
+    """
+    found = _quantity(value)
+    if found is None:
+        raise StructureError(f"equations: expected a quantity or a number, found {value!r}.")
+    return found
+
+
+def _quantity(value: object) -> Quantity | None:
+    if isinstance(value, Quantity):
+        return value
+    return number(float(value)) if isinstance(value, Real) else None
+
+
+def add(left: Quantity, right: Quantity) -> Quantity:
+    """Return a sum, without zeros."""
+    if left.is_number and right.is_number:
+        return number(left.value + right.value)
+    if left.equals(0.0):
+        return right
+    return left if right.equals(0.0) else Quantity("add", (left, right))
+
+
+def multiply(left: Quantity, right: Quantity) -> Quantity:
+    """Return a product, without factors one and zero; a number stands first."""
+    if right.is_number and not left.is_number:
+        left, right = right, left
+    if left.is_number:
+        if right.is_number:
+            return number(left.value * right.value)
+        if left.value == 0.0:
+            return left
+        if left.value == 1.0:
+            return right
+        if right.operation == "multiply" and right.of[0].is_number:
+            return multiply(number(left.value * right.of[0].value), right.of[1])
+    return Quantity("multiply", (left, right))
+
+
+def divide(left: Quantity, right: Quantity) -> Quantity:
+    """Return a quotient.
+
+    Raises
+    ------
+    StructureError
+        If the denominator is the number zero.
+    """
+    if right.equals(0.0):
+        raise StructureError("equations: division by a quantity that is zero; hold its parameters at other values.")
+    if left.equals(0.0):
+        return left
+    return multiply(number(1.0 / right.value), left) if right.is_number else Quantity("divide", (left, right))
+
+
+def power(base: Quantity, exponent: float) -> Quantity:
+    """Return a power with a fixed exponent."""
+    if base.is_number:
+        return number(base.value**exponent)
+    if exponent in (0.0, 1.0):
+        return base if exponent else number(1.0)
+    return multiply(base, base) if exponent == 2.0 else Quantity("power", (base,), value=exponent)
+
+
+def minimum(left: Number, right: Number) -> Quantity:
+    """Return the smaller of two; where they are equal, the first."""
+    return Quantity("minimum", (quantity(left), quantity(right)))
+
+
+def maximum(left: Number, right: Number) -> Quantity:
+    """Return the larger of two; where they are equal, the first."""
+    return Quantity("maximum", (quantity(left), quantity(right)))
+
+
+def clip(value: Number, lowest: Number, highest: Number) -> Quantity:
+    """Return a value held between two others."""
+    return minimum(maximum(value, lowest), highest)
+
+
+def choose(left: Number, right: Number, at_most: Number, above: Number) -> Quantity:
+    """Return ``at_most`` where ``left <= right``, otherwise ``above``."""
+    return Quantity("choose", (quantity(left), quantity(right), quantity(at_most), quantity(above)))
+
+
+def table(value: Number, points: Sequence[tuple[float, float]]) -> Quantity:
+    """Return a piecewise linear function, constant beyond its ends.
+
+    Parameters
+    ----------
+    points
+        Corner points, ascending.
+
+    Raises
+    ------
+    StructureError
+        If there are fewer than two points, or they do not ascend.
+    """
+    corners = tuple((float(x), float(y)) for x, y in points)
+    if len(corners) < 2 or any(b[0] <= a[0] for a, b in pairwise(corners)):
+        raise StructureError(f"equations: expected a table of two or more ascending points, found {corners}.")
+    return Quantity("table", (quantity(value),), points=corners)
+
+
+def _of(operation: str, value: Quantity) -> Quantity:
+    return Quantity(operation, (value,))

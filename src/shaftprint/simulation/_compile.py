@@ -1,0 +1,86 @@
+"""Compiled kernels of programs: written once to a cache folder, where the compiler keeps its own files beside them."""
+
+import hashlib
+import importlib.abc
+import importlib.machinery
+import importlib.util
+import os
+import sys
+import tempfile
+from pathlib import Path
+from types import ModuleType
+
+from shaftprint.errors import StructureError
+
+
+class _Written(importlib.abc.InspectLoader):
+    """Loads a text that was just made; the file of that text is where the compiler's cache looks for its age."""
+
+    def __init__(self, text: str, path: Path) -> None:
+        self._text = text
+        self._path = path
+
+    def get_source(self, fullname: str) -> str:
+        return self._text
+
+    def source_to_code(self, data: object, path: object = "") -> object:  # type: ignore[override]
+        return super().source_to_code(self._text, str(self._path))
+
+    def get_filename(self, fullname: str) -> str:
+        return str(self._path)
+
+
+def cache_folder() -> Path:
+    """Return the folder of compiled kernels: ``SHAFTPRINT_CACHE`` where it is set, else the system's cache folder."""
+    chosen = os.environ.get("SHAFTPRINT_CACHE")
+    if chosen:
+        return Path(chosen)
+    if sys.platform == "win32":
+        base = Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local"))
+    elif sys.platform == "darwin":
+        base = Path.home() / "Library" / "Caches"
+    else:
+        base = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
+    return base / "shaftprint"
+
+
+def module_of(text: str) -> ModuleType:
+    """Return the module of a text of ours; only the text is run, never what a file holds.
+
+    Raises
+    ------
+    StructureError
+        If no folder can be written to.
+    """
+    name = f"shaftprint_equations_{hashlib.sha256(text.encode()).hexdigest()[:16]}"
+    if name in sys.modules:
+        return sys.modules[name]
+    path = _written(text, name)
+    loader = _Written(text, path)
+    spec = importlib.machinery.ModuleSpec(name, loader, origin=str(path))
+    module = importlib.util.module_from_spec(spec)
+    module.__file__ = str(path)
+    loader.exec_module(module)
+    sys.modules[name] = module
+    return module
+
+
+def _written(text: str, name: str) -> Path:
+    """Write the text where it does not stand already: its age decides whether what was compiled still holds."""
+    problem = ""
+    for folder in (cache_folder(), Path(tempfile.gettempdir()) / "shaftprint"):
+        path = folder / f"{name}.py"
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            if not path.exists() or path.read_text(encoding="utf-8") != text:
+                part = path.with_suffix(f".{os.getpid()}.part")
+                part.write_text(text, encoding="utf-8")
+                part.replace(path)
+        except OSError as error:
+            problem = f"{folder} ({error.strerror})"
+        else:
+            return path
+    raise StructureError(
+        f"compiled equations: expected a folder that can be written to, found none, last {problem}; set "
+        "SHAFTPRINT_CACHE to one."
+    )

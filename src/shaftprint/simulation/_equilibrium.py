@@ -1,0 +1,72 @@
+"""The steady running of a structure at constant inputs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import StructureError
+from shaftprint.models import Structure, program_of
+from shaftprint.simulation._steady import SteadyEquations
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Equilibrium:
+    """Steady running at constant inputs."""
+
+    inputs: Mapping[str, float]
+    """The inputs, in the structure's own units."""
+    states: FloatArray
+    """The states, shape (states,)."""
+    outputs: Mapping[str, float]
+    """The outputs."""
+
+
+def equilibrium(structure: Structure, values: ArrayLike, inputs: Mapping[str, float]) -> Equilibrium:
+    """Return the steady running of a structure at constant inputs.
+
+    Parameters
+    ----------
+    values
+        Parameter values, shape (parameters,).
+    inputs
+        Value of each input, in the structure's own units.
+
+    Raises
+    ------
+    StructureError
+        If there is none, or an input is missing.
+    """
+    vector = np.asarray(values, dtype=np.float64)
+    program = program_of(structure, held_zeros(structure, vector))
+    given = input_vector(structure, inputs)
+    found = SteadyEquations(program).solve(vector, given)
+    return Equilibrium(
+        inputs=dict(inputs),
+        states=frozen_float(found.states),
+        outputs=dict(zip(program.outputs, (float(value) for value in found.outputs), strict=True)),
+    )
+
+
+def input_vector(structure: Structure, inputs: Mapping[str, float]) -> FloatArray:
+    """Return the inputs in their order.
+
+    Raises
+    ------
+    StructureError
+        If one is missing, or not one of the structure's.
+    """
+    if set(inputs) != set(structure.inputs):
+        raise StructureError(
+            f"structure {structure.name}: expected the inputs {', '.join(structure.inputs)}, found "
+            f"{', '.join(inputs) or 'none'}."
+        )
+    return np.array([float(inputs[name]) for name in structure.inputs])
+
+
+def held_zeros(structure: Structure, values: FloatArray, wanted: tuple[str, ...] = ()) -> frozenset[str]:
+    """Return the parameters that are zero and stay so: lags and delays that are not there."""
+    pairs = zip(structure.parameters, values, strict=True)
+    return frozenset(p.name for p, value in pairs if p.held and value == 0.0 and p.name not in wanted)

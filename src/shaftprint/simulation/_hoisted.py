@@ -1,0 +1,82 @@
+"""A program made ready for compiled code: constants apart, derivatives found."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from shaftprint.models import Program, Quantity, derivatives, postorder, replaced
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Hoisted:
+    """A program whose formulas of parameters alone are constants, to be found once a simulation."""
+
+    constants: tuple[Quantity, ...]
+    """The formulas of parameters."""
+    rates: tuple[Quantity, ...]
+    """How fast states change."""
+    lates: tuple[Quantity, ...]
+    """Signals that are asked for late."""
+    values: tuple[Quantity, ...]
+    """What a computer takes."""
+    signals: tuple[Quantity, ...]
+    """The outputs."""
+
+
+def hoisted(program: Program) -> Hoisted:
+    """Return the program with constants in the place of formulas of parameters alone."""
+    constants: list[Quantity] = []
+    leaves: list[Quantity] = []
+    known: dict[int, int] = {}
+    fixed: dict[int, bool] = {}
+    roots = [
+        *program.rates,
+        *(late.signal for late in program.pasts),
+        *(sample.value for sample in program.samples),
+        *program.signals,
+    ]
+    for node in postorder(roots):
+        fixed[id(node)] = (
+            node.operation in ("parameter", "number") if not node.of else all(fixed[id(part)] for part in node.of)
+        )
+
+    def constant(node: Quantity) -> Quantity | None:
+        if node.operation == "number" or not fixed[id(node)]:
+            return None
+        if id(node) not in known:
+            known[id(node)] = len(constants)
+            leaves.append(Quantity("constant", name="constant", place=len(constants)))
+            constants.append(node)
+        return leaves[known[id(node)]]
+
+    # the walk goes parts first: only what stands directly below something that is not fixed becomes a constant
+    outer = {id(part) for node in postorder(roots) if not fixed[id(node)] for part in node.of if fixed[id(part)]}
+    outer |= {id(root) for root in roots if fixed[id(root)]}
+    found = replaced(roots, lambda node: constant(node) if id(node) in outer else None)
+    count, late = len(program.rates), len(program.pasts)
+    taken = len(program.samples)
+    return Hoisted(
+        constants=tuple(constants),
+        rates=tuple(found[:count]),
+        lates=tuple(found[count : count + late]),
+        values=tuple(found[count + late : count + late + taken]),
+        signals=tuple(found[count + late + taken :]),
+    )
+
+
+class Slopes:
+    """Derivatives of formulas to the leaves they contain, those that are not zero."""
+
+    def __init__(self, formulas: Sequence[Quantity]) -> None:
+        self.entries: list[tuple[int, Quantity]] = []
+        """Number of the formula and leaf of each derivative."""
+        self.formulas: list[Quantity] = []
+        """The derivatives."""
+        leaves: dict[tuple[str, int], Quantity] = {}
+        for node in postorder(formulas):
+            if not node.of and node.operation not in ("number", "input", "input rate"):
+                leaves.setdefault((node.operation, node.place), node)
+        for leaf in leaves.values():
+            for i, slope in enumerate(derivatives(formulas, leaf)):
+                if not slope.equals(0.0):
+                    self.entries.append((i, leaf))
+                    self.formulas.append(slope)

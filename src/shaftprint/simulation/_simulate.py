@@ -1,0 +1,123 @@
+"""The response of a structure in time."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import StructureError
+from shaftprint.models import Structure
+from shaftprint.simulation._built import build
+from shaftprint.simulation._equilibrium import held_zeros
+from shaftprint.simulation._march import March
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Trace:
+    """What a structure does in time."""
+
+    time_s: FloatArray
+    """Time [s], shape (samples,)."""
+    outputs: Mapping[str, FloatArray]
+    """Each output, shape (samples,)."""
+    derivatives: Mapping[str, FloatArray]
+    """Derivatives of each output to the wanted parameters, shape (wanted, samples)."""
+
+
+def simulate(
+    structure: Structure,
+    values: ArrayLike,
+    time_s: ArrayLike,
+    inputs: Mapping[str, ArrayLike],
+    *,
+    wanted: Sequence[str] = (),
+    hold: bool = False,
+    longest_step_s: float = 5e-3,
+    initial: ArrayLike | None = None,
+) -> Trace:
+    """Simulate a structure, linear or not, with exact delays.
+
+    Fourth-order Runge-Kutta steps; delayed signals are interpolated by a cubic. Before the start everything stood as
+    at the start.
+
+    Parameters
+    ----------
+    values
+        Parameter values, shape (parameters,).
+    time_s
+        Uniform times [s], shape (samples,).
+    inputs
+        Each input at these times, shape (samples,), in the structure's own units; straight in between.
+    wanted
+        Names of the parameters whose derivatives are wanted: exact ones of the computed values.
+    hold
+        Whether inputs keep each value until the next time, as those of a computer do, instead of being straight.
+    longest_step_s
+        Upper bound of the time step [s]; the step divides the interval of the times.
+    initial
+        States at the start, shape (states,), see ``equilibrium``; steady running at the first inputs if not given.
+
+    Raises
+    ------
+    StructureError
+        If times are not uniform, inputs are missing or of another length, a delay is negative, or there is no steady
+        running to start from.
+    """
+    vector = np.asarray(values)
+    _expect_values(structure, vector, wanted)
+    time = np.asarray(time_s, dtype=np.float64)
+    interval = _interval(structure, time)
+    table = _table(structure, inputs, time.size)
+    real = np.asarray(vector.real, dtype=np.float64)
+    built = build(structure, held_zeros(structure, real, tuple(wanted)))
+    march = March.planned(built, vector, interval, longest_step_s, hold=hold)
+    start = march.start(table[0], None if initial is None else np.asarray(initial, dtype=np.float64))
+    outputs, slopes = march.run(table, start, tuple(wanted), given=initial is not None)
+    names = built.program.outputs
+    return Trace(
+        time_s=frozen_float(time),
+        outputs={name: outputs[:, i] for i, name in enumerate(names)},
+        derivatives={name: slopes[:, i].T for i, name in enumerate(names)},
+    )
+
+
+def _expect_values(structure: Structure, values: FloatArray, wanted: Sequence[str]) -> None:
+    if values.shape != (len(structure.parameters),):
+        raise StructureError(
+            f"structure {structure.name}: expected {len(structure.parameters)} parameter values "
+            f"({', '.join(structure.names)}), found an array of shape {values.shape}."
+        )
+    unknown = [name for name in wanted if name not in structure.names]
+    if unknown:
+        raise StructureError(
+            f"structure {structure.name} has no parameter {', '.join(unknown)}; it has {', '.join(structure.names)}."
+        )
+
+
+def _interval(structure: Structure, time: FloatArray) -> float:
+    if time.ndim != 1 or time.size < 2:
+        raise StructureError(f"simulation of {structure.name}: expected two or more times, found shape {time.shape}.")
+    interval = float(time[-1] - time[0]) / (time.size - 1)
+    if not interval > 0.0 or np.abs(np.diff(time) - interval).max() > 1e-6 * interval + 1e-12 * abs(time[-1]):
+        raise StructureError(f"simulation of {structure.name}: expected uniform ascending times.")
+    return interval
+
+
+def _table(structure: Structure, inputs: Mapping[str, ArrayLike], samples: int) -> FloatArray:
+    if set(inputs) != set(structure.inputs):
+        raise StructureError(
+            f"simulation of {structure.name}: expected the inputs {', '.join(structure.inputs)}, found "
+            f"{', '.join(inputs) or 'none'}."
+        )
+    table = np.empty((samples, len(structure.inputs)))
+    for i, name in enumerate(structure.inputs):
+        values = np.asarray(inputs[name], dtype=np.float64)
+        if values.shape != (samples,) or not np.all(np.isfinite(values)):
+            raise StructureError(
+                f"simulation of {structure.name}, input {name}: expected {samples} finite values, found shape "
+                f"{values.shape}{'' if np.all(np.isfinite(values)) else ' with values that are not finite'}."
+            )
+        table[:, i] = values
+    return table
