@@ -178,7 +178,7 @@ def test_the_working_point_and_the_set_point_are_measured(sharp, gauge_fit):
     rows = (BudgetRow(name="K_Q", unit="-", value=1.0, variances=variances),)
     common = {"set-point calibration": np.zeros(gauge_fit.response.response.shape)}
     part = replace(gauge_fit.experiments[0], response=replace(gauge_fit.response, common=common))
-    told = replace(sharp, experiments=(part,))
+    told = replace(sharp, parts=(part,))
     assert none(found(told, stated=Budget(sources=tuple(variances), rows=rows)), "beforehand")
 
 

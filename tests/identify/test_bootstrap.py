@@ -15,7 +15,7 @@ from shaftprint.identify import (
     identify_jointly,
     profile_intervals,
 )
-from shaftprint.identify._bootstrap import _estimated_shapes
+from shaftprint.identify._wishart import estimated_shapes
 from shaftprint.models import Combination, Gain, Parameter, Structure, structure
 
 GAUGE = {"tau_dn": 0.32, "tau_up": 1.016, "k_q": 2.0, "g": 0.0, "v": 1.0, "K_p": 5.7, "K_i": 4.27, "t_d": 0.07}
@@ -126,7 +126,7 @@ def test_estimated_covariances_scatter_as_those_of_complex_samples_do():
     samples, count = 6, 20_000
     pairs = (rng.standard_normal((count, samples, 2)) + 1j * rng.standard_normal((count, samples, 2))) * 0.5**0.5
     expected = np.einsum("ksi,ksj->kij", pairs, pairs.conj()) / samples
-    found = _estimated_shapes(np.array([2.0 * samples, np.inf]), 2, count, rng)
+    found = estimated_shapes(np.array([2.0 * samples, np.inf]), 2, count, rng)
     np.testing.assert_array_equal(found[:, 1], np.broadcast_to(np.eye(4), (count, 4, 4)))
     drawn = found[:, 0]
     np.testing.assert_allclose(drawn[:, :2, :2], drawn[:, 2:, 2:])

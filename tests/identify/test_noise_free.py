@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shaftprint.identify import Prior, Settings, Unweighted, identify
-from shaftprint.identify._objective import build_objective
+from shaftprint.identify._build_objective import build_objective
 from shaftprint.identify._search import _floors
 from shaftprint.models import structure
 from shaftprint.spectra import FrequencyResponse

@@ -74,7 +74,7 @@ def test_residuals_hold_the_load_of_each_window(identification):
     """With another load the propeller's slope is k_q load: the residual moves as a changed k_q would move it."""
     loaded = replace(identification.response, load=np.full(16, 1.1))
     (part,) = identification.experiments
-    moved = normalised_residuals(replace(identification, experiments=(replace(part, response=loaded),)))
+    moved = normalised_residuals(replace(identification, parts=(replace(part, response=loaded),)))
     values = identification.values.copy()
     values[identification.structure.names.index("k_q")] *= 1.1
     np.testing.assert_allclose(moved, normalised_residuals(replace(identification, values=values)), rtol=1e-9)

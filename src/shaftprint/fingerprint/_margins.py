@@ -29,7 +29,7 @@ def margin_quantities(
     if found is None:
         return ()
     if stated is None:
-        own = identification.objective.experiments[0].own(identification.values)
+        own = identification.own_values()
         stated = budget(identification, margin_numbers(identification.structure, own))
     std = {row.name: row.std for row in stated.rows}
     quantities = []

@@ -54,7 +54,7 @@ def physical_numbers(
 ) -> tuple[PhysicalNumber, ...]:
     """Return the physical values that a fit gives, as numbers that follow from its parameters."""
     structure = identification.structure
-    named = structure.named(identification.objective.experiments[0].own(identification.values))
+    named = structure.named(identification.own_values())
     scale = vessel.sensors.shaft_torque.scale_std_fraction or 0.0
     plans = (*_inertias(working_point, vessel), *_governor_actions(working_point))
     found = []

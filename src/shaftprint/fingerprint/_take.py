@@ -60,7 +60,7 @@ def take_fingerprint(
     """
     if now.tzinfo is None:
         raise FingerprintError("now: expected a time with time zone, such as datetime.now(UTC), found one without.")
-    own = identification.objective.experiments[0].own(identification.values)
+    own = identification.own_values()
     margins = margin_numbers(identification.structure, own)
     stated = _budget(identification, signals.working_point, vessel, margins)
     physical = physical_quantities(identification, signals.working_point, vessel, stated)

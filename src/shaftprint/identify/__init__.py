@@ -20,9 +20,8 @@ from shaftprint.identify._comparison import Candidate, Comparison
 from shaftprint.identify._covariance import estimate_covariance
 from shaftprint.identify._criteria import Criteria, criteria_of
 from shaftprint.identify._directions import Direction
-from shaftprint.identify._experiment import load_factors
 from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
-from shaftprint.identify._fit_test import FitTest, LineTest
+from shaftprint.identify._fit_test import FitTest
 from shaftprint.identify._groups import Group
 from shaftprint.identify._identifiability import Identifiability, identifiability
 from shaftprint.identify._identification import Cluster, Estimate, Identification
@@ -30,6 +29,8 @@ from shaftprint.identify._identify import identify, identify_jointly
 from shaftprint.identify._known import PRIOR_OF_G, priors_from_vessel
 from shaftprint.identify._left_out import Foretold
 from shaftprint.identify._likelihood_ratio import LikelihoodRatio
+from shaftprint.identify._line_test import LineTest
+from shaftprint.identify._load_factors import load_factors
 from shaftprint.identify._noise_levels import NoiseLevels, noise_levels, stated_noise
 from shaftprint.identify._optima import Optimum
 from shaftprint.identify._part import Part
@@ -46,6 +47,7 @@ from shaftprint.identify._settings import Settings, Stability
 from shaftprint.identify._stan_tug_noise import STAN_TUG_NOISE
 from shaftprint.identify._starts import Draw, LatinHypercube, Uniform
 from shaftprint.identify._suspects import Suspect, suspects_of
+from shaftprint.identify._term import FittedTerm, Repeats, Term, TermTest
 from shaftprint.identify._verdict import Verdict, assess
 from shaftprint.identify._weighting import MaximumLikelihood, StudentT, Unweighted, Weighting
 
@@ -65,6 +67,7 @@ __all__ = [
     "Draw",
     "Estimate",
     "FitTest",
+    "FittedTerm",
     "Foretold",
     "Group",
     "Identifiability",
@@ -82,6 +85,7 @@ __all__ = [
     "Profile",
     "ProfileCurve",
     "Refits",
+    "Repeats",
     "Requirements",
     "ResponseBand",
     "Scan",
@@ -91,6 +95,8 @@ __all__ = [
     "StepBand",
     "StudentT",
     "Suspect",
+    "Term",
+    "TermTest",
     "Uniform",
     "Unweighted",
     "Verdict",

@@ -13,10 +13,11 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
+from shaftprint.identify._build_objective import build_joint_objective
 from shaftprint.identify._covariance import estimate_covariance, variance_along
 from shaftprint.identify._groups import Group, inseparable_groups
 from shaftprint.identify._identification import Estimate
-from shaftprint.identify._objective import Objective, build_joint_objective
+from shaftprint.identify._objective import Objective
 from shaftprint.identify._prior import Prior
 from shaftprint.identify._sensor import with_sensor
 from shaftprint.identify._weighting import MaximumLikelihood

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import ComplexArray, FloatArray, frozen_float
+from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
-from shaftprint.identify._experiment import Experiment
 from shaftprint.identify._identification import Identification
 from shaftprint.identify._numbers import Numbers, all_numbers
-from shaftprint.identify._refit import refit
+from shaftprint.identify._objective import Redrawn
+from shaftprint.identify._refit import refit_redrawn
 from shaftprint.models import Combination
 
 # Percentiles of an interval of 95 % coverage.
@@ -76,20 +76,15 @@ def bootstrap(
     Raises
     ------
     IdentificationError
-        If there are fewer than two repeats, or fewer than two of their fits settled.
+        If there are fewer than two repeats, data cannot be drawn anew, or fewer than two of the fits settled.
     """
     if count < FEWEST:
         raise IdentificationError(f"bootstrap: expected {FEWEST} repeats or more, found {count}.")
     objective = identification.objective
-    drawn = [drawn_test(experiment, identification.values, count, rng) for experiment in objective.experiments]
-    responses, covariances = [response for response, _ in drawn], [covariance for _, covariance in drawn]
-    single = len(drawn) == 1
-    found = refit(
-        identification,
-        responses[0] if single else responses,
-        prior_means=_prior_means(identification, count, rng),
-        covariances=covariances[0] if single else covariances,
-    )
+    repeats = tuple(term.redrawn(identification.values, count, rng) for term in objective.terms)
+    redrawn = Redrawn(repeats=repeats, prior_means=_prior_means(identification, count, rng))
+    free = identification.values[list(objective.free)]
+    found = refit_redrawn(identification, redrawn, np.broadcast_to(free, (count, free.size)))
     settled = found.values[found.converged]
     if settled.shape[0] < FEWEST:
         raise IdentificationError(
@@ -102,48 +97,6 @@ def bootstrap(
         failed_share=1.0 - settled.shape[0] / count,
         estimates=_estimates(identification, numbers, settled),
     )
-
-
-def drawn_test(
-    experiment: Experiment, values: FloatArray, count: int, rng: np.random.Generator
-) -> tuple[ComplexArray, FloatArray]:
-    """Return responses, shape (repeats, channels, lines), and covariances, shape (repeats, lines, size, size).
-
-    Lines that are not fitted stay as they are.
-    """
-    lines, size = experiment.data.shape
-    model = experiment.structure.response(experiment.own(values), experiment.s, factors=experiment.factors)
-    root = np.linalg.cholesky(experiment.noise_covariance)
-    parts = np.einsum("lab,klb->kal", root, rng.standard_normal((count, lines, size)))
-    response = experiment.response
-    channels = response.response.reshape(-1, experiment.fitted.size)
-    responses = np.repeat(channels[None], count, axis=0)
-    responses[:, :, experiment.fitted] = model + parts[:, : size // 2] + 1j * parts[:, size // 2 :]
-    covariances = np.repeat(response.covariance[None], count, axis=0)
-    shapes = _estimated_shapes(experiment.freedom, size // 2, count, rng)
-    factor = np.linalg.cholesky(experiment.covariance)
-    covariances[:, experiment.fitted] = factor @ shapes @ factor.swapaxes(1, 2)
-    return responses, covariances
-
-
-def _estimated_shapes(freedom: FloatArray, channels: int, count: int, rng: np.random.Generator) -> FloatArray:
-    """Return what an estimate makes of a unit covariance, shape (repeats, lines, 2 channels, 2 channels).
-
-    Covariances of complex samples follow a complex Wishart distribution, here by its Bartlett decomposition (Goodman,
-    Statistical analysis based on a certain multivariate complex Gaussian distribution, 1963); a known one stays 1.
-    """
-    known = np.isinf(freedom)
-    samples = np.where(known, np.inf, np.maximum(0.5 * freedom, channels))
-    triangle = np.zeros((count, freedom.size, channels, channels), dtype=np.complex128)
-    safe = np.where(known, channels, samples)
-    for i in range(channels):
-        triangle[:, :, i, i] = np.sqrt(rng.gamma(safe - i, size=(count, freedom.size)))
-        real, imaginary = rng.standard_normal((2, count, freedom.size, i)) * np.sqrt(0.5)
-        triangle[:, :, i, :i] = real + 1j * imaginary
-    wishart = triangle @ triangle.conj().swapaxes(2, 3) / safe[:, None, None]
-    shape = np.block([[wishart.real, -wishart.imag], [wishart.imag, wishart.real]])
-    shape[:, known] = np.eye(2 * channels)
-    return np.asarray(shape)
 
 
 def _prior_means(identification: Identification, count: int, rng: np.random.Generator) -> FloatArray:

@@ -68,7 +68,7 @@ class _Border:
         """Return the experiment whose loop gain comes closest to -1; None where there is no feedback."""
         least, nearest = np.inf, None
         values = objective.complete(theta)
-        for number, experiment in enumerate(objective.experiments):
+        for number, experiment in enumerate(objective.terms):
             structure = experiment.structure
             if structure.loop is None:
                 continue
@@ -120,7 +120,7 @@ class _Border:
 
     def _gap(self, trial: FloatArray) -> tuple[complex, ComplexArray]:
         """Return ``1 + L`` and its derivatives to the free parameters and to the logarithm of the frequency."""
-        experiment = self.objective.experiments[self.number]
+        experiment = self.objective.terms[self.number]
         own = experiment.own(self.objective.complete(trial[:-1]))
         s = 1j * np.exp(trial[-1] + np.array([0.0, STEP, -STEP]))
         stacked = self.loop.stacked(own, s)[:, 0]

@@ -8,7 +8,6 @@ from shaftprint.identify._evidence import Evidence, gain_reserve, loop_delay_s
 from shaftprint.identify._good_lines import crossings_rad_s
 from shaftprint.identify._phrases import listed, probability
 from shaftprint.identify._search_words import wrong_basin_words
-from shaftprint.models import stable_rows
 
 # A fit that is better than this probability allows has less noise than its covariance says.
 TOO_GOOD = 0.999
@@ -46,16 +45,15 @@ def _perhaps_unstable(evidence: Evidence) -> list[str]:
     """Return that the data allow unstable sets too."""
     if evidence.profile is None or evidence.margins is None:
         return []
-    experiments = evidence.identification.objective.experiments
-    points = evidence.profile.points
-    stable = np.all([stable_rows(e.structure, e.own(points)) for e in experiments], axis=0)
-    if stable.all():
+    if evidence.identification.objective.stable(evidence.profile.points).all():
         return []
     return ["The data allow unstable loops too: some parameter sets at the ends of the 95 % intervals are."]
 
 
 def _beyond_the_lines(evidence: Evidence) -> list[str]:
     """Return that the loop decides on its stability where there are no lines."""
+    if evidence.identification.objective.others:
+        return []
     experiment = evidence.identification.objective.experiments[0]
     omega = experiment.s.imag[np.any(evidence.good[0], axis=0)]
     outside = [c for c in crossings_rad_s(evidence.identification) if not omega[0] <= c <= omega[-1]]

@@ -153,6 +153,12 @@ def _channels(structure: Structure) -> str:
 
 
 def _expect_same_data(fits: Sequence[Identification]) -> None:
+    for fit in fits:
+        if fit.objective.others:
+            raise IdentificationError(
+                f"structure {fit.objective.name} was fitted to {fit.objective.others[0].name}: only fits to a single "
+                "frequency response are compared."
+            )
     data = fits[0].objective.experiments[0].data
     for fit in fits:
         alike = fit.settings.weighting == fits[0].settings.weighting

@@ -28,7 +28,7 @@ class Evidence:
     requirements: Requirements
     """What it must satisfy."""
     good: tuple[BoolArray, ...]
-    """Which channels of which fitted lines are good, of every experiment, shape (channels, lines)."""
+    """Which channels of which fitted lines are good, of every frequency response, shape (channels, lines)."""
     search: SearchReport
     """The optima of the search."""
     margins: Margins | None
@@ -66,8 +66,9 @@ class Evidence:
 
     @property
     def good_data(self) -> int:
-        """Number of good data: two a channel of a line."""
-        return 2 * sum(int(good.sum()) for good in self.good)
+        """Number of good data: two a channel of a line, and all of records, where noise is weighed by its colour."""
+        records = sum(term.data_count for term in self.identification.objective.others)
+        return 2 * sum(int(good.sum()) for good in self.good) + records
 
 
 def loop_delay_s(identification: Identification) -> float:

@@ -6,54 +6,41 @@ where that was estimated the residuals of a line are shortened (``Tails``); unwe
 output weights only.
 """
 
-from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
-from shaftprint.errors import IdentificationError
+from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray, frozen_bool, frozen_float
+from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
+from shaftprint.identify._part import Part, channel_names, channels_of
 from shaftprint.identify._tails import Tails, excess_freedom
+from shaftprint.identify._term import Repeats, Term, TermTest
+from shaftprint.identify._tested_lines import tested_lines
 from shaftprint.identify._weighting import Weighting
+from shaftprint.identify._wishart import estimated_shapes
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 
-# Parameters that are slopes of the propeller torque: they grow with the load.
-LOADED = ("k_q", "kappa")
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ResponseRepeats(Repeats):
+    """Other data for an experiment, one row a repeat."""
+
+    measured: ComplexArray | None
+    """Of the fitted lines, shape (repeats, channels, lines); None where they are the experiment's."""
+    weights: FloatArray | None
+    """``W`` of the fitted lines, shape (repeats, lines, size, size); None where they are the experiment's."""
+
+    def chosen(self, repeats: IntArray | slice) -> "ResponseRepeats":
+        """Return some of the repeats."""
+        return ResponseRepeats(
+            measured=None if self.measured is None else self.measured[repeats],
+            weights=None if self.weights is None else self.weights[repeats],
+        )
 
 
-class Term(ABC):
-    """One part of the likelihood: residuals whose half square sum is its negative logarithm, up to a constant."""
-
-    __slots__ = ()
-
-    @abstractmethod
-    def table(self, theta: FloatArray) -> FloatArray:
-        """Return residuals and below them their derivatives, shape (starts, 1 + free, rows).
-
-        Parameters
-        ----------
-        theta
-            Free parameters of this term, shape (starts, free).
-        """
-
-    @abstractmethod
-    def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
-        """Return rows whose products are the information, and rows whose products are the variance of the slope.
-
-        Parameters
-        ----------
-        theta
-            Free parameters of this term, shape (free,).
-        expected
-            Whether to average over the noise instead of taking the data as they are.
-
-        Returns
-        -------
-            ``J`` and ``N``, each of shape (free, rows): ``J J^T`` is the second derivative of the cost, and ``N N^T``
-            the covariance of its slope, the same for a likelihood.
-        """
+AS_MEASURED = ResponseRepeats(measured=None, weights=None)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -93,31 +80,44 @@ class Experiment(Term):
     columns: tuple[int, ...]
     """Places of the same among the free parameters of the objective."""
 
-    def complete(self, theta: FloatArray) -> FloatArray:
-        """Return all parameters of the structure, shape (..., parameters), from its free ones, shape (..., free)."""
-        values = np.empty((*theta.shape[:-1], self.held.size))
-        values[...] = self.held
-        values[..., self.free] = theta
-        return values
+    @property
+    def name(self) -> str:
+        """What messages call the data."""
+        return f"response of {', '.join(self.structure.outputs)}"
 
-    def own(self, values: FloatArray) -> FloatArray:
-        """Return the parameters of the structure, shape (..., parameters), from those of the objective."""
-        return self.complete(values[..., self.places])
+    @property
+    def data_count(self) -> int:
+        """Number of real data: two a complex value."""
+        return self.data.size
 
-    def table(
-        self, theta: FloatArray, measured: ComplexArray | None = None, weights: FloatArray | None = None
-    ) -> FloatArray:
-        """Return residuals, those of one channel's real or imaginary part side by side, and their derivatives.
+    @property
+    def row_count(self) -> int:
+        """Number of rows: one a datum."""
+        return self.data.size
 
-        Parameters
-        ----------
-        measured
-            Other data of the fitted lines for each start, shape (starts, channels, lines).
-        weights
-            Other weights ``W`` for each start, shape (starts, lines, size, size).
-        """
-        elements = self.elements if weights is None else _elements(weights)
-        weighted = _weighted(self._stacked(theta, measured), elements)
+    @property
+    def is_likelihood(self) -> bool:
+        """Whether lines are weighted by their covariance."""
+        return self.weighting.is_likelihood
+
+    @property
+    def cost_of_nothing(self) -> float:
+        """Half the square sum of the weighted data."""
+        return 0.5 * float(np.sum((self.weights @ self.data[:, :, None]) ** 2))
+
+    def placed(self, names: Sequence[str], free: Sequence[str]) -> "Experiment":
+        """Return the experiment as part of an objective of these parameters."""
+        return replace(
+            self,
+            places=tuple(names.index(p.name) for p in self.structure.free),
+            columns=tuple(free.index(p.name) for p in self.structure.free),
+        )
+
+    def table(self, theta: FloatArray, repeats: Repeats | None = None) -> FloatArray:
+        """Return residuals, those of one channel's real or imaginary part side by side, and their derivatives."""
+        other = repeats if isinstance(repeats, ResponseRepeats) else AS_MEASURED
+        elements = self.elements if other.weights is None else elements_of(other.weights)
+        weighted = _weighted(self._stacked(theta, other.measured), elements)
         shaped = weighted if self.tails.normal else self.tails.shaped(weighted)
         return shaped.reshape(*shaped.shape[:2], -1)
 
@@ -154,89 +154,79 @@ class Experiment(Term):
         std = np.sqrt(np.diagonal(self.covariance, axis1=1, axis2=2))
         return float(np.min(std / np.maximum(np.tile(np.abs(self.measured).T, 2), np.finfo(np.float64).tiny)))
 
+    def model(self, values: FloatArray) -> ComplexArray:
+        """Return the response of the fitted lines for all parameters of the objective, shape (channels, lines)."""
+        return self.structure.response(self.own(values), self.s, factors=self.factors)
+
+    def with_floor(self, floor: float) -> "Experiment":
+        """Return the experiment with a share of each value added to its covariance, as an independent deviation."""
+        size = self.data.shape[1]
+        least = (floor * np.tile(np.abs(self.measured).T, 2)) ** 2
+        covariance = self.covariance + least[:, :, None] * np.eye(size)
+        weights = self.weighting.matrices(self.response, covariance)
+        return replace(self, covariance=covariance, weights=weights, elements=elements_of(weights))
+
+    def judged(self, values: FloatArray, number: int) -> tuple[Part, TermTest]:
+        """Return FitPercent, whitened residuals, and the squared distance of each line."""
+        model = self.model(values)
+        gap = self.data - np.concatenate([model.real, model.imag]).T
+        whitened = np.linalg.solve(np.linalg.cholesky(self.covariance), gap[:, :, None])[:, :, 0]
+        count = len(self.structure.channels)
+        variance = np.diagonal(self.noise_covariance, axis1=1, axis2=2).T
+        names = channel_names(self.response)
+        part = Part(
+            structure=self.structure,
+            response=self.response,
+            fitted=frozen_bool(self.fitted),
+            fit_percent={n: fit_percent(self.measured[i], model[i]) for i, n in enumerate(names)},
+            fit_ceiling={
+                n: fit_ceiling(self.measured[i], variance[i] + variance[count + i]) for i, n in enumerate(names)
+            },
+            whitened=frozen_float(whitened),
+        )
+        lines = [name for name, taken in zip(self.response.lines, self.fitted, strict=True) if taken]
+        return part, tested_lines(whitened, self.freedom, lines, number)
+
+    def drawn(self, values: FloatArray, count: int, rng: np.random.Generator) -> tuple[ComplexArray, FloatArray]:
+        """Return responses and covariances of repeats of the test, at all lines of the response.
+
+        Lines that are not fitted stay as they are.
+
+        Parameters
+        ----------
+        values
+            All parameters of the objective, shape (parameters,).
+
+        Returns
+        -------
+            Shapes (repeats, channels, lines) and (repeats, lines, size, size).
+        """
+        lines, size = self.data.shape
+        root = np.linalg.cholesky(self.noise_covariance)
+        parts = np.einsum("lab,klb->kal", root, rng.standard_normal((count, lines, size)))
+        responses = np.repeat(channels_of(self.response)[None], count, axis=0)
+        responses[:, :, self.fitted] = self.model(values) + parts[:, : size // 2] + 1j * parts[:, size // 2 :]
+        covariances = np.repeat(self.response.covariance[None], count, axis=0)
+        shapes = estimated_shapes(self.freedom, size // 2, count, rng)
+        factor = np.linalg.cholesky(self.covariance)
+        covariances[:, self.fitted] = factor @ shapes @ factor.swapaxes(1, 2)
+        return responses, covariances
+
+    def redrawn(self, values: FloatArray, count: int, rng: np.random.Generator) -> "ResponseRepeats":
+        """Return the fitted lines of repeats, each with weights from a covariance drawn anew."""
+        responses, covariances = self.drawn(values, count, rng)
+        return ResponseRepeats(
+            measured=responses[:, :, self.fitted],
+            weights=self.weighting.matrices(self.response, covariances[:, self.fitted]),
+        )
+
     def _stacked(self, theta: FloatArray, measured: ComplexArray | None) -> ComplexArray:
         stacked = self.structure.stacked(self.complete(theta), self.s, factors=self.factors)
         stacked[:, 0] -= self.measured if measured is None else measured
         return stacked
 
 
-def build_experiment(
-    structure: Structure,
-    response: FrequencyResponse,
-    *,
-    weighting: Weighting,
-    lines: Sequence[str] | None,
-    names: Sequence[str],
-    free: Sequence[str],
-) -> Experiment:
-    """Return the part of the likelihood that one response gives.
-
-    Parameters
-    ----------
-    names, free
-        Names of all parameters and of the free parameters of the objective.
-
-    Raises
-    ------
-    IdentificationError
-        If input or outputs differ or a line is not in the response.
-    """
-    taken = _of_structure(structure, response)
-    fitted = _fitted_lines(taken, lines)
-    measured = channels_of(taken)[:, fitted]
-    covariance = taken.covariance[fitted]
-    weights = weighting.matrices(taken, covariance)
-    return Experiment(
-        structure=structure,
-        response=taken,
-        fitted=fitted,
-        s=np.asarray(1j * taken.omega_rad_s[fitted], dtype=np.complex128),
-        factors=load_factors(taken, fitted),
-        data=np.concatenate([measured.real, measured.imag]).T,
-        measured=measured,
-        covariance=covariance,
-        weighting=weighting,
-        weights=weights,
-        tails=weighting.tails(taken.degrees_of_freedom[fitted], covariance.shape[1]),
-        elements=_elements(weights),
-        held=structure.vector({}),
-        free=tuple(i for i, p in enumerate(structure.parameters) if not p.held),
-        places=tuple(names.index(p.name) for p in structure.free),
-        columns=tuple(free.index(p.name) for p in structure.free),
-    )
-
-
-def with_floor(experiment: Experiment, floor: float) -> Experiment:
-    """Return the experiment as if no value were known better than to a share of itself.
-
-    Parameters
-    ----------
-    floor
-        The share, added to the covariance as an independent standard deviation.
-    """
-    size = experiment.data.shape[1]
-    least = (floor * np.tile(np.abs(experiment.measured).T, 2)) ** 2
-    covariance = experiment.covariance + least[:, :, None] * np.eye(size)
-    weights = experiment.weighting.matrices(experiment.response, covariance)
-    return replace(experiment, covariance=covariance, weights=weights, elements=_elements(weights))
-
-
-def channels_of(response: FrequencyResponse) -> ComplexArray:
-    """Return the response of every channel, outputs slowest, shape (channels, lines)."""
-    return response.response.reshape(-1, response.frequency_hz.size)
-
-
-def load_factors(response: FrequencyResponse, chosen: BoolArray | None = None) -> dict[str, FloatArray]:
-    """Return what the propeller load of each line's window does to the parameters of a structure.
-
-    A propeller whose torque is ``M_s0 (1 + delta) (n / n_0)^2`` has the slopes ``k_q (1 + delta)`` and
-    ``kappa (1 + delta)`` in values normalised with one working point, and nothing else changes.
-    """
-    load = response.load if chosen is None else response.load[chosen]
-    return {} if np.all(load == 1.0) else dict.fromkeys(LOADED, load)
-
-
-def _elements(weights: FloatArray) -> tuple[tuple[int, int, FloatArray], ...]:
+def elements_of(weights: FloatArray) -> tuple[tuple[int, int, FloatArray], ...]:
     """Return row, column and elements of ``-W`` where they are not all zero, the diagonal first.
 
     Parameters
@@ -266,30 +256,3 @@ def _weighted(stacked: ComplexArray, elements: tuple[tuple[int, int, FloatArray]
         else:
             table[:, :, row] += part * weight
     return table
-
-
-def _fitted_lines(response: FrequencyResponse, lines: Sequence[str] | None) -> BoolArray:
-    if lines is None:
-        return response.used
-    unknown = [name for name in lines if name not in response.lines]
-    if unknown:
-        raise IdentificationError(
-            f"lines {', '.join(unknown)} are not in the response; it has {', '.join(response.lines)}."
-        )
-    return np.array([name in lines for name in response.lines], dtype=np.bool_)
-
-
-def _of_structure(structure: Structure, response: FrequencyResponse) -> FrequencyResponse:
-    """Return the response of the structure's outputs."""
-    outputs = tuple(structure.outputs)
-    if structure.inputs != response.inputs or not set(outputs) <= set(response.outputs):
-        raise IdentificationError(
-            f"structure {structure.name} goes from {', '.join(structure.inputs)} to {', '.join(outputs)}, the "
-            f"response from {', '.join(response.inputs)} to {', '.join(response.outputs)}: "
-            + (
-                "choose a structure with these channels, or convert the response with open_loop()."
-                if response.inputs == ("n_set",)
-                else "give both the same names."
-            )
-        )
-    return response if outputs == response.outputs else response.of_outputs(*outputs)

@@ -7,41 +7,21 @@ right on average, ``m (nu - m) / (nu - m + 2) F(m, nu - m + 2)``. Its share of t
 ``(nu - m + 2) log(1 + d^2 / (nu - m))``, which is nearly a chi-square again: the sum of ``m / 2`` independent
 exponential variables of means ``2``, ``2 (nu - m + 2) / (nu - m + 4)``, ...
 
+Of records in time, of which thousands of data say nothing, the share is what remains of the input in the residuals.
+
 A parameter that a bound stopped took nothing of the sum away: given which ones did, the rest is as if they had been
 held (Gourieroux, Holly and Monfort, Likelihood ratio test, Wald test, and Kuhn-Tucker test in linear models with
 inequality constraints on the regression parameters, 1982).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.identify._chi_square import chi_square_tail
-from shaftprint.identify._f_distribution import f_tail
+from shaftprint.identify._line_test import LineTest
 from shaftprint.identify._objective import Objective
-from shaftprint.identify._tails import excess_freedom
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class LineTest:
-    """How far one line lies from the model."""
-
-    experiment: int
-    """Number of the experiment, from 0."""
-    name: str
-    """Name of the line."""
-    distance: float
-    """Squared distance ``d^2 = (y - f)^T C^-1 (y - f)``: of the order of the number of data."""
-    data_count: int
-    """Number of real data of the line."""
-    excess: float
-    """Degrees of freedom of its covariance beyond the number of data; infinite for a known one."""
-
-    @property
-    def p_value(self) -> float:
-        """Probability that the true model is that far away or farther; the fitted one is a little nearer."""
-        return f_tail(self.distance * (1.0 + 2.0 / self.excess) / self.data_count, self.data_count, self.excess + 2.0)
+from shaftprint.identify._term import TermTest
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -57,7 +37,7 @@ class FitTest:
     variance: float
     """Variance of the sum; twice the degrees of freedom where all covariances are known."""
     lines: tuple[LineTest, ...]
-    """Each fitted line, experiment by experiment."""
+    """Each fitted line and record, term by term."""
 
     @property
     def p_value(self) -> float | None:
@@ -71,66 +51,23 @@ class FitTest:
         return chi_square_tail(self.chi_square / scale, self.mean / scale)
 
 
-def whitened_residuals(objective: Objective, values: FloatArray) -> tuple[FloatArray, ...]:
-    """Return ``L^-1 (y - f)`` of every experiment's lines, each of shape (lines, 2 channels)."""
-    found = []
-    for experiment in objective.experiments:
-        model = experiment.structure.response(experiment.own(values), experiment.s, factors=experiment.factors)
-        gap = experiment.data - np.concatenate([model.real, model.imag]).T
-        found.append(np.linalg.solve(np.linalg.cholesky(experiment.covariance), gap[:, :, None])[:, :, 0])
-    return tuple(found)
-
-
-def tested_fit(objective: Objective, values: FloatArray, whitened: tuple[FloatArray, ...]) -> FitTest:
+def tested_fit(objective: Objective, values: FloatArray, tests: Sequence[TermTest]) -> FitTest:
     """Return the test of fit at the given parameters.
 
     Parameters
     ----------
-    whitened
-        The residuals there.
+    tests
+        What each term adds there.
     """
     theta = values[list(objective.free)]
     index = objective.prior_rows[:, 0].astype(int)
     prior = (theta[index] - objective.prior_rows[:, 1]) * objective.prior_rows[:, 2] * objective.prior_counts
     fitted = (theta > objective.lower) & (theta < objective.upper)
-    total, spare = float(prior @ prior), int(objective.prior_counts.sum()) - int(fitted.sum())
-    mean, variance = float(spare), 2.0 * spare
-    lines: list[LineTest] = []
-    for number, residuals in enumerate(whitened):
-        squares = np.sum(residuals**2, axis=1)
-        excess = excess_freedom(objective.experiments[number].freedom, residuals.shape[1])
-        total += float(np.sum(_shares(squares, excess)))
-        means, variances = _moments(excess, residuals.shape[1])
-        mean, variance = mean + float(means.sum()), variance + float(variances.sum())
-        lines += _line_tests(objective, number, squares, excess)
+    spare = int(objective.prior_counts.sum()) - int(fitted.sum())
     return FitTest(
-        chi_square=total,
-        degrees_of_freedom=objective.data_count + spare,
-        mean=mean,
-        variance=variance,
-        lines=tuple(lines),
+        chi_square=float(prior @ prior) + sum(test.chi_square for test in tests),
+        degrees_of_freedom=sum(test.count for test in tests) + spare,
+        mean=float(spare) + sum(test.mean for test in tests),
+        variance=2.0 * spare + sum(test.variance for test in tests),
+        lines=tuple(line for test in tests for line in test.lines),
     )
-
-
-def _shares(squares: FloatArray, excess: FloatArray) -> FloatArray:
-    """Return what each line adds to the sum."""
-    known = np.isinf(excess)
-    finite = np.where(known, 1.0, excess)
-    return np.where(known, squares, (finite + 2.0) * np.log1p(squares / finite))
-
-
-def _moments(excess: FloatArray, size: int) -> tuple[FloatArray, FloatArray]:
-    """Return mean and variance of what each line adds to the sum."""
-    steps = 2.0 * np.arange(size // 2)[:, None]
-    means = 2.0 / (1.0 + steps / (excess + 2.0))
-    return means.sum(axis=0), (means**2).sum(axis=0)
-
-
-def _line_tests(objective: Objective, number: int, squares: FloatArray, excess: FloatArray) -> list[LineTest]:
-    experiment = objective.experiments[number]
-    size = experiment.data.shape[1]
-    names = [name for name, taken in zip(experiment.response.lines, experiment.fitted, strict=True) if taken]
-    return [
-        LineTest(experiment=number, name=name, distance=distance, data_count=size, excess=k)
-        for name, distance, k in zip(names, squares.tolist(), excess.tolist(), strict=True)
-    ]

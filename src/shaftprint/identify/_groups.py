@@ -156,7 +156,7 @@ def _lateness(objective: Objective) -> list[tuple[Term, tuple[str, ...]]]:
     A lag ``omega_n^2 / (s^2 + 2 zeta omega_n s + omega_n^2)`` is ``1 - 2 zeta / omega_n s`` for small ``s``.
     """
     found: dict[str, tuple[Term, tuple[str, ...]]] = {}
-    for block in (block for experiment in objective.experiments for block in experiment.structure.blocks):
+    for block in (block for term in objective.terms for block in term.structure.blocks):
         if isinstance(block, Delay):
             found.setdefault(block.time.name, (_time(block.time), (block.time.name,)))
         if isinstance(block, SecondOrderLag):

@@ -8,10 +8,12 @@ import numpy as np
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.errors import IdentificationError
 from shaftprint.identify._covariance import variance_along
-from shaftprint.identify._fit_test import FitTest, LineTest
+from shaftprint.identify._fit_test import FitTest
+from shaftprint.identify._line_test import LineTest
 from shaftprint.identify._objective import Objective
 from shaftprint.identify._part import Part
 from shaftprint.identify._settings import Settings
+from shaftprint.identify._term import FittedTerm
 from shaftprint.models import Margins, Structure, margins
 from shaftprint.normal import NORMAL_95
 from shaftprint.spectra import FrequencyResponse
@@ -56,8 +58,8 @@ class Estimate:
 class Identification:
     """What a fit found: parameters with covariance, how well the model explains the data, how unique the optimum is."""
 
-    experiments: tuple[Part, ...]
-    """The responses that were fitted, each with its structure; one, but for joint fits."""
+    parts: tuple[FittedTerm, ...]
+    """The responses and records that were fitted, each with its structure; one, but for joint fits."""
     objective: Objective
     """The problem that was solved."""
     settings: Settings
@@ -74,29 +76,40 @@ class Identification:
     """Optima of the search, lowest cost first; those that won or would have won are checked for stability."""
 
     @property
+    def experiments(self) -> tuple[Part, ...]:
+        """The parts that are frequency responses."""
+        return tuple(part for part in self.parts if isinstance(part, Part))
+
+    @property
     def structure(self) -> Structure:
         """The structure, with its held and free parameters; the first of a joint fit."""
-        return self.experiments[0].structure
+        return self.parts[0].structure
 
     @property
     def response(self) -> FrequencyResponse:
-        """The data; the first of a joint fit."""
-        return self.experiments[0].response
+        """The data; the first frequency response of a joint fit.
+
+        Raises
+        ------
+        IdentificationError
+            If no frequency response was fitted.
+        """
+        return self._first_response.response
 
     @property
     def fitted(self) -> BoolArray:
         """Which lines of the response were fitted, shape (lines,)."""
-        return self.experiments[0].fitted
+        return self._first_response.fitted
 
     @property
     def fit_percent(self) -> Mapping[str, float]:
-        """FitPercent of each output (thesis eq. 2.41)."""
-        return self.experiments[0].fit_percent
+        """FitPercent of each output (thesis eq. 2.41), of the first part of a joint fit."""
+        return self.parts[0].fit_percent
 
     @property
     def fit_ceiling(self) -> Mapping[str, float]:
         """FitPercent that the noise allows, of each output."""
-        return self.experiments[0].fit_ceiling
+        return self.parts[0].fit_ceiling
 
     @property
     def data_count(self) -> int:
@@ -106,7 +119,7 @@ class Identification:
     @property
     def whitened(self) -> FloatArray:
         """Residuals of the fitted lines over their covariance, shape (lines, 2 channels), see ``Part``."""
-        return self.experiments[0].whitened
+        return self._first_response.whitened
 
     @property
     def chi_square(self) -> float:
@@ -220,8 +233,15 @@ class Identification:
         return self.structure.response(self.own_values(), 2j * np.pi * frequency_hz)
 
     def own_values(self, experiment: int = 0) -> FloatArray:
-        """Return all parameters of one experiment's structure, in that structure's order, shape (parameters,)."""
-        return self.objective.experiments[experiment].own(self.values)
+        """Return all parameters of one part's structure, in that structure's order, shape (parameters,)."""
+        return self.objective.terms[experiment].own(self.values)
+
+    @property
+    def _first_response(self) -> Part:
+        if not self.experiments:
+            names = ", ".join(part.name for part in self.parts)
+            raise IdentificationError(f"structure {self.objective.name}: fitted to {names}, to no frequency response.")
+        return self.experiments[0]
 
     def _named(self, values: FloatArray) -> dict[str, float]:
         return {name: np.float64(value) for name, value in self.objective.named(values).items()}

@@ -4,20 +4,19 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray, frozen_bool, frozen_float
+from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
+from shaftprint.identify._build_objective import Source, build_joint_objective
 from shaftprint.identify._covariance import estimate_covariance
-from shaftprint.identify._experiment import Experiment
-from shaftprint.identify._fit_percent import fit_ceiling, fit_percent
-from shaftprint.identify._fit_test import tested_fit, whitened_residuals
+from shaftprint.identify._fit_test import tested_fit
 from shaftprint.identify._identification import Cluster, Identification
 from shaftprint.identify._levenberg_marquardt import Descent
-from shaftprint.identify._objective import Objective, build_joint_objective
-from shaftprint.identify._part import Part, channel_names
+from shaftprint.identify._objective import Objective
 from shaftprint.identify._search import polish, search
 from shaftprint.identify._sensor import with_sensor
 from shaftprint.identify._settings import Settings
-from shaftprint.models import Structure, is_stable
+from shaftprint.identify._term import Term
+from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 
 # Starts belong to one optimum when their costs differ by less than this share, ...
@@ -60,20 +59,21 @@ def identify(
 
 
 def identify_jointly(
-    pairs: Sequence[tuple[Structure, FrequencyResponse]],
+    pairs: Sequence[tuple[Structure, FrequencyResponse] | Term],
     *,
     rng: np.random.Generator,
     settings: Settings | None = None,
 ) -> Identification:
-    """Fit structures to several responses at once: campaigns, repeats, working points.
+    """Fit structures to several responses and records at once: campaigns, repeats, working points.
 
-    The responses are independent of each other, and parameters of one name are one parameter.
+    The data are independent of each other, and parameters of one name are one parameter.
 
     Parameters
     ----------
     pairs
         Each structure with the response it is fitted to, at the lines which that marks as used. A structure may stand
-        there several times; for another working point it is ``Structure.scaled``, or has other names.
+        there several times; for another working point it is ``Structure.scaled``, or has other names. Data of another
+        kind, such as records in time, are terms, which hold their structure.
     rng
         Source of the start values.
     settings
@@ -89,14 +89,14 @@ def identify_jointly(
 
 
 def _identified(
-    pairs: Sequence[tuple[Structure, FrequencyResponse]],
+    pairs: Sequence[Source],
     rng: np.random.Generator,
     settings: Settings,
     lines: Sequence[str] | None,
 ) -> Identification:
     _expect_right_kinds(pairs, rng)
     objective = build_joint_objective(
-        [(with_sensor(structure, response), response) for structure, response in pairs],
+        [pair if isinstance(pair, Term) else (with_sensor(*pair), pair[1]) for pair in pairs],
         weighting=settings.weighting,
         priors=settings.priors,
         regularisation=settings.regularisation,
@@ -105,24 +105,23 @@ def _identified(
     descent = search(objective, settings, rng)
     sharp = bool(descent.converged[np.argmin(descent.cost)])
     clusters, winner = _judged(objective, _clustered(objective, descent), settings, sharp=sharp)
-    whitened = whitened_residuals(objective, winner.values)
+    judged = [term.judged(winner.values, number) for number, term in enumerate(objective.terms)]
     return Identification(
-        experiments=tuple(
-            _part(experiment, winner.values, residuals)
-            for experiment, residuals in zip(objective.experiments, whitened, strict=True)
-        ),
+        parts=tuple(part for part, _ in judged),
         objective=objective,
         settings=settings,
         values=winner.values,
         covariance=frozen_float(estimate_covariance(objective, winner.values[list(objective.free)])),
         cost=winner.cost,
-        fit_test=tested_fit(objective, winner.values, whitened),
+        fit_test=tested_fit(objective, winner.values, [test for _, test in judged]),
         clusters=clusters,
     )
 
 
-def _expect_right_kinds(pairs: Sequence[tuple[Structure, FrequencyResponse]], rng: np.random.Generator) -> None:
+def _expect_right_kinds(pairs: Sequence[Source], rng: np.random.Generator) -> None:
     for pair in pairs:
+        if isinstance(pair, Term):
+            continue
         if not isinstance(pair, tuple) or len(pair) != 2:
             raise IdentificationError(f"joint fit: expected pairs (structure, response), found {type(pair).__name__}.")
         kinds = tuple(type(item) for item in pair)
@@ -135,30 +134,11 @@ def _expect_right_kinds(pairs: Sequence[tuple[Structure, FrequencyResponse]], rn
         raise IdentificationError(f"rng: expected numpy.random.default_rng(seed), found {rng!r}.")
 
 
-def _part(experiment: Experiment, values: FloatArray, residuals: FloatArray) -> Part:
-    """Return how well one response is explained."""
-    structure, response, fitted = experiment.structure, experiment.response, experiment.fitted
-    model = structure.response(experiment.own(values), experiment.s, factors=experiment.factors)
-    count = len(structure.channels)
-    variance = np.diagonal(experiment.noise_covariance, axis1=1, axis2=2).T
-    names = channel_names(response)
-    return Part(
-        structure=structure,
-        response=response,
-        fitted=frozen_bool(fitted),
-        fit_percent={n: fit_percent(experiment.measured[i], model[i]) for i, n in enumerate(names)},
-        fit_ceiling={
-            n: fit_ceiling(experiment.measured[i], variance[i] + variance[count + i]) for i, n in enumerate(names)
-        },
-        whitened=frozen_float(residuals),
-    )
-
-
 def _clustered(objective: Objective, descent: Descent) -> list[tuple[FloatArray, float, int]]:
     """Return parameters, cost and number of starts of each distinct optimum, lowest cost first."""
     order = np.argsort(descent.cost, kind="stable")
     theta, cost = descent.theta[order], descent.cost[order]
-    nothing = 0.5 * sum(float(np.sum((e.weights @ e.data[:, :, None]) ** 2)) for e in objective.experiments)
+    nothing = objective.cost_of_nothing
     width = objective.upper - objective.lower
     found: list[tuple[FloatArray, float, int]] = []
     while cost.size:
@@ -189,7 +169,7 @@ def _judged(
             polished = polish(objective, theta, settings)
             place, lowest = polished.theta[0], float(polished.cost[0])
         values = frozen_float(objective.complete(place))
-        stable = all(is_stable(e.structure, e.own(values)) for e in objective.experiments)
+        stable = bool(objective.stable(values[None, :])[0])
         cluster = Cluster(values=values, cost=lowest, starts=starts, stable=stable)
         clusters.append(cluster)
         if stable or settings.stability == "ignored":

@@ -13,9 +13,10 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import IdentificationError
 from shaftprint.identify._covariance import variance_along
-from shaftprint.identify._experiment import channels_of, load_factors
 from shaftprint.identify._identification import Identification
 from shaftprint.identify._identify import identify
+from shaftprint.identify._load_factors import load_factors
+from shaftprint.identify._part import channels_of
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify._bootstrap import drawn_test
 from shaftprint.identify._chi_square import chi_square_tail
 from shaftprint.identify._identification import Identification
 from shaftprint.identify._nesting import Nesting
@@ -130,7 +129,7 @@ def _drawn(
 ) -> FloatArray:
     """Return the statistic of tests drawn from the smaller structure, shape (draws,)."""
     experiment = small.objective.experiments[0]
-    responses, covariances = drawn_test(experiment, small.values, draws, rng)
+    responses, covariances = experiment.drawn(small.values, draws, rng)
     estimated = bool(np.isfinite(experiment.freedom).any())
     luck = rng.standard_normal((draws, len(small.objective.parameters) + len(large.objective.parameters)))
     names = list(dict.fromkeys((*small.objective.names, *large.objective.names)))

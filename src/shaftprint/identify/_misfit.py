@@ -3,9 +3,9 @@
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify._experiment import channels_of, load_factors
 from shaftprint.identify._identification import Identification
-from shaftprint.identify._part import channel_names
+from shaftprint.identify._load_factors import load_factors
+from shaftprint.identify._part import Part, channel_names, channels_of
 from shaftprint.identify._phrases import spans
 
 # Below this probability a fit is rejected, and a line where it is that of the worst of all lines (Bonferroni).
@@ -30,7 +30,7 @@ def explained(identification: Identification, *, rejected: float = REJECTED) -> 
     if not identification.is_likelihood:
         return all(
             100.0 - percent <= UNWEIGHTED_EXCESS * (100.0 - ceiling)
-            for part in identification.experiments
+            for part in identification.parts
             for percent, ceiling in zip(part.fit_percent.values(), part.fit_ceiling.values(), strict=True)
         )
     whole = identification.p_value
@@ -38,7 +38,10 @@ def explained(identification: Identification, *, rejected: float = REJECTED) -> 
 
 
 def worst_lines(identification: Identification, *, rejected: float = REJECTED) -> tuple[str, ...]:
-    """Return the names of the lines of the first response that lie farther off than the worst of as many may."""
+    """Return the names of the lines of the first response that lie farther off than the worst of as many may.
+
+    Where the first of the fitted data are records, those that do.
+    """
     lines = identification.line_tests
     return tuple(line.name for line in lines if line.experiment == 0 and line.p_value * len(lines) < rejected)
 
@@ -48,6 +51,8 @@ def misfit_words(identification: Identification) -> str:
     worst = worst_lines(identification)
     if not worst:
         return "the misfit is spread over all lines"
+    if not isinstance(identification.parts[0], Part):
+        return f"the misfit is largest in {', '.join(worst)}"
     response = identification.response
     places = [response.lines.index(name) for name in worst]
     omega = response.omega_rad_s[places]

@@ -12,9 +12,9 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify._chi_square import chi_square_tail
-from shaftprint.identify._experiment import load_factors
 from shaftprint.identify._identification import Identification
 from shaftprint.identify._identify import identify
+from shaftprint.identify._load_factors import load_factors
 from shaftprint.identify._objective import Objective
 from shaftprint.spectra import FrequencyResponse
 
@@ -123,8 +123,7 @@ def _imitation(
     except IdentificationError:
         # more free parameters than data: without its priors the larger structure cannot be fitted
         return None
-    experiment = found.objective.experiments[0]
-    whole = 0.5 * float(np.sum((experiment.weights @ experiment.data[:, :, None]) ** 2))
+    whole = found.objective.cost_of_nothing
     return found.values[list(found.objective.free)] if found.cost < SAME_RESPONSE * whole else None
 
 

@@ -13,7 +13,6 @@ from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.identify._identification import Identification
 from shaftprint.identify._levenberg_marquardt import descend
 from shaftprint.identify._valley import highest_between
-from shaftprint.models import stable_rows
 
 # 95 % point of chi-square with one degree of freedom.
 WITHIN = 3.841458820694124
@@ -109,8 +108,7 @@ def _distance(identification: Identification, cost: FloatArray) -> FloatArray:
     if identification.is_likelihood:
         return 2.0 * (cost - own)
     # what is left of data without noise is rounding, not a ratio
-    whole = sum(float(np.sum((e.weights @ e.data[:, :, None]) ** 2)) for e in identification.objective.experiments)
-    floor = 1e-12 * whole
+    floor = 1e-12 * 2.0 * identification.objective.cost_of_nothing
     return np.asarray(identification.data_count * np.log((cost + floor) / (own + floor)))
 
 
@@ -122,10 +120,8 @@ def _same(identification: Identification, values: FloatArray, distance: FloatArr
 
 
 def _stable(identification: Identification, values: FloatArray) -> BoolArray:
-    """Return whether the model, of every experiment, is stable at each of many parameter sets."""
-    return np.asarray(
-        np.all([stable_rows(e.structure, e.own(values)) for e in identification.objective.experiments], axis=0)
-    )
+    """Return whether the model, of every term, is stable at each of many parameter sets."""
+    return identification.objective.stable(values)
 
 
 def _connected(identification: Identification, values: FloatArray, distance: FloatArray) -> BoolArray:

@@ -56,11 +56,9 @@ def spread_of(identification: Identification, experiment: int = 0) -> Spread:
         If there is no experiment of that number.
     """
     objective = identification.objective
-    if not 0 <= experiment < len(objective.experiments):
-        raise IdentificationError(
-            f"experiment {experiment}: expected a number from 0 to {len(objective.experiments) - 1}."
-        )
-    one = objective.experiments[experiment]
+    if not 0 <= experiment < len(objective.terms):
+        raise IdentificationError(f"experiment {experiment}: expected a number from 0 to {len(objective.terms) - 1}.")
+    one = objective.terms[experiment]
     covariance, information = known_covariance(objective, identification.values[list(objective.free)])
     own = list(one.columns)
     return Spread(

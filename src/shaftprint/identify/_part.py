@@ -3,13 +3,14 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
+from shaftprint.identify._term import FittedTerm
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Part:
+class Part(FittedTerm):
     """One response of a fit, with its structure."""
 
     structure: Structure
@@ -25,6 +26,16 @@ class Part:
     whitened: FloatArray
     """Residuals ``y - f`` of the fitted lines over their covariance: ``L^-1 [Re, Im]`` with ``L L^T`` the covariance;
     independent of each other with a standard deviation of 1 where the structure holds, shape (lines, 2 channels)."""
+
+    @property
+    def name(self) -> str:
+        """What messages call the data."""
+        return f"response of {', '.join(self.structure.outputs)}"
+
+
+def channels_of(response: FrequencyResponse) -> ComplexArray:
+    """Return the response of every channel, outputs slowest, shape (channels, lines)."""
+    return response.response.reshape(-1, response.frequency_hz.size)
 
 
 def channel_names(response: FrequencyResponse) -> tuple[str, ...]:

@@ -21,6 +21,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.identify._experiment import Experiment
 from shaftprint.identify._identification import Identification
 from shaftprint.identify._pseudo_inverse import PseudoInverse
+from shaftprint.identify._term import Term
 
 NO_DIRECT: Mapping[str, float] = {}
 
@@ -63,15 +64,29 @@ def propagation(identification: Identification) -> Propagation:
     information = PseudoInverse.of(rows)
     noise: dict[str, FloatArray] = {}
     first = 0
-    for experiment in objective.experiments:
-        own = information.inverse @ rows[:, first : first + experiment.data.size]
-        first += experiment.data.size
-        for name, part in _noise_parts(experiment, own).items():
+    for term in objective.terms:
+        own = information.inverse @ rows[:, first : first + term.row_count]
+        first += term.row_count
+        for name, part in _noise_parts(term, own).items():
             noise[name] = noise[name] + part if name in noise else part
     return Propagation(noise=noise, effects=_prior_effects(identification, information), information=information)
 
 
-def _noise_parts(experiment: Experiment, rows: FloatArray) -> dict[str, FloatArray]:
+def _noise_parts(term: Term, rows: FloatArray) -> dict[str, FloatArray]:
+    """Return the part of the covariance that the noise of a term gives, by output where that can be told.
+
+    Parameters
+    ----------
+    rows
+        ``A^-1 J`` of the term, shape (free, rows).
+    """
+    if isinstance(term, Experiment):
+        return _of_outputs(term, rows)
+    # residuals of independent unit variance, of all outputs together
+    return {f"noise of {term.name}": rows @ rows.T}
+
+
+def _of_outputs(experiment: Experiment, rows: FloatArray) -> dict[str, FloatArray]:
     """Return the part of the covariance that the noise of each output gives, and each cause that moves all of them.
 
     Parameters

@@ -21,7 +21,7 @@ from shaftprint.arrays import (
     frozen_float,
 )
 from shaftprint.errors import IdentificationError
-from shaftprint.identify._experiment import Experiment
+from shaftprint.identify._experiment import Experiment, ResponseRepeats
 from shaftprint.identify._identification import Identification
 from shaftprint.identify._levenberg_marquardt import Descent, descend
 from shaftprint.identify._objective import Objective, Redrawn
@@ -78,19 +78,37 @@ def refit(
     Raises
     ------
     IdentificationError
-        If a shape does not fit or a value is not finite.
+        If a shape does not fit, a value is not finite, or not all data are frequency responses.
     """
     objective = identification.objective
+    if objective.others:
+        raise IdentificationError(
+            f"refit of {objective.name}: {objective.others[0].name} is no frequency response; identify anew, or draw "
+            "repeats with bootstrap()."
+        )
     measured = _measured(objective, responses)
     repeats = measured[0].shape[0]
+    weights = _weights(objective, covariances, repeats)
     redrawn = Redrawn(
-        measured=measured,
-        weights=_weights(objective, covariances, repeats),
+        repeats=tuple(ResponseRepeats(measured=m, weights=w) for m, w in zip(measured, weights, strict=True)),
         prior_means=_prior_means(objective, prior_means, repeats),
     )
-    theta = _starts(identification, start, repeats=repeats)
+    return refit_redrawn(identification, redrawn, _starts(identification, start, repeats=repeats))
+
+
+def refit_redrawn(identification: Identification, redrawn: Redrawn, theta: FloatArray) -> Refits:
+    """Fit the identified structures to other data of any kind.
+
+    Parameters
+    ----------
+    redrawn
+        The data.
+    theta
+        Start values of the free parameters, shape (repeats, free).
+    """
+    objective = identification.objective
     limit = identification.settings.max_iterations
-    blocks = [slice(i, i + BLOCK) for i in range(0, repeats, BLOCK)]
+    blocks = [slice(i, i + BLOCK) for i in range(0, theta.shape[0], BLOCK)]
     found = [_descended(objective, redrawn.chosen(block), theta[block], limit) for block in blocks]
     return Refits(
         names=tuple(p.name for p in objective.free_parameters),

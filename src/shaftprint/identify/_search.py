@@ -14,7 +14,6 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
 from shaftprint.identify._border import beside_border
-from shaftprint.identify._experiment import with_floor
 from shaftprint.identify._levenberg_marquardt import Allowed, Descent, descend
 from shaftprint.identify._objective import Objective
 from shaftprint.identify._settings import Settings
@@ -110,9 +109,7 @@ def _descended(objective: Objective, start: FloatArray, settings: Settings, allo
 
 def _floors(objective: Objective) -> Iterator[float]:
     """Yield the floors of the standard deviations to go down by; none where the noise is no less than usual."""
-    least = min(
-        (e.least_deviation for e in objective.experiments if e.weighting.is_likelihood), default=HARDLY_ANY_NOISE
-    )
+    least = min((term.least_deviation for term in objective.terms if term.is_likelihood), default=HARDLY_ANY_NOISE)
     floor = FIRST_FLOOR
     while least < HARDLY_ANY_NOISE and floor > least:
         yield floor
@@ -136,7 +133,7 @@ def _in_steps(
 
 
 def _with_floor(objective: Objective, floor: float) -> Objective:
-    return replace(objective, experiments=tuple(with_floor(e, floor) for e in objective.experiments))
+    return replace(objective, terms=tuple(term.with_floor(floor) for term in objective.terms))
 
 
 def _lower(one: Descent, other: Descent) -> Descent:

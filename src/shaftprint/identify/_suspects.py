@@ -57,12 +57,14 @@ class Suspect:
 def suspects_of(identification: Identification, *, rejected: float = REJECTED) -> tuple[Suspect, ...]:
     """Return what would explain most of a fit's misfit, the most first; nothing for a fit that explains its data.
 
+    What a cause does to records in time is not known: for a fit to any there are no hints.
+
     Parameters
     ----------
     rejected
         Probability below which the fit is rejected.
     """
-    if explained(identification, rejected=rejected):
+    if explained(identification, rejected=rejected) or identification.objective.others:
         return ()
     misfit, basis = _misfit(identification)
     spare = misfit.size - basis.shape[1]
@@ -101,9 +103,7 @@ def suspects_of(identification: Identification, *, rejected: float = REJECTED) -
 
 def _changes(identification: Identification, cause: Cause, size: float) -> float:
     """Return the largest share by which a cause of some size changes the first response."""
-    experiment = identification.objective.experiments[0]
-    own = experiment.own(identification.values)
-    model = experiment.structure.response(own, experiment.s, factors=experiment.factors)
+    model = identification.objective.experiments[0].model(identification.values)
     return float(np.max(np.abs(size * cause.effect) / np.abs(model)))
 
 

@@ -1,0 +1,19 @@
+"""What the propeller load of a window does to the parameters of a structure."""
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.spectra import FrequencyResponse
+
+# Parameters that are slopes of the propeller torque: they grow with the load.
+LOADED = ("k_q", "kappa")
+
+
+def load_factors(response: FrequencyResponse, chosen: BoolArray | None = None) -> dict[str, FloatArray]:
+    """Return what the propeller load of each line's window does to the parameters of a structure.
+
+    A propeller whose torque is ``M_s0 (1 + delta) (n / n_0)^2`` has the slopes ``k_q (1 + delta)`` and
+    ``kappa (1 + delta)`` in values normalised with one working point, and nothing else changes.
+    """
+    load = response.load if chosen is None else response.load[chosen]
+    return {} if np.all(load == 1.0) else dict.fromkeys(LOADED, load)
