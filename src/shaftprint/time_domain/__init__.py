@@ -12,7 +12,20 @@ time                s       of the recording
 """
 
 from shaftprint.time_domain._decimator import Decimator
+from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise, white_noise
 from shaftprint.time_domain._record import Record, record_from_arrays
 from shaftprint.time_domain._records_of import records_of
+from shaftprint.time_domain._whiteness import whiteness_p_value
+from shaftprint.time_domain._whitening import Whitening
 
-__all__ = ["Decimator", "Record", "record_from_arrays", "records_of"]
+__all__ = [
+    "Decimator",
+    "NoiseModel",
+    "Record",
+    "Whitening",
+    "estimate_noise",
+    "record_from_arrays",
+    "records_of",
+    "white_noise",
+    "whiteness_p_value",
+]
