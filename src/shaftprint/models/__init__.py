@@ -47,6 +47,7 @@ from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inert
 from shaftprint.models._step_response import step_response
 from shaftprint.models._structure import Structure
 from shaftprint.models._tie import Tie
+from shaftprint.models._two_masses import two_mass_line
 
 __all__ = [
     "STRUCTURES",
@@ -106,6 +107,7 @@ __all__ = [
     "step_response",
     "structure",
     "table",
+    "two_mass_line",
     "unstable_poles",
     "with_known_propeller",
 ]
