@@ -16,12 +16,14 @@ stiffness, damping    N m/rad,     of a link between two rows, at the speed of t
 ``K_Q``               1            effective torque coefficient at zero advance,
                                    ``Q / (rho n^2 D^5)``
 fuel rack ``X``       1            1 gives rated torque at rated speed; 100 % on the CAN bus
+resistance ``R``      N            of the ship at a speed through the water, against the way ahead
 ===================== ============ ==============================================================
 
 The torque gauge sits on the propeller shaft: *upstream* of it is what lies towards the engine,
 *downstream* what lies towards the propeller.
 """
 
+from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
 from shaftprint.vessel._links import ShaftLink
 from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, RackMap, WorkingPoint
@@ -38,6 +40,7 @@ from shaftprint.vessel._vessel import Vessel, load_vessel
 __all__ = [
     "Engine",
     "Gearbox",
+    "Hull",
     "InertiaRow",
     "Logger",
     "Propeller",

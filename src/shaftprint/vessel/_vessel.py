@@ -8,6 +8,7 @@ from typing import Literal, Self
 from pydantic import Field, model_validator
 
 from shaftprint.settings import Name, PositiveNumber, Settings, load_settings
+from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
 from shaftprint.vessel._links import ShaftLink, wrong_links
 from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, WorkingPoint
@@ -35,6 +36,8 @@ class Vessel(Settings):
     """What joins them, for torsional vibration; none where only the sums are wanted."""
     sensors: Sensors
     """What was measured."""
+    hull: Hull | None = None
+    """The ship around the shaft lines, for tests underway."""
     logger: Logger | None = None
     """The instrument that recorded."""
 
