@@ -1,0 +1,125 @@
+"""The delay that is left between model and data: where their cross-correlation is largest, with its deviation.
+
+``y(t) = a + b f(t - d)`` is fitted by least squares with offset ``a`` and gain ``b`` free, which is the same as the
+largest correlation coefficient; ``d`` is positive where the data come later. It is not bound to the samples: the model
+is a cubic spline through its samples, and ``d`` is found by Gauss-Newton steps from the best whole sample. With noise
+of covariance ``R`` the estimate has the covariance ``(X^T X)^-1 X^T R X (X^T X)^-1``, ``X`` being the columns 1, ``f``
+and its slope.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from shaftprint.arrays import FloatArray
+
+LONGEST_S = 1.0
+_STEPS = 30
+_SMALL_S = 1e-10
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class RemainingDelay:
+    """Delay of the data behind the model in one output; not a number where the two do not go together."""
+
+    output: str
+    """Name of the output."""
+    delay_s: float
+    """Delay [s], positive where the data come later than the model."""
+    noise_std_s: float
+    """Its standard deviation by the noise of the data [s]."""
+    model_std_s: float
+    """Its standard deviation by the uncertainty of the model [s]."""
+
+    @property
+    def std_s(self) -> float:
+        """Standard deviation by both [s]."""
+        return float(np.hypot(self.noise_std_s, self.model_std_s))
+
+
+def remaining_delay(
+    output: str,
+    measured: FloatArray,
+    model: FloatArray,
+    slopes: FloatArray,
+    covariance: FloatArray,
+    autocovariance: FloatArray,
+    *,
+    rate_hz: float,
+    margin: int,
+) -> RemainingDelay:
+    """Return the delay of the data behind the model.
+
+    Parameters
+    ----------
+    output
+        Name of the output.
+    measured
+        Data, shape (samples,).
+    model, slopes
+        Model and its derivatives, with ``margin`` samples more at either end, shapes (samples + 2 margin,) and (free,
+        samples + 2 margin).
+    covariance
+        Covariance of the free parameters, shape (free, free).
+    autocovariance
+        Autocovariance of the noise from lag 0 on, shape (lags,).
+    rate_hz
+        Sample rate [Hz].
+    margin
+        Samples by which the model goes beyond the data at either end: the longest delay that is looked for.
+    """
+    unknown = RemainingDelay(output=output, delay_s=np.nan, noise_std_s=np.nan, model_std_s=np.nan)
+    spline = CubicSpline(np.arange(model.size) / rate_hz, model)
+    time = (margin + np.arange(measured.size)) / rate_hz
+    delay = _best_sample(measured, model, margin) / rate_hz
+    longest = (margin - 1) / rate_hz
+    for _ in range(_STEPS):
+        columns = _columns(spline, time - delay)
+        offset_gain_slope = np.linalg.lstsq(columns, measured, rcond=None)[0]
+        gain = float(offset_gain_slope[1])
+        if not gain > 0.0:
+            return unknown
+        change = -float(offset_gain_slope[2]) / gain
+        delay += change
+        if not abs(delay) < longest:
+            return unknown
+        if abs(change) < _SMALL_S:
+            break
+    columns = _columns(spline, time - delay)
+    inverse = np.linalg.pinv(columns.T @ columns)
+    row = inverse[2] @ columns.T
+    by_parameter = slopes[:, margin : margin + measured.size] @ row
+    return RemainingDelay(
+        output=output,
+        delay_s=delay,
+        noise_std_s=float(np.sqrt(max(_quadratic(row, autocovariance), 0.0))) / gain,
+        model_std_s=float(np.sqrt(max(by_parameter @ covariance @ by_parameter, 0.0))),
+    )
+
+
+def _columns(spline: CubicSpline, time_s: FloatArray) -> FloatArray:
+    return np.column_stack([np.ones(time_s.size), spline(time_s), spline(time_s, 1)])
+
+
+def _best_sample(measured: FloatArray, model: FloatArray, margin: int) -> int:
+    """Return the whole number of samples by which the data come later, at the largest correlation coefficient."""
+    samples = measured.size
+    size = model.size + samples
+    centred = measured - measured.mean()
+    spectrum = np.fft.rfft(centred, size).conj() * np.fft.rfft(model, size)
+    products = np.fft.irfft(spectrum, size)[: 2 * margin + 1]
+    sums = np.concatenate([[0.0], np.cumsum(model)])
+    squares = np.concatenate([[0.0], np.cumsum(model**2)])
+    mean = (sums[samples:] - sums[:-samples]) / samples
+    variance = (squares[samples:] - squares[:-samples]) / samples - mean**2
+    coefficient = products / np.sqrt(np.maximum(variance, np.finfo(np.float64).tiny))
+    return margin - int(np.argmax(coefficient))
+
+
+def _quadratic(row: FloatArray, autocovariance: FloatArray) -> float:
+    """Return ``w^T R w`` for the covariance matrix that an autocovariance makes."""
+    size = 2 * row.size
+    products = np.fft.irfft(np.abs(np.fft.rfft(row, size)) ** 2, size)[: row.size]
+    lags = min(autocovariance.size, row.size)
+    return float(products[0] * autocovariance[0] + 2.0 * (products[1:lags] @ autocovariance[1:lags]))

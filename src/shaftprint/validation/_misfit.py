@@ -1,0 +1,165 @@
+"""How much of the motion a model misses beyond what noise and its own uncertainty explain.
+
+In an excerpt of ``N`` samples the residual ``r = y - f`` of the right model is noise ``v`` and what the covariance
+``C`` of the parameters lets the model be off, ``J^T d``. Means are taken off. With the mean square ``s`` of the noise
+and ``G = J J^T`` then::
+
+    E[r^T r / N] = s + tr(C G) / N        Var[r^T r / N] = Var[v^T v / N] + 2 tr((C G)^2) / N^2
+
+What ``r^T r / N`` has beyond that is the mean square of the model's error; its root over that of the motion is
+reported. Where the model errs by ``m``, noise and error mix and add ``4 m^T R m / N^2`` to the variance, ``R`` being
+the covariance of the noise, and the parameters as much with ``J^T C J`` for ``R``.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.special import gammaincc
+
+from shaftprint.arrays import FloatArray
+from shaftprint.identify import fit_percent
+from shaftprint.normal import deviations
+from shaftprint.validation._quiet import NoisePieces, correlated
+
+Outcome = Literal["passes", "fails", "undecided"]
+PERCENT = 100.0
+# With fewer pieces of noise their scatter says little, and the autocovariance is asked as well.
+_FEWEST_PIECES = 12
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Misfit:
+    """How well one output of a model explains one excerpt."""
+
+    output: str
+    """Name of the output."""
+    fit_percent: float
+    """FitPercent (thesis eq. 2.41), of all frequencies, nothing taken off [%]."""
+    fit_ceiling: float
+    """FitPercent that the true model would reach with this noise [%]."""
+    error: float
+    """Root mean square of what the model misses beyond noise and its own uncertainty, over that of the motion [-]."""
+    error_interval: tuple[float, float]
+    """Interval of the error at the coverage of the settings [-]."""
+    p_value: float
+    """Probability that noise and the model's own uncertainty leave as much as is left, or more."""
+    noise_pieces: int
+    """How many pieces of noise as long as the excerpt were found; 0 where none is as long, and shorter ones serve."""
+    outcome: Outcome
+    """Whether the error is surely at most, or surely more than, what is allowed."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Compared:
+    """Data and model of one output in one excerpt."""
+
+    output: str
+    """Name of the output."""
+    place: int
+    """Its place among speed and torque."""
+    measured: FloatArray
+    """Data, shape (samples,)."""
+    model: FloatArray
+    """Model, shape (samples,)."""
+    slopes: FloatArray
+    """Derivatives of the model to its free parameters, shape (free, samples)."""
+    noise: NoisePieces
+    """Noise like that in the excerpt."""
+    offset_variance: float
+    """Variance of what the noise is off on average."""
+
+
+def fit_of(raw: Compared) -> tuple[float, float]:
+    """Return FitPercent and its ceiling, of unfiltered data [%]."""
+    measured = raw.measured
+    reached = fit_percent(measured.astype(np.complex128), raw.model.astype(np.complex128))
+    variance = float(np.mean(raw.noise.pieces[:, raw.place] ** 2)) + raw.offset_variance
+    spread = float(np.std(measured))
+    return reached, PERCENT * (1.0 - float(np.sqrt(variance)) / spread) if spread > 0.0 else float(np.nan)
+
+
+def misfit_of(
+    raw: Compared,
+    smooth: Compared,
+    covariance: FloatArray,
+    *,
+    largest_error: float,
+    coverage: float,
+) -> Misfit:
+    """Return how well one output of a model explains one excerpt.
+
+    Parameters
+    ----------
+    raw, smooth
+        Data and model of all frequencies, and through the low-pass.
+    covariance
+        Covariance of the free parameters, shape (free, free).
+    largest_error
+        Share of the motion that the model may miss.
+    coverage
+        Coverage of the interval of the error.
+    """
+    reached, ceiling = fit_of(raw)
+    residual = smooth.measured - smooth.model
+    residual = residual - residual.mean()
+    samples = residual.size
+    autocovariance = smooth.noise.autocovariance(smooth.place)
+    energy, energy_variance = _noise_energy(smooth, autocovariance)
+    slopes = smooth.slopes - smooth.slopes.mean(axis=1, keepdims=True)
+    spread = covariance @ (slopes @ slopes.T) / samples
+    expected = energy + float(np.trace(spread))
+    variance = energy_variance + 2.0 * float(np.trace(spread @ spread))
+    found = float(np.mean(residual**2))
+    beyond = found - expected
+    along = slopes @ residual / samples
+    mixed = 4.0 * (_noise_along(residual, autocovariance) + float(along @ covariance @ along))
+    half = deviations(coverage) * np.sqrt(variance + (mixed if beyond > 0.0 else 0.0))
+    motion = float(np.std(smooth.measured))
+    error, low, high = (float(np.sqrt(max(square, 0.0))) / motion for square in (beyond, beyond - half, beyond + half))
+    return Misfit(
+        output=smooth.output,
+        fit_percent=reached,
+        fit_ceiling=ceiling,
+        error=error,
+        error_interval=(low, high),
+        p_value=_tail(found, expected, variance),
+        noise_pieces=smooth.noise.pieces.shape[0] if smooth.noise.as_long else 0,
+        outcome="fails" if low > largest_error else "passes" if high <= largest_error else "undecided",
+    )
+
+
+def _noise_energy(smooth: Compared, autocovariance: FloatArray) -> tuple[float, float]:
+    """Return the mean square of the noise in the excerpt, and the variance of what it and its estimate are off."""
+    pieces = smooth.noise.pieces[:, smooth.place]
+    energies = np.mean(pieces**2, axis=1)
+    count, samples = energies.size, smooth.measured.size
+    by_colour = 2.0 * _trace_of_square(autocovariance, samples) / samples**2
+    scatter = float(np.var(energies, ddof=1)) if count > 1 else 0.0
+    if count < _FEWEST_PIECES or not smooth.noise.as_long:
+        scatter = max(scatter, by_colour)
+    # as many independent pieces as excerpts would fit into all that was found
+    effective = count * pieces.shape[1] / samples
+    return float(energies.mean()), scatter * (1.0 + 1.0 / effective)
+
+
+def _trace_of_square(autocovariance: FloatArray, samples: int) -> float:
+    """Return the trace of the square of the covariance matrix that an autocovariance makes."""
+    lags = np.arange(min(autocovariance.size, samples))
+    weights = (samples - lags) * np.where(lags > 0, 2.0, 1.0)
+    return float(np.sum(weights * autocovariance[: lags.size] ** 2))
+
+
+def _noise_along(residual: FloatArray, autocovariance: FloatArray) -> float:
+    """Return ``m^T R m / N^2`` for the model's error ``m``, from the residual, less what noise itself gives."""
+    products = correlated(residual, residual)
+    lags = min(autocovariance.size, products.size)
+    both = float(products[0] * autocovariance[0] + 2.0 * (products[1:lags] @ autocovariance[1:lags]))
+    return max(both - _trace_of_square(autocovariance, residual.size), 0.0) / residual.size**2
+
+
+def _tail(found: float, expected: float, variance: float) -> float:
+    """Return the share of a scaled chi-square of that mean and variance at or beyond what was found."""
+    if not variance > 0.0:
+        return float(found <= expected)
+    return float(gammaincc(expected**2 / variance, found * expected / variance))

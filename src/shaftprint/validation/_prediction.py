@@ -1,0 +1,146 @@
+"""What a linear model makes of a measured set point, as the sensors show it, with its derivatives.
+
+The set point on the grid of the signals is without aliases, so that it is a sum of sines, and each goes through the
+response of the structure: delays inside the loop, pick-up and telemetry are exact, and the derivatives to the
+parameters are too. Before the record the ship runs steadily at the first set point; behind it the set point goes back
+in half a cosine, and the response has died out when the record begins anew.
+
+A propeller in bollard pull takes torque with the square of its speed. Linear, ``(1 + n)^2 - 1`` becomes ``2 n``; the
+rest, ``n^2``, has no parameter to be identified, and is added to the torque on request.
+"""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import ValidationError
+from shaftprint.models import Structure
+from shaftprint.simulation import simulate
+
+OUTPUTS = ("n", "M_s")
+
+_BACK_S = 40.0
+_REST_S = 80.0
+_SLOWEST_RAD_S = 1e-7
+# Above these frequencies the model is faded out: the set point has no content there.
+_FADE_HZ = (15.0, 25.0)
+
+
+class Predict(Protocol):
+    """How a structure is taken through time."""
+
+    def __call__(
+        self,
+        structure: Structure,
+        values: FloatArray,
+        set_point: FloatArray,
+        *,
+        rate_hz: float,
+        wanted: Sequence[str] = (),
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return speed and torque for a set point, and their derivatives; see ``linear_prediction``."""
+        ...
+
+
+def linear_prediction(
+    structure: Structure,
+    values: FloatArray,
+    set_point: FloatArray,
+    *,
+    rate_hz: float,
+    wanted: Sequence[str] = (),
+) -> tuple[FloatArray, FloatArray]:
+    """Return speed and torque of a linear structure for a set point, and their derivatives.
+
+    Parameters
+    ----------
+    structure
+        Structure with the input ``n_set`` and the outputs ``n`` and ``M_s``.
+    values
+        All its parameters, shape (parameters,).
+    set_point
+        Deviation of the set point from the working point [-], shape (samples,).
+    rate_hz
+        Sample rate [Hz].
+    wanted
+        Parameters whose derivatives are wanted.
+
+    Returns
+    -------
+        Deviations of ``n`` and ``M_s`` [-], shape (2, samples), and derivatives, shape (wanted, 2, samples).
+
+    Raises
+    ------
+    ValidationError
+        If the structure has another input or lacks an output.
+    """
+    places = _places(structure)
+    first = float(set_point[0])
+    back = round(_BACK_S * rate_hz)
+    return_ = (set_point[-1] - first) * 0.5 * (1.0 + np.cos(np.linspace(0.0, np.pi, back)))
+    moved = np.concatenate([set_point - first, return_, np.zeros(round(_REST_S * rate_hz))])
+    frequency = np.fft.rfftfreq(moved.size, 1.0 / rate_hz)
+    low, high = _FADE_HZ
+    shown = frequency < min(high, 0.5 * rate_hz)
+    s = 2j * np.pi * frequency[shown]
+    s[0] = 1j * _SLOWEST_RAD_S
+    stacked = structure.stacked(values, s, tuple(wanted))[:, places]
+    steady = stacked[..., :1].real
+    stacked[..., 0] = stacked[..., 0].real
+    stacked *= np.cos(0.5 * np.pi * np.clip((frequency[shown] - low) / (high - low), 0.0, 1.0)) ** 2
+    spectrum = np.zeros((*stacked.shape[:-1], frequency.size), dtype=np.complex128)
+    spectrum[..., shown] = stacked * np.fft.rfft(moved)[shown]
+    found = np.fft.irfft(spectrum, moved.size, axis=-1)[..., : set_point.size] + steady * first
+    return found[0], found[1:]
+
+
+def simulated_prediction(
+    structure: Structure,
+    values: FloatArray,
+    set_point: FloatArray,
+    *,
+    rate_hz: float,
+    wanted: Sequence[str] = (),
+) -> tuple[FloatArray, FloatArray]:
+    """Return speed and torque of any structure, with its limits, and their derivatives; see ``linear_prediction``.
+
+    The set point is straight between its samples.
+
+    Raises
+    ------
+    ValidationError
+        If the structure has another input or lacks an output.
+    StructureError
+        If it cannot be simulated.
+    """
+    _places(structure)
+    time = np.arange(set_point.size) / rate_hz
+    trace = simulate(structure, values, time, {"n_set": set_point}, wanted=tuple(wanted))
+    return (
+        np.stack([trace.outputs[name] for name in OUTPUTS]),
+        np.stack([trace.derivatives[name] for name in OUTPUTS], axis=1),
+    )
+
+
+def with_square(output: FloatArray, slopes: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return a linear prediction with the rest of the propeller's quadratic law in the torque."""
+    whole, turned = output.copy(), slopes.copy()
+    whole[1] += output[0] ** 2
+    turned[:, 1] += 2.0 * output[0] * slopes[:, 0]
+    return whole, turned
+
+
+def _places(structure: Structure) -> list[int]:
+    """Return where speed and torque from the set point are among the channels."""
+    channels = list(structure.channels)
+    wanted = [(output, "n_set") for output in OUTPUTS]
+    missing = [channel for channel in wanted if channel not in channels]
+    if missing:
+        there = ", ".join(f"{output} from {cause}" for output, cause in channels)
+        raise ValidationError(
+            f"structure {structure.name}: expected n and M_s from n_set, as a chirp or step shows them, found {there}; "
+            "choose a closed-loop structure such as GAUGE-CLOSED or CL4."
+        )
+    return [channels.index(channel) for channel in wanted]

@@ -1,0 +1,170 @@
+"""The noise of a recording from where no model has anything to explain: while the set point stands still.
+
+Between the tests, and on the levels of staircases once a step has died out, speed and torque move by noise alone. Cut
+into pieces as long as an excerpt, each with its own mean taken off, these stretches say how much of the motion in that
+excerpt is noise, and how much that differs from piece to piece.
+
+Noise depends on the speed: its size goes with the load of the propeller, and the orders of shaft and blades move with
+it, at idle into the band of the model. An excerpt therefore takes the stretches whose load is nearest to its own, one
+by one until they give enough pieces, and the rest of the difference is made up by scaling with the load.
+
+What changes more slowly than a piece is long does not show in it. It is the scatter of the means of the quiet stretches
+at the working point, and stays out of the test, which takes the mean off as well; for FitPercent, which does not, it
+is part of the noise.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.campaign import Campaign, Staircase
+from shaftprint.errors import ValidationError
+
+# What the low-pass shows of a step before it happens.
+_AHEAD_S = 1.0
+_SHORTEST_S = 5.0
+LEAST_LOAD = 0.05
+# So many pieces at the right speed say more than hundreds at another; a level of a staircase gives them.
+_ENOUGH_PIECES = 3
+# Stretches whose load differs by less than this share are as good as those before.
+_ALIKE = 0.1
+# More pieces than this make the noise hardly better known.
+_MOST_PIECES = 48
+# Products at lags near the length of a piece come from few samples of it.
+_LAG_SHARE = 0.5
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class NoisePieces:
+    """Pieces of noise like that in one excerpt."""
+
+    pieces: FloatArray
+    """Speed and torque, each piece without its mean, shape (pieces, 2, samples)."""
+    as_long: bool
+    """Whether they are as long as the excerpt; shorter ones lack what is slower."""
+
+    def autocovariance(self, place: int) -> FloatArray:
+        """Return the autocovariance of speed (0) or torque (1) from lag 0 on, shape (lags,)."""
+        chosen = self.pieces[:, place]
+        samples = chosen.shape[-1]
+        lags = max(int(_LAG_SHARE * samples), 1)
+        # divided by all samples, not by those of the lag: a covariance that no signal can have is never made
+        return np.asarray(correlated(chosen, chosen)[..., :lags].mean(axis=0) / samples)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class QuietNoise:
+    """Noise of speed and torque in stretches without excitation."""
+
+    rate_hz: float
+    """Sample rate [Hz]."""
+    stretches: tuple[FloatArray, ...]
+    """Speed and torque without their mean, each of shape (2, samples)."""
+    loads: FloatArray
+    """Load of the propeller over that at the working point, shape (stretches,)."""
+    offset_variance: FloatArray
+    """Variance of the means of the stretches at the working point, shape (2,)."""
+
+    @property
+    def longest_s(self) -> float:
+        """Length of the longest stretch [s]."""
+        return float(max(stretch.shape[1] for stretch in self.stretches)) / self.rate_hz
+
+    def like(self, samples: int, load: float) -> NoisePieces:
+        """Return pieces of noise as in an excerpt.
+
+        Parameters
+        ----------
+        samples
+            Length of the excerpt; where no stretch is that long, pieces of the length of the longest are returned.
+        load
+            Load of the propeller during most of the excerpt over that at the working point.
+        """
+        longest = max(stretch.shape[1] for stretch in self.stretches)
+        length = min(samples, longest)
+        asked = max(load, LEAST_LOAD)
+        apart = np.abs(np.log(self.loads / asked))
+        found: list[FloatArray] = []
+        last = 0.0
+        for place in np.argsort(apart, kind="stable"):
+            if len(found) >= _ENOUGH_PIECES and apart[place] > last + _ALIKE:
+                break
+            stretch = self.stretches[place] * (asked / self.loads[place])
+            count = stretch.shape[1] // length
+            if count == 0:
+                continue
+            last = last if len(found) >= _ENOUGH_PIECES else float(apart[place])
+            found += [stretch[:, k * length : (k + 1) * length] for k in range(count)]
+        kept = np.linspace(0, len(found) - 1, min(len(found), _MOST_PIECES)).round().astype(np.intp)
+        cut = np.stack([found[place] for place in kept])
+        return NoisePieces(pieces=cut - cut.mean(axis=-1, keepdims=True), as_long=length == samples)
+
+
+def correlated(one: FloatArray, other: FloatArray) -> FloatArray:
+    """Return the sums of products at lags from 0 on, along the last axis."""
+    samples = one.shape[-1]
+    size = 2 * samples
+    spectrum = np.fft.rfft(one, size).conj() * np.fft.rfft(other, size)
+    return np.asarray(np.fft.irfft(spectrum, size)[..., :samples])
+
+
+def quiet_noise(
+    outputs: FloatArray, campaign: Campaign, *, rate_hz: float, start_s: float, rest_s: float
+) -> QuietNoise:
+    """Return the noise in the quiet stretches of a recording.
+
+    Parameters
+    ----------
+    outputs
+        Deviations of speed and torque from the working point, shape (2, samples).
+    campaign
+        Says where the set point stands still.
+    rate_hz, start_s
+        The grid.
+    rest_s
+        Time after a change of the set point from which on a stretch is quiet [s].
+
+    Raises
+    ------
+    ValidationError
+        If nothing stands still for 5 s.
+    """
+    cut, loads, means = [], [], []
+    end_s = start_s + outputs.shape[1] / rate_hz
+    for begin, end, between in _still(campaign, end_s):
+        first = max(round((begin + rest_s - start_s) * rate_hz), 0)
+        last = min(round((end - _AHEAD_S - start_s) * rate_hz), outputs.shape[1])
+        if last - first < _SHORTEST_S * rate_hz:
+            continue
+        stretch = outputs[:, first:last]
+        mean = stretch.mean(axis=1, keepdims=True)
+        cut.append(stretch - mean)
+        loads.append(max(1.0 + float(mean[1, 0]), LEAST_LOAD))
+        if between:
+            means.append(mean[:, 0])
+    if not cut:
+        raise ValidationError(
+            f"campaign {campaign.name}: expected a stretch of {rest_s + _AHEAD_S + _SHORTEST_S:g} s in which the set "
+            "point stands still, to tell noise from what a model misses, found none; leave one between the tests."
+        )
+    scatter = np.var(means, axis=0, ddof=1) if len(means) > 1 else np.zeros(2)
+    return QuietNoise(
+        rate_hz=rate_hz, stretches=tuple(cut), loads=frozen_float(loads), offset_variance=frozen_float(scatter)
+    )
+
+
+def _still(campaign: Campaign, end_s: float) -> Iterator[tuple[float, float, bool]]:
+    """Yield where the set point stands still [s], and whether that is between the tests."""
+    last = 0.0
+    for test in campaign.excitations:
+        if test.start_s > last:
+            yield last, test.start_s, True
+        if isinstance(test, Staircase):
+            edges = [test.start_s + place * test.dwell_s for place in range(len(test.levels_v) + 1)]
+            yield from ((begin, stop, False) for begin, stop in pairwise(edges))
+        last = test.stop_s
+    if end_s > last:
+        yield last, end_s, True

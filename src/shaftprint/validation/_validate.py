@@ -1,0 +1,194 @@
+"""The verb of the room: hold a model against records that it was not identified from."""
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from shaftprint.arrays import frozen_float
+from shaftprint.campaign import Campaign
+from shaftprint.identify import Identification
+from shaftprint.models import Structure
+from shaftprint.signals import Signals
+from shaftprint.validation._delay import LONGEST_S, RemainingDelay, remaining_delay
+from shaftprint.validation._excerpts import Excerpt, default_records, excerpts_of
+from shaftprint.validation._misfit import Compared, Outcome, misfit_of
+from shaftprint.validation._model import Model, identified_model, model_of
+from shaftprint.validation._prediction import Predict, linear_prediction
+from shaftprint.validation._run import Data, Run, run_model
+from shaftprint.validation._settings import ValidationSettings
+from shaftprint.validation._step_comparison import StepNumber, compare_steps
+from shaftprint.validation._validation import Comparison, Traces, Validation
+from shaftprint.validation._words import findings_of, outcome_sentences
+
+
+def validate(
+    model: Model | Identification | Structure,
+    signals: Signals,
+    campaign: Campaign,
+    *,
+    rng: np.random.Generator,
+    records: Sequence[str] | None = None,
+    used: Collection[str] = (),
+    allow_in_sample: bool = False,
+    predict: Predict = linear_prediction,
+    quadratic_propeller: bool = True,
+    settings: ValidationSettings | None = None,
+) -> Validation:
+    """Hold a model against chirps and staircases that it was not identified from.
+
+    Parameters
+    ----------
+    model
+        What is validated: a fit, a structure with its default values, or a ``Model`` with stated ones.
+    signals
+        The prepared recording.
+    campaign
+        What was asked of the ship.
+    rng
+        Source of the parameter sets that the bands of step numbers are drawn from.
+    records
+        Names of chirps and staircases; by default all staircases and the chirp with the widest sweep.
+    used
+        Names of tests that the model was identified from besides those that a fit names itself.
+    allow_in_sample
+        Whether records of the identification may be asked for; they are marked and do not count.
+    predict
+        How the model is taken through time: ``linear_prediction``, or ``simulated_prediction`` for one with limits.
+    quadratic_propeller
+        Whether the square of the speed is added to the torque, which a linear model of a propeller in bollard pull
+        lacks; not for a structure that has the propeller's law itself.
+    settings
+        How records are cut and compared.
+
+    Raises
+    ------
+    ValidationError
+        If the structure is not from ``n_set`` to ``n`` and ``M_s``, a record is not in the campaign or the recording or
+        was used for the identification, or no noise can be measured.
+    """
+    settings = settings or ValidationSettings()
+    chosen = _with_sensor(_as_model(model, used), signals)
+    names = default_records(campaign, chosen.used) if records is None else tuple(dict.fromkeys(records))
+    excerpts = excerpts_of(campaign, names, used=chosen.used, allow_in_sample=allow_in_sample, settings=settings)
+    data = Data.of(signals, campaign, settings)
+    comparisons: list[Comparison] = []
+    for name in names:
+        own = [excerpt for excerpt in excerpts if excerpt.record == name]
+        run = run_model(chosen, data, own, settings, predict=predict, quadratic_propeller=quadratic_propeller)
+        comparisons += (_compared(excerpt, run, chosen, settings, rng) for excerpt in own)
+    return Validation(
+        model=chosen,
+        settings=settings,
+        comparisons=tuple(comparisons),
+        outcome=_outcome(comparisons),
+        sentences=outcome_sentences(chosen, comparisons, settings),
+        findings=findings_of(chosen, comparisons, data.noise, quadratic_propeller=quadratic_propeller),
+    )
+
+
+def _as_model(model: Model | Identification | Structure, used: Collection[str]) -> Model:
+    match model:
+        case Model():
+            return replace(model, used=(*model.used, *used))
+        case Identification():
+            return identified_model(model, used=used)
+        case _:
+            return replace(model_of(model), used=tuple(used))
+
+
+def _with_sensor(model: Model, signals: Signals) -> Model:
+    """Return the model with the pick-up's held parameters at the values of the signals."""
+    speed = signals.engine_speed
+    sensor = {"T_average": speed.averaging_s, "T_hold": speed.hold_s, "t_pickup": speed.delay_s}
+    values = model.values.copy()
+    for place, parameter in enumerate(model.structure.parameters):
+        if parameter.held and parameter.name in sensor:
+            values[place] = sensor[parameter.name]
+    return replace(model, values=frozen_float(values))
+
+
+def _compared(
+    excerpt: Excerpt, run: Run, model: Model, settings: ValidationSettings, rng: np.random.Generator
+) -> Comparison:
+    """Return model and data in one excerpt."""
+    pairs = run.compared(excerpt)
+    return Comparison(
+        excerpt=excerpt,
+        misfits=tuple(
+            misfit_of(
+                raw,
+                smooth,
+                model.covariance,
+                largest_error=settings.largest_error,
+                coverage=settings.coverage,
+            )
+            for raw, smooth in pairs
+        ),
+        delays=tuple(_delay(excerpt, run, model, smooth) for _, smooth in pairs),
+        step_numbers=tuple(_step_numbers(excerpt, run, model, settings, [smooth for _, smooth in pairs], rng)),
+        traces=_traces(excerpt, run, model),
+    )
+
+
+def _delay(excerpt: Excerpt, run: Run, model: Model, smooth: Compared) -> RemainingDelay:
+    own = run.excerpt(excerpt)
+    # the run goes on behind every record, but not before one that begins with the recording
+    margin = min(round(LONGEST_S * run.data.rate_hz), own.start, run.smooth.shape[1] - own.stop)
+    wide = run.excerpt(excerpt, margin)
+    return remaining_delay(
+        smooth.output,
+        smooth.measured,
+        run.smooth[smooth.place, wide],
+        run.slopes[:, smooth.place, wide],
+        model.covariance,
+        smooth.noise.autocovariance(smooth.place),
+        rate_hz=run.data.rate_hz,
+        margin=margin,
+    )
+
+
+def _step_numbers(
+    excerpt: Excerpt,
+    run: Run,
+    model: Model,
+    settings: ValidationSettings,
+    smooth: Sequence[Compared],
+    rng: np.random.Generator,
+) -> Iterator[StepNumber]:
+    if excerpt.step_s is None:
+        return
+    time = _time(excerpt, run) - excerpt.step_s
+    for one in smooth:
+        yield from compare_steps(
+            one,
+            time,
+            model.covariance,
+            settled_share=settings.settled_share,
+            coverage=settings.coverage,
+            draws=settings.draws,
+            rng=rng,
+        )
+
+
+def _time(excerpt: Excerpt, run: Run) -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
+    there = run.data.places(excerpt.start_s, excerpt.stop_s)
+    return run.data.start_s + np.arange(there.start, there.stop) / run.data.rate_hz
+
+
+def _traces(excerpt: Excerpt, run: Run, model: Model) -> Traces:
+    own, there = run.excerpt(excerpt), run.data.places(excerpt.start_s, excerpt.stop_s)
+    slopes = run.slopes[:, :, own]
+    variance = np.einsum("iot,ij,jot->ot", slopes, model.covariance, slopes, optimize=True)
+    return Traces(
+        time_s=frozen_float(_time(excerpt, run)),
+        set_point=frozen_float(run.data.set_point[there]),
+        measured=frozen_float(run.data.smooth[:, there]),
+        model=frozen_float(run.smooth[:, own]),
+        model_std=frozen_float(np.sqrt(np.maximum(variance, 0.0))),
+    )
+
+
+def _outcome(comparisons: Sequence[Comparison]) -> Outcome:
+    found = {comparison.outcome for comparison in comparisons if not comparison.excerpt.in_sample}
+    return "fails" if "fails" in found else "passes" if found == {"passes"} else "undecided"

@@ -1,0 +1,85 @@
+"""The noun of the room: what a model is worth on records that it has not seen."""
+
+from dataclasses import dataclass
+
+from shaftprint.arrays import FloatArray
+from shaftprint.validation._delay import RemainingDelay
+from shaftprint.validation._excerpts import Excerpt
+from shaftprint.validation._misfit import Misfit, Outcome
+from shaftprint.validation._model import Model
+from shaftprint.validation._settings import ValidationSettings
+from shaftprint.validation._step_comparison import StepNumber
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Traces:
+    """Data and model of one excerpt through the low-pass, for figures; deviations from the working point."""
+
+    time_s: FloatArray
+    """Time in the recording [s], shape (samples,)."""
+    set_point: FloatArray
+    """Set point, shape (samples,)."""
+    measured: FloatArray
+    """Speed and torque as measured, shape (2, samples)."""
+    model: FloatArray
+    """Speed and torque of the model, shape (2, samples)."""
+    model_std: FloatArray
+    """Standard deviation of the model by its parameters, shape (2, samples)."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Comparison:
+    """Model and data in one excerpt."""
+
+    excerpt: Excerpt
+    """What is compared."""
+    misfits: tuple[Misfit, ...]
+    """How well speed and torque are explained."""
+    delays: tuple[RemainingDelay, ...]
+    """Delay left over in speed and torque."""
+    step_numbers: tuple[StepNumber, ...]
+    """Overshoot, rise, settling and peak beside each other; empty where the excerpt is no single step."""
+    traces: Traces
+    """What the numbers are made from."""
+
+    @property
+    def outcome(self) -> Outcome:
+        """Fails if an output fails, passes if both pass."""
+        found = {misfit.outcome for misfit in self.misfits}
+        return "fails" if "fails" in found else "passes" if found == {"passes"} else "undecided"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Validation:
+    """What a model is worth on records that it was not identified from."""
+
+    model: Model
+    """What was validated."""
+    settings: ValidationSettings
+    """How."""
+    comparisons: tuple[Comparison, ...]
+    """Every excerpt, record by record."""
+    outcome: Outcome
+    """Fails if an excerpt that the model was not identified from fails; passes if all of them pass."""
+    sentences: tuple[str, ...]
+    """The outcome in words, the verdict first."""
+    findings: tuple[str, ...]
+    """What the reader should know of how this was found."""
+
+    @property
+    def failed(self) -> tuple[Comparison, ...]:
+        """Excerpts that fail, without those that the model was identified from."""
+        return tuple(c for c in self.comparisons if c.outcome == "fails" and not c.excerpt.in_sample)
+
+    def of(self, record: str, title: str) -> Comparison:
+        """Return one excerpt by its record and the beginning of its title.
+
+        Raises
+        ------
+        KeyError
+            If there is none.
+        """
+        for found in self.comparisons:
+            if found.excerpt.record == record and found.excerpt.title.startswith(title):
+                return found
+        raise KeyError(f"{record}, {title}")
