@@ -33,6 +33,7 @@ def leg_of(rack: np.ndarray, start: int = 0) -> Leg:
         brake_torque_nm=zeros,
         rack_given=rack,
         limited=zeros > 0.0,
+        ship_speed_m_s=zeros,
     )
 
 

@@ -12,6 +12,7 @@ quantity                     unit       meaning and sign
 ``U``                        V          set-point voltage; more negative asks for more speed
 ``t_d``, ``t_sp``            s          delays inside the loop and before it
 ``u``                        rev/s      slipstream velocity, as the shaft speed to which it belongs in steady running
+``v``                        m/s        speed of the ship through the water, positive ahead; 0 at the quay
 inertias                     kg m2      referred to the propeller shaft, split at the gauge
 ============================ ========== ==========================================================================
 """
@@ -21,6 +22,7 @@ from shaftprint.tug._ideal import IdealSignals, simulate_signals
 from shaftprint.tug._linearise import linearised_response
 from shaftprint.tug._noise import Noise
 from shaftprint.tug._sail import sail
+from shaftprint.tug._sailing import Sailing
 from shaftprint.tug._truth import StripTruth, Truth, read_truth, truth_path
 from shaftprint.tug._tug import Tug
 
@@ -28,6 +30,7 @@ __all__ = [
     "Fault",
     "IdealSignals",
     "Noise",
+    "Sailing",
     "StripTruth",
     "Truth",
     "Tug",

@@ -34,6 +34,8 @@ class IdealSignals:
     """Fuel rack ``X`` that the governor gives, before the delay and the actuation [fraction], shape (samples,)."""
     limited: BoolArray
     """Whether a limit of torque or rack acts, shape (samples,)."""
+    ship_speed_m_s: FloatArray
+    """Speed of the ship through the water [m/s], 0 at the quay, shape (samples,)."""
 
 
 def simulate_signals(
@@ -88,7 +90,7 @@ def simulate_signals(
         start_s=start_s,
         disturbance=disturbance,
     )
-    speed, torque, brake, rack, limited = _sampled(legs, every)
+    speed, torque, brake, rack, way, limited = _sampled(legs, every)
     speed *= vessel.gearbox.ratio
     time = start_s + np.arange(samples) / rate_hz
     return IdealSignals(
@@ -99,11 +101,14 @@ def simulate_signals(
         brake_torque_nm=frozen_float(brake),
         rack_given=frozen_float(rack),
         limited=frozen_bool(limited),
+        ship_speed_m_s=frozen_float(way),
     )
 
 
-def _sampled(legs: Iterable[Leg], every: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, BoolArray]:
-    """Return every so many steps of shaft speed, torques and rack, and whether a limit acted in any step between."""
+def _sampled(
+    legs: Iterable[Leg], every: int
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, BoolArray]:
+    """Return every so many steps of shaft speed, torques, rack and ship, and whether a limit acted in any between."""
     # copies: a view would keep every step in memory
     parts = [
         (
@@ -111,9 +116,10 @@ def _sampled(legs: Iterable[Leg], every: int) -> tuple[FloatArray, FloatArray, F
             leg.shaft_torque_nm[::every].copy(),
             leg.brake_torque_nm[::every].copy(),
             leg.rack_given[::every].copy(),
+            leg.ship_speed_m_s[::every].copy(),
             leg.limited.reshape(-1, every).any(axis=1),
         )
         for leg in legs
     ]
-    speed, torque, brake, rack, limited = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return speed, torque, brake, rack, limited
+    speed, torque, brake, rack, way, limited = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return speed, torque, brake, rack, way, limited

@@ -8,14 +8,14 @@ from numpy.typing import ArrayLike
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import SettingsError
 from shaftprint.tug._physics import build_plant, equilibrium, working_point, working_point_rack
-from shaftprint.tug._plant import INTEGRAL, RACK, RACK_RATE, SLIPSTREAM, SPEED, Plant, derivatives
+from shaftprint.tug._plant import ANGLE, INTEGRAL, RACK, RACK_RATE, SLIPSTREAM, SPEED, WAY, Plant, derivatives
 from shaftprint.tug._tug import Tug
 from shaftprint.vessel import Vessel
 
-# Places in the vector that is perturbed: five states, the demand in the ECU and the rack given a delay ago.
-_DEMAND, _RACK_DELAYED, _SIZE = 5, 6, 7
-# Places in what comes out: the rates of the five states, then the rack given and the torque at the gauge.
-_GIVEN, _GAUGE, _RATES = 5, 6, 7
+# Places in the vector that is perturbed: seven states, the demand in the ECU and the rack given a delay ago.
+_DEMAND, _RACK_DELAYED, _SIZE = 7, 8, 9
+# Places in what comes out: the rates of the states, then the rack given and the torque at the gauge.
+_GIVEN, _GAUGE, _RATES = 7, 8, 9
 
 
 def linearised_response(
@@ -33,7 +33,8 @@ def linearised_response(
     frequency_hz
         Frequencies [Hz], shape (lines,).
     outputs
-        Which responses: ``n``, ``M_s``, and ``X``, the fuel rack that the governor gives before the delay.
+        Which responses: ``n``, ``M_s``, ``X``, the fuel rack that the governor gives before the delay, and of a tug
+        that sails ``v_s``, the speed of the ship.
 
     Returns
     -------
@@ -46,23 +47,27 @@ def linearised_response(
     SettingsError
         If the truth is not physical or an output has another name.
     """
-    unknown = [name for name in outputs if name not in ("n", "M_s", "X")]
+    known = ("n", "M_s", "X") if tug.sailing is None else ("n", "M_s", "X", "v_s")
+    unknown = [name for name in outputs if name not in known]
     if unknown:
-        raise SettingsError(f"outputs: expected names out of n, M_s and X, found {', '.join(unknown)}.")
+        words = f"{', '.join(known[:-1])} and {known[-1]}"
+        raise SettingsError(f"outputs: expected names out of {words}, found {', '.join(unknown)}.")
     plant = build_plant(tug, vessel)
     speed, torque = working_point(tug, vessel)
     slope = _slopes(plant, speed)
     rack = working_point_rack(tug, vessel)
     s = 2j * np.pi * np.asarray(frequency_hz, dtype=np.float64)
-    # a slipstream that follows at once is no state
-    states = slice(0, SLIPSTREAM + 1 if plant.inflow_gain else SLIPSTREAM)
+    states = [SPEED, INTEGRAL, RACK, RACK_RATE]
+    # a slipstream that follows at once is no state, nor is the speed of a ship that stands still
+    states += [SLIPSTREAM] * bool(plant.inflow_gain) + [WAY] * plant.sails
+    way = equilibrium(plant, speed)[WAY]
     response = np.empty((len(outputs), 1, s.size), dtype=np.complex128)
     for line, value in enumerate(s):
         delay = np.exp(-value * plant.delay_s)
         # (s I - A) x - B_delayed e^{-s t_d} (given) = B_demand e^{-s t_sp} n_set
         given, gauge = slope[_GIVEN], slope[_GAUGE]
         inner = slope[states, _RACK_DELAYED] * delay
-        left = value * np.eye(inner.size) - slope[states, states] - np.outer(inner, given[states])
+        left = value * np.eye(inner.size) - slope[np.ix_(states, states)] - np.outer(inner, given[states])
         right = slope[states, _DEMAND] + inner * given[_DEMAND]
         demand = np.exp(-value * tug.set_point_latency_s)
         x = np.linalg.solve(left, right) * demand
@@ -71,18 +76,21 @@ def linearised_response(
             "M_s": (gauge[states] @ x) * speed / torque,
             "X": (given[states] @ x + given[_DEMAND] * demand) * speed / rack,
         }
+        if plant.sails:
+            found["v_s"] = x[-1] * speed / way
         response[:, 0, line] = [found[name] for name in outputs]
     return response
 
 
 def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
-    """Return the slopes of the five rates, the rack given and the gauge torque, shape (7, 7)."""
+    """Return the slopes of the rates, the rack given and the gauge torque, shape (9, 9)."""
     state = equilibrium(plant, engine_speed_rev_s)
-    states = [SPEED, INTEGRAL, RACK, RACK_RATE, SLIPSTREAM]
-    centre = np.array([*state[states], engine_speed_rev_s, state[RACK]])
-    # the rates are at most quadratic: the central difference has no truncation error
+    centre = np.array([*state, engine_speed_rev_s, state[RACK]])
+    # at the quay the rates are at most quadratic: the central difference has no truncation error; underway it is 1e-8
     size = 1e-4 * centre
     size[RACK_RATE] = size[RACK]
+    size[ANGLE] = 1.0
+    size[WAY] = max(size[WAY], 1e-4)
     slope = np.empty((_RATES, _SIZE))
     for place in range(_SIZE):
         shift = np.zeros(_SIZE)
@@ -94,4 +102,6 @@ def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
 
 def _rates(plant: Plant, vector: FloatArray) -> FloatArray:
     rates: Any = derivatives
-    return np.array(rates.py_func(vector[:_DEMAND], *vector[_DEMAND:], 0.0, 0.0, plant)[:_RATES])
+    found = rates.py_func(vector[:_DEMAND], *vector[_DEMAND:], 0.0, 0.0, plant)
+    # the angle's rate, which is the speed, plays no part
+    return np.array([*found[:5], 0.0, found[9], found[5], found[6]])

@@ -6,7 +6,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SettingsError
-from shaftprint.tug._plant import INTEGRAL, RACK, SLIPSTREAM, SPEED, STATES, Plant
+from shaftprint.tug._plant import INTEGRAL, RACK, SLIPSTREAM, SPEED, STATES, WAY, Plant
+from shaftprint.tug._sailing import AT_THE_QUAY, steady_ship_speed_m_s, steady_torque_nm, way_of
 from shaftprint.tug._tug import Tug
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel
@@ -71,6 +72,8 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
         rack_rate_limit_per_s=np.inf if tug.rack_rate_limit_per_s is None else tug.rack_rate_limit_per_s,
         air_share=tug.unboosted_torque_share,
         turbocharger_lag_s=tug.turbocharger_lag_s,
+        sails=tug.sailing is not None,
+        way=AT_THE_QUAY if tug.sailing is None else way_of(tug.sailing, vessel),
     )
 
 
@@ -78,6 +81,14 @@ def working_point(tug: Tug, vessel: Vessel) -> tuple[float, float]:
     """Return the engine speed [rev/s] and shaft torque [N m] at which the truth is normalised."""
     point = vessel.working_point
     speed_rpm = point.engine_speed_rpm if tug.engine_speed_rpm is None else tug.engine_speed_rpm
+    if tug.sailing is not None:
+        if tug.shaft_torque_nm is not None:
+            raise SettingsError(
+                f"tug: expected no shaft_torque_nm for a tug that sails free, found {tug.shaft_torque_nm:g}; its "
+                "torque follows from propeller and resistance."
+            )
+        speed_s = rev_s_from_rpm(speed_rpm) / vessel.gearbox.ratio
+        return rev_s_from_rpm(speed_rpm), steady_torque_nm(way_of(tug.sailing, vessel), speed_s)
     torque_nm = point.shaft_torque_nm if tug.shaft_torque_nm is None else tug.shaft_torque_nm
     return rev_s_from_rpm(speed_rpm), torque_nm
 
@@ -91,18 +102,26 @@ def working_point_rack(tug: Tug, vessel: Vessel) -> float:
 def equilibrium(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
     """Return the state in which the line runs steadily at an engine speed [rev/s], angle zero, shape (states,)."""
     speed_s = engine_speed_rev_s / plant.gear_ratio
-    load = plant.propeller_nm_s2 * speed_s * abs(speed_s)
+    load = steady_load_nm(plant, speed_s)
     brake = load / (plant.gear_ratio * plant.efficiency)
     rack = (brake - plant.speed_slope_nm_s * engine_speed_rev_s - plant.rack_offset_nm) / plant.rack_slope_nm
     state = np.zeros(STATES)
     state[SPEED], state[INTEGRAL], state[RACK], state[SLIPSTREAM] = speed_s, rack, rack, speed_s
+    state[WAY] = steady_ship_speed_m_s(plant.way, speed_s) if plant.sails else 0.0
     return state
+
+
+def steady_load_nm(plant: Plant, shaft_speed_rev_s: float) -> float:
+    """Return the torque of the propeller [N m] in steady running at a shaft speed [rev/s]."""
+    if plant.sails:
+        return steady_torque_nm(plant.way, shaft_speed_rev_s)
+    return plant.propeller_nm_s2 * shaft_speed_rev_s * abs(shaft_speed_rev_s)
 
 
 def steady_boost(plant: Plant, engine_speed_rev_s: float) -> float:
     """Return the boost in steady running at an engine speed [rev/s]: the share of the full-load torque, at most 1."""
     speed_s = engine_speed_rev_s / plant.gear_ratio
-    brake = plant.propeller_nm_s2 * speed_s * abs(speed_s) / (plant.gear_ratio * plant.efficiency)
+    brake = steady_load_nm(plant, speed_s) / (plant.gear_ratio * plant.efficiency)
     return min(brake / float(np.interp(engine_speed_rev_s, plant.limit_speed_rev_s, plant.limit_torque_nm)), 1.0)
 
 

@@ -15,6 +15,12 @@ Lindegaard and Fossen, "Dynamic model for thrust generation of marine propellers
 |n| u``, momentum of the water accelerated by the thrust and lost by ``u |u|``. Linear at the working point it is
 ``Q* = (2 + kappa) n* - kappa u*`` with ``tau_i du*/dt = n* - u*``.
 
+Underway the propeller turns in water that comes towards it, and the ship has a speed of its own::
+
+    M_p = n_s^2 P_Q(J)      m dv/dt = n_s^2 P_T(J) - c v^e      J = (1 - w) v / (n_s D)
+
+with ``P_Q`` the torque of one propeller and ``P_T`` the pull of all of them over ``n_s^2``, thrust deduction taken off.
+
 A smoke limiter lets the engine burn no more than the boost gives air for: ``M_b <= M_full (a + (1 - a) b)`` with the
 boost ``b`` of a turbocharger that follows the torque late, ``tau_tc db/dt = M_b / M_full - b``: steady running is never
 limited, a fast rise is. A limit of the rate of the rack holds for what the governor gives, before delay and actuation.
@@ -26,11 +32,12 @@ import numpy as np
 from numba import njit
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
+from shaftprint.tug._sailing import AT_THE_QUAY, Way
 
-SPEED, INTEGRAL, RACK, RACK_RATE, SLIPSTREAM, ANGLE = range(6)
+SPEED, INTEGRAL, RACK, RACK_RATE, SLIPSTREAM, ANGLE, WAY = range(7)
 """Places in the state vector: shaft speed [rev/s], integrator [rack], rack, rack rate [1/s], slipstream velocity as a
-shaft speed [rev/s], shaft angle [rev]."""
-STATES = 6
+shaft speed [rev/s], shaft angle [rev], speed of the ship [m/s]."""
+STATES = 7
 
 
 class Plant(NamedTuple):
@@ -75,6 +82,10 @@ class Plant(NamedTuple):
     """Full-load torque without boost, as a fraction of that with full boost; 1 without a smoke limiter."""
     turbocharger_lag_s: float = 1.0
     """Time in which the boost follows the torque [s]."""
+    sails: bool = False
+    """Whether the ship has way on; if not, ``way`` plays no part."""
+    way: Way = AT_THE_QUAY
+    """The ship and what its propellers do underway."""
 
 
 @njit(inline="always", cache=True)
@@ -96,6 +107,25 @@ def _torque_limits(speed, plant):  # type: ignore[no-untyped-def]
     # friction of a motored engine: half of it independent of speed, half proportional
     lowest = -plant.motoring_torque_nm * (0.5 + 0.5 * speed / plant.motoring_speed_rev_s)
     return lowest, highest
+
+
+@njit(inline="always", cache=True)
+def _power_sum(powers, at):  # type: ignore[no-untyped-def]
+    """Return a sum of powers, by Horner's rule."""
+    value = 0.0
+    for k in range(powers.size - 1, -1, -1):
+        value = value * at + powers[k]
+    return value
+
+
+@njit(inline="always", cache=True)
+def _under_way(speed_s, ship_speed, propeller_noise, way):  # type: ignore[no-untyped-def]
+    """Return the torque of a propeller [N m] and the acceleration of the ship [m/s2]."""
+    square = speed_s * abs(speed_s)
+    advance = way.advance_per_m * ship_speed / speed_s
+    pull = square * _power_sum(way.pull_n_s2, advance) * (1.0 + propeller_noise)
+    resistance = way.resistance_at_1_m_s * ship_speed**way.resistance_exponent
+    return square * _power_sum(way.torque_nm_s2, advance), (pull - resistance) / way.mass_kg
 
 
 @njit(inline="always", cache=True)
@@ -125,7 +155,7 @@ def governor_rack(speed_s, integral, demand, plant, air=1.0):  # type: ignore[no
 def derivatives(  # type: ignore[no-untyped-def]
     state, demand, rack_delayed, propeller_noise, engine_noise, plant, air=1.0
 ):
-    """Return the rates of the states without the angle, then rack given, ``M_s``, ``M_b`` and whether it is limited."""
+    """Return rates of the first five states, rack given, ``M_s``, ``M_b``, whether it is limited, rate of the ship."""
     speed_s, integral, rack, rack_rate, slipstream = state[0], state[1], state[2], state[3], state[4]
     speed = plant.gear_ratio * speed_s
     wanted, given = governor_rack(speed_s, integral, demand, plant, air)
@@ -136,6 +166,9 @@ def derivatives(  # type: ignore[no-untyped-def]
     highest *= air
     brake = min(max(asked, lowest), highest)
     load = plant.propeller_nm_s2 * speed_s * abs(speed_s)
+    way_rate = 0.0
+    if plant.sails:
+        load, way_rate = _under_way(speed_s, state[6], propeller_noise, plant.way)
     hydrodynamic = load
     slipstream_rate = 0.0
     if plant.inflow_gain != 0.0:
@@ -149,7 +182,18 @@ def derivatives(  # type: ignore[no-untyped-def]
     omega = plant.natural_frequency_rad_s
     rack_acceleration = omega * (omega * (rack_delayed - rack) - 2.0 * plant.damping_ratio * rack_rate)
     limited = given != wanted or brake != asked
-    return acceleration, integral_rate, rack_rate, rack_acceleration, slipstream_rate, given, gauge, brake, limited
+    return (
+        acceleration,
+        integral_rate,
+        rack_rate,
+        rack_acceleration,
+        slipstream_rate,
+        given,
+        gauge,
+        brake,
+        limited,
+        way_rate,
+    )
 
 
 @njit(inline="always", cache=True)
@@ -182,7 +226,7 @@ class Carried(NamedTuple):
     """What the kernel carries from chunk to chunk."""
 
     state: FloatArray
-    """Shaft speed, integrator, rack, rack rate, slipstream and angle, shape (6,)."""
+    """Shaft speed, integrator, rack, rack rate, slipstream, angle and speed of the ship, shape (7,)."""
     history: FloatArray
     """Ring of the racks given at the nodes; its size is a power of two."""
     counter: IntArray
@@ -209,17 +253,20 @@ class Traces(NamedTuple):
     brake_torque_nm: FloatArray
     rack_given: FloatArray
     limited: BoolArray
+    ship_speed_m_s: FloatArray
 
 
 @njit(inline="always", cache=True)
 def _moved(x, h, rates):  # type: ignore[no-untyped-def]
-    """Return the states without the angle after a time ``h`` at constant rates."""
+    """Return the states after a time ``h`` at constant rates; the angle stays, for no rate depends on it."""
     return (
         x[0] + h * rates[0],
         x[1] + h * rates[1],
         x[2] + h * rates[2],
         x[3] + h * rates[3],
         x[4] + h * rates[4],
+        x[5],
+        x[6] + h * rates[9],
     )
 
 
@@ -243,6 +290,7 @@ def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant, air):  # type
         x[3] + part * (k1[3] + 2.0 * k2[3] + 2.0 * k3[3] + k4[3]),
         x[4] + part * (k1[4] + 2.0 * k2[4] + 2.0 * k3[4] + k4[4]),
         x[5] + part * (x[0] + 2.0 * x2[0] + 2.0 * x3[0] + x4[0]),
+        x[6] + part * (k1[9] + 2.0 * k2[9] + 2.0 * k3[9] + k4[9]),
     )
 
 
@@ -256,7 +304,7 @@ def advance(  # type: ignore[no-untyped-def]
     All that goes on is carried, so that the result does not depend on how the time is cut into calls.
     """
     state, history = carried.state, carried.history
-    x = (state[0], state[1], state[2], state[3], state[4], state[5])
+    x = (state[0], state[1], state[2], state[3], state[4], state[5], state[6])
     k = carried.counter[0]
     mask = history.size - 1
     largest_change = plant.rack_rate_limit_per_s * step_s
@@ -281,10 +329,11 @@ def advance(  # type: ignore[no-untyped-def]
         traces.shaft_torque_nm[j] = rates[6]
         traces.brake_torque_nm[j] = rates[7]
         traces.limited[j] = rates[8] or given != rates[5]
+        traces.ship_speed_m_s[j] = x[6]
         if plant.air_share < 1.0:
             _, full_load = _torque_limits(plant.gear_ratio * x[0], plant)
             carried.boost[0] += step_s / plant.turbocharger_lag_s * (rates[7] / full_load - carried.boost[0])
         x = _runge_kutta(step_s, x, rates, asked, past, propeller, engine, plant, air)
         k += 1
-    state[0], state[1], state[2], state[3], state[4], state[5] = x
+    state[0], state[1], state[2], state[3], state[4], state[5], state[6] = x
     carried.counter[0] = k

@@ -18,7 +18,7 @@ from shaftprint.tug._disturbance import Disturbance
 from shaftprint.tug._faults import Fault
 from shaftprint.tug._gauge import TorqueGauge
 from shaftprint.tug._helm import Helm
-from shaftprint.tug._physics import build_plant, equilibrium
+from shaftprint.tug._physics import build_plant, equilibrium, steady_load_nm
 from shaftprint.tug._plant import RACK, SPEED
 from shaftprint.tug._pulses import VOLT_PER_COUNT, PickUp
 from shaftprint.tug._truth import StripTruth, Truth, rack_latency_s, tell_truth, truth_path, truth_text
@@ -126,7 +126,7 @@ class _Crew:
             vessel,
             load_nm_s2=load,
             zero_offset_nm=tug.torque_zero_offset_nm,
-            first_torque_nm=load * first[SPEED] ** 2,
+            first_torque_nm=steady_load_nm(plant, float(first[SPEED])),
             duration_s=duration_s,
             rate_hz=self._rate_hz,
             rng=torque,

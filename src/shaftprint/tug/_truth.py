@@ -9,6 +9,7 @@ from shaftprint.campaign import Campaign
 from shaftprint.errors import RecordingError
 from shaftprint.tug._faults import Fault
 from shaftprint.tug._physics import build_plant, shaft_time_constant_s, working_point, working_point_rack
+from shaftprint.tug._sailing import sailing_truth, way_of
 from shaftprint.tug._tug import Tug
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import RackSensor, Vessel
@@ -47,7 +48,8 @@ class Truth:
     """Parameters normalised at the working point: ``tau_up``, ``tau_dn``, ``tau_t`` [s]; ``tau_w`` [s], the part of
     ``tau_dn`` that is water beyond the vessel's; ``k_q``; ``kappa``, ``tau_i`` [s] of the dynamic inflow; ``g``, ``v``,
     ``X_0``; ``K_p``, ``K_i`` [1/s], ``t_d`` [s], ``omega_n`` [rad/s], ``zeta``, ``t_sp`` [s]; and where percent torque
-    was logged ``t_rack`` [s], its latency beyond the vessel's."""
+    was logged ``t_rack`` [s], its latency beyond the vessel's. Underway, in place of ``k_q``: ``w``, ``t``, ``J``,
+    ``a``, ``b``, ``e``, ``tau_u`` [s], the speed of the ship ``v_0`` [m/s] and its resistance ``R`` [N]."""
     physical: Mapping[str, float]
     """The same in physical units, which the names carry; rack as a fraction, speeds of the engine in rev/s. With it the
     offset of the torque gauge, which acts on the recording alone."""
@@ -83,7 +85,7 @@ def normalised_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
         "tau_dn": downstream,
         "tau_t": upstream + downstream,
         "tau_w": shaft_time_constant_s(tug.entrained_water_kg_m2, tug, vessel),
-        "k_q": 2.0,
+        **_load_truth(tug, vessel),
         "kappa": tug.inflow_gain,
         "tau_i": tug.inflow_time_s,
         "g": tug.g,
@@ -96,6 +98,14 @@ def normalised_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
         "zeta": tug.damping_ratio,
         "t_sp": tug.set_point_latency_s,
     } | late
+
+
+def _load_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
+    """Return what the torque of the propeller follows: the square of the speed, or the ship."""
+    if tug.sailing is None:
+        return {"k_q": 2.0}
+    speed, _ = working_point(tug, vessel)
+    return sailing_truth(tug.sailing, way_of(tug.sailing, vessel), speed / vessel.gearbox.ratio)
 
 
 def rack_latency_s(tug: Tug, sensor: RackSensor) -> float:

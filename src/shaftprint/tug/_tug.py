@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from typing import Self
 
 from shaftprint.tug._noise import Noise
+from shaftprint.tug._sailing import Sailing
 
 # Table 3.4 of the thesis, "Fingerprinting II": angles between the reflection strips [degree]; printed sum 360.02.
 STRIP_ANGLES_DEG = (90.40, 87.24, 90.74, 91.64)
@@ -21,7 +22,8 @@ class Tug:
     engine_speed_rpm: float | None = None
     """Engine speed of the working point ``n_0`` [rpm]; ``None``: the vessel's."""
     shaft_torque_nm: float | None = None
-    """Shaft torque of the working point ``M_s0`` [N m], a point of the propeller law; ``None``: the vessel's."""
+    """Shaft torque of the working point ``M_s0`` [N m], a point of the propeller law; ``None``: the vessel's, and
+    underway what the propeller takes there."""
     inertia_upstream_kg_m2: float | None = None
     """Inertia upstream of the torque gauge, referred to the propeller shaft [kg m2]; ``None``: the vessel's."""
     inertia_downstream_kg_m2: float | None = None
@@ -35,6 +37,8 @@ class Tug:
     """
     inflow_time_s: float = 0.1
     """Time ``tau_i`` in which the slipstream follows the propeller at the working point [s]; 0.09 to 0.21 s."""
+    sailing: Sailing | None = None
+    """What makes the ship sail free; ``None``: bollard pull, the ship stands still."""
     g: float = 0.0
     """Slope of brake torque over engine speed at constant rack, normalised at the working point."""
     v: float = 1.0

@@ -34,6 +34,8 @@ class Leg:
     """Fuel rack that the governor gives, after its limiter and before the delay [fraction], shape (steps,)."""
     limited: BoolArray
     """Whether a limit of torque or rack acts, shape (steps,)."""
+    ship_speed_m_s: FloatArray
+    """Speed of the ship through the water [m/s], 0 at the quay, shape (steps,)."""
 
 
 def voyage(
@@ -95,9 +97,9 @@ def voyage(
     while done < steps:
         count = min(chunk, steps - done)
         propeller, engine, wander = disturbance.next(count)
-        speed, angle, torque, brake, rack = np.empty((5, count))
+        speed, angle, torque, brake, rack, way = np.empty((6, count))
         limited = np.empty(count, dtype=np.bool_)
-        traces = Traces(speed, angle, torque, brake, rack, limited)
+        traces = Traces(speed, angle, torque, brake, rack, limited, way)
         advance(step_s, demand.next(count, wander), propeller, engine, plant, delay, carried, traces)
         yield Leg(
             time_s=start_s + step_s * np.arange(done, done + count, dtype=np.float64),
@@ -107,5 +109,6 @@ def voyage(
             brake_torque_nm=brake,
             rack_given=rack,
             limited=limited,
+            ship_speed_m_s=way,
         )
         done += count
