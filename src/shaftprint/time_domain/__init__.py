@@ -12,20 +12,30 @@ time                s       of the recording
 """
 
 from shaftprint.time_domain._decimator import Decimator
+from shaftprint.time_domain._identify_chirp import identify_chirp, spectrum_term
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise, white_noise
 from shaftprint.time_domain._record import Record, record_from_arrays
 from shaftprint.time_domain._records_of import records_of
+from shaftprint.time_domain._spectrum import Spectrum, spectrum_of
+from shaftprint.time_domain._spectrum_term import FittedSpectrum, SpectrumRepeats, SpectrumTerm
 from shaftprint.time_domain._whiteness import whiteness_p_value
 from shaftprint.time_domain._whitening import Whitening
 
 __all__ = [
     "Decimator",
+    "FittedSpectrum",
     "NoiseModel",
     "Record",
+    "Spectrum",
+    "SpectrumRepeats",
+    "SpectrumTerm",
     "Whitening",
     "estimate_noise",
+    "identify_chirp",
     "record_from_arrays",
     "records_of",
+    "spectrum_of",
+    "spectrum_term",
     "white_noise",
     "whiteness_p_value",
 ]
