@@ -9,7 +9,7 @@ from shaftprint.signals import SetPointCalibration, Signals, SpeedSignal, Workin
 RATE_HZ = 100.0
 
 
-def signals_from(set_point, speed, torque, *, rate_hz=RATE_HZ, start_s=0.0):
+def _signals_from(set_point, speed, torque, *, rate_hz=RATE_HZ, start_s=0.0):
     """Return prepared signals from deviations of set point, speed and torque from the working point."""
     sensor = SpeedSignal(
         name="n_e",
@@ -50,6 +50,12 @@ def signals_from(set_point, speed, torque, *, rate_hz=RATE_HZ, start_s=0.0):
         recording_sha256="ab" * 32,
         recording_name="made.nc",
     )
+
+
+@pytest.fixture(scope="session")
+def signals_from():
+    """The function that makes signals from deviations."""
+    return _signals_from
 
 
 @pytest.fixture(scope="session")

@@ -97,5 +97,5 @@ def test_the_square_of_the_speed_is_the_rest_of_the_propellers_law():
 @pytest.mark.parametrize("predict", [linear_prediction, simulated_prediction])
 def test_an_open_loop_cannot_be_held_against_a_set_point(predict):
     model = structure("OL1")
-    with pytest.raises(ValidationError, match="structure OL1: expected n and M_s from n_set, .* found n from M_s"):
+    with pytest.raises(ValidationError, match=r"structure OL1: expected n and M_s from n_set, .* found n from M_s"):
         predict(model, model.vector({}), np.zeros(1000), rate_hz=RATE_HZ)

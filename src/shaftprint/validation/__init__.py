@@ -19,6 +19,7 @@ from shaftprint.validation._model import Model, identified_model, model_of
 from shaftprint.validation._prediction import Predict, linear_prediction, simulated_prediction
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber
+from shaftprint.validation._thesis_models import thesis_models
 from shaftprint.validation._validate import validate
 from shaftprint.validation._validation import Comparison, Traces, Validation
 
@@ -38,5 +39,6 @@ __all__ = [
     "linear_prediction",
     "model_of",
     "simulated_prediction",
+    "thesis_models",
     "validate",
 ]

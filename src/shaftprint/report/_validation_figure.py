@@ -1,0 +1,138 @@
+"""Models against records that they have not seen (thesis figures 5.6 to 5.11)."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.normal import deviations
+from shaftprint.report._envelope import envelope
+from shaftprint.report._style import (
+    REFERENCE,
+    house_style,
+    legend_below,
+    legend_entries,
+    letter_panels,
+    look,
+    new_figure,
+)
+from shaftprint.report._symbols import mathtext
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from shaftprint.validation import Comparison, Validation
+
+MEASURED = "#b9b9b9"
+BAND_ALPHA = 0.28
+PERCENT = 100.0
+WHAT = (("n", "engine speed"), ("M_s", "shaft torque"))
+
+
+def plot_validation(
+    validations: Sequence["Validation"],
+    record: str,
+    *titles: str,
+    set_point: bool = False,
+    around_step_s: tuple[float, float] | None = None,
+) -> "Figure":
+    """Return speed and torque of one or more models over the data of a record that they have not seen.
+
+    Data and models are shown as they are compared, without what is faster than the highest frequency of the settings.
+
+    Parameters
+    ----------
+    validations
+        Models held against the same recording in the same way.
+    record
+        Name of the chirp or staircase.
+    titles
+        Beginnings of the titles of the excerpts that are shown, one after the other in time: ``up to 1`` for thesis
+        figure 5.6, ``1 to 5`` for 5.7, ``5 to 10`` and ``above 10`` for 5.8, ``about 10`` for 5.9, ``whole`` for 5.10
+        and ``step at`` with a time for 5.11.
+    set_point
+        Whether the set point is drawn beside the speed, as in thesis figures 5.10 and 5.11.
+    around_step_s
+        Time before and after the step that is shown [s]; all of the excerpt when not given.
+
+    Raises
+    ------
+    ValueError
+        If there is no validation or no title, or no such excerpt.
+    """
+    if not validations or not titles:
+        raise ValueError("validation figure: expected at least one validation and one title, found none.")
+    shown = [_found(validation, record, titles) for validation in validations]
+    with house_style():
+        figure = new_figure(12.0)
+        panels = figure.subplots(2, 1, sharex=True)
+        for place, (axes, (output, _)) in enumerate(zip(panels, WHAT, strict=True)):
+            _draw_data(axes, shown[0], place, set_point=set_point and place == 0)
+            for number, (validation, parts) in enumerate(zip(validations, shown, strict=True)):
+                _draw_model(axes, validation, parts, place, number)
+            axes.set_ylabel(f"{mathtext(output)}, deviation over\nworking point [-]")
+        first, last = shown[0][0].excerpt, shown[0][-1].excerpt
+        begin, end = first.start_s, last.stop_s
+        if around_step_s is not None and first.step_s is not None:
+            begin, end = first.step_s - around_step_s[0], first.step_s + around_step_s[1]
+        panels[-1].set_xlim(begin, end)
+        panels[-1].set_xlabel("time in the recording [s]")
+        what = f"{record}, {' and '.join(part.excerpt.title for part in shown[0])}"
+        letter_panels(panels, [f"{words}, {what}" for _, words in WHAT])
+        legend_below(figure, legend_entries(panels))
+        return figure
+
+
+def _found(validation: "Validation", record: str, titles: Sequence[str]) -> "list[Comparison]":
+    try:
+        return [validation.of(record, title) for title in titles]
+    except KeyError as missing:
+        raise ValueError(f"validation figure: expected an excerpt {missing.args[0]}, found none.") from None
+
+
+def _draw_data(axes: "Axes", parts: "list[Comparison]", place: int, *, set_point: bool) -> None:
+    for part in parts:
+        traces = part.traces
+        axes.plot(
+            *envelope(traces.time_s, traces.measured[place]),
+            color=MEASURED,
+            linewidth=2.6,
+            label="measured",
+            zorder=1.5,
+        )
+        if set_point:
+            axes.plot(
+                *envelope(traces.time_s, traces.set_point),
+                color=REFERENCE,
+                linewidth=0.8,
+                label=f"set point {mathtext('n_set')}",
+                zorder=1.8,
+            )
+
+
+def _draw_model(axes: "Axes", validation: "Validation", parts: "list[Comparison]", place: int, number: int) -> None:
+    style = look(number)
+    wide = deviations(validation.settings.coverage)
+    for part in parts:
+        traces = part.traces
+        middle: FloatArray = traces.model[place]
+        half = wide * traces.model_std[place]
+        if np.any(half > 0.0):
+            axes.fill_between(
+                traces.time_s,
+                middle - half,
+                middle + half,
+                color=style.colour,
+                alpha=BAND_ALPHA,
+                linewidth=0.0,
+                label=f"its {PERCENT * validation.settings.coverage:g} % band, at each time",
+            )
+        axes.plot(
+            *envelope(traces.time_s, middle),
+            color=style.colour,
+            linestyle=style.dashes,
+            linewidth=1.0,
+            label=validation.model.name,
+        )
