@@ -140,12 +140,12 @@ def sailing(s, p, n_set=1, theta_set=0):
     lag = p["omega_n"] ** 2 / (s**2 + 2 * p["zeta"] * p["omega_n"] * s + p["omega_n"] ** 2)
     drive = (p["K_p"] + p["K_i"] / s) * p["v"] * mp.exp(-s * p["t_d"]) * lag
     settling = p["tau_u"] * s + p["e"] - p["a"]
-    load = p["tau_dn"] * s + 2 - p["b"] + p["sigma"] * p["b"] * (2 - p["a"]) / settling
+    load = p["tau_dn"] * s + p["k_q"] / 2 * (2 - p["b"] + p["sigma"] * p["b"] * (2 - p["a"]) / settling)
     forced, pushed = mp.zero, mp.zero
     if theta_set:
         theta = theta_set / (p["tau_th"] * s + 1)
         pushed = p["sigma"] * p["p"] * theta / settling
-        forced = p["q"] * theta + p["b"] * pushed
+        forced = p["k_q"] / 2 * (p["q"] * theta + p["b"] * pushed)
     demand = n_set * p["c_set"] * mp.exp(-s * p["t_sp"])
     speed = (drive * demand - forced) / (p["tau_up"] * s - p["g"] + load + drive)
     ship = p["sigma"] * (2 - p["a"]) / settling * speed + pushed
@@ -155,7 +155,8 @@ def sailing(s, p, n_set=1, theta_set=0):
 
 def sailing_core(s, p):
     ship = p["tau_u"] * s + p["e"] - p["a"]
-    speed = ship / ((p["tau_dn"] * s + 2 - p["b"]) * ship + p["sigma"] * p["b"] * (2 - p["a"]))
+    back = p["sigma"] * p["b"] * (2 - p["a"])
+    speed = ship / (p["tau_dn"] * s * ship + p["k_q"] / 2 * ((2 - p["b"]) * ship + back))
     return (pick_up(s, p) / telemetry(s, p) * speed,)
 
 

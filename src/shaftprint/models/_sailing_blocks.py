@@ -12,6 +12,9 @@ A. Vrijdag and D. Stapersma, Extension and application of a linearised ship prop
 143, 2017, 50-65). ``tau_u = m v / R``, ``e = d ln R / d ln v``; ``a``, ``b``, ``p`` and ``q`` are the slopes of the
 propeller's curves.
 
+At the gauge the torque is ``k_q / 2`` of that, with ``k_q`` 2 where the gauge has no zero error; the load of a single
+window over that at the working point goes into ``k_q`` like at the quay.
+
 Of a ship with two shafts ``sigma`` is the share of the thrust whose shafts move together: 1 where both follow the set
 point, 0.5 where one does and the governor of the other holds its speed.
 """
@@ -31,11 +34,12 @@ _Value = TypeVar("_Value")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SailingTorque(Block):
-    """Torque of the propeller over shaft speed, ``2 - b + sigma b (2 - a) / (tau_u s + e - a)``.
+    """Torque of the propeller over shaft speed, ``(k_q / 2) [2 - b + sigma b (2 - a) / (tau_u s + e - a)]``.
 
     Fast changes meet ``2 - b``, the ship has no time to follow; slow ones meet ``2`` where ``e`` is 2.
     """
 
+    load: Parameter
     thrust_slope: Parameter
     torque_slope: Parameter
     resistance_slope: Parameter
@@ -44,28 +48,38 @@ class SailingTorque(Block):
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """``a``, ``b``, ``e``, ``tau_u``, ``sigma``."""
-        return (self.thrust_slope, self.torque_slope, self.resistance_slope, self.ship_time, self.share)
+        """``k_q``, ``a``, ``b``, ``e``, ``tau_u``, ``sigma``."""
+        return (self.load, self.thrust_slope, self.torque_slope, self.resistance_slope, self.ship_time, self.share)
 
     def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
-        """Return ``2 - b + sigma b (2 - a) / (tau_u s + e - a)``."""
-        a, b, e, tau_u, sigma = values
-        return np.asarray((2.0 - b) + sigma * b * (2.0 - a) / (tau_u * s + e - a))
+        """Return ``(k_q / 2) [2 - b + sigma b (2 - a) / (tau_u s + e - a)]``."""
+        k_q, a, b, e, tau_u, sigma = values
+        return np.asarray(0.5 * k_q * ((2.0 - b) + sigma * b * (2.0 - a) / (tau_u * s + e - a)))
 
     def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
         """Return the derivatives; with ``H = 1 / (tau_u s + e - a)`` and ``c = sigma b (2 - a)``.
 
-        ``c H^2 - sigma b H``, ``sigma (2 - a) H - 1``, ``-c H^2``, ``-c s H^2`` and ``b (2 - a) H``.
+        ``(2 - b + c H) / 2`` and, each times ``k_q / 2``, ``c H^2 - sigma b H``, ``sigma (2 - a) H - 1``, ``-c H^2``,
+        ``-c s H^2`` and ``b (2 - a) H``.
         """
-        a, b, e, tau_u, sigma = values
+        k_q, a, b, e, tau_u, sigma = values
+        half = 0.5 * k_q
         lag = 1.0 / (tau_u * s + e - a)
-        fall = sigma * b * (2.0 - a) * lag * lag
-        return fall - sigma * b * lag, sigma * (2.0 - a) * lag - 1.0, -fall, -s * fall, b * (2.0 - a) * lag
+        back = sigma * b * (2.0 - a) * lag
+        fall = half * back * lag
+        return (
+            0.5 * ((2.0 - b) + back),
+            fall - half * sigma * b * lag,
+            half * (sigma * (2.0 - a) * lag - 1.0),
+            -fall,
+            -s * fall,
+            half * b * (2.0 - a) * lag,
+        )
 
     def ratio(self, *values: float) -> Polynomials:
-        """Return ``((2 - b) (tau_u s + e - a) + sigma b (2 - a)) / (tau_u s + e - a)``."""
-        a, b, e, tau_u, sigma = values
-        top = [(2.0 - b) * tau_u, (2.0 - b) * (e - a) + sigma * b * (2.0 - a)]
+        """Return ``(k_q / 2) ((2 - b) (tau_u s + e - a) + sigma b (2 - a)) / (tau_u s + e - a)``."""
+        k_q, a, b, e, tau_u, sigma = values
+        top = [0.5 * k_q * (2.0 - b) * tau_u, 0.5 * k_q * ((2.0 - b) * (e - a) + sigma * b * (2.0 - a))]
         return np.array(top), np.array([tau_u, e - a])
 
 
@@ -73,9 +87,9 @@ class SailingTorque(Block):
 class SailingShaft(Block):
     """Line of shafts of a free-sailing ship from torque to speed.
 
-    ``(tau_u s + e - a) / [(tau s + 2 - b - g) (tau_u s + e - a) + sigma b (2 - a)]`` with ``tau`` the sum of the
-    inertia times given and ``g`` the slope of the engine torque. With the downstream inertia alone and no ``g`` it is
-    ``n / M_s`` at the gauge.
+    ``(tau_u s + e - a) / [(tau s + 2 - b - g) (tau_u s + e - a) + sigma b (2 - a)]`` where ``k_q`` is 2, with ``tau``
+    the sum of the inertia times given and ``g`` the slope of the engine torque. With the downstream inertia alone and no
+    ``g`` it is ``n / M_s`` at the gauge.
     """
 
     inertia: tuple[Parameter, ...]
@@ -84,7 +98,7 @@ class SailingShaft(Block):
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """Inertia times, then ``a``, ``b``, ``e``, ``tau_u``, ``sigma``, and ``g`` where there is one."""
+        """Inertia times, then ``k_q``, ``a``, ``b``, ``e``, ``tau_u``, ``sigma``, and ``g`` where there is one."""
         end = () if self.engine_slope is None else (self.engine_slope,)
         return (*self.inertia, *self.torque.parameters, *end)
 
@@ -107,17 +121,18 @@ class SailingShaft(Block):
 
     def ratio(self, *values: float) -> Polynomials:
         """Return numerator and denominator."""
-        inertia, (a, b, e, tau_u, sigma), engine = self._parted(values)
-        time, slope = sum(inertia[1:], start=inertia[0]), 2.0 - b
+        inertia, (k_q, a, b, e, tau_u, sigma), engine = self._parted(values)
+        time, slope = sum(inertia[1:], start=inertia[0]), 0.5 * k_q * (2.0 - b)
         for value in engine:
             slope = slope - value
-        bottom = [time * tau_u, time * (e - a) + slope * tau_u, slope * (e - a) + sigma * b * (2.0 - a)]
+        back = 0.5 * k_q * sigma * b * (2.0 - a)
+        bottom = [time * tau_u, time * (e - a) + slope * tau_u, slope * (e - a) + back]
         return np.array([tau_u, e - a]), np.array(bottom)
 
     def _parted(self, values: tuple[_Value, ...]) -> tuple[tuple[_Value, ...], ...]:
         """Return inertia times, what the propeller takes, and the slope of the engine if there is one."""
         count = len(self.inertia)
-        return values[:count], values[count : count + 5], values[count + 5 :]
+        return values[:count], values[count : count + 6], values[count + 6 :]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,7 +4,8 @@ Downstream of the gauge stands the propeller, which feels the speed of the ship:
 
     M_s = (tau_dn s + 2 - b) n + b v,     v = (2 - a) n / (tau_u s + e - a)
 
-At the quay, where ``a = b = 0``, they are the gauge-aware structures with ``k_q = 2``.
+with the torque of the propeller times ``k_q / 2`` where the zero of the gauge is off. At the quay, where ``a = b = 0``,
+they are the gauge-aware structures.
 """
 
 from shaftprint.models._blocks import FirstOrderLag, Gain, PIGovernor, SecondOrderLag
@@ -17,6 +18,7 @@ from shaftprint.models._gauge_catalogue import (
     GAUGE_K_P,
     GAUGE_OMEGA_N,
     GAUGE_ZETA,
+    K_Q,
     T_AVERAGE,
     T_D,
     T_FILTER,
@@ -34,6 +36,7 @@ from shaftprint.models._sailing_blocks import PitchSpeed, SailingShaft, SailingT
 from shaftprint.models._shaft_blocks import Inertia
 from shaftprint.models._structure import Structure
 
+K_Q_HELD = K_Q.held_at(2.0)
 A = Parameter("a", "-", -6.0, 0.0, -1.0, "slope of the thrust coefficient, d ln K_T / d ln J")
 B = Parameter("b", "-", -3.0, 0.0, -0.45, "slope of the torque coefficient, d ln K_Q / d ln J")
 E = Parameter("e", "-", 1.0, 8.0, 3.0, "slope of the resistance, d ln R / d ln v")
@@ -103,7 +106,7 @@ def free_pitch() -> Structure:
     left_of_error = Sensitivity(loop)
     pitch = FirstOrderLag(TAU_TH)
     pitch_ship = PitchSpeed(P, A, E, TAU_U, SIGMA)
-    pitch_torque = Gain(Q) + Gain(B) * pitch_ship
+    pitch_torque = 0.5 * Gain(K_Q_HELD) * (Gain(Q) + Gain(B) * pitch_ship)
     by_set_point = loop * left_of_error * _set_point()
     by_pitch = -(pitch * pitch_torque * shaft * left_of_error)
     ship = ShipSpeed(A, E, TAU_U, SIGMA)
@@ -134,7 +137,7 @@ def _governed() -> tuple[Expression, Expression, Expression]:
 
 
 def _torque() -> SailingTorque:
-    return SailingTorque(A, B, E, TAU_U, SIGMA)
+    return SailingTorque(K_Q_HELD, A, B, E, TAU_U, SIGMA)
 
 
 def _drive() -> Expression:
