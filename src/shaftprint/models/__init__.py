@@ -32,10 +32,23 @@ from shaftprint.models._catalogue import STRUCTURES, structure
 from shaftprint.models._check import check_structure
 from shaftprint.models._combination import Combination
 from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor, ZeroOrderHold
+from shaftprint.models._diagram import Diagram, Port
+from shaftprint.models._engine_parts import boosted, firing_delay, full_load, quadratic_propeller
+from shaftprint.models._evaluate import Leaves, evaluate
 from shaftprint.models._expression import Constant, Expression, Inverse, Sensitivity, feedback
+from shaftprint.models._flow import Flow
 from shaftprint.models._free_response import free_responses
 from shaftprint.models._held import Held
 from shaftprint.models._known_propeller import KnownPropeller, with_known_propeller
+from shaftprint.models._limited_catalogue import limited
+from shaftprint.models._limits import (
+    Governed,
+    deadband,
+    first_order_lag,
+    limited_pi,
+    rate_limited,
+    second_order_lag,
+)
 from shaftprint.models._margins import Margins, margins, poles
 from shaftprint.models._nyquist import is_stable, loop_gain, stable_rows, unstable_poles
 from shaftprint.models._own_blocks import FunctionBlock, RationalBlock
@@ -56,24 +69,29 @@ __all__ = [
     "Computed",
     "Constant",
     "Delay",
+    "Diagram",
     "DynamicInflow",
     "EntrainedWater",
     "Expression",
     "FilteredDerivative",
     "FirstOrderLag",
+    "Flow",
     "FunctionBlock",
     "Gain",
+    "Governed",
     "Held",
     "Inertia",
     "Integrator",
     "Inverse",
     "KnownPropeller",
     "Late",
+    "Leaves",
     "Margins",
     "PIGovernor",
     "PadeDelay",
     "Parameter",
     "PitchSpeed",
+    "Port",
     "Program",
     "Quantity",
     "RationalBlock",
@@ -88,13 +106,21 @@ __all__ = [
     "Tie",
     "TorqueBalance",
     "ZeroOrderHold",
+    "boosted",
     "check_structure",
     "choose",
     "clip",
+    "deadband",
     "derivatives",
+    "evaluate",
     "feedback",
+    "firing_delay",
+    "first_order_lag",
     "free_responses",
+    "full_load",
     "is_stable",
+    "limited",
+    "limited_pi",
     "loop_gain",
     "margins",
     "maximum",
@@ -102,7 +128,10 @@ __all__ = [
     "poles",
     "postorder",
     "program_of",
+    "quadratic_propeller",
+    "rate_limited",
     "replaced",
+    "second_order_lag",
     "stable_rows",
     "step_response",
     "structure",

@@ -4,8 +4,9 @@ A block is asked what it makes of a signal (``Block.flow``), and answers with a 
 states and for the past of a signal. Loops are closed by a signal that is not known yet.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from typing import Self
 
 from shaftprint.errors import StructureError
 from shaftprint.models._calculus import depends, derivative, replaced
@@ -52,8 +53,17 @@ class Flow:
     """What an expression makes of a signal, once asked."""
     kept: list[object] = field(default_factory=list)
     """Expressions and signals behind ``known``, so that their identities stay theirs."""
+    diagrams: dict[tuple[int, int], Mapping[str, Quantity]] = field(default_factory=dict)
+    """Outputs of a diagram for a signal, once asked."""
     opened: int = 0
     """How many unknown signals there have been."""
+
+    @classmethod
+    def of_parameters(cls, names: Iterable[str], zeros: Iterable[str] = ()) -> Self:
+        """Return a flow without equations, its parameters leaves or the number zero."""
+        none = frozenset(zeros)
+        leaves = {n: Quantity("parameter", name=n, place=i) for i, n in enumerate(names)}
+        return cls(parameters={n: number(0.0) if n in none else leaf for n, leaf in leaves.items()})
 
     def parameter(self, name: str) -> Quantity:
         """Return a parameter."""
@@ -96,11 +106,28 @@ class Flow:
         area = self.running_sum("running sum", signal)
         return (area - self.delayed(area, width)) / width
 
-    def sampled(self, value: Quantity, period: Number) -> Quantity:
-        """Return a value that is taken every period and held until the next."""
+    def sampled(self, value: Quantity | Callable[[Quantity], Quantity], period: Number) -> Quantity:
+        """Return a value that is taken every period and held until the next.
+
+        Parameters
+        ----------
+        value
+            The value, or a function of the last one that was taken.
+        period
+            The period [s]; 0 for every step of the simulation.
+        """
         leaf = Quantity("sample", name="sample", place=len(self.samples))
-        self.samples.append(Sampled(quantity(period), value, leaf))
+        # its place is taken before the value asks for further ones
+        self.samples.append(Sampled(quantity(period), leaf, leaf))
+        taken = value(leaf) if callable(value) else value
+        self.samples[leaf.place] = Sampled(quantity(period), taken, leaf)
         return leaf
+
+    @staticmethod
+    def period(period: Number) -> Quantity:
+        """Return the time between two values of a computer [s]; the step of the simulation where it is zero."""
+        given = quantity(period)
+        return Quantity("step", name="step") if given.equals(0.0) else given
 
     def change(self, signal: Quantity) -> Quantity:
         """Return how fast a signal changes."""

@@ -64,7 +64,7 @@ def gauge_open() -> Structure:
         title="gauge-aware governor and engine",
         input="e",
         outputs={"M_s": torque * Inverse(error)},
-        combinations=_combinations(),
+        combinations=gauge_combinations(),
     )
 
 
@@ -80,7 +80,7 @@ def gauge_closed() -> Structure:
         title="gauge-aware closed loop",
         input="n_set",
         outputs={"n": speed, "M_s": torque},
-        combinations=_combinations(),
+        combinations=gauge_combinations(),
     )
 
 
@@ -98,7 +98,7 @@ def gauge_inflow() -> Structure:
         title="gauge-aware closed loop with dynamic inflow",
         input="n_set",
         outputs={"n": speed, "M_s": torque},
-        combinations=_combinations(),
+        combinations=gauge_combinations(),
     )
 
 
@@ -115,7 +115,7 @@ def gauge_ecu() -> Structure:
         input="n_set",
         outputs={"n": speed, "M_s": torque, "X": rack},
         combinations=(
-            *_combinations(),
+            *gauge_combinations(),
             Combination(
                 name="v / (tau_up + tau_dn)",
                 unit="1/s",
@@ -176,7 +176,8 @@ def _measured(shaft: Expression, load: Expression, v: Parameter) -> tuple[Expres
     return speed * _speed_sensor(), torque, rack * left_of_error * set_point * Delay(T_RACK)
 
 
-def _combinations() -> tuple[Combination, ...]:
+def gauge_combinations() -> tuple[Combination, ...]:
+    """Return what a test of the closed loop finds better than the parameters it is made of."""
     return (
         Combination(name="t_d + t_sp", unit="s", of=lambda p: p["t_d"] + p["t_sp"], meaning="total delay"),
         Combination(

@@ -7,7 +7,7 @@ from typing import Any
 from shaftprint.errors import StructureError
 from shaftprint.models._calculus import replaced, swept
 from shaftprint.models._expression import Expression
-from shaftprint.models._flow import Flow
+from shaftprint.models._flow import Flow, Past
 from shaftprint.models._flowing import split_shift, through
 from shaftprint.models._quantity import Quantity, number, quantity
 from shaftprint.models._structure import Structure
@@ -84,9 +84,13 @@ def program_of(structure: Structure, zeros: Iterable[str] = ()) -> Program:
     """
     flow = Flow(parameters=_leaves(structure, frozenset(zeros)))
     inputs = {name: Quantity("input", name=name, place=i) for i, name in enumerate(structure.inputs)}
-    outputs = tuple(structure.outputs)
-    found = [_output(flow, structure, name, inputs) for name in outputs]
-    return _complete(flow, structure, [signal for signal, _ in found], [shift for _, shift in found])
+    return completed(
+        flow,
+        name=structure.name,
+        inputs=structure.inputs,
+        parameters=structure.names,
+        outputs={name: _output(flow, structure, name, inputs) for name in structure.outputs},
+    )
 
 
 def _leaves(structure: Structure, zeros: frozenset[str]) -> dict[str, Quantity]:
@@ -121,32 +125,52 @@ def _sum(flow: Flow, paths: Mapping[str, Expression], inputs: Mapping[str, Quant
     return found
 
 
-def _complete(flow: Flow, structure: Structure, signals: list[Quantity], shifts: list[Quantity]) -> Program:
-    resolver = _Resolver(flow, structure.name)
+def completed(
+    flow: Flow,
+    *,
+    name: str,
+    inputs: tuple[str, ...],
+    parameters: tuple[str, ...],
+    outputs: Mapping[str, tuple[Quantity, Quantity]],
+) -> Program:
+    """Return a program from collected equations.
+
+    Parameters
+    ----------
+    outputs
+        Signal and shift of each output by its name.
+
+    Raises
+    ------
+    StructureError
+        If a state has no rate, or a loop depends on itself at once.
+    """
+    resolver = _Resolver(flow, name)
     missing = [state.name for state in flow.states if state.place not in flow.rates]
     if missing:
-        raise StructureError(f"structure {structure.name}: no rate is given for the state {', '.join(missing)}.")
-    # resolving may find further pasts no more: all were asked for while the blocks were walked
+        raise StructureError(f"structure {name}: no rate is given for the state {', '.join(missing)}.")
     return Program(
-        name=structure.name,
-        inputs=structure.inputs,
-        parameters=structure.names,
+        name=name,
+        inputs=inputs,
+        parameters=parameters,
         states=tuple(state.name for state in flow.states),
         rates=tuple(resolver.rate(i) for i in range(len(flow.states))),
         running=tuple(i in flow.running for i in range(len(flow.states))),
-        pasts=tuple(
-            Late(
-                signal=(signal := resolver(past.signal)),
-                change=resolver.change(signal),
-                drift=resolver.drift(signal),
-                delay=resolver(past.delay),
-            )
-            for past in flow.pasts
-        ),
+        pasts=tuple(_late(resolver, past) for past in flow.pasts),
         samples=tuple(Computed(value=resolver(s.value), period=resolver(s.period)) for s in flow.samples),
-        outputs=tuple(structure.outputs),
-        signals=tuple(resolver(signal) for signal in signals),
-        shifts=tuple(resolver(shift) for shift in shifts),
+        outputs=tuple(outputs),
+        signals=tuple(resolver(signal) for signal, _ in outputs.values()),
+        shifts=tuple(resolver(shift) for _, shift in outputs.values()),
+    )
+
+
+def _late(resolver: "_Resolver", past: Past) -> Late:
+    signal = resolver(past.signal)
+    return Late(
+        signal=signal,
+        change=resolver.change(signal),
+        drift=resolver.drift(signal),
+        delay=resolver(past.delay),
     )
 
 

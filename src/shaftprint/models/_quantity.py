@@ -15,8 +15,6 @@ from shaftprint.errors import StructureError
 
 Number: TypeAlias = Union["Quantity", float]
 
-LEAVES = ("number", "parameter", "input", "input rate", "state", "past", "unknown", "sample")
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Quantity:

@@ -5,10 +5,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from types import ModuleType
 
+import numpy as np
+
 from shaftprint.arrays import FloatArray
-from shaftprint.models import Program, Quantity, Structure, derivatives, program_of
+from shaftprint.models import Leaves, Program, Quantity, Structure, derivatives, evaluate, postorder, program_of
 from shaftprint.simulation._compile import module_of
-from shaftprint.simulation._evaluate import Array, Leaves, evaluate, stacked
 from shaftprint.simulation._hoisted import Hoisted, hoisted
 from shaftprint.simulation._kernel_text import KernelText
 from shaftprint.simulation._steady import SteadyEquations
@@ -34,18 +35,23 @@ class Built:
         """The compiled kernels."""
         return module_of(self.text)
 
-    def constants(self, values: Array) -> tuple[Array, ...]:
+    def constants(self, values: FloatArray, step_s: float) -> tuple[FloatArray, ...]:
         """Return constants, delays, shifts and periods at parameter values, each of shape (count,)."""
-        leaves = parameter_leaves(values)
-        return tuple(stacked(evaluate(part, leaves)) for part in self._of_parameters)
+        leaves = _leaves(values, step_s)
+        return tuple(np.array(evaluate(part, leaves)) for part in self._of_parameters)
 
-    def constant_slopes(self, values: FloatArray, name: str) -> tuple[Array, ...]:
+    def constant_slopes(self, values: FloatArray, step_s: float, name: str) -> tuple[FloatArray, ...]:
         """Return the derivatives of the same to a parameter."""
         if name not in self.slopes:
             to = Quantity("parameter", place=self.program.parameters.index(name))
             self.slopes[name] = tuple(derivatives(part, to) for part in self._of_parameters)
-        leaves = parameter_leaves(values)
-        return tuple(stacked(evaluate(part, leaves)) for part in self.slopes[name])
+        leaves = _leaves(values, step_s)
+        return tuple(np.array(evaluate(part, leaves)) for part in self.slopes[name])
+
+    def shifts_depend_on(self, names: Sequence[str]) -> bool:
+        """Return whether a parameter shifts an output."""
+        found = {node.name for node in postorder(self.program.shifts) if node.operation == "parameter"}
+        return not found.isdisjoint(names)
 
     @property
     def _of_parameters(self) -> tuple[Sequence[Quantity], ...]:
@@ -54,9 +60,8 @@ class Built:
         return self.hoisted.constants, delays, program.shifts, [taken.period for taken in program.samples]
 
 
-def parameter_leaves(values: Array) -> Leaves:
-    """Return the leaves of parameters."""
-    return {("parameter", i): value for i, value in enumerate(values)}
+def _leaves(values: FloatArray, step_s: float) -> Leaves:
+    return {("step", 0): step_s} | {("parameter", i): value for i, value in enumerate(values)}
 
 
 _BUILT: "weakref.WeakKeyDictionary[Structure, dict[frozenset[str], Built]]" = weakref.WeakKeyDictionary()

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, IntArray
-from shaftprint.simulation._evaluate import Array
 
 # Nodes that a cubic needs.
 NODES = 4
@@ -44,7 +43,7 @@ def stencils(delay_s: FloatArray, step_s: float) -> Stencils:
     return Stencils(first=first, weight=weight, change=change, mask=(1 << longest.bit_length()) - 1)
 
 
-def cubic_weights(place: Array) -> tuple[Array, Array]:
+def cubic_weights(place: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return Lagrange's weights of nodes 0, 1, 2 and 3 at places between or beside them, and their slopes."""
     weight = np.empty((*place.shape, NODES), dtype=place.dtype)
     slope = np.empty_like(weight)
@@ -57,7 +56,9 @@ def cubic_weights(place: Array) -> tuple[Array, Array]:
     return weight, slope
 
 
-def shifted(y: Array, before: Array, shift_steps: complex, samples: int, every: int) -> tuple[Array, Array]:
+def shifted(
+    y: FloatArray, before: FloatArray, shift_steps: complex, samples: int, every: int
+) -> tuple[FloatArray, FloatArray]:
     """Return a recorded output at samples that are late by some steps, and how fast it changes there, a step.
 
     Parameters

@@ -36,7 +36,9 @@ def hoisted(program: Program) -> Hoisted:
     ]
     for node in postorder(roots):
         fixed[id(node)] = (
-            node.operation in ("parameter", "number") if not node.of else all(fixed[id(part)] for part in node.of)
+            node.operation in ("parameter", "number", "step")
+            if not node.of
+            else all(fixed[id(part)] for part in node.of)
         )
 
     def constant(node: Quantity) -> Quantity | None:
@@ -73,7 +75,7 @@ class Slopes:
         """The derivatives."""
         leaves: dict[tuple[str, int], Quantity] = {}
         for node in postorder(formulas):
-            if not node.of and node.operation not in ("number", "input", "input rate"):
+            if not node.of and node.operation not in ("number", "input", "input rate", "step"):
                 leaves.setdefault((node.operation, node.place), node)
         for leaf in leaves.values():
             for i, slope in enumerate(derivatives(formulas, leaf)):

@@ -22,27 +22,27 @@ from numba import njit
 from numpy import cos, exp, log, sin, sqrt, tanh
 
 
-@njit(inline="always", cache=True)
+@njit(cache=True)
 def minimum(a, b):
     return a if a.real <= b.real else b
 
 
-@njit(inline="always", cache=True)
+@njit(cache=True)
 def maximum(a, b):
     return a if b.real <= a.real else b
 
 
-@njit(inline="always", cache=True)
+@njit(cache=True)
 def choose(a, b, at_most, above):
     return at_most if a.real <= b.real else above
 
 
-@njit(inline="always", cache=True)
+@njit(cache=True)
 def absolute(a):
     return -a if a.real <= 0.0 else a
 
 
-@njit(inline="always", cache=True)
+@njit(cache=True)
 def table_slope(a, places, values):
     x = a.real
     if x <= places[0] or x > places[-1]:
@@ -53,7 +53,7 @@ def table_slope(a, places, values):
     return (values[j] - values[j - 1]) / (places[j] - places[j - 1])
 
 
-@njit(inline="always", cache=True)
+@njit(cache=True)
 def table(a, places, values):
     x = a.real
     if x <= places[0]:
@@ -135,7 +135,7 @@ class KernelText:
         names += [f"q{i}" for i in range(self._lates)] if self.uses_change else []
         names += [f"z{i}" for i in range(self._samples)]
         body = _indented([*lines, f"return ({', '.join(found)},)"])
-        return f'\n@njit(inline="always", cache=True)\ndef {name}({", ".join([*names, "c"])}):\n{body}'
+        return f"\n@njit(cache=True)\ndef {name}({', '.join([*names, 'c'])}):\n{body}"
 
     def _row(self, kind: str, place: int = 0) -> int:
         """Return where a row of derivatives starts in the working array."""
@@ -162,14 +162,14 @@ class KernelText:
         for number, (owner, leaf) in enumerate(self._slopes[group].entries):
             if owner == formula:
                 kind = {"state": state, "past": f"p{time}", "past rate": f"q{time}", "sample": "z", "constant": "c"}
-                terms.append(f"{group[0]}{number} * w[{self._row(kind[leaf.operation], leaf.place)} + l]")
+                terms.append(f"d{number} * w[{self._row(kind[leaf.operation], leaf.place)} + l]")
         return " + ".join(terms) or "0.0"
 
     def _slopes_call(self, group: str, stage: str) -> list[str]:
         entries = self._slopes[group].entries
         if not entries:
             return []
-        names = ", ".join(f"{group[0]}{i}" for i in range(len(entries)))
+        names = ", ".join(f"d{i}" for i in range(len(entries)))
         return [f"({names},) = {group}_slopes({self._arguments(stage)})"]
 
     # ---- the kernel ----

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.errors import StructureError
 from shaftprint.simulation._built import Built
-from shaftprint.simulation._evaluate import Array
 from shaftprint.simulation._grid import Stencils, shifted, stencils
 from shaftprint.simulation._kernel_text import LANES
 from shaftprint.simulation._steady import Steady
@@ -23,7 +23,7 @@ class March:
 
     built: Built
     """Equations and kernels."""
-    values: Array
+    values: FloatArray
     """Parameter values, complex where a derivative is taken by a complex step."""
     parts: int
     """Steps between two samples."""
@@ -31,17 +31,17 @@ class March:
     """Length of a step [s]."""
     held: bool
     """Whether inputs are held between samples."""
-    constants: Array
+    constants: FloatArray
     """Formulas of parameters."""
-    delay_s: Array
+    delay_s: FloatArray
     """Delays [s]."""
-    shift_s: Array
+    shift_s: FloatArray
     """Shifts of the outputs [s]."""
     ticks: IntArray
     """Steps in each computer's period."""
 
     @classmethod
-    def planned(cls, built: Built, values: Array, interval_s: float, longest_step_s: float, *, hold: bool) -> Self:
+    def planned(cls, built: Built, values: FloatArray, interval_s: float, longest_step_s: float, *, hold: bool) -> Self:
         """Choose the step and find what stays the same during the run.
 
         Raises
@@ -49,7 +49,7 @@ class March:
         StructureError
             If a delay is negative, or a computer's period is no whole number of steps.
         """
-        constants, delay_s, shift_s, period_s = built.constants(values)
+        _, delay_s, shift_s, period_s = built.constants(values, interval_s)
         name = built.program.name
         if np.any(delay_s.real < 0.0):
             raise StructureError(
@@ -71,10 +71,10 @@ class March:
             parts=parts,
             step_s=step_s,
             held=hold,
-            constants=constants,
+            constants=built.constants(values, step_s)[0],
             delay_s=delay_s,
             shift_s=shift_s,
-            ticks=np.rint(period_s.real / step_s).astype(np.int64),
+            ticks=np.maximum(np.rint(period_s.real / step_s), 1.0).astype(np.int64),
         )
 
     def start(self, inputs: FloatArray, initial: FloatArray | None) -> Steady:
@@ -89,7 +89,7 @@ class March:
 
     def run(
         self, inputs: FloatArray, start: Steady, wanted: tuple[str, ...], *, given: bool
-    ) -> tuple[Array, FloatArray]:
+    ) -> tuple[FloatArray, FloatArray]:
         """Return the outputs, shape (samples, outputs), and their derivatives, shape (samples, outputs, wanted).
 
         Parameters
@@ -99,35 +99,41 @@ class March:
         given
             Whether the states at the start were given, so that they do not depend on parameters.
         """
-        every = 1 if np.any(self.shift_s != 0.0) else self.parts
-        # what is early needs a little of what comes after the end: inputs stay as they are
-        early = int(np.ceil(max(0.0, -float(self.shift_s.real.min(initial=0.0))) / (self.step_s * self.parts)))
-        after = early + 1 if early else 0
-        table = np.ascontiguousarray(np.concatenate([inputs, np.repeat(inputs[-1:], after, axis=0)]))
+        moved = self.built.shifts_depend_on(wanted) or bool(np.any(self.shift_s != 0.0))
+        every = 1 if moved else self.parts
+        table = np.ascontiguousarray(np.concatenate([inputs, np.repeat(inputs[-1:], self._after, axis=0)]))
         nodes = (table.shape[0] - 1) * self.parts // every + 1
         count = len(self.built.program.signals)
+        samples = inputs.shape[0]
+        y = np.empty((nodes, count), dtype=np.result_type(self.constants, self.delay_s, float))
         if not wanted:
-            y = np.empty((nodes, count), dtype=np.result_type(self.constants, self.delay_s, float))
             self.built.kernels.advance(*self._arguments(table, start, every), y)
-            values = [self._sampled(y[:, i], start.outputs[i], i, inputs.shape[0])[0] for i in range(count)]
-            return np.stack(values, axis=1), np.empty((inputs.shape[0], count, 0))
-        slopes = np.empty((inputs.shape[0], count, len(wanted)))
+        slopes = np.empty((samples, count, len(wanted)))
         for first in range(0, len(wanted), LANES):
             names = wanted[first : first + LANES]
-            y, y_slopes = np.empty((nodes, count)), np.empty((nodes, count, LANES))
+            y_slopes = np.empty((nodes, count, LANES))
             lanes = [self._lane(name, inputs[0], start, given=given) for name in names]
             rows = np.zeros((lanes[0].kernel.size, LANES))
             rows[:, : len(names)] = np.stack([lane.kernel for lane in lanes], axis=1)
             self.built.kernels.advance_with_derivatives(*self._arguments(table, start, every), y, rows, y_slopes)
-            found = []
             for i in range(count):
-                value, change = self._sampled(y[:, i], start.outputs[i], i, inputs.shape[0])
-                before = np.array([lane.outputs[i] for lane in lanes])
-                own, _ = self._sampled(y_slopes[:, i, : len(names)], before, i, inputs.shape[0])
-                own = own - change[:, None] * np.array([lane.shifts[i] for lane in lanes])
+                own = y_slopes[:, i, : len(names)]
+                if moved:
+                    before = np.array([lane.outputs[i] for lane in lanes])
+                    _, change = self._shifted(y[:, i], start.outputs[i], i, samples)
+                    own, _ = self._shifted(own, before, i, samples)
+                    own = own - change[:, None] * np.array([lane.shifts[i] for lane in lanes])
                 slopes[:, i, first : first + len(names)] = own
-                found.append(value)
-        return np.stack(found, axis=1), slopes
+        if not moved:
+            return y, slopes
+        values = [self._shifted(y[:, i], start.outputs[i], i, samples)[0] for i in range(count)]
+        return np.stack(values, axis=1), slopes
+
+    @property
+    def _after(self) -> int:
+        """Samples beyond the end for outputs that are early; inputs stay as they are."""
+        early = max(0.0, -float(self.shift_s.real.min(initial=0.0))) / (self.step_s * self.parts)
+        return int(np.ceil(early)) + 1 if early > 0.0 else 0
 
     def _arguments(self, table: FloatArray, start: Steady, every: int) -> tuple[object, ...]:
         stencil = self._stencil
@@ -152,24 +158,16 @@ class March:
     def _stencil(self) -> Stencils:
         return stencils(self.delay_s, self.step_s)
 
-    def _sampled(self, y: Array, before: Array, output: int, samples: int) -> tuple[Array, Array]:
-        """Return an output at the samples and how fast it changes there [1/s]; the latter only where it is shifted."""
-        shift = self.shift_s[output]
-        if not np.any(self.shift_s != 0.0):
-            return y, np.zeros(samples)
-        if shift == 0.0 and not np.iscomplexobj(shift):
-            value, change = (
-                y[: samples * self.parts : self.parts],
-                np.gradient(y, axis=0)[: samples * self.parts : self.parts],
-            )
-            return value, change / self.step_s
-        value, change = shifted(y, np.asarray(before), shift / self.step_s, samples, self.parts)
+    def _shifted(self, y: FloatArray, before: ArrayLike, output: int, samples: int) -> tuple[FloatArray, FloatArray]:
+        """Return an output at the samples and how fast it changes there [1/s]."""
+        shift = self.shift_s[output] / self.step_s
+        value, change = shifted(y, np.asarray(before), shift, samples, self.parts)
         return value, change / self.step_s
 
     def _lane(self, name: str, inputs: FloatArray, start: Steady, *, given: bool) -> "Lane":
         """Return the derivatives to one parameter of all that the run starts from."""
         values = np.asarray(self.values.real, dtype=np.float64)
-        constants, delays, shifts, _ = self.built.constant_slopes(values, name)
+        constants, delays, shifts, _ = self.built.constant_slopes(values, self.step_s, name)
         place = self.built.program.parameters.index(name)
         steady = self.built.steady.slopes(start, values, inputs, place, held=given)
         parts = (steady.states, steady.pasts, steady.samples, steady.lates, steady.drifts, delays, constants)
@@ -191,4 +189,4 @@ class Lane:
 def _divides(step_s: float, periods_s: FloatArray) -> bool:
     """Return whether every period is a whole number of steps."""
     parts = periods_s / step_s
-    return bool(np.all(np.abs(parts - np.rint(parts)) < 1e-6) and np.all(parts > 0.5))
+    return bool(np.all(np.abs(parts - np.rint(parts)) < 1e-6) and np.all((parts > 0.5) | (parts == 0.0)))

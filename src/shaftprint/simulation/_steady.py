@@ -6,8 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.models import Program, Quantity, derivatives
-from shaftprint.simulation._evaluate import Array, Leaves, evaluate, stacked
+from shaftprint.models import Leaves, Program, Quantity, derivatives, evaluate
 
 LARGEST_STEPS = 80
 # How far from still the largest rate may be left, beside the sizes of what it is made of.
@@ -96,7 +95,7 @@ class SteadyEquations:
         """
         leaves = self._leaves(steady, values, inputs)
         to = Quantity("parameter", place=place)
-        moved = stacked(evaluate(derivatives(self._formulas, to), leaves))
+        moved = _array(evaluate(derivatives(self._formulas, to), leaves))
         rows = slice(len(self._still), None) if held else slice(None)
         change = np.zeros(len(self._places))
         matrix = self._jacobian(leaves)[rows, rows]
@@ -108,7 +107,7 @@ class SteadyEquations:
         for (kind, number), slope in along.items():
             if slope != 0.0:
                 parts = derivatives(formulas, Quantity(kind, place=number))
-                total += float(slope) * stacked(evaluate(parts, leaves))
+                total += float(slope) * _array(evaluate(parts, leaves))
         count, still = len(program.pasts), len(self._still)
         states = np.zeros(len(program.states))
         states[self._still] = change[:still]
@@ -121,9 +120,10 @@ class SteadyEquations:
             outputs=total[2 * count :],
         )
 
-    def _known(self, values: FloatArray, inputs: FloatArray) -> dict[tuple[str, int], Array]:
+    def _known(self, values: FloatArray, inputs: FloatArray) -> dict[tuple[str, int], FloatArray]:
         program = self.program
-        known: dict[tuple[str, int], Array] = {("parameter", i): np.asarray(v) for i, v in enumerate(values)}
+        known: dict[tuple[str, int], FloatArray] = {("step", 0): np.asarray(1.0)}
+        known |= {("parameter", i): np.asarray(v) for i, v in enumerate(values)}
         known |= {("input", i): np.asarray(u) for i, u in enumerate(inputs)}
         for kind, count in (("input rate", len(inputs)), ("past rate", len(program.pasts))):
             known |= {(kind, i): np.asarray(0.0) for i in range(count)}
@@ -137,10 +137,10 @@ class SteadyEquations:
         return leaves | {("sample", i): x for i, x in enumerate(steady.samples)}
 
     def _jacobian(self, leaves: Leaves) -> FloatArray:
-        columns = [stacked(evaluate(slopes, leaves)) for slopes in self._slopes]
+        columns = [_array(evaluate(slopes, leaves)) for slopes in self._slopes]
         return np.array(columns).T.reshape(len(self._formulas), len(columns))
 
-    def _newton(self, known: dict[tuple[str, int], Array], at: FloatArray, rows: slice) -> FloatArray:
+    def _newton(self, known: dict[tuple[str, int], FloatArray], at: FloatArray, rows: slice) -> FloatArray:
         """Return a place where the equations of some rows vanish, moving their own unknowns only."""
         left = self._left(known, at)[rows]
         for _ in range(LARGEST_STEPS):
@@ -159,7 +159,7 @@ class SteadyEquations:
         )
 
     def _shortened(
-        self, known: dict[tuple[str, int], Array], at: FloatArray, left: FloatArray, rows: slice, step: FloatArray
+        self, known: dict[tuple[str, int], FloatArray], at: FloatArray, left: FloatArray, rows: slice, step: FloatArray
     ) -> tuple[FloatArray, FloatArray]:
         """Return the place after a step, halved until what is left falls."""
         share = 1.0
@@ -172,13 +172,13 @@ class SteadyEquations:
             share *= 0.5
         return tried, found
 
-    def _left(self, known: dict[tuple[str, int], Array], at: FloatArray) -> FloatArray:
-        return stacked(evaluate(self._formulas, known | dict(zip(self._places, at, strict=True))))
+    def _left(self, known: dict[tuple[str, int], FloatArray], at: FloatArray) -> FloatArray:
+        return _array(evaluate(self._formulas, known | dict(zip(self._places, at, strict=True))))
 
-    def _filled(self, leaves: dict[tuple[str, int], Array], states: FloatArray | None) -> Steady:
+    def _filled(self, leaves: dict[tuple[str, int], FloatArray], states: FloatArray | None) -> Steady:
         program = self.program
         count = len(program.pasts)
-        found = stacked(evaluate(self._wanted, leaves))
+        found = _array(evaluate(self._wanted, leaves))
         names = (("state", len(program.states)), ("past", len(program.pasts)), ("sample", len(program.samples)))
         taken = [np.array([float(leaves[kind, i]) for i in range(count)]) for kind, count in names]
         return Steady(
@@ -189,3 +189,7 @@ class SteadyEquations:
             drifts=found[count : 2 * count],
             outputs=found[2 * count :],
         )
+
+
+def _array(values: list[FloatArray]) -> FloatArray:
+    return np.array(values, dtype=np.float64)

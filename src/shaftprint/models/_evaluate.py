@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray, IntArray
-from shaftprint.models import Quantity, postorder
+from shaftprint.models._calculus import postorder
+from shaftprint.models._quantity import Quantity
 
 # Real; complex only where a derivative is checked by a complex step.
 Array: TypeAlias = FloatArray

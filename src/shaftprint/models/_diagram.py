@@ -1,0 +1,150 @@
+"""A part of a structure written as equations of signals, with limits, products and whatever else is not linear."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.errors import StructureError
+from shaftprint.models._block import Block
+from shaftprint.models._expression import Dual, Gradient, Walk
+from shaftprint.models._flow import Flow
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._program import Program, completed
+from shaftprint.models._quantity import Quantity, number
+from shaftprint.models._small_signal import SmallSignal
+
+Equations = Callable[[Flow, Quantity, Any], Mapping[str, Quantity]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Diagram:
+    """Equations from one signal to several, in deviations from a working point at which all of them are at rest.
+
+    From the equations follow the simulation in time with its derivatives, and for small signals the frequency response
+    at the working point, with exact delays and exact derivatives too.
+    """
+
+    name: str
+    """What it is, for messages."""
+    input: str
+    """Name of the signal that goes in."""
+    outputs: tuple[str, ...]
+    """Names of the signals that come out."""
+    equations: Equations
+    """Takes a ``Flow``, the signal that goes in, and parameters as attributes ``p.K_p``; gives the outputs by name."""
+    of: tuple[Parameter, ...]
+    """Its parameters."""
+    _small: dict[frozenset[str], SmallSignal] = field(default_factory=dict, repr=False)
+    """Linear equations, by the parameters that are held at zero; made when first asked for."""
+
+    def ports(self) -> "dict[str, Port]":
+        """Return each output as a block that goes from the signal to it."""
+        return {output: Port(self, output) for output in self.outputs}
+
+    def port(self, output: str) -> "Port":
+        """Return the block that goes from the signal to one output.
+
+        Raises
+        ------
+        StructureError
+            If there is no output of that name.
+        """
+        if output not in self.outputs:
+            raise StructureError(f"diagram {self.name} has no output {output}; it has {', '.join(self.outputs)}.")
+        return Port(self, output)
+
+    def signals(self, flow: Flow, signal: Quantity) -> Mapping[str, Quantity]:
+        """Return the outputs for a signal, adding the equations to a flow.
+
+        Raises
+        ------
+        StructureError
+            If the equations do not give the outputs.
+        """
+        parameters = SimpleNamespace(**{p.name: flow.parameter(p.name) for p in self.of})
+        found = self.equations(flow, signal, parameters)
+        if set(found) != set(self.outputs):
+            raise StructureError(
+                f"diagram {self.name}: expected equations of {', '.join(self.outputs)}, found {', '.join(found)}."
+            )
+        return found
+
+    def program(self, zeros: frozenset[str] = frozenset()) -> Program:
+        """Return its equations alone.
+
+        Parameters
+        ----------
+        zeros
+            Names of parameters that are zero for good.
+        """
+        names = tuple(p.name for p in self.of)
+        flow = Flow.of_parameters(names, zeros)
+        found = self.signals(flow, Quantity("input", name=self.input))
+        return completed(
+            flow,
+            name=self.name,
+            inputs=(self.input,),
+            parameters=names,
+            outputs={output: (found[output], number(0.0)) for output in self.outputs},
+        )
+
+    def small_signal(self, zeros: frozenset[str]) -> SmallSignal:
+        """Return its linear equations about rest."""
+        if zeros not in self._small:
+            self._small[zeros] = SmallSignal(self.program(zeros))
+        return self._small[zeros]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Port(Block):
+    """One output of a diagram."""
+
+    diagram: Diagram
+    """The diagram."""
+    output: str
+    """Name of the output."""
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The parameters of the diagram."""
+        return self.diagram.of
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the diagram is: it is taken not to be."""
+        return False
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return the response to small signals."""
+        response, _ = self._solved(s, values, ())
+        return response
+
+    def evaluate(self, walk: Walk) -> Dual:
+        """Return the response to small signals and its derivatives."""
+        names = [p.name for p in self.parameters]
+        wanted = tuple(i for i, name in enumerate(names) if name in walk.wanted)
+        response, slopes = self._solved(walk.s, [walk.values[name] for name in names], wanted)
+        gradient: Gradient = {names[i]: slope for i, slope in zip(wanted, slopes, strict=True)}
+        return response, gradient
+
+    def flow(self, flow: Flow, signal: Quantity) -> Quantity:
+        """Return the output in time; the equations are added once for all outputs of a diagram."""
+        key = (id(self.diagram), id(signal))
+        if key not in flow.diagrams:
+            flow.kept += [self.diagram, signal]
+            flow.diagrams[key] = self.diagram.signals(flow, signal)
+        return flow.diagrams[key][self.output]
+
+    def _solved(
+        self, s: ComplexArray, values: "list[FloatArray] | tuple[FloatArray, ...]", wanted: tuple[int, ...]
+    ) -> tuple[ComplexArray, list[ComplexArray]]:
+        zeros = frozenset(
+            p.name
+            for i, (p, value) in enumerate(zip(self.parameters, values, strict=True))
+            if i not in wanted and not np.any(value)
+        )
+        return self.diagram.small_signal(zeros).response(s, values, wanted, self.diagram.outputs.index(self.output))

@@ -1,0 +1,74 @@
+"""Engine and propeller beyond small signals, in deviations from the working point as equations of signals.
+
+Speeds, torques and rack are over their values at the working point: ``n`` stands for ``n / n_0 - 1``.
+"""
+
+from shaftprint.models._flow import Flow
+from shaftprint.models._limits import first_order_lag
+from shaftprint.models._quantity import Number, Quantity, quantity, table
+
+
+def quadratic_propeller(speed: Quantity, slope: Number) -> Quantity:
+    """Return the torque of a propeller at the quay, ``k_q ((1 + n) |1 + n| - 1) / 2``.
+
+    ``Q = rho n |n| D^5 K_Q`` with ``J = 0`` (thesis eqs 2.9, 2.12), normalised; of small signals ``k_q n``, where
+    ``k_q`` is 2 as long as gauge and inflow are right.
+    """
+    turned = 1.0 + speed
+    return 0.5 * quantity(slope) * (turned * abs(turned) - 1.0)
+
+
+def full_load(speed: Quantity, highest: Number, curve: "tuple[tuple[float, float], ...]") -> Quantity:
+    """Return the highest brake torque at a speed, ``m_max c(n) - 1``.
+
+    Parameters
+    ----------
+    highest
+        Torque limit at the working-point speed over the brake torque there.
+    curve
+        Corner points of speed deviation and limit over that at the working-point speed; empty for a flat one.
+    """
+    shape: Number = table(speed, curve) if curve else 1.0
+    return quantity(highest) * shape - 1.0
+
+
+def boosted(flow: Flow, torque: Quantity, highest: Quantity, unboosted: Number, lag_s: Number) -> Quantity:
+    """Return the highest torque for which there is air: the smoke limit of a turbocharged engine.
+
+    ``(m_max) (a + (1 - a) b) - 1`` with the boost ``b`` behind the torque, ``tau_tc db/dt = (1 + M_b) / m_max - b``:
+    steady running is never limited, a fast rise is (domain of full-load and smoke limiters as in marine ECUs).
+
+    Parameters
+    ----------
+    torque
+        Brake torque, a deviation.
+    highest
+        Highest brake torque with full boost, a deviation.
+    unboosted
+        Share ``a`` of it that is given without boost; 0.45 to 0.6 for turbocharged engines of this size.
+    lag_s
+        Turbocharger lag [s]: 0.5 to 2 s at truck size, 3 to 10 s for medium speed.
+    """
+    full = 1.0 + highest
+    share = quantity(unboosted)
+    boost = first_order_lag(flow, (1.0 + torque) / full - 1.0, lag_s, "boost")
+    return full * (share + (1.0 - share) * (1.0 + boost)) - 1.0
+
+
+def firing_delay(speed: Quantity, cylinders: int, working_point_rev_s: float) -> Quantity:
+    """Return the mean delay [s] from rack to torque of a four-stroke engine at a speed.
+
+    Half a firing interval, ``1 / (Z n_e)``, until the next cylinder is due, and a quarter of a revolution for
+    combustion and expansion, ``1 / (4 n_e)``: 21 ms for six cylinders at 1183.8 rpm. It scales with ``1 / n``.
+
+    Parameters
+    ----------
+    speed
+        Deviation of the engine speed.
+    cylinders
+        Number of cylinders ``Z``.
+    working_point_rev_s
+        Engine speed of the working point [rev/s].
+    """
+    at_working_point = (1.0 / cylinders + 0.25) / working_point_rev_s
+    return at_working_point / (1.0 + speed)

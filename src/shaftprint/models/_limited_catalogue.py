@@ -1,0 +1,162 @@
+"""The gauge-aware closed loop at large: quadratic propeller, and the limits of governor and engine.
+
+The free bodies are those of ``_gauge_catalogue``; for small signals the structures are ``GAUGE-CLOSED``::
+
+    governor    e = DB(c_set n_set(t - t_sp) - n)      X = RL(clip(K_p e + I, X_min, X_max))
+    engine      M_b = clip(v F X(t - t_d) + g n, m_min, m_max(n))
+    upstream    tau_up dn/dt = M_b - M_s
+    downstream  tau_dn dn/dt = M_s - M_p                M_p = k_q ((1 + n)^2 - 1) / 2
+
+All are deviations from the working point; the limits are over the brake torque there, ``1 + M_b <= m_max``.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+from shaftprint.models._blocks import FirstOrderLag, Gain
+from shaftprint.models._delays import Delay, SpeedSensor
+from shaftprint.models._diagram import Diagram
+from shaftprint.models._engine_parts import boosted, full_load, quadratic_propeller
+from shaftprint.models._flow import Flow
+from shaftprint.models._gauge_catalogue import (
+    C_SET,
+    GAUGE_K_I,
+    GAUGE_K_P,
+    GAUGE_OMEGA_N,
+    GAUGE_ZETA,
+    K_Q,
+    T_AVERAGE,
+    T_D,
+    T_FILTER,
+    T_GAUGE,
+    T_HOLD,
+    T_PICKUP,
+    T_SP,
+    TAU_DN,
+    TAU_UP,
+    V_ONE,
+    G,
+    gauge_combinations,
+)
+from shaftprint.models._limits import deadband, limited_pi, rate_limited, second_order_lag
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._quantity import Quantity, clip
+from shaftprint.models._structure import Structure
+
+M_MAX = Parameter("m_max", "-", 1.05, 6.0, 2.8, "torque limit of the engine over the brake torque of the working point")
+M_MIN = Parameter("m_min", "-", -2.0, 0.9, -0.6, "lowest brake torque, engine motored, over that of the working point")
+T_AW = Parameter("T_aw", "s", 0.02, 10.0, 0.5, "time in which the governor's integrator is led back at a limit")
+R_X = Parameter("r_x", "1/s", 0.2, 100.0, 10.0, "fastest change of the fuel rack, over the rack of the working point")
+D_E = Parameter("d_e", "-", 0.0, 0.05, 0.002, "speed error within which the governor does nothing")
+DROOP = Parameter("droop", "-", 0.0, 0.1, 0.0, "fall of the speed for one rack of the working point", held=True)
+A_0 = Parameter("a_0", "-", 0.2, 1.0, 0.55, "torque without boost over full-load torque: the smoke limit")
+TAU_TC = Parameter("tau_tc", "s", 0.1, 10.0, 1.0, "lag of the turbocharger")
+
+OPTIONS: Mapping[str, tuple[Parameter, ...]] = {
+    "torque": (M_MAX, M_MIN, T_AW),
+    "rate": (R_X,),
+    "deadband": (D_E,),
+    "smoke": (A_0, TAU_TC),
+}
+"""Limits that can be put into a structure, with the parameters that each brings."""
+
+
+def limited(
+    *limits: str, curve: tuple[tuple[float, float], ...] = (), period_s: float = 0.0, name: str = ""
+) -> Structure:
+    """Return the gauge-aware closed loop with a quadratic propeller and some limits.
+
+    Parameters
+    ----------
+    limits
+        Names of limits: ``torque``, ``rate``, ``deadband``, ``smoke``, the last with ``torque`` only.
+    curve
+        Shape of the full-load torque: corner points of speed deviation and torque over that at the working-point speed.
+    period_s
+        Period in which the governor moves a limited rack [s]; 0 for every step of the simulation.
+    name
+        What to call it; from the limits if not given.
+
+    Raises
+    ------
+    KeyError
+        If there is no limit of a name.
+    """
+    extra = tuple(p for limit in limits for p in OPTIONS[limit])
+    loop = Diagram(
+        name="limited loop",
+        input="demand",
+        outputs=("n", "M_s", "X"),
+        equations=_Loop(limits, curve, period_s),
+        of=(GAUGE_K_P, GAUGE_K_I, V_ONE, T_D, GAUGE_OMEGA_N, GAUGE_ZETA, TAU_DN, TAU_UP, K_Q, G, DROOP, *extra),
+    )
+    demand = Delay(T_SP) * Gain(C_SET)
+    ports = loop.ports()
+    return Structure(
+        name=name or f"GAUGE-{'-'.join(limits).upper() or 'QUADRATIC'}",
+        title=f"gauge-aware closed loop, quadratic propeller{''.join(f', {limit}' for limit in limits)}",
+        input="n_set",
+        outputs={
+            "n": demand * ports["n"] * SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP),
+            "M_s": demand * ports["M_s"] * Delay(T_GAUGE) * FirstOrderLag(T_FILTER),
+        },
+        combinations=gauge_combinations(),
+    )
+
+
+class _Loop:
+    """Equations of the loop with some limits."""
+
+    def __init__(self, limits: tuple[str, ...], curve: tuple[tuple[float, float], ...], period_s: float) -> None:
+        self._limits = limits
+        self._curve = curve
+        self._period_s = period_s
+
+    def __call__(self, flow: Flow, demand: Quantity, p: Any) -> Mapping[str, Quantity]:
+        """Return speed, torque at the gauge and rack."""
+        speed = flow.state("n")
+        error = demand - speed
+        if "deadband" in self._limits:
+            error = deadband(error, p.d_e)
+        burnt = flow.unknown()
+        lowest, highest = self._torque_limits(flow, speed, burnt, p)
+        rack = self._governor(flow, error, speed, lowest, highest, p)
+        late = second_order_lag(flow, flow.delayed(rack, p.t_d), p.omega_n, p.zeta)
+        asked = p.v * late + p.g * speed
+        brake = flow.close(burnt, asked if lowest is None else clip(asked, lowest, highest), "engine torque")
+        load = quadratic_propeller(speed, p.k_q)
+        acceleration = (brake - load) / (p.tau_dn + p.tau_up)
+        flow.rate(speed, acceleration)
+        return {"n": speed, "M_s": load + p.tau_dn * acceleration, "X": rack}
+
+    def _torque_limits(self, flow: Flow, speed: Quantity, burnt: Quantity, p: Any) -> tuple[Quantity | None, Quantity]:
+        """Return the lowest and highest brake torque; no lowest where torque is not limited."""
+        if "torque" not in self._limits:
+            return None, burnt
+        highest = full_load(speed, p.m_max, self._curve)
+        if "smoke" in self._limits:
+            highest = boosted(flow, burnt, highest, p.a_0, p.tau_tc)
+        # friction of a motored engine: half of it independent of speed, half proportional
+        return p.m_min * (1.0 + 0.5 * speed) - 1.0, highest
+
+    def _governor(
+        self, flow: Flow, error: Quantity, speed: Quantity, lowest: Quantity | None, highest: Quantity, p: Any
+    ) -> Quantity:
+        """Return the rack that the governor gives."""
+        if lowest is None:
+            integral = flow.state("governor integral")
+            felt = error - p.droop * integral
+            flow.rate(integral, p.K_i * felt)
+            rack = p.K_p * felt + integral
+        else:
+            rack = limited_pi(
+                flow,
+                error,
+                proportional=p.K_p,
+                integral=p.K_i,
+                lowest=(lowest - p.g * speed) / p.v,
+                highest=(highest - p.g * speed) / p.v,
+                anti_windup_s=p.T_aw,
+                droop=p.droop,
+            ).given
+        return rate_limited(flow, rack, p.r_x, period_s=self._period_s) if "rate" in self._limits else rack

@@ -1,0 +1,97 @@
+"""What is not linear in governor and engine, as equations of signals."""
+
+from dataclasses import dataclass
+
+from shaftprint.models._flow import Flow
+from shaftprint.models._quantity import Number, Quantity, clip, quantity
+
+
+def deadband(error: Quantity, half_width: Number) -> Quantity:
+    """Return the part of an error that lies beyond a deadband.
+
+    Khalil, Nonlinear Systems, 2002, section 1.2.7, "dead zone". Governors of ships have 0.1 to 0.25 % of rated speed.
+    """
+    width = quantity(half_width)
+    return error if width.equals(0.0) else error - clip(error, -width, width)
+
+
+def rate_limited(flow: Flow, signal: Quantity, fastest: Number, *, period_s: Number = 0.0) -> Quantity:
+    """Return a signal that follows another no faster than a rate.
+
+    A computer that moves its output every period by no more than ``fastest T``: ``z_k = z_k-1 + clip(u_k - z_k-1, -r T,
+    r T)``. The period is a property of the model: 10 ms more of it shift what a limited signal does by as much.
+
+    Parameters
+    ----------
+    fastest
+        Rate [1/s] in units of the signal.
+    period_s
+        Period of the computer [s]; 0 for every step of the simulation.
+    """
+    change = quantity(fastest) * flow.period(period_s)
+    return flow.sampled(lambda last: last + clip(signal - last, -change, change), period_s)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Governed:
+    """What a PI governor with limits asks for and gives."""
+
+    wanted: Quantity
+    """Rack before the limits."""
+    given: Quantity
+    """Rack after the limits."""
+
+
+def limited_pi(
+    flow: Flow,
+    error: Quantity,
+    *,
+    proportional: Number,
+    integral: Number,
+    lowest: Number,
+    highest: Number,
+    anti_windup_s: Number,
+    droop: Number = 0.0,
+) -> Governed:
+    """Return a PI governor whose integrator is led back while its output is limited.
+
+    ``X = K_p e + I``, ``dI/dt = K_i e + (clip(X) - X) / T_aw``: back-calculation (Astrom and Hagglund, PID Controllers,
+    1995, section 3.5). It is continuous, unlike an integrator that stops, so that a fit can follow it. With droop ``R``
+    the error is less by ``R I``, which is ``R X`` in steady running.
+
+    Parameters
+    ----------
+    proportional, integral
+        Gains [-], [1/s].
+    lowest, highest
+        Limits of the rack.
+    anti_windup_s
+        Time in which the integrator is led back [s].
+    droop
+        Fall of the speed from no rack to full, in units of the error for a unit of rack.
+    """
+    state = flow.state("governor integral")
+    felt = error - quantity(droop) * state
+    wanted = quantity(proportional) * felt + state
+    given = clip(wanted, lowest, highest)
+    flow.rate(state, quantity(integral) * felt + (given - wanted) / quantity(anti_windup_s))
+    return Governed(wanted, given)
+
+
+def second_order_lag(flow: Flow, signal: Quantity, frequency: Number, damping: Number) -> Quantity:
+    """Return a signal behind a second-order lag, ``x'' + 2 zeta omega_n x' + omega_n^2 x = omega_n^2 u``."""
+    omega = quantity(frequency)
+    place, speed = flow.state("lag"), flow.state("lag rate")
+    flow.rate(place, speed)
+    flow.rate(speed, omega * (omega * (signal - place) - 2.0 * quantity(damping) * speed))
+    return place
+
+
+def first_order_lag(flow: Flow, signal: Quantity, time_s: Number, name: str = "lag") -> Quantity:
+    """Return a signal behind a first-order lag, ``T dx/dt = u - x``; the signal itself where ``T`` is zero."""
+    time = quantity(time_s)
+    if time.equals(0.0):
+        return signal
+    state = flow.state(name)
+    flow.rate(state, (signal - state) / time)
+    return state
