@@ -175,8 +175,8 @@ def test_without_the_square_of_the_speed_torque_of_large_steps_is_missed(signals
         records=("St2",),
         quadratic_propeller=False,
     )
-    # levels of n are -0.424, 0, 0.424, 0, -0.424; what is missed is n^2 with a deviation of 0.180 sqrt(0.6 0.4) = 0.088,
-    # of a motion 2 n + n^2 with one of 0.617
+    # levels of n are -0.424, 0, 0.424, 0, -0.424; missed is n^2 with a deviation of 0.180 sqrt(0.6 0.4) = 0.088, of a
+    # motion 2 n + n^2 with one of 0.617
     speed, torque = found.of("St2", "whole").misfits
     assert speed.outcome == "passes"
     assert torque.error == pytest.approx(0.088 / 0.617, abs=0.01)

@@ -79,7 +79,7 @@ def plot_validation(
             begin, end = first.step_s - around_step_s[0], first.step_s + around_step_s[1]
         panels[-1].set_xlim(begin, end)
         panels[-1].set_xlabel("time in the recording [s]")
-        what = f"{record}, {' and '.join(part.excerpt.title for part in shown[0])}"
+        what = f"{record}, {' and '.join(part.excerpt.title for part in shown[0])}".replace(" -", " −")
         letter_panels(panels, [f"{words}, {what}" for _, words in WHAT])
         legend_below(figure, legend_entries(panels))
         return figure
@@ -127,7 +127,7 @@ def _draw_model(axes: "Axes", validation: "Validation", parts: "list[Comparison]
                 color=style.colour,
                 alpha=BAND_ALPHA,
                 linewidth=0.0,
-                label=f"its {PERCENT * validation.settings.coverage:g} % band, at each time",
+                label=f"{PERCENT * validation.settings.coverage:g} % band of {validation.model.name}",
             )
         axes.plot(
             *envelope(traces.time_s, middle),

@@ -47,7 +47,7 @@ def plot_validation_summary(validation: "Validation") -> "Figure":
                 capsize=2.0,
                 label=f"{words} {mathtext(output)}",
             )
-        axes.set_yticks(rows, [f"{c.excerpt.record}, {c.excerpt.title}" for c in comparisons])
+        axes.set_yticks(rows, [f"{c.excerpt.record}, {c.excerpt.title}".replace(" -", " −") for c in comparisons])
         axes.set_ylim(len(comparisons) - 0.5, -0.5)
         axes.set_xlim(left=0.0)
         coverage = f"{PERCENT * validation.settings.coverage:g}"

@@ -10,6 +10,7 @@ and its slope.
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.fft import next_fast_len
 from scipy.interpolate import CubicSpline
 
 from shaftprint.arrays import FloatArray
@@ -105,7 +106,7 @@ def _columns(spline: CubicSpline, time_s: FloatArray) -> FloatArray:
 def _best_sample(measured: FloatArray, model: FloatArray, margin: int) -> int:
     """Return the whole number of samples by which the data come later, at the largest correlation coefficient."""
     samples = measured.size
-    size = model.size + samples
+    size = next_fast_len(model.size + samples, real=True)
     centred = measured - measured.mean()
     spectrum = np.fft.rfft(centred, size).conj() * np.fft.rfft(model, size)
     products = np.fft.irfft(spectrum, size)[: 2 * margin + 1]
@@ -119,7 +120,7 @@ def _best_sample(measured: FloatArray, model: FloatArray, margin: int) -> int:
 
 def _quadratic(row: FloatArray, autocovariance: FloatArray) -> float:
     """Return ``w^T R w`` for the covariance matrix that an autocovariance makes."""
-    size = 2 * row.size
+    size = next_fast_len(2 * row.size, real=True)
     products = np.fft.irfft(np.abs(np.fft.rfft(row, size)) ** 2, size)[: row.size]
     lags = min(autocovariance.size, row.size)
     return float(products[0] * autocovariance[0] + 2.0 * (products[1:lags] @ autocovariance[1:lags]))

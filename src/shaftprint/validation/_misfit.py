@@ -116,7 +116,9 @@ def misfit_of(
     mixed = 4.0 * (_noise_along(residual, autocovariance) + float(along @ covariance @ along))
     half = deviations(coverage) * np.sqrt(variance + (mixed if beyond > 0.0 else 0.0))
     motion = float(np.std(smooth.measured))
-    error, low, high = (float(np.sqrt(max(square, 0.0))) / motion for square in (beyond, beyond - half, beyond + half))
+    # a residual that happens to be smaller than the noise does not make the error known better than noise allows
+    ends = (beyond, beyond - half, max(beyond, 0.0) + half)
+    error, low, high = (float(np.sqrt(max(square, 0.0))) / motion for square in ends)
     return Misfit(
         output=smooth.output,
         fit_percent=reached,

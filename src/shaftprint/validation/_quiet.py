@@ -18,6 +18,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.fft import next_fast_len
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign import Campaign, Staircase
@@ -106,7 +107,7 @@ class QuietNoise:
 def correlated(one: FloatArray, other: FloatArray) -> FloatArray:
     """Return the sums of products at lags from 0 on, along the last axis."""
     samples = one.shape[-1]
-    size = 2 * samples
+    size = next_fast_len(2 * samples, real=True)
     spectrum = np.fft.rfft(one, size).conj() * np.fft.rfft(other, size)
     return np.asarray(np.fft.irfft(spectrum, size)[..., :samples])
 

@@ -14,9 +14,9 @@ class ValidationSettings:
     """Share of the motion of an output that the model may miss beyond noise. A linear model with the true parameters of
     the simulated tug misses up to 0.11 of a single step where no limit acts (the line is stiffer at higher speed), and
     0.2 to 0.36 of the steps of 2 V that demand more torque than the engine has."""
-    highest_hz: float = 5.0
-    """Above this frequency [Hz] data and model are taken out alike before they are compared: the excitation ends at 4
-    Hz, and above it the torque shows blades and firings only. FitPercent is of all frequencies."""
+    highest_hz: float = 4.0
+    """What is faster than this [Hz] is taken out of data and model alike before they are compared: the excitation ends
+    there, and the torque shows shaft, blades and firings beyond. FitPercent is of all frequencies."""
     zoom_before_s: float = 2.0
     """Time before a step that belongs to its excerpt [s]."""
     zoom_after_s: float = 12.0
