@@ -24,6 +24,7 @@ def test_commands_are_those_that_were_asked_for():
         "compare-structures",
         "structures",
         "sensitivity",
+        "inertia",
         "explain",
         "show",
         "new",

@@ -212,8 +212,8 @@ def test_what_moves_in_the_first_modes(line):
     # engine and propeller swing against each other
     shape = found.shape[0] / found.shape[0, line.place("Propeller, 3 blades")]
     assert shape[line.place("Flywheel")].real < -0.3
-    # the crankshaft has the third: 141 Hz without the ring, 100 with it as a part of the housing
-    assert 100.0 < found.frequency_hz[2] < 141.5
+    # the crankshaft has the third: 141 Hz without the ring, 104 with it as a part of the housing
+    assert 103.7 < found.frequency_hz[2] < 141.5
     assert np.argmax(np.abs(found.shape[2])) == line.place("Damper housing")
 
 

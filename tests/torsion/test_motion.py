@@ -23,6 +23,25 @@ def test_slow_torque_turns_the_whole_line(line):
     assert found.gauge_torque_nm == pytest.approx([(17.0 * s + 106.31) * speed], rel=1e-4)
 
 
+def test_how_far_a_rigid_line_is_right(line):
+    """From propeller to flywheel by hand, for 1 N m at the gauge: shaft, gear as one mass, coupling.
+
+    At S13, 3.433 Hz, n / M_s is some 10 % from that of a rigid line already, at S14, 7.19 Hz, more than half.
+    """
+    frequency = np.array([1.0, 3.433, 7.19])
+    s = 2j * math.pi * frequency
+    rigid = 1.0 / (17.0 * s + 106.31)
+    gear = rigid + s / 172e3
+    gear_kg_m2 = (0.0816 + 0.054 + 0.054 + 0.02) * 14.5924 + 0.513 + 0.281
+    softness = (1.0 / 15e3 + 1.0 / 5e5) / 14.5924 / (1.0 + 1j / (2.0 * math.pi))
+    flywheel = gear + s * softness * (1.0 + gear_kg_m2 * s * gear)
+    found = forced_response(line, frequency, SHARED)
+    measured = found.speed_of("Flywheel") / found.gauge_torque_nm
+    assert flywheel == pytest.approx(measured, rel=0.02)
+    wrong = np.abs(rigid / measured - 1.0)
+    assert wrong == pytest.approx([0.011, 0.104, 0.653], rel=0.05)
+
+
 def test_two_masses_in_closed_form(chain):
     line = chain([2.0, 3.0], [600.0], psi=0.9, load=0.5)
     frequency = np.array([0.5, 3.0, 3.6, 20.0])

@@ -21,6 +21,7 @@ COMMANDS = {
     "explain": "Say where the numbers of the thesis' way come from on one recording.",
     "show": "Print a saved fingerprint.",
     "structures": "List the model structures with their parameters and bounds.",
+    "inertia": "Say what inertia and torsional modes the vessel file lets expect.",
     "sensitivity": "Draw what each parameter of a structure does to its response.",
 }
 

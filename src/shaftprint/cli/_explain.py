@@ -8,21 +8,17 @@ from shaftprint.cli._chain import fingerprint_of, measure
 from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.cli._report_tables import on_terminal, print_report_table
 from shaftprint.cli._results import where, write_results
-from shaftprint.cli._tables import print_table
 from shaftprint.cli._thesis_way import thesis_way, weighted_fits
 from shaftprint.report import (
     Explanation,
-    Table,
     damping_table,
     explain_thesis,
     explanation_sentences,
     gain_table,
     inertia_table,
 )
-
-# What a terminal's code page may lack, as it is written elsewhere on the terminal.
-PLAIN = str.maketrans({"−": "-", "±": "+/-", "°": " deg", "–": "-", "∞": "inf", "\u202f": ""})
 
 
 @click.command("explain")
@@ -61,12 +57,5 @@ def command(
 def _print(explanation: Explanation) -> None:
     tables = (inertia_table, damping_table, gain_table)
     for sentence, make in zip(explanation_sentences(explanation), tables, strict=True):
-        _print_table(make(explanation))
-        click.echo(f"{sentence.translate(PLAIN)}\n")
-
-
-def _print_table(table: Table) -> None:
-    rows = [[cell.translate(PLAIN) for cell in row] for row in table.rows]
-    print_table(table.caption, table.header, rows)
-    if table.note:
-        click.echo(f"{table.note.translate(PLAIN)}\n")
+        print_report_table(make(explanation))
+        click.echo(f"{on_terminal(sentence)}\n")

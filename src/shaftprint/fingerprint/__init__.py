@@ -22,6 +22,7 @@ from shaftprint.fingerprint._fingerprint import (
     read_fingerprint,
     write_fingerprint,
 )
+from shaftprint.fingerprint._inertia import inertia_beside
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._physical import physical_quantities
 from shaftprint.fingerprint._take import take_fingerprint
@@ -32,6 +33,7 @@ __all__ = [
     "Quality",
     "Quantity",
     "SourceFile",
+    "inertia_beside",
     "margin_quantities",
     "physical_quantities",
     "read_fingerprint",

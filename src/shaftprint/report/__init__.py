@@ -31,6 +31,15 @@ from shaftprint.report._fit_figures import (
     plot_governor_fits,
     plot_open_loop_comparison,
 )
+from shaftprint.report._inertia_tables import (
+    expected_inertia_table,
+    inertia_budget_table,
+    mass_table,
+    mode_table,
+    two_mass_sentence,
+    water_table,
+)
+from shaftprint.report._mode_figure import plot_modes
 from shaftprint.report._nyquist import plot_nyquist
 from shaftprint.report._outlier_figure import plot_outliers
 from shaftprint.report._render import render_report
@@ -59,10 +68,14 @@ __all__ = [
     "ThesisMode",
     "closed_loop_curve",
     "damping_table",
+    "expected_inertia_table",
     "explain_thesis",
     "explanation_sentences",
     "gain_table",
+    "inertia_budget_table",
     "inertia_table",
+    "mass_table",
+    "mode_table",
     "open_loop_curve",
     "plot_bode",
     "plot_calibration",
@@ -77,6 +90,7 @@ __all__ = [
     "plot_governor_fits",
     "plot_line_selection",
     "plot_missing_damping",
+    "plot_modes",
     "plot_nyquist",
     "plot_open_loop_comparison",
     "plot_open_loop_responses",
@@ -91,4 +105,6 @@ __all__ = [
     "render_report",
     "save_figure",
     "thesis_families",
+    "two_mass_sentence",
+    "water_table",
 ]

@@ -11,6 +11,7 @@ from jinja2 import DictLoader, Environment, StrictUndefined
 from markupsafe import Markup
 
 from shaftprint.report._folder import FIGURES, PAGE, report_written_whole
+from shaftprint.report._inertia_sections import inertia_section
 from shaftprint.report._measurement_sections import quality_section, response_section, signal_section, time_section
 from shaftprint.report._model_sections import (
     explanation_section,
@@ -129,6 +130,7 @@ def _sections(inputs: Inputs) -> list[Section]:
         summary_section(inputs),
         parameter_section(inputs),
         *uncertainty_section(inputs),
+        *inertia_section(inputs),
         fit_section(inputs),
         *stability_section(inputs),
         search_section(inputs),

@@ -1,0 +1,108 @@
+"""``shaftprint inertia``: inertia and torsional modes by calculation."""
+
+import secrets
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._report_tables import on_terminal, print_report_table
+from shaftprint.fingerprint import inertia_beside, read_fingerprint
+from shaftprint.report import (
+    expected_inertia_table,
+    inertia_budget_table,
+    mass_table,
+    mode_table,
+    plot_modes,
+    save_figure,
+    two_mass_sentence,
+    water_table,
+)
+from shaftprint.torsion import Beside, ExpectedInertia, Modes, expected_inertia, modes, torsional_line, two_masses
+from shaftprint.vessel import Vessel, load_vessel
+
+SUFFIXES = (".svg", ".png", ".pdf")
+
+
+def picture(context: click.Context, parameter: click.Parameter, path: Path | None) -> Path | None:
+    """Return the path of a picture as it was given.
+
+    Raises
+    ------
+    click.BadParameter
+        If its ending names no kind of picture.
+    """
+    if path is not None and path.suffix not in SUFFIXES:
+        raise click.BadParameter(f"expected a name that ends in {', '.join(SUFFIXES)}, found {path.name}.")
+    return path
+
+
+@click.command("inertia")
+@click.argument("vessel")
+@click.option(
+    "--fingerprint",
+    "found",
+    type=click.Path(path_type=Path),
+    help="A fingerprint of this vessel, or the folder with it, to stand beside the calculation.",
+)
+@click.option(
+    "--modes",
+    "drawing",
+    type=click.Path(path_type=Path),
+    callback=picture,
+    help="Where to draw the shapes of the torsional modes: an SVG, PNG or PDF.",
+)
+@click.option("--force", is_flag=True, help="Replace an earlier picture.")
+def command(vessel: str, found: Path | None, drawing: Path | None, force: bool) -> None:
+    """Say what inertia and torsional modes the vessel file lets expect.
+
+    Prints the inertia table referred to the propeller shaft, the sums on either side of the torque gauge, the inertia
+    times with where their uncertainty comes from, the entrained water by several methods and, where VESSEL has links
+    between its masses, the torsional modes. VESSEL is a path, or the name of a shipped one such as stan-tug-1205.
+    """
+    ship = load_vessel(vessel)
+    expected, beside = _expected(ship, found)
+    vibrations = modes(torsional_line(ship)) if ship.links or drawing is not None else None
+    if drawing is not None and vibrations is not None:
+        _draw(vibrations, drawing, force=force)
+    _print(ship, expected, beside, vibrations)
+    if drawing is not None:
+        click.echo(drawing)
+
+
+def _expected(ship: Vessel, found: Path | None) -> tuple[ExpectedInertia, tuple[Beside, ...]]:
+    if found is None:
+        return expected_inertia(ship), ()
+    fingerprint = read_fingerprint(found / "fingerprint.json" if found.is_dir() else found)
+    if fingerprint.conditions.vessel != ship.name:
+        click.echo(f"Mind: the fingerprint is of {fingerprint.conditions.vessel}, the vessel file of {ship.name}.\n")
+    return inertia_beside(fingerprint, ship)
+
+
+def _draw(vibrations: Modes, path: Path, *, force: bool) -> None:
+    if path.exists() and not force:
+        raise click.ClickException(f"{path} exists already; choose another name or replace it with --force.")
+    part = path.with_name(f".{path.stem}.{secrets.token_hex(4)}{path.suffix}")
+    try:
+        save_figure(plot_modes(vibrations), part)
+        part.replace(path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def _print(ship: Vessel, expected: ExpectedInertia, beside: tuple[Beside, ...], vibrations: Modes | None) -> None:
+    tables = (
+        mass_table(ship),
+        expected_inertia_table(expected, beside),
+        inertia_budget_table(expected),
+        water_table(expected),
+    )
+    for table in tables:
+        if table.rows:
+            print_report_table(table)
+    if vibrations is None:
+        click.echo("No torsional modes: the vessel file has no [[links]] between its masses.")
+        return
+    print_report_table(mode_table(vibrations))
+    line = vibrations.line
+    driven = line.bodies[int((line.inertia_kg_m2 * (1.0 - line.is_downstream)).argmax())]
+    click.echo(f"{on_terminal(two_mass_sentence(two_masses(line, driven=[driven])))}\n")

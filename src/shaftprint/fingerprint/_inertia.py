@@ -1,0 +1,34 @@
+"""Inertia by calculation beside that of a fingerprint."""
+
+from typing import TYPE_CHECKING
+
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.torsion import Beside, ExpectedInertia, beside_identified, expected_inertia
+from shaftprint.units import rev_s_from_rpm
+
+if TYPE_CHECKING:
+    from shaftprint.vessel import Vessel
+
+
+def inertia_beside(fingerprint: Fingerprint, vessel: "Vessel") -> tuple[ExpectedInertia, tuple[Beside, ...]]:
+    """Return what the inertia table lets expect at the fingerprint's working point, beside what the fingerprint has.
+
+    An inertia time of which something was known before the test is not independent of the table, nor is the inertia
+    that follows from it.
+
+    Parameters
+    ----------
+    fingerprint
+        The record of a test.
+    vessel
+        What was tested.
+    """
+    conditions = fingerprint.conditions
+    expected = expected_inertia(
+        vessel,
+        engine_speed_rev_s=rev_s_from_rpm(conditions.engine_speed.value),
+        shaft_torque_nm=conditions.shaft_torque.value,
+    )
+    numbers = (*fingerprint.parameters, *fingerprint.physical)
+    told = frozenset(fingerprint.priors) | {name.replace("tau_", "I_", 1) for name in fingerprint.priors}
+    return expected, beside_identified(expected, {item.name: (item.value, item.std) for item in numbers}, told=told)

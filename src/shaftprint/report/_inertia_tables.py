@@ -1,0 +1,155 @@
+"""Tables on the inertia by calculation and on the torsional modes, as plain text for report and terminal."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from shaftprint.report._numbers import plain, rounded, with_deviation
+from shaftprint.report._symbols import unit_text
+from shaftprint.report._table import Table
+
+if TYPE_CHECKING:
+    from shaftprint.torsion import Beside, ExpectedInertia, ExpectedValue, Modes, TwoMasses
+    from shaftprint.vessel import Vessel
+
+PERCENT = 100.0
+# Sources with a smaller share of the variance are put together.
+SMALL_SHARE = 0.01
+TOLD = "told beforehand"
+SHOWN_MODES = 6
+# Sums of a table are exact, whatever its rows are worth: with these decimals they can be checked by hand.
+DECIMALS = 3
+
+
+def mass_table(vessel: "Vessel") -> Table:
+    """Return the inertia table of a vessel, each row on its own shaft and at the propeller shaft."""
+    ratio = vessel.gearbox.ratio
+    return Table(
+        caption="Inertia table of the vessel file",
+        header=("mass", "on its shaft [kg m²]", "shaft", "at the propeller shaft [kg m²]", "of the gauge", "source"),
+        rows=tuple(
+            (
+                row.name,
+                _pair(row.inertia_kg_m2, row.std_kg_m2 or 0.0),
+                row.shaft,
+                _pair(row.referred_kg_m2(ratio), row.referred_std_kg_m2(ratio)),
+                row.gauge,
+                row.source,
+            )
+            for row in vessel.inertia
+        ),
+        note=f"Inertias on the engine shaft count {rounded(ratio)} squared, the gear ratio, at the propeller shaft.",
+    )
+
+
+def expected_inertia_table(expected: "ExpectedInertia", beside: "Sequence[Beside]" = ()) -> Table:
+    """Return sums and inertia times by calculation, beside those that a test found where there are such."""
+    found = {row.expected.name: row for row in beside}
+    header = ("quantity", "calculated ± std", "unit", "meaning")
+    rows = [
+        (item.name, f"{plain(item.value, DECIMALS)} ± {rounded(item.std, 2)}", unit_text(item.unit), item.meaning)
+        for item in (*expected.sums, *expected.times)
+    ]
+    if not found:
+        return Table(caption="Inertia by calculation, at the propeller shaft", header=header, rows=tuple(rows))
+    return Table(
+        caption="Inertia by calculation beside the identified, at the propeller shaft",
+        header=(*header[:2], "identified ± std", "difference over its std", *header[2:]),
+        rows=tuple((*row[:2], *_found(found.get(row[0])), *row[2:]) for row in rows),
+        note=(
+            f"“{TOLD}”: this number went into the fit as known, so that finding it again says nothing. Both "
+            "deviations count in the last difference."
+        ),
+    )
+
+
+def inertia_budget_table(expected: "ExpectedInertia") -> Table:
+    """Return what each source does to the expected inertia times, largest first."""
+    rows = [row for item in expected.times for row in _sources(item)]
+    return Table(
+        caption="Uncertainty of the calculated inertia times",
+        header=("quantity", "source", "change for one std [s]", "share of the variance"),
+        rows=tuple(rows),
+        note="A gauge that shows too much makes both times too small.",
+    )
+
+
+def water_table(expected: "ExpectedInertia") -> Table:
+    """Return the entrained water by each method, and the downstream side with it."""
+    return Table(
+        caption="Entrained water by each method, in place of the water of the inertia table",
+        header=("method", "water [kg m²]", "I_dn [kg m²]", "tau_dn [s]", "from"),
+        rows=tuple(
+            (
+                wet.water.method,
+                with_deviation(wet.water.water_kg_m2, wet.water.std_kg_m2),
+                with_deviation(wet.downstream_kg_m2, wet.downstream_std_kg_m2),
+                with_deviation(wet.tau_dn_s, wet.tau_dn_std_s),
+                wet.water.source,
+            )
+            for wet in expected.wet
+        ),
+        note="A propeller row that holds some of the water already makes these too large.",
+    )
+
+
+def mode_table(modes: "Modes") -> Table:
+    """Return the slowest torsional modes."""
+    shown = range(min(SHOWN_MODES, len(modes.frequency_hz)))
+    return Table(
+        caption="Torsional modes",
+        header=("mode", "frequency [Hz]", "damping ratio", "moves most", "twists most"),
+        rows=tuple(
+            (
+                str(mode + 1),
+                with_deviation(float(modes.frequency_hz[mode]), float(modes.frequency_std_hz[mode])),
+                plain(float(modes.damping_ratio[mode]), 3),
+                modes.moves(mode),
+                modes.twists(mode),
+            )
+            for mode in shown
+        ),
+        note=(
+            "Deviations are those of the stated inertias and stiffnesses. Damping: losses of couplings and shafts at "
+            "the frequency of the mode, the damper, and the slope of the propeller torque."
+        ),
+    )
+
+
+def two_mass_sentence(found: "TwoMasses") -> str:
+    """Return what two masses in place of the line are, and how far they hold."""
+    return (
+        f"Two masses for identification, at the propeller shaft: {rounded(found.engine_kg_m2)} and "
+        f"{rounded(found.propeller_kg_m2)} kg m² with {rounded(found.stiffness_nm_rad / 1000.0, 3)} kN·m/rad and "
+        f"{rounded(found.damping_nm_s_rad, 3)} N·m·s/rad between them give the first mode at "
+        f"{with_deviation(found.frequency_hz, found.frequency_std_hz)} Hz. Speed and shaft torque are within a "
+        f"tenth of those of the whole line up to {plain(found.accurate_to_hz, 1)} Hz; at the mode the shaft torque is "
+        f"{plain(PERCENT * found.gauge_error, 0)} % off."
+    )
+
+
+def _pair(value: float, std: float) -> str:
+    return with_deviation(value, std) if std > 0.0 else rounded(value)
+
+
+def _found(row: "Beside | None") -> tuple[str, str]:
+    if row is None:
+        return "–", "–"
+    number = with_deviation(row.found, row.found_std)
+    if not row.independent:
+        return number, TOLD
+    return number, "–" if math.isnan(row.deviations) else plain(row.deviations, 1)
+
+
+def _sources(item: "ExpectedValue") -> list[tuple[str, str, str, str]]:
+    large = {name: share for name, share in item.shares.items() if share >= SMALL_SHARE}
+    rows = [
+        (item.name, name, rounded(item.changes[name], 2), f"{plain(PERCENT * share, 0)} %")
+        for name, share in large.items()
+    ]
+    small = [name for name in item.shares if name not in large]
+    if small:
+        together = math.hypot(*(item.changes[name] for name in small))
+        share = sum(item.shares[name] for name in small)
+        rows.append((item.name, f"{len(small)} others", rounded(together, 2), f"{plain(PERCENT * share, 0)} %"))
+    return rows
