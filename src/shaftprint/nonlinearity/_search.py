@@ -1,0 +1,183 @@
+"""Forward selection: the strongest nonlinearity joins the replay until nothing is left that chance does not explain."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shaftprint.nonlinearity._fit import ABSENT, GOVERNOR, Fit, fit, residual
+from shaftprint.nonlinearity._quantised import Quantisation, find_quantisation, rounded
+from shaftprint.nonlinearity._record import Record
+from shaftprint.nonlinearity._suspects import SUSPECTS, Kind, Suspect
+from shaftprint.nonlinearity._tails import chi_square_tail
+
+_MOST_ROUNDS = 5
+_POLISH_ROUNDS = 8
+_MOST_POLISHED = 3
+_LIMITS = ("limit", "m_min", "air")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Present:
+    """One nonlinearity that joined the replay."""
+
+    kind: Kind
+    """Which one."""
+    terms: tuple[str, ...]
+    """Its terms of the replay; none for a quantised set point."""
+    statistic: float
+    """Fall of minus twice the log-likelihood when it joined."""
+    p_value: float
+    """Its probability by chance, for all that was tried together."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Outcome:
+    """What the search ends with."""
+
+    record: Record
+    """The record; its set point is in steps where it was found so."""
+    linear: Fit
+    """The linear governor with which it began."""
+    fit: Fit
+    """Governor and all terms that joined."""
+    present: tuple[Present, ...]
+    """What joined, strongest first."""
+    absent: tuple[tuple[Kind, float, float], ...]
+    """Kind, statistic and probability of what did not."""
+    quantisation: Quantisation | None
+    """Steps of the set point, where they were found."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Tried:
+    """The best of one suspect in one round."""
+
+    suspect: Suspect
+    statistic: float
+    p_value: float
+    fit: Fit | None
+
+
+def search(record: Record, linear: Fit, *, false_alarm: float) -> Outcome:
+    """Let nonlinear terms join the replay one after the other.
+
+    Parameters
+    ----------
+    record
+        What was measured.
+    linear
+        The linear governor.
+    false_alarm
+        Probability with which a linear line may show anything, all tests of a round together.
+    """
+    here, present, quantisation = linear, list[Present](), None
+    for _ in range(_MOST_ROUNDS):
+        tried = _try_all(record, here, false_alarm)
+        steps = None if quantisation is not None else find_quantisation(record, here)
+        best = max(tried, key=_preference)
+        wins = steps is not None and steps.is_rounding and steps.p_value < false_alarm
+        if wins and steps is not None and steps.statistic > _preference(best):
+            quantisation = steps
+            record = replace(record, set_point=rounded(record, steps))
+            here = fit(record, here.values, here.free[len(GOVERNOR) :])
+            present.append(
+                Present(kind="quantised set point", terms=(), statistic=steps.statistic, p_value=steps.p_value)
+            )
+            continue
+        if best.fit is None or best.p_value >= false_alarm:
+            break
+        kind, terms = best.suspect.kind, best.suspect.terms
+        present.append(Present(kind=kind, terms=terms, statistic=best.statistic, p_value=best.p_value))
+        here = _with_windup(record, best.fit)
+    here, present = _without_idle(record, here, present, false_alarm)
+    absent = [(one.suspect.kind, max(one.statistic, 0.0), one.p_value) for one in tried]
+    if quantisation is None and steps is not None:
+        absent.append(("quantised set point", steps.statistic, steps.p_value))
+    kinds = {one.kind for one in present}
+    return Outcome(
+        record=record,
+        linear=linear,
+        fit=here,
+        present=tuple(present),
+        absent=tuple(one for one in absent if one[0] not in kinds),
+        quantisation=quantisation,
+    )
+
+
+def _preference(tried: _Tried) -> float:
+    """Return the statistic less what more terms gain by chance alone (Schwarz' criterion)."""
+    if tried.fit is None:
+        return -np.inf
+    return tried.statistic - len(tried.suspect.terms) * float(np.log(tried.fit.count))
+
+
+def _try_all(record: Record, here: Fit, false_alarm: float) -> list[_Tried]:
+    """Try every suspect: a scan with the governor to first order, then a fit of those that stand out most."""
+    plans = [(suspect, suspect.starts(record, here.values)) for suspect in SUSPECTS]
+    trials = max(sum(len(starts) for _, starts in plans), 1)
+    scanned = _scan(record, here, plans)
+    most = sorted((statistic for statistic, _ in scanned), reverse=True)[:_MOST_POLISHED][-1]
+    found = []
+    for suspect, (statistic, start) in zip(SUSPECTS, scanned, strict=True):
+        p_value = min(trials * chi_square_tail(statistic, len(suspect.terms)), 1.0)
+        polished = None
+        if p_value < false_alarm and statistic >= most:
+            extra = (*here.free[len(GOVERNOR) :], *suspect.terms)
+            polished = fit(record, {**here.values, **start}, extra, rounds=_POLISH_ROUNDS)
+            statistic = _fall(here, polished)
+            p_value = min(trials * chi_square_tail(statistic, len(suspect.terms)), 1.0)
+        found.append(_Tried(suspect=suspect, statistic=statistic, p_value=p_value, fit=polished))
+    return found
+
+
+def _scan(
+    record: Record, here: Fit, plans: list[tuple[Suspect, list[dict[str, float]]]]
+) -> list[tuple[float, dict[str, float]]]:
+    """Return for each suspect the largest statistic of its starts, with the start; the governor to first order."""
+    basis, _ = np.linalg.qr(here.slopes)
+    now = residual(record, here.values)
+    best = []
+    for _, starts in plans:
+        scores = []
+        for start in starts:
+            change = residual(record, {**here.values, **start}) - now
+            innovations = here.whitened.residual + here.whitened.filtered(change[:, np.newaxis])[:, 0]
+            innovations = innovations - basis @ (basis.T @ innovations)
+            scores.append(here.count * float(np.log(here.whitened.squares / float(innovations @ innovations))))
+        top = int(np.argmax(scores)) if scores else -1
+        best.append((scores[top], starts[top]) if scores else (0.0, {}))
+    return best
+
+
+def _fall(before: Fit, after: Fit) -> float:
+    return before.count * float(np.log(before.whitened.squares / after.whitened.squares))
+
+
+def _with_windup(record: Record, found: Fit) -> Fit:
+    """Free the time constant of the back-calculation as soon as there is a limit for it."""
+    extra = found.free[len(GOVERNOR) :]
+    if "windup_s" not in extra and any(name in extra for name in _LIMITS):
+        extra = (*extra, "windup_s")
+    return fit(record, found.values, extra)
+
+
+def _without_idle(record: Record, here: Fit, present: list[Present], false_alarm: float) -> tuple[Fit, list[Present]]:
+    """Take out what later terms explain better, as long as the data do not miss it."""
+    kept = list(present)
+    for one in present:
+        if not one.terms or len(kept) < 2:
+            continue
+        extra = tuple(name for name in here.free[len(GOVERNOR) :] if name not in one.terms)
+        without = fit(record, {**here.values, **{name: ABSENT[name] for name in one.terms}}, extra)
+        if chi_square_tail(_fall(without, here), len(one.terms)) >= false_alarm:
+            here = without
+            kept.remove(one)
+    return here, kept
+
+
+def windup_statistic(record: Record, found: Fit, windup_s: float) -> float:
+    """Return how much worse the data go with an integrator that is emptied within a time, as a statistic."""
+    extra: Sequence[str] = tuple(name for name in found.free[len(GOVERNOR) :] if name != "windup_s")
+    held = fit(record, {**found.values, "windup_s": windup_s}, extra)
+    return _fall(held, found)
