@@ -124,6 +124,15 @@ def test_numbers_of_a_clipped_step(with_limits):
     assert all(number.measured_std > 0.0 and number.expected_std > 0.0 for number in (overshoot,))
 
 
+def test_few_pieces_of_noise_prove_little(with_limits):
+    # the level of -6 V holds three pieces: Student's t of two degrees of freedom is 4.3, not 1.96
+    step = with_limits.of("St1", "step at 7330.0")
+    assert step.misfits[0].noise_pieces == 3
+    for number in step.step_numbers:
+        if number.agrees is False:
+            assert abs(number.measured - number.expected) > 4.3 * number.measured_std
+
+
 def test_fit_percent_stands_beside_its_ceiling(with_limits):
     good = with_limits.of("C11", "1 to 5")
     for misfit in good.misfits:

@@ -18,6 +18,7 @@ COMMANDS = {
     "inspect": "Say what is in a recording and whether it is good enough.",
     "identify": "Identify the fingerprint from a recording.",
     "compare-structures": "Say which of several structures a recording wants, and why.",
+    "validate": "Hold a model against chirps and steps that it was not identified from.",
     "explain": "Say where the numbers of the thesis' way come from on one recording.",
     "show": "Print a saved fingerprint.",
     "structures": "List the model structures with their parameters and bounds.",

@@ -59,6 +59,8 @@ from shaftprint.report._table import Table
 from shaftprint.report._thesis_families import Family, thesis_families
 from shaftprint.report._thesis_mode import ThesisMode
 from shaftprint.report._time_series import plot_chirp, plot_excitation, plot_staircase
+from shaftprint.report._validation_figure import plot_validation
+from shaftprint.report._validation_summary_figure import plot_validation_summary
 
 __all__ = [
     "Curve",
@@ -102,6 +104,8 @@ __all__ = [
     "plot_staircase",
     "plot_step_delays",
     "plot_strip_angles",
+    "plot_validation",
+    "plot_validation_summary",
     "render_report",
     "save_figure",
     "thesis_families",

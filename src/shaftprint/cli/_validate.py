@@ -1,0 +1,134 @@
+"""``shaftprint validate``: a model against chirps and steps that it was not identified from."""
+
+from pathlib import Path
+
+import click
+import numpy as np
+
+from shaftprint.cli._chain import fit, measure
+from shaftprint.cli._fingerprint_model import fingerprint_model
+from shaftprint.cli._fit_options import fit_options, settings_of, structures_of
+from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
+from shaftprint.cli._output_folder import force_option, output_folder
+from shaftprint.cli._own_structure import OWN_FILE_HELP
+from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.cli._validation_results import write_validations
+from shaftprint.cli._validation_tables import print_compared_models, print_validation
+from shaftprint.fingerprint import read_fingerprint
+from shaftprint.identify import Prior
+from shaftprint.signals import Mode
+from shaftprint.validation import Model, identified_model, thesis_models, validate
+
+DEFAULT_STRUCTURE = "GAUGE-CLOSED"
+
+
+@click.command("validate")
+@click.argument("recording", type=click.Path(path_type=Path))
+@vessel_option
+@campaign_option
+@click.option(
+    "--fingerprint",
+    type=click.Path(path_type=Path),
+    help="Fingerprint to validate, a JSON file or its folder; without it one is identified from the sines first.",
+)
+@click.option(
+    "--structure",
+    metavar="NAME",
+    help=f"Model structure: {OWN_FILE_HELP}. The fingerprint's, or GAUGE-CLOSED, by default.",
+)
+@click.option(
+    "--record",
+    "records",
+    multiple=True,
+    metavar="NAME",
+    help="Chirp or staircase to validate on; by default all staircases and the chirp with the widest sweep.",
+)
+@click.option(
+    "--used", multiple=True, metavar="NAME", help="Test that the model was identified from and that is not to be used."
+)
+@click.option("--allow-in-sample", is_flag=True, help="Show records of the identification too; they do not count.")
+@click.option("--linear-torque", is_flag=True, help="Leave the torque linear in the speed, as the thesis did.")
+@click.option(
+    "--thesis-sets", is_flag=True, help="Put CL4, CL3, OL1+OL5, OL1+OL4 and the benchmark of the thesis beside."
+)
+@fit_options
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for the figures.")
+@force_option
+@no_progress_option
+def command(
+    recording: Path,
+    vessel: str,
+    campaign: str,
+    fingerprint: Path | None,
+    structure: str | None,
+    records: tuple[str, ...],
+    used: tuple[str, ...],
+    allow_in_sample: bool,
+    linear_torque: bool,
+    thesis_sets: bool,
+    priors: tuple[tuple[str, Prior], ...],
+    freed: tuple[str, ...],
+    held: tuple[tuple[str, float], ...],
+    mode: Mode,
+    unweighted: bool,
+    starts: int,
+    seed: int,
+    output: Path | None,
+    force: bool,
+    no_progress: bool,
+) -> None:
+    """Hold a model against chirps and steps that it was not identified from.
+
+    Prints for each stretch how much of the motion the model misses beyond noise, the delay that is left,
+    overshoot, rise and settling of steps beside what the model lets expect, and whether the model passes.
+    --record, --used, --prior, --free and --hold may be repeated.
+    """
+    trial = load_trial(vessel, campaign)
+    kept = None if fingerprint is None else read_fingerprint(_file(fingerprint))
+    names = (structure or (DEFAULT_STRUCTURE if kept is None else kept.structure),)
+    structures = structures_of(names, dict(held), freed)
+    with progress(hidden=no_progress) as steps:
+        measurement = measure(recording, trial, mode=mode, steps=steps)
+        if kept is None:
+            settings = settings_of(
+                structures,
+                measurement,
+                trial,
+                priors=dict(priors),
+                freed=freed,
+                unweighted=unweighted,
+                starts=starts,
+            )
+            found = fit(structures, measurement, settings=settings, seed=seed, steps=steps)
+            model = identified_model(found[0])
+        else:
+            model = fingerprint_model(kept, structures[0], measurement.signals)
+        models: tuple[Model, ...] = (model, *(thesis_models() if thesis_sets else ()))
+        steps.begin("Validating", total=float(len(models)))
+        validations = []
+        for one in models:
+            validations.append(
+                validate(
+                    one,
+                    measurement.signals,
+                    trial.campaign,
+                    rng=np.random.default_rng(seed),
+                    records=records or None,
+                    used=used,
+                    allow_in_sample=allow_in_sample,
+                    quadratic_propeller=not linear_torque,
+                )
+            )
+            steps.advance(1.0)
+    if output is not None:
+        with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
+            write_validations(folder, validations, steps=steps)
+    print_validation(validations[0])
+    if thesis_sets:
+        print_compared_models(validations)
+    if output is not None:
+        click.echo(f"Figures: {output}")
+
+
+def _file(fingerprint: Path) -> Path:
+    return fingerprint / "fingerprint.json" if fingerprint.is_dir() else fingerprint

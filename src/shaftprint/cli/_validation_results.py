@@ -1,0 +1,72 @@
+"""The figures that ``validate`` leaves behind."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from shaftprint.cli._progress import Steps
+from shaftprint.files import plain_name
+from shaftprint.report import plot_validation, plot_validation_summary, save_figure
+from shaftprint.validation import Comparison, Validation
+
+# As the thesis shares its sets between the parts (a) and (b) of figures 5.7 to 5.9.
+GROUPS = {"a": ("CL4", "OL1+OL5", "benchmark"), "b": ("CL3", "OL1+OL4", "benchmark")}
+AROUND_STEP_S = (0.5, 4.0)
+
+
+def write_validations(folder: Path, validations: Sequence[Validation], *, steps: Steps) -> None:
+    """Write a figure of all errors, and one of each chirp band, each staircase and its largest step.
+
+    Parameters
+    ----------
+    folder
+        Where they go.
+    validations
+        The model that is validated, and the sets of the thesis if they are to stand beside it.
+    steps
+        Progress of the command.
+    """
+    first = validations[0]
+    shown = _shown(first)
+    steps.begin("Drawing the figures", total=1.0 + len(shown))
+    save_figure(plot_validation_summary(first), folder / "missed_beyond_noise.svg")
+    for comparison in shown:
+        steps.advance(1.0)
+        excerpt = comparison.excerpt
+        for suffix, group in _groups(validations).items():
+            figure = plot_validation(
+                group,
+                excerpt.record,
+                excerpt.title,
+                set_point=excerpt.kind != "chirp band",
+                around_step_s=AROUND_STEP_S if excerpt.step_s is not None else None,
+            )
+            save_figure(figure, folder / f"{plain_name(f'{excerpt.record} {_title(comparison)}{suffix}')}.svg")
+
+
+def _title(comparison: Comparison) -> str:
+    """Return the title as it stands in a file name."""
+    at = comparison.excerpt.step_s
+    return comparison.excerpt.title if at is None else f"step at {at:.0f} s"
+
+
+def _shown(validation: Validation) -> list[Comparison]:
+    """Return all excerpts, of the steps only the largest of each staircase."""
+    largest: dict[str, Comparison] = {}
+    for comparison in validation.comparisons:
+        if comparison.excerpt.kind == "step":
+            before = largest.setdefault(comparison.excerpt.record, comparison)
+            if _height(comparison) > 1.05 * _height(before):
+                largest[comparison.excerpt.record] = comparison
+    return [c for c in validation.comparisons if c.excerpt.kind != "step" or c in largest.values()]
+
+
+def _height(comparison: Comparison) -> float:
+    set_point = comparison.traces.set_point
+    return abs(float(set_point[-1] - set_point[0]))
+
+
+def _groups(validations: Sequence[Validation]) -> dict[str, list[Validation]]:
+    if len(validations) == 1:
+        return {"": list(validations)}
+    by_name = {validation.model.name: validation for validation in validations[1:]}
+    return {f" {part}": [validations[0], *(by_name[name] for name in names)] for part, names in GROUPS.items()}

@@ -1,0 +1,109 @@
+"""``shaftprint validate`` on the short recording of the demo: its staircase is new to a fit of its sines."""
+
+import re
+from dataclasses import replace
+
+import pytest
+
+from shaftprint.campaign import load_campaign
+from shaftprint.cli._fingerprint_model import fingerprint_model
+from shaftprint.errors import FingerprintError
+from shaftprint.fingerprint import read_fingerprint
+from shaftprint.models import structure
+from shaftprint.recording import read_recording
+from shaftprint.signals import prepare_signals
+from shaftprint.vessel import load_vessel
+
+GIVEN = ("--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress")
+
+
+@pytest.fixture(scope="module")
+def signals(recording):
+    with read_recording(recording) as opened:
+        return prepare_signals(opened, load_vessel("stan-tug-1205"), load_campaign("short"))
+
+
+@pytest.fixture(scope="module")
+def fingerprint(demo):
+    return read_fingerprint(demo[0] / "fingerprint.json")
+
+
+def test_a_saved_fingerprint_against_the_staircase(run, recording, demo, tmp_path):
+    result = run("validate", recording, *GIVEN, "--fingerprint", demo[0], "-o", tmp_path / "out")
+    assert result.exit_code == 0, result.stderr
+    assert result.output.startswith("Validation: ")
+    assert "GAUGE-CLOSED against records it has not seen" in result.output
+    # 1 V steps of 30 s from 10 s on
+    for at in (10, 40, 70, 100, 130, 160, 190):
+        assert f"St1, step at {at}.0 s" in result.output
+    assert "overshoot [%]" in result.output
+    written = {path.name for path in (tmp_path / "out").glob("*.svg")}
+    assert {"missed_beyond_noise.svg", "St1-whole-staircase.svg"} <= {name.replace(" ", "-") for name in written}
+
+
+def test_identified_in_one_go_with_the_sets_of_the_thesis(run, recording):
+    result = run("validate", recording, *GIVEN, "--starts", 20, "--thesis-sets", "--linear-torque")
+    assert result.exit_code == 0, result.stderr
+    heading = next(line for line in result.output.splitlines() if "ceiling" in line and "benchmark" in line)
+    assert [name for name in ("GAUGE-CLOSED", "CL4", "OL1+OL5", "CL3", "OL1+OL4", "benchmark") if name in heading] == [
+        "GAUGE-CLOSED",
+        "CL4",
+        "OL1+OL5",
+        "CL3",
+        "OL1+OL4",
+        "benchmark",
+    ]
+    assert "linear in its speed" in result.output
+
+
+def test_a_failed_validation_is_said_in_words_and_exits_with_0(run, recording):
+    # a governor that is three times too weak
+    result = run("validate", recording, *GIVEN, "--starts", 20, "--hold", "K_i=1.0", "--hold", "K_p=1.0")
+    assert result.exit_code == 0
+    assert result.output.startswith("Validation: fails")
+    words = r"The linear validation fails: GAUGE-CLOSED misses more than 15 % of the motion in \d+ of 8 excerpts"
+    assert re.search(words, result.output)
+
+
+def test_a_record_that_is_not_there_ends_in_a_sentence(run, recording, demo):
+    result = run("validate", recording, *GIVEN, "--fingerprint", demo[0], "--record", "C11")
+    assert result.exit_code == 1
+    assert "record C11: expected a chirp or staircase of campaign" in result.stderr
+
+
+def test_a_record_of_the_identification_is_refused(run, recording, demo):
+    refused = run("validate", recording, *GIVEN, "--fingerprint", demo[0], "--record", "St1", "--used", "St1")
+    assert refused.exit_code == 1
+    assert "the model was identified from it, so that it proves nothing" in refused.stderr
+    marked = run(
+        "validate", recording, *GIVEN, "--fingerprint", demo[0], "--record", "St1", "--used", "St1", "--allow-in-sample"
+    )
+    assert marked.exit_code == 0
+    assert "(seen)" in marked.output
+    assert "Nothing is proved" in marked.output
+
+
+def test_the_model_of_a_fingerprint(fingerprint, signals):
+    model = fingerprint_model(fingerprint, structure("GAUGE-CLOSED"), signals)
+    named = dict(zip(model.structure.names, model.values, strict=True))
+    for quantity in fingerprint.parameters:
+        assert named[quantity.name] == quantity.value
+    stds = model.covariance.diagonal() ** 0.5
+    assert stds == pytest.approx([fingerprint.quantity(p.name).std for p in model.structure.free])
+    assert model.used == fingerprint.conditions.lines_used
+
+
+def test_a_fingerprint_of_another_recording_has_seen_nothing_of_this_one(fingerprint, signals):
+    other = replace(signals, recording_sha256="0" * 64)
+    assert fingerprint_model(fingerprint, structure("GAUGE-CLOSED"), other).used == ()
+
+
+def test_a_fingerprint_of_another_structure(fingerprint, signals):
+    with pytest.raises(FingerprintError, match=r"expected the parameters of structure CL4, found a difference in"):
+        fingerprint_model(fingerprint, structure("CL4"), signals)
+
+
+def test_a_fingerprint_of_another_working_point(fingerprint, signals):
+    point = replace(signals.working_point, engine_speed_rev_s=1.1 * signals.working_point.engine_speed_rev_s)
+    with pytest.raises(FingerprintError, match=r"expected a recording around its working point of 118\d\.\d rpm"):
+        fingerprint_model(fingerprint, structure("GAUGE-CLOSED"), replace(signals, working_point=point))
