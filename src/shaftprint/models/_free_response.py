@@ -22,12 +22,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.models._block import STEP, Block
+from shaftprint.models._block import Block
 from shaftprint.models._delays import Delay
 from shaftprint.models._expression import Expression, Inverse, Parallel, Sensitivity, Series
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._structure import Structure
 
+# Share of a parameter by which it is moved to see how coefficients change: exact but for rounding up to second order.
+STEP = 1e-4
 # Laplace variable [rad/s] that stands for zero, and step of a slope there.
 NEAR_ZERO = 1e-4
 AROUND_ZERO = np.array([-NEAR_ZERO, NEAR_ZERO], dtype=np.complex128)
@@ -50,7 +52,7 @@ class RationalFreeResponse(Block):
         return np.asarray(s**self.power / _polynomial(self._lower(values), s))
 
     def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
-        """Return ``-s^j dD / D^2``, with the change of the coefficients of ``D`` from differences of fourth order."""
+        """Return ``-s^j dD / D^2``; coefficients of ``D`` are of second order in a parameter, or nearly."""
         share = -response / _polynomial(self._lower(values), s)
         return tuple(share * _polynomial(self._change(values, place), s) for place in range(len(values)))
 
@@ -68,7 +70,7 @@ class RationalFreeResponse(Block):
         def at(steps: float) -> FloatArray:
             return self._lower((*values[:place], value + steps * step, *values[place + 1 :]))
 
-        return np.asarray((8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * step))
+        return np.asarray((at(1.0) - at(-1.0)) / (2.0 * step))
 
 
 def _polynomial(coefficients: FloatArray, s: ComplexArray) -> ComplexArray:

@@ -22,10 +22,15 @@ from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._spectrum import Spectrum, spectrum_of
 from shaftprint.time_domain._spectrum_term import SpectrumTerm, weights_of
 
-# Optima of the search in bands that are followed at all lines, where their cost is not far above the lowest.
-FOLLOWED, COST_FACTOR, COST_ABOVE = 4, 2.0, 50.0
+# Optima of the search in bands that are followed at all lines: not far above the lowest, for the same data say nearly
+# the same in bands and line by line.
+FOLLOWED, COST_FACTOR, COST_ABOVE = 4, 1.1, 25.0
 # Bands and iterations of the search from many starts: enough to tell the optima apart.
-SEARCHED, SEARCH_ITERATIONS = 64, 40
+SEARCHED, SEARCH_ITERATIONS = 40, 30
+# Steps from there at all lines, before the search's own; damping that only keeps them finite.
+STEPS, TINY_DAMPING = 4, 1e-9
+# Share of the cost that a step must promise.
+WORTH_A_STEP = 1e-13
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,9 +100,8 @@ def identify_chirp(
         settings=replace(settings, max_iterations=min(settings.max_iterations, SEARCH_ITERATIONS)),
     )
     term = spectrum_term(structure, spectrum, transients=transients, drift=drift)
-    best = coarse.clusters[0].cost
-    near = [c for c in coarse.clusters if c.cost <= COST_FACTOR * best + COST_ABOVE][:FOLLOWED]
-    theta = np.stack([cluster.values[list(coarse.objective.free)] for cluster in near])
+    near = _followed(coarse)
+    theta = np.stack([_sharpened(coarse, term, cluster) for cluster in near])
     found = identify_jointly([term], rng=rng, settings=replace(settings, draw=Given(theta), starts=len(theta)))
     return replace(found, settings=settings, clusters=_counted(found, coarse, near))
 
@@ -139,6 +143,41 @@ def spectrum_term(
         places=free,
         columns=tuple(range(len(free))),
     )
+
+
+def _followed(coarse: Identification) -> list[Cluster]:
+    """Return the optima to follow: the lowest, the one that won, and others that more than one start reached."""
+    limit = COST_FACTOR * coarse.clusters[0].cost + COST_ABOVE
+    lowest, *others = coarse.clusters
+    won = [c for c in others if np.array_equal(c.values, coarse.values)]
+    beside = [c for c in others if c not in won and c.starts > 1 and c.cost <= limit]
+    return [lowest, *won, *beside][:FOLLOWED]
+
+
+def _sharpened(coarse: Identification, term: SpectrumTerm, cluster: Cluster) -> FloatArray:
+    """Return free parameters nearer to the optimum at all lines, from an optimum in bands, shape (free,).
+
+    Steps of Gauss and Newton without damping, as long as they lower the cost: so near, the cautious first steps of a
+    search would only take time.
+    """
+    before = coarse.objective
+    names = [p.name for p in before.free_parameters]
+    objective = replace(before, terms=(term.placed(before.names, names),))
+    theta = cluster.values[list(before.free)]
+    residuals, slopes = (part[0] for part in objective.residuals(theta[None]))
+    for _ in range(STEPS):
+        information = slopes @ slopes.T
+        information[np.diag_indices_from(information)] *= 1.0 + TINY_DAMPING
+        slope = slopes @ residuals
+        step = np.linalg.lstsq(information, slope)[0]
+        if step @ slope <= WORTH_A_STEP * (residuals @ residuals):
+            break
+        trial = np.clip(theta - step, objective.lower, objective.upper)
+        there, slopes_there = (part[0] for part in objective.residuals(trial[None]))
+        if there @ there >= residuals @ residuals:
+            break
+        theta, residuals, slopes = trial, there, slopes_there
+    return theta
 
 
 def _counted(found: Identification, coarse: Identification, near: list[Cluster]) -> tuple[Cluster, ...]:

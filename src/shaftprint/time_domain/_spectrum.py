@@ -17,6 +17,8 @@ EXCITED = 1e-2
 AVERAGED = 25
 # Share of the sample rate up to which samples tell what happens between them.
 HIGHEST = 0.4
+# One over the share of the samples that may be left out for a quick transform.
+SHORTENED = 500
 # Share of the samples that may be missing, to be filled by straight lines.
 MOST_MISSING = 0.005
 
@@ -91,9 +93,10 @@ def spectrum_of(
             f"record {record.name}: expected channels {input_name}, {', '.join(output_names)}, found "
             f"{', '.join((*record.inputs, *record.outputs))}."
         )
+    length = _fast_length(record.samples - 1)
     whole = np.stack([record.inputs[input_name], *(_filled(record, name) for name in output_names)])
-    transformed = _transformed(whole)
-    step = record.rate_hz / (record.samples - 1)
+    transformed = _transformed(whole[:, record.samples - 1 - length :])
+    step = record.rate_hz / length
     first, stop = _borders(record, transformed[0], step, band_hz)
     lines = slice(first, stop)
     outputs = transformed[1:, lines]
@@ -110,6 +113,21 @@ def spectrum_of(
         bands=bands,
         outside=frozen_float(np.maximum(everything - 2.0 * np.sum(np.abs(outputs) ** 2, axis=1), 0.0)),
     )
+
+
+def _fast_length(count: int) -> int:
+    """Return the largest length up to a count that is a product of small primes, where a transform is quick.
+
+    The first samples are left out for it, one in five hundred at most.
+    """
+    for length in range(count, max(count - count // SHORTENED, 1), -1):
+        rest = length
+        for prime in (2, 3, 5, 7, 11):
+            while rest % prime == 0:
+                rest //= prime
+        if rest == 1:
+            return length
+    return count
 
 
 def _transformed(values: FloatArray) -> ComplexArray:
