@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 SECONDS_PER_MINUTE = 60.0
+M_S_PER_KNOT = 1852.0 / 3600.0
 
 _Number = TypeVar("_Number", float, NDArray[np.float64])
 

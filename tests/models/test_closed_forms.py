@@ -160,6 +160,12 @@ def sailing_core(s, p):
     return (pick_up(s, p) / telemetry(s, p) * speed,)
 
 
+def sailing_ship(s, p):
+    (speed,) = sailing_core(s, p)
+    ship = p["sigma"] * (2 - p["a"]) / (p["tau_u"] * s + p["e"] - p["a"]) * mp.exp(-s * p["t_log"])
+    return speed, speed / pick_up(s, p) * ship
+
+
 def sailing_pitch(s, p):
     by_set_point, by_pitch = sailing(s, p), sailing(s, p, n_set=0, theta_set=1)
     return tuple(x for pair in zip(by_set_point, by_pitch, strict=True) for x in pair)
@@ -186,6 +192,7 @@ FORMS = {
     "GOVERNOR": lambda s, p: ((p["K_p"] + p["K_i"] / s) * mp.exp(-s * p["t_rack"]),),
     "ENGINE": engine,
     "FREE-CORE": sailing_core,
+    "FREE-SHIP": sailing_ship,
     "FREE-CLOSED": lambda s, p: sailing(s, p)[:2],
     "FREE-LOG": sailing,
     "FREE-PITCH": sailing_pitch,

@@ -80,8 +80,10 @@ def test_closed_loop_is_that_of_the_equations():
 
 
 def test_core_is_speed_over_torque():
-    n, m_s, _ = ship(1.0, 0.0)
+    n, m_s, v = ship(1.0, 0.0)
     assert response("FREE-CORE")["n", "M_s"] == pytest.approx(n / m_s, rel=1e-10)
+    assert response("FREE-SHIP")["n", "M_s"] == pytest.approx(n / m_s, rel=1e-10)
+    assert response("FREE-SHIP")["v_s", "M_s"] == pytest.approx(v / m_s, rel=1e-10)
 
 
 def test_pitch_against_the_governor():
@@ -159,7 +161,7 @@ def test_at_the_quay_it_is_the_gauge_aware_line():
     assert found == pytest.approx(gauge.response(gauge.vector(known | {"k_q": 2.0}), 1j * OMEGA_RAD_S), rel=1e-12)
 
 
-@pytest.mark.parametrize("name", ["FREE-CORE", "FREE-CLOSED", "FREE-LOG", "FREE-PITCH"])
+@pytest.mark.parametrize("name", ["FREE-CORE", "FREE-SHIP", "FREE-CLOSED", "FREE-LOG", "FREE-PITCH"])
 def test_derivatives_are_those_of_the_response(name):
     model = structure(name)
     values = model.vector({k: v for k, v in (TUG | {"sigma": 0.8}).items() if k in model.names})

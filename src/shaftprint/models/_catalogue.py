@@ -28,7 +28,7 @@ from shaftprint.models._gauge_catalogue import (
     governor,
 )
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._sailing_catalogue import free_closed, free_core, free_log, free_pitch
+from shaftprint.models._sailing_catalogue import free_closed, free_core, free_log, free_pitch, free_ship
 from shaftprint.models._shaft_blocks import Shaft, TorqueBalance
 from shaftprint.models._structure import Structure
 
@@ -185,6 +185,7 @@ STRUCTURES: Mapping[str, Callable[[], Structure]] = {
     "GOVERNOR": governor,
     "ENGINE": engine,
     "FREE-CORE": free_core,
+    "FREE-SHIP": free_ship,
     "FREE-CLOSED": free_closed,
     "FREE-LOG": free_log,
     "FREE-PITCH": free_pitch,

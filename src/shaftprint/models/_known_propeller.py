@@ -94,7 +94,7 @@ def with_known_propeller(
     Parameters
     ----------
     structure
-        FREE-CORE, FREE-CLOSED, FREE-LOG or FREE-PITCH.
+        FREE-CORE, FREE-SHIP, FREE-CLOSED, FREE-LOG or FREE-PITCH.
     propeller
         Curves and working point.
     mass_kg
@@ -113,7 +113,7 @@ def with_known_propeller(
     if missing:
         raise StructureError(
             f"structure {structure.name}: expected a free-sailing structure, found no {', '.join(missing)}; use "
-            "FREE-CORE, FREE-CLOSED, FREE-LOG or FREE-PITCH."
+            "FREE-CORE, FREE-SHIP, FREE-CLOSED, FREE-LOG or FREE-PITCH."
         )
     speed, lowest = propeller.ship_speed_m_s, propeller.lowest_wake()
     thrust = float(propeller.thrust_n(np.asarray(max(lowest, 0.0))))

@@ -88,8 +88,8 @@ class SailingShaft(Block):
     """Line of shafts of a free-sailing ship from torque to speed.
 
     ``(tau_u s + e - a) / [(tau s + 2 - b - g) (tau_u s + e - a) + sigma b (2 - a)]`` where ``k_q`` is 2, with ``tau``
-    the sum of the inertia times given and ``g`` the slope of the engine torque. With the downstream inertia alone and no
-    ``g`` it is ``n / M_s`` at the gauge.
+    the sum of the inertia times given and ``g`` the slope of the engine torque. With the downstream inertia alone and
+    no ``g`` it is ``n / M_s`` at the gauge.
     """
 
     inertia: tuple[Parameter, ...]

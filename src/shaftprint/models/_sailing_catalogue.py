@@ -65,6 +65,21 @@ def free_core() -> Structure:
     )
 
 
+def free_ship() -> Structure:
+    """Return core propulsion and ship: ``n`` and ``v_s`` from ``M_s``.
+
+    ``v_s / n = sigma (2 - a) exp(-s t_log) / (tau_u s + e - a)`` beside what FREE-CORE shows.
+    """
+    core = SailingShaft((TAU_DN,), _torque()) * Inverse(_torque_sensor())
+    return Structure(
+        name="FREE-SHIP",
+        title="core propulsion of a free-sailing ship with its speed logged",
+        input="M_s",
+        outputs={"n": core * _speed_sensor(), "v_s": core * ShipSpeed(A, E, TAU_U, SIGMA) * Delay(T_LOG)},
+        combinations=(*_combinations(), *_ship_combinations()),
+    )
+
+
 def free_closed() -> Structure:
     """Return the closed loop of a free-sailing ship: ``n`` and ``M_s`` from ``n_set``."""
     speed, torque, _ = _governed()

@@ -16,7 +16,8 @@ from shaftprint.signals._match import expect_campaign, expect_length
 from shaftprint.signals._outliers import fault_limits
 from shaftprint.signals._pick_up import PickUp, read_pick_up
 from shaftprint.signals._rack import rack_signal, read_rack
-from shaftprint.signals._signals import RackSignal, Repair, Signals
+from shaftprint.signals._ship_speed import read_ship_speed, ship_speed_signal
+from shaftprint.signals._signals import RackSignal, Repair, ShipSpeedSignal, Signals
 from shaftprint.signals._sources import Clock, Mode, Sources, common_clock, find_sources
 from shaftprint.signals._steady import SteadyStretch, steady_stretches
 from shaftprint.signals._steps import find_step_delays
@@ -164,6 +165,21 @@ def _rack_signal(
     return rack_signal(fraction, sources.rack, sensor, stretches, latency_s=latency_s)
 
 
+def _ship_speed_signal(
+    sources: Sources, vessel: "Vessel", clock: Clock, stretches: tuple[SteadyStretch, ...]
+) -> tuple[ShipSpeedSignal | None, tuple[str, ...]]:
+    """Return the speed of the ship, and a finding where its log says that the ship had no way on."""
+    channel, sensor = sources.ship_speed, vessel.sensors.ship_speed
+    if channel is None or sensor is None:
+        return None, ()
+    latency_s = 0.0 if clock.mode == "thesis" else sensor.latency_s
+    speed = read_ship_speed(channel, sensor, clock, latency_s=latency_s)
+    found = ship_speed_signal(speed, channel, sensor, clock, stretches)
+    if found is None:
+        return None, (f"the speed of the ship in channel {channel.name} was left out: the ship had no way on",)
+    return found, ()
+
+
 def _read_speed(channel: "Channel", sensor: "SpeedSensor", vessel: "Vessel", clock: Clock) -> PickUp:
     return read_pick_up(
         channel,
@@ -201,6 +217,7 @@ def _put_together(
         slope_std = float(calibration.covariance[0, 0]) ** 0.5 / abs(calibration.slope_rev_s_per_v)
         scale = dc_scale(n_set, speed, campaign, rate_hz=rate_hz, start_s=start_s, slope_std=slope_std)
         _stretch(n_set, scale.value, about=working_point.engine_speed_rev_s)
+    ship_speed, moored = _ship_speed_signal(sources, vessel, clock, quiet)
     delays, missed = find_step_delays(n_set, speed, campaign, rate_hz=rate_hz, start_s=start_s)
     return Signals(
         rate_hz=rate_hz,
@@ -216,10 +233,11 @@ def _put_together(
         step_delays=delays,
         repairs=read.repairs,
         mode=clock.mode,
-        findings=(*read.findings, *mismatches, *differences, *scale.findings, *missed),
+        findings=(*read.findings, *mismatches, *differences, *scale.findings, *moored, *missed),
         recording_sha256=recording.sha256,
         recording_name=recording.path.name,
         rack=_rack_signal(sources, vessel, clock, read.rack, quiet),
+        ship_speed=ship_speed,
     )
 
 

@@ -151,6 +151,31 @@ class RackSignal:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ShipSpeedSignal:
+    """Speed of the ship from its log, on the common grid."""
+
+    channel: str
+    """Name of the channel in the recording."""
+    speed_m_s: FloatArray
+    """Speed [m/s], shape (samples,); the known latency has been taken off."""
+    cycle_s: float
+    """Time from one value of the log to the next [s]."""
+    hold_s: float
+    """Time for which a value is held until the next [s]; 0 where straight lines join them."""
+    join_s: float
+    """Length of the straight lines from one value to the next [s]; 0 where values are held."""
+    working_point_m_s: float
+    """Mean speed ``v_0`` of the steady state for normalisation [m/s]."""
+    working_point_std_m_s: float
+    """Standard deviation of ``v_0`` [m/s]: scatter between steady stretches, without the error of the log itself."""
+
+    @property
+    def nyquist_hz(self) -> float:
+        """Highest frequency that the log shows without aliasing [Hz]."""
+        return 0.5 / self.cycle_s
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Signals:
     """A recording in physical units on one uniform time grid, with every repair and calibration listed."""
 
@@ -188,6 +213,8 @@ class Signals:
     """File name of the raw recording."""
     rack: RackSignal | None = None
     """Fuel rack, where the vessel file names the percent torque of the engine's control unit."""
+    ship_speed: ShipSpeedSignal | None = None
+    """Speed of the ship, where the vessel file names a log and the ship had way on."""
 
     @property
     def engine_speed(self) -> SpeedSignal:

@@ -30,10 +30,12 @@ class Sources:
     """Set point of the engine speed."""
     rack: "Channel | None" = None
     """Percent torque of the control unit."""
+    ship_speed: "Channel | None" = None
+    """Speed of the ship."""
 
     @property
     def every(self) -> "tuple[Channel, ...]":
-        """All of them but the percent torque, which keeps its own clock."""
+        """All of them but percent torque and speed of the ship, which come seldom."""
         return (*self.speed, self.torque, self.set_point)
 
 
@@ -94,6 +96,15 @@ def find_sources(recording: "Recording", vessel: "Vessel") -> Sources:
             unit=rack.unit,
             use="fuel rack",
             way_out="correct the name there, or take [sensors.rack] out where it was not logged",
+        ),
+        ship_speed=None
+        if sensors.ship_speed is None
+        else find_channel(
+            recording,
+            sensors.ship_speed.channel,
+            unit=sensors.ship_speed.unit,
+            use="speed of the ship",
+            way_out="correct the name there, or take [sensors.ship_speed] out where it was not logged",
         ),
     )
 

@@ -11,6 +11,7 @@ from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._line_measurement import LineMeasurement
 from shaftprint.spectra._pick_up_gain import pick_up_gain
 from shaftprint.spectra._response_covariance import response_of_line, weight_factor, with_common_error
+from shaftprint.spectra._ship_line import log_gain, shows
 
 if TYPE_CHECKING:
     from shaftprint.signals import Signals, SpeedSignal
@@ -54,7 +55,7 @@ def response_of_lines(
     sensor: "SpeedSignal",
     load: FloatArray,
 ) -> FrequencyResponse:
-    """Return the response from set point to speed, torque and, where it was logged, fuel rack.
+    """Return the response from set point to speed, torque and, where they were logged, ship and fuel rack.
 
     Parameters
     ----------
@@ -63,18 +64,20 @@ def response_of_lines(
     measurements
         One entry a line.
     channels
-        Places of set point, speed and torque.
+        Places of set point, speed and torque, and of the speed of the ship where it was logged.
     sensor
         The speed signal.
     load
         Propeller load of each window over that at the working point, shape (lines,).
     """
-    outputs = ("n", "M_s") if signals.rack is None else ("n", "M_s", "X")
+    ship = signals.ship_speed
+    outputs = ("n", "M_s", *(() if ship is None else ("v_s",)), *(() if signals.rack is None else ("X",)))
     response = np.empty((len(outputs), 1, len(measurements)), dtype=np.complex128)
     common = np.zeros_like(response)
     covariance = np.empty((len(measurements), 2 * len(outputs), 2 * len(outputs)))
     for place, line in enumerate(measurements):
-        amplitude, noise = _amplitudes(line, channels, sensor)
+        known = _known_outputs(signals, line)
+        amplitude, noise = _amplitudes(line, channels if "v_s" in known else channels[:3], signals, sensor)
         if signals.mode != "thesis":
             amplitude, noise = without_cross_term(
                 amplitude,
@@ -89,11 +92,12 @@ def response_of_lines(
         more = weight_factor(samples, len(outputs)) / weight_factor(samples, _SPEED_AND_TORQUE)
         share = signals.dc_scale_std / signals.dc_scale * np.sqrt(more)
         spread = with_common_error(spread, values, share)
-        common[: values.size, 0, place] = share * values
-        if values.size < len(outputs):
-            values, spread = _with_unknown_output(values, spread)
-        if signals.rack is not None:
-            # a speed that is known well beside a rack that is not: rounding must leave the matrix positive definite
+        common[[outputs.index(name) for name in known], 0, place] = share * values
+        for position, name in enumerate(outputs):
+            if name not in known:
+                values, spread = _with_unknown_output(values, spread, position)
+        if len(outputs) > _SPEED_AND_TORQUE:
+            # a speed that is known well beside an output that is not: rounding must leave the matrix positive definite
             spread += _ROUNDING * spread.diagonal().max() * np.eye(len(spread))
         response[:, 0, place] = values
         covariance[place] = spread
@@ -109,9 +113,24 @@ def response_of_lines(
     )
 
 
-def _amplitudes(line: LineMeasurement, channels: list[int], sensor: "SpeedSignal") -> tuple[ComplexArray, ComplexArray]:
-    """Return the amplitudes of set point, speed, torque and rack, as far as measured, and their noise."""
-    scale = np.array([1.0, 1.0 / pick_up_gain(sensor, line.window.frequency_hz), 1.0])
+def _known_outputs(signals: "Signals", line: LineMeasurement) -> tuple[str, ...]:
+    """Return the outputs that were measured at a line."""
+    known = ["n", "M_s"]
+    if signals.ship_speed is not None and shows(signals.ship_speed, line.window.frequency_hz):
+        known.append("v_s")
+    if line.rack is not None:
+        known.append("X")
+    return tuple(known)
+
+
+def _amplitudes(
+    line: LineMeasurement, channels: list[int], signals: "Signals", sensor: "SpeedSignal"
+) -> tuple[ComplexArray, ComplexArray]:
+    """Return the amplitudes of set point, speed, torque, ship and rack, as far as measured, and their noise."""
+    frequency = line.window.frequency_hz
+    scale = np.array([1.0, 1.0 / pick_up_gain(sensor, frequency), 1.0], dtype=np.complex128)
+    if len(channels) > scale.size and signals.ship_speed is not None:
+        scale = np.append(scale, 1.0 / log_gain(signals.ship_speed, frequency))
     amplitude = line.amplitude[channels]
     noise = line.noise.covariance[np.ix_(channels, channels)]
     if line.rack is not None:
@@ -119,14 +138,17 @@ def _amplitudes(line: LineMeasurement, channels: list[int], sensor: "SpeedSignal
         amplitude = np.append(amplitude, line.rack.amplitude)
         own = line.rack.covariance[[*channels, -1]]
         noise = np.block([[noise, own[:-1, np.newaxis].conj()], [own[np.newaxis]]])
-    return scale * amplitude, scale[:, np.newaxis] * noise * scale
+    return scale * amplitude, scale[:, np.newaxis] * noise * scale.conj()
 
 
-def _with_unknown_output(values: ComplexArray, covariance: FloatArray) -> tuple[ComplexArray, FloatArray]:
-    """Add one output that was not measured, after the others; its value is 1, which a logarithm can take."""
-    count = values.size
-    spread = np.zeros((2 * count + 2, 2 * count + 2))
-    kept = np.delete(np.arange(2 * count + 2), [count, 2 * count + 1])
+def _with_unknown_output(
+    values: ComplexArray, covariance: FloatArray, position: int
+) -> tuple[ComplexArray, FloatArray]:
+    """Put in one output that was not measured; its value is 1, which a logarithm can take."""
+    count = values.size + 1
+    new = [position, count + position]
+    kept = np.delete(np.arange(2 * count), new)
+    spread = np.zeros((2 * count, 2 * count))
     spread[np.ix_(kept, kept)] = covariance
-    spread[[count, -1], [count, -1]] = NOT_MEASURED_STD**2
-    return np.append(values, 1.0), spread
+    spread[new, new] = NOT_MEASURED_STD**2
+    return np.insert(values, position, 1.0), spread

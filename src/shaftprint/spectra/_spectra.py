@@ -15,6 +15,7 @@ from shaftprint.spectra._line_responses import response_of_lines
 from shaftprint.spectra._load_drift import LoadDrift, load_drift
 from shaftprint.spectra._rack_line import cut_rack
 from shaftprint.spectra._set_point_check import amplitude_remark, check_frequency_unit, check_set_point
+from shaftprint.spectra._ship_line import shows
 from shaftprint.spectra._signal_to_noise import SignalToNoise, signal_to_noise
 from shaftprint.spectra._sine_fit import WholePeriodSine
 from shaftprint.spectra._windows import Window, plan_windows
@@ -37,7 +38,8 @@ class Spectra:
     """All that the sines of a campaign tell about one shaft line."""
 
     response: FrequencyResponse
-    """Response from ``n_set`` to ``n`` and ``M_s``, and to ``X`` where the rack was logged."""
+    """Response from ``n_set`` to ``n`` and ``M_s``; to ``v_s`` where the speed of the ship was logged, to ``X`` where
+    the rack was."""
     windows: tuple[Window, ...]
     """Window of each line (thesis table 3.5)."""
     signal_to_noise: SignalToNoise
@@ -76,11 +78,12 @@ def estimate_spectra(
     """Measure every sine of a campaign in every channel.
 
     All values are divided by the working point of the whole recording: set point and speed by ``n_0``, torque by
-    ``M_s0``, fuel rack by ``X_0``; the propeller load of each window relative to it goes with the response as ``load``.
-    Lines above half the pulse rate of the speed sensor are aliased and not used by default; neither are lines whose set
-    point is not a sine of the stated frequency. A line may be too fast for the messages of the control unit: its
-    response to ``X`` is then unknown (see `measured`), that to speed and torque is not. In thesis mode all lines are
-    used, as the thesis did, and the remarks say what speaks against them.
+    ``M_s0``, speed of the ship by ``v_0``, fuel rack by ``X_0``; the propeller load of each window relative to it
+    goes with the response as ``load``. Lines above half the pulse rate of the speed sensor are aliased and not used
+    by default; neither are lines whose set point is not a sine of the stated frequency. A line may be too fast for
+    the messages of the control unit: its response to ``X`` is then unknown (see `measured`), that to speed and
+    torque is not. In thesis mode all lines are used, as the thesis did, and the remarks say what speaks against
+    them.
 
     Parameters
     ----------
@@ -104,8 +107,9 @@ def estimate_spectra(
         not move, no sine of the campaign is in the recording, or frequencies are in rad/s.
     """
     sensor = _speed_signal(signals, speed)
-    names = ("n_set", *signals.speeds, "M_s")
-    used_channels = [0, names.index(sensor.name), len(names) - 1]
+    ship = () if signals.ship_speed is None else ("v_s",)
+    names = ("n_set", *signals.speeds, *ship, "M_s")
+    used_channels = [0, names.index(sensor.name), len(names) - 1, *(names.index(name) for name in ship)]
     cuts, left_out = _cut_windows(signals, campaign)
     measurements = [_measure(signals, cut, names, method) for cut in cuts]
     check_frequency_unit(measurements)
@@ -153,8 +157,12 @@ def _cut_windows(signals: "Signals", campaign: "Campaign") -> tuple[list[WindowS
     """Cut every line out of the normalised channels; say which lines the recording does not hold."""
     point = signals.working_point
     speeds = [speed.speed_rev_s for speed in signals.speeds.values()]
-    channels = (signals.set_point_rev_s, *speeds, signals.shaft_torque_nm)
+    ship = [] if signals.ship_speed is None else [signals.ship_speed.speed_m_s]
+    # the torque stays last: what is known of its noise goes with that place
+    channels = (signals.set_point_rev_s, *speeds, *ship, signals.shaft_torque_nm)
     scale = np.full((len(channels), 1), 1.0 / point.engine_speed_rev_s)
+    if signals.ship_speed is not None:
+        scale[-2] = 1.0 / signals.ship_speed.working_point_m_s
     scale[-1] = 1.0 / point.shaft_torque_nm
     cuts, left_out = [], {}
     for window in plan_windows(campaign):
@@ -247,6 +255,11 @@ def _judge(
             found.append(f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased")
         if line.rack_remark:
             found.append(line.rack_remark)
+        if signals.ship_speed is not None and not shows(signals.ship_speed, line.window.frequency_hz):
+            cycle = signals.ship_speed.cycle_s
+            found.append(
+                f"v_s is not measured: a value every {cycle:g} s is too seldom for {line.window.frequency_hz:g} Hz"
+            )
         if found:
             remarks[name] = "; ".join(found)
         usable[place] = finding.usable and not aliased

@@ -18,8 +18,9 @@ from shaftprint.tug._disturbance import Disturbance
 from shaftprint.tug._faults import Fault
 from shaftprint.tug._gauge import TorqueGauge
 from shaftprint.tug._helm import Helm
+from shaftprint.tug._log import SpeedLog
 from shaftprint.tug._physics import build_plant, equilibrium, steady_load_nm
-from shaftprint.tug._plant import RACK, SPEED
+from shaftprint.tug._plant import RACK, SPEED, WAY
 from shaftprint.tug._pulses import VOLT_PER_COUNT, PickUp
 from shaftprint.tug._truth import StripTruth, Truth, rack_latency_s, tell_truth, truth_path, truth_text
 from shaftprint.tug._tug import Tug
@@ -112,9 +113,9 @@ class _Crew:
                 f"campaign {campaign.name}: expected at least one sample at {self._rate_hz:g} Hz, "
                 f"found a duration of {campaign.duration_s:g} s."
             )
-        # the bus comes last: without it the others draw the same numbers
-        process, torque, set_point, *speeds, bus = (
-            np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(4 + len(vessel.sensors.speed))
+        # bus and log come last: without them the others draw the same numbers
+        process, torque, set_point, *speeds, bus, log = (
+            np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(5 + len(vessel.sensors.speed))
         )
         duration_s = campaign.duration_s
         plant = build_plant(tug, vessel)
@@ -137,7 +138,8 @@ class _Crew:
             for sensor, rng in zip(vessel.sensors.speed, speeds, strict=True)
         ]
         self._control_unit = self._watch_bus(float(first[RACK]), bus)
-        on_board = (self._helm, *self._pick_ups, self._gauge, self._control_unit)
+        self._log = self._read_log(float(first[WAY]), log)
+        on_board = (self._helm, *self._pick_ups, self._gauge, self._control_unit, self._log)
         self._sensors: tuple[_Sensor, ...] = tuple(sensor for sensor in on_board if sensor is not None)
         self._limited = {excitation.name: 0 for excitation in campaign.excitations}
 
@@ -147,6 +149,13 @@ class _Crew:
             return None
         latency_s = rack_latency_s(self._tug, sensor)
         return ControlUnit(sensor, latency_s=latency_s, first_rack=first_rack, rate_hz=self._rate_hz, rng=rng)
+
+    def _read_log(self, first_speed_m_s: float, rng: np.random.Generator) -> SpeedLog | None:
+        sensor = self._vessel.sensors.ship_speed
+        if sensor is None:
+            return None
+        noise = 0.0 if self._tug.sailing is None else self._tug.sailing.log_rms_m_s
+        return SpeedLog(sensor, noise_m_s=noise, first_speed_m_s=first_speed_m_s, rate_hz=self._rate_hz, rng=rng)
 
     def record(self, writer: RecordingWriter, progress: Callable[[float], None]) -> None:
         """Sail and write; the sensors and the file work in a second thread while the ship sails on."""
@@ -166,7 +175,7 @@ class _Crew:
             for leg in legs:
                 if waiting is not None:
                     waiting.result()
-                waiting = second_thread.submit(self._log, writer, leg)
+                waiting = second_thread.submit(self._write, writer, leg)
                 done += leg.time_s.size
                 progress(done / self._samples)
         if waiting is not None:
@@ -229,8 +238,17 @@ class _Crew:
                 offset=LOWEST_PERCENT,
                 long_name="demand percent torque of the engine's control unit, from its CAN bus",
             )
+        if self._log is not None:
+            writer.declare(
+                self._log.channel,
+                unit=self._log.unit,
+                rate_hz=1.0 / self._log.cycle_s,
+                start_s=self._log.start_s,
+                scale=self._log.scale,
+                long_name="speed of the ship through the water, from its log",
+            )
 
-    def _log(self, writer: RecordingWriter, leg: Leg) -> None:
+    def _write(self, writer: RecordingWriter, leg: Leg) -> None:
         for sensor in self._sensors:
             writer.append(sensor.channel, sensor.next(leg))
         times = leg.time_s[leg.limited]

@@ -39,6 +39,8 @@ class Sailing:
     """True resistance over that of the vessel file."""
     resistance_exponent: float | None = None
     """``e`` of ``R = c v^e``; ``None``: the vessel's."""
+    log_rms_m_s: float = 0.02
+    """Noise of a value of the log, where the vessel has one: rms [m/s]."""
 
 
 class Way(NamedTuple):

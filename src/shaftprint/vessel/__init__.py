@@ -33,6 +33,7 @@ from shaftprint.vessel._sensors import (
     Sensors,
     SetPointSensor,
     ShaftTorqueSensor,
+    ShipSpeedSensor,
     SpeedSensor,
 )
 from shaftprint.vessel._vessel import Vessel, load_vessel
@@ -50,6 +51,7 @@ __all__ = [
     "SetPointSensor",
     "ShaftLink",
     "ShaftTorqueSensor",
+    "ShipSpeedSensor",
     "SpeedSensor",
     "Vessel",
     "WorkingPoint",

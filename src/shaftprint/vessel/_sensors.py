@@ -15,6 +15,7 @@ from shaftprint.settings import (
     PositiveNumber,
     Settings,
 )
+from shaftprint.units import M_S_PER_KNOT
 
 
 class SpeedSensor(Settings):
@@ -133,6 +134,31 @@ class RackSensor(Settings):
     """Standard deviation of the latency [s]."""
 
 
+class ShipSpeedSensor(Settings):
+    """A log or a satellite receiver that gives the speed of the ship.
+
+    What answers the propellers is the speed through the water; a steady current does not matter to its changes.
+    """
+
+    channel: Name
+    """Name of the channel in the recording."""
+    unit: Literal["m/s", "kn"]
+    """Unit of the channel."""
+    cycle_s: PositiveNumber
+    """Time from one value to the next [s]."""
+    resolution: PositiveNumber
+    """Step of the value, in the unit of the channel."""
+    latency_s: NotNegativeNumber
+    """Time by which a value is late [s]."""
+    latency_std_s: NotNegativeNumber | None = None
+    """Standard deviation of the latency [s]."""
+
+    @property
+    def m_s_per_unit(self) -> float:
+        """Speed for one unit of the channel [m/s]."""
+        return M_S_PER_KNOT if self.unit == "kn" else 1.0
+
+
 class Logger(Settings):
     """The instrument that recorded the channels."""
 
@@ -153,13 +179,15 @@ class Sensors(Settings):
     """The speed set point."""
     rack: RackSensor | None = None
     """Percent torque from the engine's control unit, where it was logged."""
+    ship_speed: ShipSpeedSensor | None = None
+    """Speed of the ship, where it was logged."""
 
     @model_validator(mode="after")
     def _names_and_channels_differ(self) -> Self:
         names = [sensor.name for sensor in self.speed]
         channels = [sensor.channel for sensor in self.speed]
         channels += [self.shaft_torque.channel, self.set_point.channel]
-        channels += [] if self.rack is None else [self.rack.channel]
+        channels += [sensor.channel for sensor in (self.rack, self.ship_speed) if sensor is not None]
         found = []
         for what, values in (("name", names), ("channel", channels)):
             twice = sorted({value for value in values if values.count(value) > 1})

@@ -1,0 +1,108 @@
+"""Speed of the ship from a log, brought on the common grid.
+
+Tests underway look at the ship below half a hertz, far below the rate of a log: values are joined by straight lines,
+and what that does to a sine is known.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import SignalError
+from shaftprint.signals._channels import blocks
+from shaftprint.signals._signals import ShipSpeedSignal
+from shaftprint.signals._steady import SteadyStretch
+from shaftprint.signals._working_point import mean_of_stretches
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel
+    from shaftprint.signals._sources import Clock
+    from shaftprint.vessel import ShipSpeedSensor
+
+# Below this a ship is moored, whatever its log says [m/s].
+_NO_WAY_M_S = 0.2
+
+_HELD_RATE = 2.0
+
+
+def read_ship_speed(channel: "Channel", sensor: "ShipSpeedSensor", clock: "Clock", *, latency_s: float) -> FloatArray:
+    """Return the speed of the ship [m/s] on the common grid, shape (samples,).
+
+    Parameters
+    ----------
+    channel
+        The log, one sample a value or held on the clock of the logger.
+    sensor
+        What the vessel file says of it.
+    clock
+        The grid.
+    latency_s
+        Time by which the channel is taken to be late [s].
+
+    Raises
+    ------
+    SignalError
+        If the channel is slower than the vessel file says, or does not cover the test.
+    """
+    if channel.rate_hz * sensor.cycle_s < 1.0 - 1e-6:
+        raise SignalError(
+            f"channel {channel.name}: expected {1.0 / sensor.cycle_s:g} values a second or more, as cycle_s = "
+            f"{sensor.cycle_s:g} says, found {channel.rate_hz:g}; correct cycle_s in the vessel file."
+        )
+    counts = np.concatenate([part.astype(np.float64) for part in blocks(channel, clock.block_samples(channel))])
+    speed = sensor.m_s_per_unit * (counts * channel.scale + channel.offset)
+    time = channel.start_s - latency_s + np.arange(speed.size) / channel.rate_hz
+    grid = clock.start_s + np.arange(clock.count) / clock.rate_hz
+    margin = latency_s + 2.0 * sensor.cycle_s
+    if grid[0] < time[0] - margin or grid[-1] > time[-1] + margin:
+        raise SignalError(
+            f"channel {channel.name}: expected the speed of the ship from {grid[0]:.1f} to {grid[-1]:.1f} s, found it "
+            f"from {time[0]:.1f} to {time[-1]:.1f} s; take [sensors.ship_speed] out where it was not logged throughout."
+        )
+    return np.interp(grid, time, speed)
+
+
+def ship_speed_signal(
+    speed_m_s: FloatArray,
+    channel: "Channel",
+    sensor: "ShipSpeedSensor",
+    clock: "Clock",
+    stretches: tuple[SteadyStretch, ...],
+) -> ShipSpeedSignal | None:
+    """Return the speed of the ship with its working point; nothing where the ship had no way on.
+
+    Parameters
+    ----------
+    speed_m_s
+        What `read_ship_speed` gives.
+    channel, sensor, clock
+        Where it comes from.
+    stretches
+        Where the line stands still at the working point.
+    """
+    inside = [
+        speed_m_s[
+            round((s.start_s - clock.start_s) * clock.rate_hz) : round((s.stop_s - clock.start_s) * clock.rate_hz)
+        ]
+        for s in stretches
+    ]
+    block = max(round(clock.rate_hz), 1)
+    means = [part[: part.size - part.size % block].reshape(-1, block).mean(axis=1) for part in inside]
+    mean, std = mean_of_stretches(
+        [float(part.mean()) for part in means],
+        [float(part.std(ddof=1) / np.sqrt(part.size)) for part in means],
+        np.array([stretch.duration_s for stretch in stretches]),
+    )
+    if mean < _NO_WAY_M_S:
+        return None
+    held = channel.rate_hz * sensor.cycle_s >= _HELD_RATE
+    return ShipSpeedSignal(
+        channel=channel.name,
+        speed_m_s=frozen_float(speed_m_s),
+        cycle_s=sensor.cycle_s,
+        hold_s=sensor.cycle_s if held else 0.0,
+        join_s=0.0 if held else 1.0 / channel.rate_hz,
+        working_point_m_s=mean,
+        working_point_std_m_s=std,
+    )
