@@ -30,7 +30,7 @@ from shaftprint.identify._known import PRIOR_OF_G, priors_from_vessel
 from shaftprint.identify._left_out import Foretold
 from shaftprint.identify._likelihood_ratio import LikelihoodRatio
 from shaftprint.identify._line_test import LineTest
-from shaftprint.identify._load_factors import load_factors
+from shaftprint.identify._load_factors import load_factors, with_load
 from shaftprint.identify._noise_levels import NoiseLevels, noise_levels, stated_noise
 from shaftprint.identify._optima import Optimum
 from shaftprint.identify._part import Part
@@ -43,6 +43,7 @@ from shaftprint.identify._refit import Refits, refit
 from shaftprint.identify._requirements import Requirements
 from shaftprint.identify._scan import Minimum, Scan, scan, scan_response
 from shaftprint.identify._search_report import SearchReport, report_search
+from shaftprint.identify._sensor import PickedUp, with_sensor
 from shaftprint.identify._settings import Settings, Stability
 from shaftprint.identify._stan_tug_noise import STAN_TUG_NOISE
 from shaftprint.identify._starts import Draw, LatinHypercube, Uniform
@@ -81,6 +82,7 @@ __all__ = [
     "NoiseLevels",
     "Optimum",
     "Part",
+    "PickedUp",
     "Prior",
     "Profile",
     "ProfileCurve",
@@ -135,4 +137,6 @@ __all__ = [
     "stated_noise",
     "step_band",
     "suspects_of",
+    "with_load",
+    "with_sensor",
 ]

@@ -3,10 +3,18 @@
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 
 # Parameters that are slopes of the propeller torque: they grow with the load.
 LOADED = ("k_q", "kappa")
+
+
+def with_load(structure: Structure, load: float) -> Structure:
+    """Return the structure under a propeller load relative to that of the working point, see ``load_factors``."""
+    known = structure.named(structure.vector({}))
+    factors = {name: load for name in LOADED if name in known and load != 1.0}
+    return structure.scaled(**factors) if factors else structure
 
 
 def load_factors(response: FrequencyResponse, chosen: BoolArray | None = None) -> dict[str, FloatArray]:

@@ -13,9 +13,14 @@ time                s       of the recording
 
 from shaftprint.time_domain._decimator import Decimator
 from shaftprint.time_domain._identify_chirp import identify_chirp, spectrum_term
+from shaftprint.time_domain._identify_in_time import TimeSettings, identify_in_time, output_error, with_noise_at
+from shaftprint.time_domain._known_start import KnownStart
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise, white_noise
+from shaftprint.time_domain._output_error import OutputError, RecordRepeats
 from shaftprint.time_domain._record import Record, record_from_arrays
+from shaftprint.time_domain._record_fit import RecordFit
 from shaftprint.time_domain._records_of import records_of
+from shaftprint.time_domain._simulator import ExactDelays, Simulator
 from shaftprint.time_domain._spectrum import Spectrum, spectrum_of
 from shaftprint.time_domain._spectrum_term import FittedSpectrum, SpectrumRepeats, SpectrumTerm
 from shaftprint.time_domain._whiteness import whiteness_p_value
@@ -23,19 +28,29 @@ from shaftprint.time_domain._whitening import Whitening
 
 __all__ = [
     "Decimator",
+    "ExactDelays",
     "FittedSpectrum",
+    "KnownStart",
     "NoiseModel",
+    "OutputError",
     "Record",
+    "RecordFit",
+    "RecordRepeats",
+    "Simulator",
     "Spectrum",
     "SpectrumRepeats",
     "SpectrumTerm",
+    "TimeSettings",
     "Whitening",
     "estimate_noise",
     "identify_chirp",
+    "identify_in_time",
+    "output_error",
     "record_from_arrays",
     "records_of",
     "spectrum_of",
     "spectrum_term",
     "white_noise",
     "whiteness_p_value",
+    "with_noise_at",
 ]

@@ -44,6 +44,11 @@ class NoiseModel:
         return int(self.covariance.shape[0])
 
     @property
+    def power(self) -> FloatArray:
+        """Covariance of a sample of the noise, shape (outputs, outputs)."""
+        return self.start_up[: self.outputs, : self.outputs] if self.order else self.covariance
+
+    @property
     def start_up(self) -> FloatArray:
         """Covariance of ``order`` samples in a row, the earliest first, shape (order outputs, order outputs)."""
         size = self.order * self.outputs

@@ -58,7 +58,8 @@ class Whitening:
             size = begin * outputs
             start = part[:, :begin].reshape(part.shape[0], size) @ self._start[:size, :size].T
             out[:, :begin] = start.reshape(part.shape[0], begin, outputs)
-            predict(part.reshape(part.shape[0], -1), self._rows, begin * outputs, out.reshape(part.shape[0], -1))
+            flat = part.shape[0], part.shape[1] * outputs
+            predict(part.reshape(flat), self._rows, size, out.reshape(flat))
             found.append(out)
         return np.concatenate(found, axis=1)
 

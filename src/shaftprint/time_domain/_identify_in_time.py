@@ -1,0 +1,220 @@
+"""Fits in time: from a start through the colour of the noise to estimates with the right uncertainty.
+
+The noise of a record is not known beforehand, and what a wrong model leaves is no noise. So the fit goes in rounds: the
+residuals of the last one, without what the inputs still explain of them, give the noise model of the next. Estimates
+and noise model are independent to first order (Ljung, System Identification: Theory for the User, second edition,
+section 9.4), so that after two or three rounds nothing moves, and the covariance is that of a known noise.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import IdentificationError
+from shaftprint.identify import Identification, Settings, Term, identify_jointly, with_load, with_sensor
+from shaftprint.models import Structure
+from shaftprint.spectra import FrequencyResponse
+from shaftprint.time_domain._input_response import noise_of
+from shaftprint.time_domain._known_start import KnownStart
+from shaftprint.time_domain._noise_model import LONGEST_S, estimate_noise, white_noise
+from shaftprint.time_domain._output_error import OutputError
+from shaftprint.time_domain._record import Record
+from shaftprint.time_domain._simulator import ExactDelays, Simulator
+from shaftprint.time_domain._whitening import Whitening
+
+Source: TypeAlias = tuple[Structure, Record | FrequencyResponse] | Term
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TimeSettings:
+    """What is taken out of records beside the model, and how their noise is found."""
+
+    drift_degree: int = 1
+    """Highest power of time in what is projected out of each output: 0 for offsets, 1 for drifts, -1 for nothing."""
+    anew_after_s: float = 10.0
+    """A gap longer than this [s] begins offset and drift anew."""
+    initial_states: bool = False
+    """Whether the states at the start of a record are estimated; else it begins in steady running, or its first seconds
+    are not used."""
+    rounds: int = 3
+    """How many times the noise is estimated anew; 0 for white noise of each output."""
+    longest_memory_s: float = LONGEST_S
+    """Longest memory of the noise that is tried [s]."""
+    simulator: Simulator = field(default_factory=ExactDelays)
+    """How structures are simulated."""
+
+    def __post_init__(self) -> None:
+        """Check the numbers.
+
+        Raises
+        ------
+        IdentificationError
+            If one is out of range.
+        """
+        if self.drift_degree < -1 or self.rounds < 0 or not (self.longest_memory_s >= 0.0 and self.anew_after_s >= 0.0):
+            raise IdentificationError(
+                f"fit in time: expected a drift degree of at least -1 and no negative rounds or times, found {self}."
+            )
+
+
+def output_error(structure: Structure, record: Record, *, settings: TimeSettings | None = None) -> OutputError:
+    """Return the likelihood of a record, its noise white and as strong as the outputs: ``with_noise`` gives another.
+
+    Parameters
+    ----------
+    structure
+        Structure with the record's inputs, and outputs that the record has. Held parameters of a speed sensor and the
+        propeller load are the record's.
+    settings
+        What is taken out of it.
+
+    Raises
+    ------
+    IdentificationError
+        If structure and record do not fit together, or nothing is free.
+    """
+    chosen = settings or TimeSettings()
+    missing = [name for name in structure.outputs if name not in record.outputs]
+    if missing or set(structure.inputs) != set(record.inputs):
+        raise IdentificationError(
+            f"structure {structure.name} goes from {', '.join(structure.inputs)} to {', '.join(structure.outputs)}, "
+            f"record {record.name} from {', '.join(record.inputs)} to {', '.join(record.outputs)}: choose a structure "
+            "with these channels."
+        )
+    own = with_load(with_sensor(structure, record), record.load)
+    outputs = np.stack([record.outputs[name] for name in own.outputs], axis=1)
+    free = tuple(i for i, p in enumerate(own.parameters) if not p.held)
+    return OutputError(
+        structure=own,
+        record=record,
+        whitening=Whitening(noise=white_noise(outputs - outputs[record.used].mean(axis=0), record.stretches)),
+        simulator=chosen.simulator,
+        drift_degree=chosen.drift_degree,
+        anew_after_s=chosen.anew_after_s,
+        initial_states=chosen.initial_states,
+        held=own.vector({}),
+        free=free,
+        places=free,
+        columns=tuple(range(len(free))),
+    )
+
+
+def with_noise_at(term: OutputError, values: FloatArray, *, longest_memory_s: float = LONGEST_S) -> OutputError:
+    """Return a term with the noise that is left at some parameters.
+
+    Parameters
+    ----------
+    values
+        All parameters of the structure, shape (parameters,).
+    longest_memory_s
+        Longest memory that is tried [s].
+
+    Raises
+    ------
+    IdentificationError
+        If the simulation runs away there, or nothing is left.
+    """
+    measured = np.stack([term.record.outputs[name] for name in term.structure.outputs], axis=1)
+    left = noise_of(measured - term.model(values), term.record)
+    order = round(longest_memory_s * term.record.rate_hz)
+    return term.with_noise(Whitening(noise=estimate_noise(left, term.record.stretches, max_order=order)))
+
+
+def identify_in_time(
+    pairs: Sequence[Source],
+    *,
+    rng: np.random.Generator,
+    settings: Settings | None = None,
+    time: TimeSettings | None = None,
+    start: Mapping[str, float] | Identification | None = None,
+) -> Identification:
+    """Fit structures to records, and to frequency responses beside them, in one likelihood.
+
+    The data are independent of each other, each record has its own noise, and parameters of one name are one parameter.
+
+    Parameters
+    ----------
+    pairs
+        Each structure with a record or a frequency response, or terms.
+    rng
+        Source of the start values.
+    settings
+        How to search; of its starts the first is the known one.
+    time
+        What is taken out of the records, and how their noise is found.
+    start
+        Values of free parameters by name, or a fit, to start from. When not given that is a fit to the frequency
+        responses; where there are none, the best of all starts with white noise.
+
+    Raises
+    ------
+    IdentificationError
+        If a structure and its data do not fit together, there are too few data, the simulation of the start runs away,
+        or no start reached stable models.
+    """
+    chosen, how = settings or Settings(), time or TimeSettings()
+    parts = [_term(pair, how) for pair in pairs]
+    if not any(isinstance(part, OutputError) for part in parts):
+        raise IdentificationError("fit in time: expected at least one structure with a record, found none.")
+    first = _start(parts, rng, chosen, start)
+    for _ in range(how.rounds):
+        parts = [_renewed(part, first, how) for part in parts]
+        first = _values(identify_jointly(parts, rng=rng, settings=_from(parts, first, replace(chosen, starts=1))))
+    return identify_jointly(parts, rng=rng, settings=_from(parts, first, chosen))
+
+
+Part: TypeAlias = tuple[Structure, FrequencyResponse] | Term
+
+
+def _term(pair: Source, how: TimeSettings) -> Part:
+    if isinstance(pair, tuple) and len(pair) == 2 and isinstance(pair[1], Record):
+        return output_error(pair[0], pair[1], settings=how)
+    return pair  # type: ignore[return-value]  # what is neither is refused by the fit
+
+
+def _start(
+    parts: Sequence[Part],
+    rng: np.random.Generator,
+    settings: Settings,
+    start: Mapping[str, float] | Identification | None,
+) -> dict[str, float]:
+    if isinstance(start, Identification):
+        return _values(start)
+    if start is not None:
+        return dict(start)
+    responses = [part for part in parts if not isinstance(part, OutputError)]
+    if not responses:
+        return _values(identify_jointly(parts, rng=rng, settings=settings))
+    known = {p.name for structure in map(_structure, responses) for p in structure.free}
+    narrower = replace(
+        settings,
+        priors={name: prior for name, prior in settings.priors.items() if name in known},
+        regularisation={name: prior for name, prior in settings.regularisation.items() if name in known},
+    )
+    return _values(identify_jointly(responses, rng=rng, settings=narrower))
+
+
+def _values(found: Identification) -> dict[str, float]:
+    return {p.name: p.value for p in found.parameters}
+
+
+def _structure(part: Part) -> Structure:
+    return part.structure if isinstance(part, Term) else part[0]
+
+
+def _renewed(part: Part, first: Mapping[str, float], how: TimeSettings) -> Part:
+    """Return a record's term with the noise at some values; what else there is stays as it is."""
+    if not isinstance(part, OutputError):
+        return part
+    own = {p.name: first.get(p.name, p.value) for p in part.structure.free}
+    return with_noise_at(part, part.structure.vector(own), longest_memory_s=how.longest_memory_s)
+
+
+def _from(parts: Sequence[Part], first: Mapping[str, float], settings: Settings) -> Settings:
+    """Return the settings with the known values as their first start."""
+    free = {p.name: p.value for structure in map(_structure, parts) for p in structure.free}
+    place = np.array([first.get(name, value) for name, value in free.items()])
+    return replace(settings, draw=KnownStart(place, settings.draw))

@@ -1,0 +1,60 @@
+"""What the inputs explain whatever the model: finite impulse responses of the residuals.
+
+Residuals of a structure that is missing something still follow the input. What a long finite impulse response from the
+input explains of them is no noise: the noise model is taken from the rest, so that it does not depend on the structure,
+and its size is a test of the structure (Ljung, System Identification: Theory for the User, second edition, section
+16.6).
+"""
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.time_domain._nuisance import orthonormal, without
+from shaftprint.time_domain._record import Record
+
+# Length of the impulse responses [s], and the most lags, evenly spread, that they have.
+MEMORY_S, MOST_LAGS = 3.0, 60
+# Directions in which the inputs move less than this share of the largest are not excited: a sine has two.
+EXCITED = 1e-3
+
+
+def delayed_inputs(record: Record) -> FloatArray:
+    """Return the inputs at every lag, shape (inputs * lags, samples); before its beginning an input was constant."""
+    lags = np.unique(np.rint(np.linspace(0, MEMORY_S * record.rate_hz, MOST_LAGS)).astype(int))
+    rows = []
+    for values in record.inputs.values():
+        padded = np.concatenate([np.full(lags[-1], values[0]), values])
+        rows += [padded[lags[-1] - lag : padded.size - lag] for lag in lags]
+    moves = np.array(rows)
+    return np.asarray(moves - moves.mean(axis=1, keepdims=True))
+
+
+def excited(record: Record) -> FloatArray:
+    """Return an orthonormal basis of what the delayed inputs do in the used samples, shape (rank, samples)."""
+    rows = delayed_inputs(record) * record.used
+    _, sizes, right = np.linalg.svd(rows, full_matrices=False)
+    return np.asarray(right[sizes > EXCITED * sizes[0]]) if sizes[0] > 0.0 else right[:0]
+
+
+def noise_of(residuals: FloatArray, record: Record) -> FloatArray:
+    """Return residuals without what the inputs explain, shape (samples, outputs), right in size on average."""
+    basis = excited(record)
+    kept = residuals * record.used[:, None]
+    spare = max(int(record.used.sum()) - basis.shape[0], 1)
+    return np.asarray((kept - basis.T @ (basis @ kept)) * np.sqrt(record.used.sum() / spare))
+
+
+def explained_part(residuals: FloatArray, directions: FloatArray, basis: FloatArray) -> tuple[float, int]:
+    """Return the squared length of residuals within directions, beside an orthonormal basis, and how many those are.
+
+    Parameters
+    ----------
+    residuals
+        Shape (length,).
+    directions
+        Shape (directions, length).
+    basis
+        Shape (rank, length).
+    """
+    found = orthonormal(without(directions, basis))
+    return float(np.sum((found @ residuals) ** 2)), found.shape[0]

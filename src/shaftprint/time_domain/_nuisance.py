@@ -1,0 +1,58 @@
+"""What is in a record beside the model: offsets and slow drifts of the outputs.
+
+They are linear, and are projected out: for each parameter set they take their best values, exactly (variable
+projection: Golub and Pereyra, The differentiation of pseudo-inverses and nonlinear least squares problems whose
+variables separate, 1973).
+"""
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.time_domain._record import Record
+
+# Columns of which less than this share is left beside the others are none.
+LEAST_SHARE = 1e-9
+
+
+def drift_columns(record: Record, outputs: int, degree: int, *, anew_after_s: float) -> FloatArray:
+    """Return polynomials in time for each output, shape (columns, samples, outputs).
+
+    Parameters
+    ----------
+    outputs
+        Number of outputs.
+    degree
+        Highest power of time: 0 for offsets, 1 for drifts, -1 for none.
+    anew_after_s
+        A longer gap [s] begins a polynomial of its own.
+    """
+    pieces: list[list[int]] = []
+    for stretch in record.stretches:
+        if pieces and (stretch.start - pieces[-1][1]) / record.rate_hz <= anew_after_s:
+            pieces[-1][1] = stretch.stop
+        else:
+            pieces.append([stretch.start, stretch.stop])
+    columns = np.zeros((len(pieces), degree + 1, outputs, record.samples, outputs))
+    for number, (begin, end) in enumerate(pieces):
+        place = np.linspace(-1.0, 1.0, end - begin) if end - begin > 1 else np.zeros(1)
+        for power in range(degree + 1):
+            for output in range(outputs):
+                columns[number, power, output, begin:end, output] = np.polynomial.legendre.legval(
+                    place, np.eye(degree + 1)[power]
+                )
+    return columns.reshape(-1, record.samples, outputs)
+
+
+def orthonormal(columns: FloatArray) -> FloatArray:
+    """Return an orthonormal basis of rows, shape (rank, length), from rows that may depend on each other."""
+    size = np.linalg.norm(columns, axis=1)
+    kept = columns[size > 0.0] / size[size > 0.0, None]
+    if not kept.size:
+        return np.zeros((0, columns.shape[1]))
+    _, sizes, right = np.linalg.svd(kept, full_matrices=False)
+    return np.asarray(right[sizes > LEAST_SHARE * sizes[0]])
+
+
+def without(rows: FloatArray, basis: FloatArray) -> FloatArray:
+    """Return rows, shape (..., length), without what lies in an orthonormal basis, shape (rank, length)."""
+    return np.asarray(rows - (rows @ basis.T) @ basis)

@@ -1,0 +1,284 @@
+"""The likelihood of a record: what a simulation leaves of the outputs, made white.
+
+With the filter ``W`` that makes the noise white, measured ``y``, simulated ``f(theta)`` and the columns ``B`` of
+offset, drift and, where asked for, initial states, the cost is ``min_c |W (y - f - B c)|^2 / 2`` (output error: Ljung,
+System Identification: Theory for the User, second edition, sections 4.2 and 7.4, with a fixed noise model). The rows of
+a record are turned so that only ``1 + free`` of them are not zero: 50 starts of a long record fit into memory.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, IntArray, frozen_float
+from shaftprint.errors import IdentificationError
+from shaftprint.identify import LineTest, Repeats, Term, TermTest, fit_ceiling, fit_percent
+from shaftprint.models import Structure
+from shaftprint.time_domain._input_response import excited, explained_part
+from shaftprint.time_domain._nuisance import drift_columns, orthonormal, without
+from shaftprint.time_domain._record import Record
+from shaftprint.time_domain._record_fit import RecordFit
+from shaftprint.time_domain._simulator import Simulator, on_record
+from shaftprint.time_domain._whitening import Whitening
+
+# Cost of a simulation that runs away, over that of no model at all.
+AWAY = 1e12
+# Steps towards initial states; one is exact where the outputs depend on them linearly.
+STATE_STEPS = 2
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class RecordRepeats(Repeats):
+    """Simulated repeats of a record: the noise of each is made anew whenever it is needed."""
+
+    model: FloatArray
+    """Whitened outputs without noise, shape (used samples * outputs,)."""
+    seeds: IntArray
+    """Seed of the noise of each repeat, shape (repeats,)."""
+
+    def chosen(self, repeats: IntArray | slice) -> "RecordRepeats":
+        """Return some of the repeats."""
+        return replace(self, seeds=self.seeds[repeats])
+
+    def data(self, repeat: int) -> FloatArray:
+        """Return the whitened outputs of a repeat, shape (used samples * outputs,)."""
+        return self.model + np.random.default_rng(int(self.seeds[repeat])).standard_normal(self.model.size)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class OutputError(Term):
+    """A structure and a record to fit it to, with the colour of its noise."""
+
+    structure: Structure
+    """The structure at the record's working point, with its held and free parameters."""
+    record: Record
+    """The data."""
+    whitening: Whitening
+    """The filter that makes their noise white."""
+    simulator: Simulator
+    """How the structure is simulated."""
+    drift_degree: int
+    """Highest power of time in what is projected out: 0 for offsets, 1 for drifts, -1 for nothing."""
+    anew_after_s: float
+    """A gap longer than this [s] begins offset and drift anew."""
+    initial_states: bool
+    """Whether the states at the start are estimated; else the record begins in steady running."""
+    held: FloatArray
+    """Values of the structure's parameters; the free ones are replaced, shape (structure's parameters,)."""
+    free: tuple[int, ...]
+    """Places of the free parameters among the structure's."""
+    places: tuple[int, ...]
+    """Places of the same among all parameters of the objective."""
+    columns: tuple[int, ...]
+    """Places of the same among the free parameters of the objective."""
+    measured: FloatArray = field(init=False, repr=False)
+    """Whitened outputs, shape (used samples * outputs,)."""
+    drifts: FloatArray = field(init=False, repr=False)
+    """Orthonormal basis of the whitened offsets and drifts, shape (rank, used samples * outputs)."""
+
+    def __post_init__(self) -> None:
+        """Whiten what does not depend on parameters."""
+        object.__setattr__(self, "measured", frozen_float(self._white(self._outputs()[None])[0]))
+        columns = drift_columns(
+            self.record, len(self.structure.outputs), self.drift_degree, anew_after_s=self.anew_after_s
+        )
+        object.__setattr__(self, "drifts", frozen_float(orthonormal(self._white(columns))))
+
+    @property
+    def name(self) -> str:
+        """What messages call the data."""
+        return f"record {self.record.name}"
+
+    @property
+    def data_count(self) -> int:
+        """Number of used samples of all outputs, less the offsets and drifts."""
+        return int(self.measured.size - self.drifts.shape[0])
+
+    @property
+    def row_count(self) -> int:
+        """Number of rows after they have been turned."""
+        return 1 + len(self.free)
+
+    @property
+    def is_likelihood(self) -> bool:
+        """Whether residuals are weighted by their noise: always."""
+        return True
+
+    @property
+    def least_deviation(self) -> float:
+        """Infinite: noise of records is never small in every datum."""
+        return np.inf
+
+    @property
+    def cost_of_nothing(self) -> float:
+        """Half the square sum of the whitened outputs, offset and drift apart."""
+        return 0.5 * float(np.sum(without(self.measured, self.drifts) ** 2))
+
+    def placed(self, names: Sequence[str], free: Sequence[str]) -> "OutputError":
+        """Return the term as part of an objective of these parameters."""
+        return replace(
+            self,
+            places=tuple(names.index(p.name) for p in self.structure.free),
+            columns=tuple(free.index(p.name) for p in self.structure.free),
+        )
+
+    def with_floor(self, floor: float) -> "OutputError":
+        """Return the term itself."""
+        return self
+
+    def with_noise(self, whitening: Whitening) -> "OutputError":
+        """Return the term with another noise."""
+        return replace(self, whitening=whitening)
+
+    def table(self, theta: FloatArray, repeats: Repeats | None = None) -> FloatArray:
+        """Return turned residuals and derivatives, a simulation a start, shape (starts, 1 + free, 1 + free)."""
+        found = np.zeros((theta.shape[0], self.row_count, self.row_count))
+        for start, values in enumerate(self.complete(theta)):
+            data = repeats.data(start) if isinstance(repeats, RecordRepeats) else self.measured
+            rows = self._rows(values, data)
+            if rows is None:
+                found[start, 0, 0] = np.sqrt(2.0 * AWAY * max(self.cost_of_nothing, 1.0))
+                continue
+            found[start] = turned(rows[0])
+        return found
+
+    def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
+        """Return the turned derivatives; noise and curvature of the model are independent, so both are the same."""
+        rows = self.table(theta[None, :])[0, 1:]
+        return rows, rows
+
+    def judged(self, values: FloatArray, number: int) -> tuple[RecordFit, TermTest]:
+        """Return FitPercent and whitened residuals, and how much of these the inputs still explain."""
+        own = self.own(values)
+        found = self._rows(own, self.measured)
+        if found is None:
+            raise IdentificationError(
+                f"{self.name}: the simulation of {self.structure.name} runs away at the parameters that were found; "
+                "narrow the bounds, or start from a fit to a frequency response."
+            )
+        rows, basis = found
+        model = self.model(own)
+        used, measured = self.record.used, self._outputs()
+        size = len(self.structure.outputs)
+        power = np.diag(self.whitening.noise.power)
+        part = RecordFit(
+            structure=self.structure,
+            record=self.record,
+            noise=self.whitening.noise,
+            model={name: frozen_float(model[:, i]) for i, name in enumerate(self.structure.outputs)},
+            fit_percent={
+                name: fit_percent(measured[used, i] + 0j, model[used, i] + 0j)
+                for i, name in enumerate(self.structure.outputs)
+            },
+            fit_ceiling={
+                name: fit_ceiling(measured[used, i] + 0j, np.full(int(used.sum()), power[i]))
+                for i, name in enumerate(self.structure.outputs)
+            },
+            whitened=frozen_float(rows[0].reshape(-1, size)),
+        )
+        test = self._tested(rows, basis)
+        line = LineTest(
+            experiment=number, name=self.record.name, distance=test[0], data_count=test[1], excess=float(np.inf)
+        )
+        return part, TermTest(
+            chi_square=test[0], count=test[1], mean=float(test[1]), variance=2.0 * test[1], lines=(line,)
+        )
+
+    def redrawn(self, values: FloatArray, count: int, rng: np.random.Generator) -> RecordRepeats:
+        """Return repeats with noise of the same colour."""
+        model = self._simulated(self.own(values), wanted=())
+        if model is None:
+            raise IdentificationError(f"{self.name}: the simulation runs away, repeats of it cannot be drawn.")
+        return RecordRepeats(model=self._white(model)[0], seeds=rng.integers(0, 2**62, size=count))
+
+    def model(self, own: FloatArray) -> FloatArray:
+        """Return simulated outputs with their best offset and drift, shape (samples, outputs).
+
+        Parameters
+        ----------
+        own
+            All parameters of the structure, shape (parameters,).
+
+        Raises
+        ------
+        IdentificationError
+            If the simulation runs away.
+        """
+        simulated = self._simulated(own, wanted=())
+        if simulated is None:
+            raise IdentificationError(f"{self.name}: the simulation of {self.structure.name} runs away.")
+        columns = drift_columns(
+            self.record, len(self.structure.outputs), self.drift_degree, anew_after_s=self.anew_after_s
+        )
+        if not columns.size:
+            return np.asarray(simulated[0])
+        gap = self.measured - self._white(simulated)[0]
+        shares, *_ = np.linalg.lstsq(self._white(columns).T, gap, rcond=None)
+        return np.asarray(simulated[0] + np.tensordot(shares, columns, axes=1))
+
+    def _rows(self, own: FloatArray, data: FloatArray) -> tuple[FloatArray, FloatArray] | None:
+        """Return whitened residuals with their derivatives, and the orthonormal basis beside which they are.
+
+        None where the simulation runs away.
+        """
+        wanted = [self.structure.names[place] for place in self.free]
+        basis, initial = self.drifts, None
+        if self.initial_states:
+            found = self._start(own, data)
+            if found is None:
+                return None
+            initial, basis = found
+        simulated = self._simulated(own, wanted, initial)
+        if simulated is None:
+            return None
+        rows = self._white(simulated)
+        rows[0] = data - rows[0]
+        rows[1:] *= -1.0
+        return without(rows, basis), basis
+
+    def _start(self, own: FloatArray, data: FloatArray) -> tuple[FloatArray, FloatArray] | None:
+        """Return the best states at the start, and an orthonormal basis of their effects and the drifts."""
+        states = self.simulator.rest(self.structure, own, self.record)
+        basis = self.drifts
+        for _ in range(STATE_STEPS):
+            moved = [self._simulated(own, (), states + step) for step in (np.zeros(states.size), *np.eye(states.size))]
+            if any(m is None for m in moved):
+                return None
+            rows = self._white(np.concatenate([m for m in moved if m is not None]))
+            effects = without(rows[1:] - rows[0], self.drifts)
+            shares, *_ = np.linalg.lstsq(effects.T, without(data - rows[0], self.drifts), rcond=1e-9)
+            states = states + shares
+            basis = orthonormal(np.concatenate([self.drifts, effects]))
+        return states, basis
+
+    def _simulated(
+        self, own: FloatArray, wanted: Sequence[str], initial: FloatArray | None = None
+    ) -> FloatArray | None:
+        return on_record(self.simulator, self.structure, own, self.record, wanted, initial=initial)
+
+    def _white(self, values: FloatArray) -> FloatArray:
+        """Return whitened rows, shape (rows, used samples * outputs), from (rows, samples, outputs)."""
+        white = self.whitening.whitened(values, self.record.stretches)
+        return white.reshape(white.shape[0], white.shape[1] * white.shape[2])
+
+    def _outputs(self) -> FloatArray:
+        """Return the measured outputs, shape (samples, outputs)."""
+        return np.stack([self.record.outputs[name] for name in self.structure.outputs], axis=1)
+
+    def _tested(self, rows: FloatArray, basis: FloatArray) -> tuple[float, int]:
+        """Return how much of the residuals lies along inputs and parameters, and in how many directions."""
+        moves, size = excited(self.record), len(self.structure.outputs)
+        directions = np.zeros((size, *moves.shape, size))
+        for output in range(size):
+            directions[output, :, :, output] = moves
+        table = self._white(directions.reshape(-1, self.record.samples, size))
+        return explained_part(rows[0], np.concatenate([rows[1:], table]), basis)
+
+
+def turned(rows: FloatArray) -> FloatArray:
+    """Return rows of the same products with each other that are no longer than many, shape (rows, rows)."""
+    if rows.shape[1] < rows.shape[0]:
+        return np.pad(rows, ((0, 0), (0, rows.shape[0] - rows.shape[1])))
+    triangle: FloatArray = np.linalg.qr(rows.T, mode="r")  # type: ignore[assignment]
+    return triangle.T
