@@ -65,3 +65,12 @@ def test_what_comes_far_too_late_has_no_delay():
     )
     assert np.isnan(one.delay_s)
     assert np.isnan(one.std_s)
+
+
+def test_what_goes_the_other_way_has_no_delay():
+    ramp = TIME.copy()
+    down = -TIME[MARGIN:-MARGIN]
+    one = remaining_delay(
+        "n", down, ramp, np.zeros((0, TIME.size)), np.zeros((0, 0)), np.array([1e-6]), rate_hz=RATE_HZ, margin=MARGIN
+    )
+    assert np.isnan(one.delay_s)

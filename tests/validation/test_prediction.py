@@ -4,6 +4,7 @@ import pytest
 from shaftprint.errors import ValidationError
 from shaftprint.models import structure
 from shaftprint.validation import linear_prediction, simulated_prediction
+from shaftprint.validation._low_pass import low_pass
 from shaftprint.validation._prediction import with_square
 
 RATE_HZ = 100.0
@@ -99,3 +100,19 @@ def test_an_open_loop_cannot_be_held_against_a_set_point(predict):
     model = structure("OL1")
     with pytest.raises(ValidationError, match=r"structure OL1: expected n and M_s from n_set, .* found n from M_s"):
         predict(model, model.vector({}), np.zeros(1000), rate_hz=RATE_HZ)
+
+
+def test_a_signal_below_the_low_pass_is_left_alone():
+    slow = 0.2 * np.sin(2.0 * np.pi * 0.5 * TIME)
+    inside = slice(300, -300)
+    # a Hamming window leaves a ripple of 0.22 % (Oppenheim and Schafer, Discrete-time signal processing, table 7.2)
+    assert low_pass(slow, RATE_HZ, 4.0)[inside] == pytest.approx(slow[inside], abs=0.0023 * 0.2)
+    fast = 0.2 * np.sin(2.0 * np.pi * 8.0 * TIME)
+    assert low_pass(fast, RATE_HZ, 4.0)[inside] == pytest.approx(0.0, abs=1e-3)
+    # at the cut-off half of the amplitude is left, and nothing is late
+    edge = np.sin(2.0 * np.pi * 4.0 * TIME)
+    assert low_pass(edge, RATE_HZ, 4.0)[inside] == pytest.approx(0.5 * edge[inside], abs=0.01)
+
+
+def test_a_low_pass_beyond_half_the_rate_does_nothing():
+    assert low_pass(TIME, RATE_HZ, 60.0) is TIME
