@@ -12,8 +12,8 @@ class ValidationSettings:
 
     largest_error: float = 0.15
     """Share of the motion of an output that the model may miss beyond noise. A linear model with the true parameters of
-    the simulated tug misses up to 0.11 of a single step where no limit acts (the line is stiffer at higher speed), and
-    0.2 to 0.36 of the steps of 2 V that demand more torque than the engine has."""
+    the simulated tug misses up to 0.09 of a single step where no limit acts (the line is another one at another speed),
+    and 0.15 to 0.27 of the steps of 2 V at which a limit of the torque does. Chosen between them, on that ship."""
     highest_hz: float = 4.0
     """What is faster than this [Hz] is taken out of data and model alike before they are compared: the excitation ends
     there, and the torque shows shaft, blades and firings beyond. FitPercent is of all frequencies."""
