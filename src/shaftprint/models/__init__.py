@@ -57,6 +57,7 @@ from shaftprint.models._program import Computed, Late, Program, program_of
 from shaftprint.models._quantity import Quantity, choose, clip, maximum, minimum, table
 from shaftprint.models._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
 from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
+from shaftprint.models._small_signal import SmallSignal
 from shaftprint.models._step_response import step_response
 from shaftprint.models._structure import Structure
 from shaftprint.models._tie import Tie
@@ -101,6 +102,7 @@ __all__ = [
     "Sensitivity",
     "Shaft",
     "ShipSpeed",
+    "SmallSignal",
     "SpeedSensor",
     "Structure",
     "Tie",

@@ -32,11 +32,15 @@ def full_load(speed: Quantity, highest: Number, curve: "tuple[tuple[float, float
     return quantity(highest) * shape - 1.0
 
 
-def boosted(flow: Flow, torque: Quantity, highest: Quantity, unboosted: Number, lag_s: Number) -> Quantity:
+def boosted(
+    flow: Flow, torque: Quantity, highest: Quantity, *, at_rest: Number, unboosted: Number, lag_s: Number
+) -> Quantity:
     """Return the highest torque for which there is air: the smoke limit of a turbocharged engine.
 
-    ``(m_max) (a + (1 - a) b) - 1`` with the boost ``b`` behind the torque, ``tau_tc db/dt = (1 + M_b) / m_max - b``:
-    steady running is never limited, a fast rise is (domain of full-load and smoke limiters as in marine ECUs).
+    ``m_max(n) (a + (1 - a) b) - 1`` with the boost ``b`` behind the torque, ``tau_tc db/dt = (1 + M_b) / m_max(n) - b``:
+    steady running is never limited, a fast rise is. First-order turbocharger lag and a limit that follows the boost are
+    the common reduced form (Guzzella and Onder, Introduction to Modeling and Control of Internal Combustion Engine
+    Systems, 2010, sections 2.5 and 2.6).
 
     Parameters
     ----------
@@ -44,15 +48,17 @@ def boosted(flow: Flow, torque: Quantity, highest: Quantity, unboosted: Number, 
         Brake torque, a deviation.
     highest
         Highest brake torque with full boost, a deviation.
+    at_rest
+        Highest brake torque over that of the working point, ``m_max(0)``.
     unboosted
         Share ``a`` of it that is given without boost; 0.45 to 0.6 for turbocharged engines of this size.
     lag_s
         Turbocharger lag [s]: 0.5 to 2 s at truck size, 3 to 10 s for medium speed.
     """
     full = 1.0 + highest
-    share = quantity(unboosted)
-    boost = first_order_lag(flow, (1.0 + torque) / full - 1.0, lag_s, "boost")
-    return full * (share + (1.0 - share) * (1.0 + boost)) - 1.0
+    share, steady = quantity(unboosted), 1.0 / quantity(at_rest)
+    boost = steady + first_order_lag(flow, (1.0 + torque) / full - steady, lag_s, "boost")
+    return full * (share + (1.0 - share) * boost) - 1.0
 
 
 def firing_delay(speed: Quantity, cylinders: int, working_point_rev_s: float) -> Quantity:

@@ -135,7 +135,7 @@ class _Loop:
             return None, burnt
         highest = full_load(speed, p.m_max, self._curve)
         if "smoke" in self._limits:
-            highest = boosted(flow, burnt, highest, p.a_0, p.tau_tc)
+            highest = boosted(flow, burnt, highest, at_rest=p.m_max, unboosted=p.a_0, lag_s=p.tau_tc)
         # friction of a motored engine: half of it independent of speed, half proportional
         return p.m_min * (1.0 + 0.5 * speed) - 1.0, highest
 

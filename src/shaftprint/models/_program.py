@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from shaftprint.errors import StructureError
-from shaftprint.models._calculus import replaced, swept
+from shaftprint.models._calculus import postorder, replaced, swept
 from shaftprint.models._expression import Expression
 from shaftprint.models._flow import Flow, Past
 from shaftprint.models._flowing import split_shift, through
@@ -25,6 +25,11 @@ class Late:
     """How fast it changes in steady running: not at all, but for sums that go on for ever."""
     delay: Quantity
     """The time; a formula of parameters, or of signals where it varies."""
+
+    @property
+    def varies(self) -> bool:
+        """Whether the delay depends on signals."""
+        return any(not node.of and node.operation not in ("number", "parameter") for node in postorder([self.delay]))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.models._calculus import derivatives
-from shaftprint.models._evaluate import Array, evaluate
+from shaftprint.models._evaluate import Array, Leaves, evaluate
 from shaftprint.models._program import Program
 from shaftprint.models._quantity import Quantity
 
@@ -44,7 +44,12 @@ class SmallSignal:
         return plain, derivatives(self._formulas, Quantity(f"{kind} rate", place=place))
 
     def response(
-        self, s: ComplexArray, values: Sequence[FloatArray], wanted: Sequence[int], output: int
+        self,
+        s: ComplexArray,
+        values: Sequence[FloatArray],
+        wanted: Sequence[int],
+        output: int,
+        at: Leaves | None = None,
     ) -> tuple[ComplexArray, list[ComplexArray]]:
         """Return the response from the input to an output and its derivatives.
 
@@ -56,12 +61,14 @@ class SmallSignal:
             Each parameter, shape (..., 1) or (..., frequencies).
         wanted
             Places of the parameters whose derivatives are wanted.
+        at
+            Inputs, states and pasts of another steady running than rest; derivatives are those with it kept.
 
         Returns
         -------
             Response, shape (..., frequencies), and derivatives, one of the same shape for each wanted parameter.
         """
-        leaves = self._leaves(values)
+        leaves = self._leaves(values, at or {})
         shape = np.broadcast_shapes(s.shape, *(np.shape(value) for value in values))
         table = self._table(self._slopes, leaves, s, shape)
         times = [np.broadcast_to(time, shape) for time in evaluate(self._times, leaves)]
@@ -85,14 +92,15 @@ class SmallSignal:
             slopes.append(np.asarray(shift * (d_plain + d_shift * plain)))
         return np.asarray(shift * plain), slopes
 
-    def _leaves(self, values: Sequence[FloatArray]) -> dict[tuple[str, int], Array]:
-        """Return all at rest, and the parameters."""
+    def _leaves(self, values: Sequence[FloatArray], at: Leaves) -> dict[tuple[str, int], Array]:
+        """Return all at rest or where it is given, and the parameters."""
         leaves: dict[tuple[str, int], Array] = {("step", 0): np.asarray(1.0)}
         leaves |= {("parameter", i): value for i, value in enumerate(values)}
         for kind, count in (("input", len(self.program.inputs)), ("past", len(self.program.pasts))):
             for i in range(count):
                 leaves[kind, i] = leaves[f"{kind} rate", i] = np.asarray(0.0)
-        return leaves | {pair: np.asarray(0.0) for pair in self._unknown if pair[0] != "past"}
+        leaves |= {pair: np.asarray(0.0) for pair in self._unknown if pair[0] != "past"}
+        return leaves | {pair: np.asarray(value) for pair, value in at.items()}
 
     def _moved_by(self, place: int) -> tuple[list[tuple[list[Quantity], list[Quantity]]], list[Quantity]]:
         if place not in self._moved:
@@ -162,5 +170,4 @@ class SmallSignal:
 
 
 def _solved(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:
-    found: ComplexArray = np.linalg.solve(matrix, right[..., None])[..., 0]
-    return found
+    return np.asarray(np.linalg.solve(matrix, right[..., None])[..., 0], dtype=np.complex128)

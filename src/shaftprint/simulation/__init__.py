@@ -4,6 +4,16 @@ Everything follows from the equations that the blocks of a structure state; comp
 """
 
 from shaftprint.simulation._equilibrium import Equilibrium, equilibrium
+from shaftprint.simulation._linearise import Linearisation, linearise
 from shaftprint.simulation._simulate import Trace, simulate
+from shaftprint.simulation._simulate_exactly import simulate_exactly
 
-__all__ = ["Equilibrium", "Trace", "equilibrium", "simulate"]
+__all__ = [
+    "Equilibrium",
+    "Linearisation",
+    "Trace",
+    "equilibrium",
+    "linearise",
+    "simulate",
+    "simulate_exactly",
+]

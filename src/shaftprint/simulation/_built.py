@@ -10,6 +10,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.models import Leaves, Program, Quantity, Structure, derivatives, evaluate, postorder, program_of
 from shaftprint.simulation._compile import module_of
+from shaftprint.simulation._exact_text import ExactText
 from shaftprint.simulation._hoisted import Hoisted, hoisted
 from shaftprint.simulation._kernel_text import KernelText
 from shaftprint.simulation._steady import SteadyEquations
@@ -35,9 +36,14 @@ class Built:
         """The compiled kernels."""
         return module_of(self.text)
 
+    @property
+    def exact_kernels(self) -> ModuleType:
+        """The compiled kernel of exact steps."""
+        return module_of(ExactText(self.hoisted, len(self.program.inputs)).text())
+
     def constants(self, values: FloatArray, step_s: float) -> tuple[FloatArray, ...]:
         """Return constants, delays, shifts and periods at parameter values, each of shape (count,)."""
-        leaves = _leaves(values, step_s)
+        leaves = _leaves(self.program, values, step_s)
         return tuple(np.array(evaluate(part, leaves)) for part in self._of_parameters)
 
     def constant_slopes(self, values: FloatArray, step_s: float, name: str) -> tuple[FloatArray, ...]:
@@ -45,7 +51,7 @@ class Built:
         if name not in self.slopes:
             to = Quantity("parameter", place=self.program.parameters.index(name))
             self.slopes[name] = tuple(derivatives(part, to) for part in self._of_parameters)
-        leaves = _leaves(values, step_s)
+        leaves = _leaves(self.program, values, step_s)
         return tuple(np.array(evaluate(part, leaves)) for part in self.slopes[name])
 
     def shifts_depend_on(self, names: Sequence[str]) -> bool:
@@ -60,8 +66,12 @@ class Built:
         return self.hoisted.constants, delays, program.shifts, [taken.period for taken in program.samples]
 
 
-def _leaves(values: FloatArray, step_s: float) -> Leaves:
-    return {("step", 0): step_s} | {("parameter", i): value for i, value in enumerate(values)}
+def _leaves(program: Program, values: FloatArray, step_s: float) -> Leaves:
+    """Return parameters, and everything else at rest: delays that vary start from there."""
+    leaves: dict[tuple[str, int], FloatArray] = {("step", 0): np.asarray(step_s)}
+    for kind, count in (("input", len(program.inputs)), ("state", len(program.states)), ("past", len(program.pasts))):
+        leaves |= {(kind, i): np.asarray(0.0) for i in range(count)}
+    return leaves | {("parameter", i): np.asarray(value) for i, value in enumerate(values)}
 
 
 _BUILT: "weakref.WeakKeyDictionary[Structure, dict[frozenset[str], Built]]" = weakref.WeakKeyDictionary()

@@ -2,14 +2,15 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import StructureError
-from shaftprint.models import Structure, program_of
-from shaftprint.simulation._steady import SteadyEquations
+from shaftprint.models import Program, Structure, program_of
+from shaftprint.simulation._steady import Steady, SteadyEquations
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -22,6 +23,15 @@ class Equilibrium:
     """The states, shape (states,)."""
     outputs: Mapping[str, float]
     """The outputs."""
+
+    @classmethod
+    def of(cls, program: Program, inputs: Mapping[str, float], steady: Steady) -> Self:
+        """Return the steady running of a program by name."""
+        return cls(
+            inputs=dict(inputs),
+            states=frozen_float(steady.states),
+            outputs=dict(zip(program.outputs, (float(value) for value in steady.outputs), strict=True)),
+        )
 
 
 def equilibrium(structure: Structure, values: ArrayLike, inputs: Mapping[str, float]) -> Equilibrium:
@@ -42,12 +52,7 @@ def equilibrium(structure: Structure, values: ArrayLike, inputs: Mapping[str, fl
     vector = np.asarray(values, dtype=np.float64)
     program = program_of(structure, held_zeros(structure, vector))
     given = input_vector(structure, inputs)
-    found = SteadyEquations(program).solve(vector, given)
-    return Equilibrium(
-        inputs=dict(inputs),
-        states=frozen_float(found.states),
-        outputs=dict(zip(program.outputs, (float(value) for value in found.outputs), strict=True)),
-    )
+    return Equilibrium.of(program, inputs, SteadyEquations(program).solve(vector, given))
 
 
 def input_vector(structure: Structure, inputs: Mapping[str, float]) -> FloatArray:

@@ -24,7 +24,7 @@ class Stencils:
     """Size of the ring of nodes less one; the size is a power of two."""
 
 
-def stencils(delay_s: FloatArray, step_s: float) -> Stencils:
+def stencils(delay_s: FloatArray, step_s: float, *, varies: bool = False) -> Stencils:
     """Return the stencils of delays, exact to the fourth order of the step.
 
     A cubic goes through the two nodes on either side of the place (Lagrange); where the delay is shorter than three
@@ -34,12 +34,15 @@ def stencils(delay_s: FloatArray, step_s: float) -> Stencils:
     ----------
     delay_s
         Delays [s], shape (delays,), at least 0; complex where a derivative is taken by a complex step.
+    varies
+        Whether one of them is only what it is at rest.
     """
     place = np.array([0.5, 1.0])[None, :] - delay_s[:, None] / step_s
     first = np.minimum(np.floor(place.real).astype(np.int64) - 1, 1 - NODES)
     weight, change = cubic_weights(place - first)
     change = change / step_s
-    longest = int(-first.min(initial=0)) + 2
+    # a delay that varies may grow to eight times what it is at rest
+    longest = (int(-first.min(initial=0)) + 2) * (8 if varies else 1)
     return Stencils(first=first, weight=weight, change=change, mask=(1 << longest.bit_length()) - 1)
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 from shaftprint.models import Program, Quantity, derivatives, postorder, replaced
 
@@ -20,6 +21,10 @@ class Hoisted:
     """What a computer takes."""
     signals: tuple[Quantity, ...]
     """The outputs."""
+    varying: tuple[int, ...]
+    """Places of the pasts whose delay is not a formula of parameters alone."""
+    delays: tuple[Quantity, ...]
+    """Their delays [s]."""
 
 
 def hoisted(program: Program) -> Hoisted:
@@ -28,11 +33,14 @@ def hoisted(program: Program) -> Hoisted:
     leaves: list[Quantity] = []
     known: dict[int, int] = {}
     fixed: dict[int, bool] = {}
+    varying = tuple(i for i, late in enumerate(program.pasts) if late.varies)
+    delays = [program.pasts[i].delay for i in varying]
     roots = [
         *program.rates,
         *(late.signal for late in program.pasts),
         *(sample.value for sample in program.samples),
         *program.signals,
+        *delays,
     ]
     for node in postorder(roots):
         fixed[id(node)] = (
@@ -54,14 +62,15 @@ def hoisted(program: Program) -> Hoisted:
     outer = {id(part) for node in postorder(roots) if not fixed[id(node)] for part in node.of if fixed[id(part)]}
     outer |= {id(root) for root in roots if fixed[id(root)]}
     found = replaced(roots, lambda node: constant(node) if id(node) in outer else None)
-    count, late = len(program.rates), len(program.pasts)
-    taken = len(program.samples)
+    parts = iter(found)
     return Hoisted(
         constants=tuple(constants),
-        rates=tuple(found[:count]),
-        lates=tuple(found[count : count + late]),
-        values=tuple(found[count + late : count + late + taken]),
-        signals=tuple(found[count + late + taken :]),
+        rates=tuple(islice(parts, len(program.rates))),
+        lates=tuple(islice(parts, len(program.pasts))),
+        values=tuple(islice(parts, len(program.samples))),
+        signals=tuple(islice(parts, len(program.signals))),
+        varying=varying,
+        delays=tuple(parts),
     )
 
 

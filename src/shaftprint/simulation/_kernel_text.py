@@ -1,153 +1,39 @@
-"""Source text of the compiled simulation of one program.
+"""Source text of the compiled simulation on a uniform grid, with derivatives.
 
-Classical Runge-Kutta steps of fourth order on a uniform grid. What a delay asks for is interpolated between nodes by a
-cubic, never rounded to a step; nodes and weights are found once, because the grid is uniform. Derivatives are those of
-this very recursion: each state carries its derivatives to ``LANES`` parameters, a block that the compiler can treat as
-one vector.
+Classical Runge-Kutta steps of fourth order. What a delay asks for is interpolated between nodes by a cubic, never
+rounded to a step; nodes and weights are found once, because the grid is uniform, or at every step where the delay
+varies. Derivatives are those of this very recursion: each state carries its derivatives to ``LANES`` parameters, a
+block that the compiler can treat as one vector.
 """
 
-from collections.abc import Iterable, Sequence
-
-from shaftprint.models import Quantity
+from shaftprint.simulation._equation_text import HEADER, EquationText, indented
 from shaftprint.simulation._grid import NODES
-from shaftprint.simulation._hoisted import Hoisted, Slopes
-from shaftprint.simulation._text import statements
 
 LANES = 8
-
-HEADER = '''"""Compiled equations of a structure; written by shaftprint, and written anew when they are missing."""
-
-import numpy as np
-from numba import njit
-from numpy import cos, exp, log, sin, sqrt, tanh
+SHARES = {"1": "0.5 * h", "2": "0.5 * h", "3": "h"}
+WEIGHTS = {"1": "h / 6.0", "2": "h / 3.0", "3": "h / 3.0", "4": "h / 6.0"}
 
 
-@njit(cache=True)
-def minimum(a, b):
-    return a if a.real <= b.real else b
-
-
-@njit(cache=True)
-def maximum(a, b):
-    return a if b.real <= a.real else b
-
-
-@njit(cache=True)
-def choose(a, b, at_most, above):
-    return at_most if a.real <= b.real else above
-
-
-@njit(cache=True)
-def absolute(a):
-    return -a if a.real <= 0.0 else a
-
-
-@njit(cache=True)
-def table_slope(a, places, values):
-    x = a.real
-    if x <= places[0] or x > places[-1]:
-        return 0.0
-    j = 1
-    while places[j] < x:
-        j += 1
-    return (values[j] - values[j - 1]) / (places[j] - places[j - 1])
-
-
-@njit(cache=True)
-def table(a, places, values):
-    x = a.real
-    if x <= places[0]:
-        return values[0] + 0.0 * a
-    if x > places[-1]:
-        return values[-1] + 0.0 * a
-    j = 1
-    while places[j] < x:
-        j += 1
-    return values[j - 1] + (values[j] - values[j - 1]) / (places[j] - places[j - 1]) * (a - places[j - 1])
-'''
-
-LEAVES = {
-    "state": "x{}",
-    "input": "u{}",
-    "input rate": "r{}",
-    "past": "p{}",
-    "past rate": "q{}",
-    "sample": "z{}",
-    "constant": "c[{}]",
-}
-
-
-class KernelText:
+class KernelText(EquationText):
     """The text of one program's kernels."""
-
-    def __init__(self, equations: Hoisted, inputs: int) -> None:
-        self._e = equations
-        self._states = len(equations.rates)
-        self._inputs = inputs
-        self._lates = len(equations.lates)
-        self._samples = len(equations.values)
-        self._outputs = len(equations.signals)
-        self._slopes = {
-            "rates": Slopes(equations.rates),
-            "lates": Slopes(equations.lates),
-            "outputs": Slopes(equations.signals),
-            "values": Slopes(equations.values),
-        }
-        self.uses_change = any(
-            leaf.operation == "past rate" for group in self._slopes.values() for _, leaf in group.entries
-        )
 
     def text(self) -> str:
         """Return the whole module."""
-        e = self._e
-        parts = [
-            HEADER,
-            self._function("rates", e.rates),
-            self._function("lates", e.lates),
-            self._function("outputs", e.signals),
-            self._function("values", e.values),
-            *(self._function(f"{name}_slopes", group.formulas) for name, group in self._slopes.items()),
-            self._kernel(sensitive=False),
-            self._kernel(sensitive=True),
-        ]
-        return "\n\n".join(part for part in parts if part)
+        parts = [HEADER, *self.functions(slopes=True), self._kernel(sensitive=False), self._kernel(sensitive=True)]
+        return "\n\n".join(parts)
 
-    # ---- pieces ----
-
-    def _arguments(self, stage: str) -> str:
-        """Return what the functions of formulas take: states of a stage, and inputs and pasts at its time."""
-        state, time = stage[0], stage[1]
-        names = [f"{'x' if state == '0' else f's{state}_'}{i}" for i in range(self._states)]
-        names += [f"u{i}{time}" for i in range(self._inputs)]
-        names += [f"r{i}" for i in range(self._inputs)]
-        names += [f"p{i}{time}" for i in range(self._lates)]
-        names += [f"q{i}{time}" for i in range(self._lates)] if self.uses_change else []
-        names += [f"z{i}" for i in range(self._samples)]
-        return ", ".join([*names, "c"])
-
-    def _function(self, name: str, formulas: Sequence[Quantity]) -> str:
-        if not formulas:
-            return ""
-        lines, found = statements(formulas, LEAVES)
-        names = [f"x{i}" for i in range(self._states)]
-        names += [f"u{i}" for i in range(self._inputs)] + [f"r{i}" for i in range(self._inputs)]
-        names += [f"p{i}" for i in range(self._lates)]
-        names += [f"q{i}" for i in range(self._lates)] if self.uses_change else []
-        names += [f"z{i}" for i in range(self._samples)]
-        body = _indented([*lines, f"return ({', '.join(found)},)"])
-        return f"\n@njit(cache=True)\ndef {name}({', '.join([*names, 'c'])}):\n{body}"
-
-    def _row(self, kind: str, place: int = 0) -> int:
+    def row(self, kind: str, place: int = 0) -> int:
         """Return where a row of derivatives starts in the working array."""
         order = [
-            ("x", self._states),
-            ("s", self._states),
-            ("a", self._states),
-            ("z", self._samples),
-            *((f"p{time}", self._lates) for time in "amb"),
-            *((f"q{time}", self._lates) for time in "amb"),
-            ("d", self._lates),
-            ("c", len(self._e.constants)),
+            ("x", self.states),
+            ("s", self.states),
+            ("a", self.states),
+            ("z", self.samples),
+            *((f"p{time}", self.lates) for time in "amb"),
+            *((f"q{time}", self.lates) for time in "amb"),
+            # of each delay at the middle and the end of the step, and at the last node
+            *((f"d{time}", self.lates) for time in "mbl"),
+            ("c", len(self.equations.constants)),
         ]
         start = 0
         for name, count in order:
@@ -158,77 +44,71 @@ class KernelText:
 
     def _lane(self, group: str, formula: int, state: str, time: str) -> str:
         """Return the derivative of a formula along a lane."""
-        terms = []
-        for number, (owner, leaf) in enumerate(self._slopes[group].entries):
-            if owner == formula:
-                kind = {"state": state, "past": f"p{time}", "past rate": f"q{time}", "sample": "z", "constant": "c"}
-                terms.append(f"d{number} * w[{self._row(kind[leaf.operation], leaf.place)} + l]")
+        kind = {"state": state, "past": f"p{time}", "past rate": f"q{time}", "sample": "z", "constant": "c"}
+        terms = [
+            f"d{number} * w[{self.row(kind[leaf.operation], leaf.place)} + l]"
+            for number, (owner, leaf) in enumerate(self.slopes[group].entries)
+            if owner == formula
+        ]
         return " + ".join(terms) or "0.0"
 
     def _slopes_call(self, group: str, stage: str) -> list[str]:
-        entries = self._slopes[group].entries
+        entries = self.slopes[group].entries
         if not entries:
             return []
         names = ", ".join(f"d{i}" for i in range(len(entries)))
-        return [f"({names},) = {group}_slopes({self._arguments(stage)})"]
-
-    # ---- the kernel ----
+        return [f"({names},) = {group}_slopes({self.arguments(stage)})"]
 
     def _kernel(self, *, sensitive: bool) -> str:
-        n = self._states
         name = "advance_with_derivatives" if sensitive else "advance"
         extra = ", slopes, y_slopes" if sensitive else ""
         head = f"def {name}(h, per, every, held, u, c, start, first, weight, change, mask, tick, y{extra}):"
-        body = [
-            *(f"x{i} = start[{i}]" for i in range(n)),
-            *(f"p{i}a = start[{n + i}]" for i in range(self._lates)),
-            *(f"z{i} = start[{n + self._lates + i}]" for i in range(self._samples)),
-            *(f"before{i} = start[{n + self._lates + self._samples + i}]" for i in range(self._lates)),
-            *(f"drift{i} = start[{n + 2 * self._lates + self._samples + i}]" for i in range(self._lates)),
-            *(f"q{i}a = drift{i}" for i in range(self._lates) if self.uses_change),
-            *(f"r{i} = 0.0" for i in range(self._inputs)),
-            *self._fill(),
-        ]
+        body = self._start()
         if sensitive:
             body += self._start_derivatives()
         body += ["k = 0", "record = 0", "for i in range(u.shape[0] - 1):", "    for sub in range(per):"]
-        step = [*self._stage_inputs(), *self._node(sensitive=sensitive)]
-        step += ["if k % every == 0:", *_more(self._record(sensitive=sensitive)), "    record += 1"]
+        step = [*self._stage_inputs(), *self._computed(sensitive=sensitive), *self._kept(sensitive=sensitive)]
+        step += ["if k % every == 0:", *_more([*self._record(sensitive=sensitive), "record += 1"])]
+        step += self._delays(sensitive=sensitive)
         step += self._past_values(sensitive=sensitive)
         step += self._runge_kutta(sensitive=sensitive)
         step += self._carry(sensitive=sensitive)
         body += [f"        {line}" for line in step]
-        body += [f"u{i}a = u[u.shape[0] - 1, {i}]" for i in range(self._inputs)]
+        body += [f"u{i}a = u[u.shape[0] - 1, {i}]" for i in range(self.inputs)]
         body += self._record(sensitive=sensitive)
-        return "\n@njit(cache=True, nogil=True)\n" + head + "\n" + _indented(body)
+        return f"@njit(cache=True, nogil=True)\n{head}\n{indented(body)}"
 
-    def _fill(self) -> list[str]:
-        """Return how the ring is filled with what was before the start."""
-        lates = self._lates
-        if not lates:
-            return []
-        lines = [f"history = np.empty((mask + 1) * {lates}, dtype=start.dtype)", "for k in range(mask + 1):"]
-        lines += [f"    history[(-k & mask) * {lates} + {i}] = before{i} - k * h * drift{i}" for i in range(lates)]
+    def _start(self) -> list[str]:
+        """Return how the states and the ring of late signals are filled; ``start`` has a value each in order."""
+        n, lates, samples = self.states, self.lates, self.samples
+        lines = [f"x{i} = start[{i}]" for i in range(n)]
+        lines += [f"p{i}a = start[{n + i}]" for i in range(lates)]
+        lines += [f"z{i} = start[{n + lates + i}]" for i in range(samples)]
+        lines += [f"before{i} = start[{n + lates + samples + i}]" for i in range(lates)]
+        lines += [f"drift{i} = start[{n + 2 * lates + samples + i}]" for i in range(lates)]
+        lines += [f"q{i}a = drift{i}" for i in range(lates) if self.uses_change]
+        lines += [f"r{i} = 0.0" for i in range(self.inputs)]
+        if lates:
+            lines += [f"history = np.empty((mask + 1) * {lates}, dtype=start.dtype)", "for k in range(mask + 1):"]
+            lines += [f"    history[(-k & mask) * {lates} + {i}] = before{i} - k * h * drift{i}" for i in range(lates)]
         return lines
 
     def _start_derivatives(self) -> list[str]:
         """Return how the working array and the ring of derivatives are filled; ``slopes`` has a row each in order."""
-        n, lates, samples = self._states, self._lates, self._samples
+        n, lates, samples = self.states, self.lates, self.samples
         row = n + 2 * lates + samples + lates
-        lines = [f"w = np.zeros({self._row('end')})", f"for l in range({LANES}):"]
-        lines += [f"    w[{self._row('x', i)} + l] = slopes[{i}, l]" for i in range(n)]
-        lines += [f"    w[{self._row('pa', i)} + l] = slopes[{n + i}, l]" for i in range(lates)]
-        lines += [f"    w[{self._row('z', i)} + l] = slopes[{n + lates + i}, l]" for i in range(samples)]
-        lines += [f"    w[{self._row('d', i)} + l] = slopes[{row + i}, l]" for i in range(lates)]
-        lines += [f"    for j in range({len(self._e.constants)}):"]
-        lines += [f"        w[{self._row('c')} + {LANES} * j + l] = slopes[{row + lates} + j, l]"]
+        lines = [f"w = np.zeros({self.row('end')})", f"for l in range({LANES}):"]
+        lines += [f"    w[{self.row('x', i)} + l] = slopes[{i}, l]" for i in range(n)]
+        lines += [f"    w[{self.row('pa', i)} + l] = slopes[{n + i}, l]" for i in range(lates)]
+        lines += [f"    w[{self.row('z', i)} + l] = slopes[{n + lates + i}, l]" for i in range(samples)]
+        for time in "mbl":
+            lines += [f"    w[{self.row(f'd{time}', i)} + l] = slopes[{row + i}, l]" for i in range(lates)]
+        lines += [f"    for j in range({len(self.equations.constants)}):"]
+        lines += [f"        w[{self.row('c')} + {LANES} * j + l] = slopes[{row + lates} + j, l]"]
         if lates:
             before, drift = n + lates + samples, n + 2 * lates + samples
-            lines += [
-                f"past_slopes = np.empty((mask + 1) * {lates * LANES})",
-                "for k in range(mask + 1):",
-                f"    for l in range({LANES}):",
-            ]
+            lines += [f"past_slopes = np.empty((mask + 1) * {lates * LANES})", "for k in range(mask + 1):"]
+            lines += [f"    for l in range({LANES}):"]
             for i in range(lates):
                 place = f"((-k & mask) * {lates} + {i}) * {LANES} + l"
                 lines.append(f"        past_slopes[{place}] = slopes[{before + i}, l] - k * h * slopes[{drift + i}, l]")
@@ -236,7 +116,7 @@ class KernelText:
 
     def _stage_inputs(self) -> list[str]:
         lines = ["a = sub / per", "b = (sub + 0.5) / per", "e = (sub + 1.0) / per"]
-        for i in range(self._inputs):
+        for i in range(self.inputs):
             lines += [
                 f"base = u[i, {i}]",
                 f"rise = 0.0 if held else u[i + 1, {i}] - base",
@@ -247,118 +127,129 @@ class KernelText:
             ]
         return lines
 
-    def _node(self, *, sensitive: bool) -> list[str]:
-        """Return what happens at a node: the computer takes its values, signals that are asked for later are kept."""
-        lines: list[str] = []
-        if self._samples:
-            names = ", ".join(f"v{i}" for i in range(self._samples))
-            taken = [f"({names},) = values({self._arguments('0a')})"]
-            if sensitive:
-                taken += self._slopes_call("values", "0a")
-                # all are taken before any is changed
-                taken += [f"for l in range({LANES}):"]
-                taken += [f"    n{i} = {self._lane('values', i, 'x', 'a')}" for i in range(self._samples)]
-                for i in range(self._samples):
-                    taken += [f"    if k % tick[{i}] == 0:", f"        w[{self._row('z', i)} + l] = n{i}"]
-            lines += taken
-            for i in range(self._samples):
-                lines += [f"if k % tick[{i}] == 0:", f"    z{i} = v{i}"]
-        if not self._lates:
-            return lines
-        names = ", ".join(f"h{i}" for i in range(self._lates))
-        lines += [f"({names},) = lates({self._arguments('0a')})", f"place = (k & mask) * {self._lates}"]
-        lines += [f"history[place + {i}] = h{i}" for i in range(self._lates)]
+    def _computed(self, *, sensitive: bool) -> list[str]:
+        """Return how a computer takes its values at a node: all before any is changed."""
+        if not self.samples:
+            return []
+        lines = self.assigned("v", "values", "0a")
         if sensitive:
-            lines += self._slopes_call("lates", "0a")
-            lines += [f"for l in range({LANES}):"]
-            lines += [
-                f"    past_slopes[(place + {i}) * {LANES} + l] = {self._lane('lates', i, 'x', 'a')}"
-                for i in range(self._lates)
-            ]
+            lines += [*self._slopes_call("values", "0a"), f"for l in range({LANES}):"]
+            lines += [f"    n{i} = {self._lane('values', i, 'x', 'a')}" for i in range(self.samples)]
+            for i in range(self.samples):
+                lines += [f"    if k % tick[{i}] == 0:", f"        w[{self.row('z', i)} + l] = n{i}"]
+        for i in range(self.samples):
+            lines += [f"if k % tick[{i}] == 0:", f"    z{i} = v{i}"]
+        return lines
+
+    def _kept(self, *, sensitive: bool) -> list[str]:
+        """Return how signals that are asked for later are kept at a node."""
+        if not self.lates:
+            return []
+        lines = [*self.assigned("h", "lates", "0a"), f"place = (k & mask) * {self.lates}"]
+        lines += [f"history[place + {i}] = h{i}" for i in range(self.lates)]
+        if sensitive:
+            lines += [*self._slopes_call("lates", "0a"), f"for l in range({LANES}):"]
+            lanes = (self._lane("lates", i, "x", "a") for i in range(self.lates))
+            lines += [f"    past_slopes[(place + {i}) * {LANES} + l] = {lane}" for i, lane in enumerate(lanes)]
         return lines
 
     def _record(self, *, sensitive: bool) -> list[str]:
-        names = ", ".join(f"y{i}" for i in range(self._outputs))
-        lines = [f"({names},) = outputs({self._arguments('0a')})"]
-        lines += [f"y[record, {i}] = y{i}" for i in range(self._outputs)]
+        lines = self.assigned("y", "outputs", "0a")
+        lines += [f"y[record, {i}] = y{i}" for i in range(self.outputs)]
         if sensitive:
-            lines += self._slopes_call("outputs", "0a")
-            lines += [f"for l in range({LANES}):"]
-            lines += [
-                f"    y_slopes[record, {i}, l] = {self._lane('outputs', i, 'x', 'a')}" for i in range(self._outputs)
-            ]
+            lines += [*self._slopes_call("outputs", "0a"), f"for l in range({LANES}):"]
+            lanes = (self._lane("outputs", i, "x", "a") for i in range(self.outputs))
+            lines += [f"    y_slopes[record, {i}, l] = {lane}" for i, lane in enumerate(lanes)]
+        return lines
+
+    def _delays(self, *, sensitive: bool) -> list[str]:
+        """Return varying delays at the middle and end of the step, straight on from the last node and this one."""
+        varying = self.equations.varying
+        if not varying:
+            return []
+        lines = self.assigned("e", "delays", "0a")
+        if sensitive:
+            lines += self._slopes_call("delays", "0a")
+        for number, i in enumerate(varying):
+            lines += ["if k == 0:", f"    f{number} = e{number}"]
+            lines += [f"late{i}m = 1.5 * e{number} - 0.5 * f{number}", f"late{i}b = 2.0 * e{number} - f{number}"]
+            lines.append(f"f{number} = e{number}")
+            if sensitive:
+                lines += [f"for l in range({LANES}):", f"    now = {self._lane('delays', number, 'x', 'a')}"]
+                last = f"w[{self.row('dl', i)} + l]"
+                lines += ["    if k == 0:", f"        {last} = now"]
+                lines += [f"    w[{self.row('dm', i)} + l] = 1.5 * now - 0.5 * {last}"]
+                lines += [f"    w[{self.row('db', i)} + l] = 2.0 * now - {last}", f"    {last} = now"]
         return lines
 
     def _past_values(self, *, sensitive: bool) -> list[str]:
         """Return the pasts at the middle and the end of the step, and their derivatives along the lanes."""
         lines: list[str] = []
-        for i in range(self._lates):
+        for i in range(self.lates):
             for number, time in enumerate("mb"):
-                lines += [
-                    f"i{m} = ((k + first[{i}, {number}] + {m}) & mask) * {self._lates} + {i}" for m in range(NODES)
-                ]
-                lines.append(f"p{i}{time} = {_cubic('weight', i, number, 'history[i{}]')}")
+                weights = [f"weight[{i}, {number}, {m}]" for m in range(NODES)]
+                changes = [f"change[{i}, {number}, {m}]" for m in range(NODES)]
+                node = f"k + first[{i}, {number}]"
+                if i in self.equations.varying:
+                    share = "0.5" if time == "m" else "1.0"
+                    lines += [f"at = {share} - late{i}{time} / h", "node = min(int(np.floor(at.real)) - 1, -3)"]
+                    lines += ["node = max(node, 2 - mask)", "(b0, b1, b2, b3, c0, c1, c2, c3) = cubic(at - node)"]
+                    weights = [f"b{m}" for m in range(NODES)]
+                    changes = [f"c{m} / h" for m in range(NODES)]
+                    node = "k + node"
+                lines += [f"i{m} = (({node} + {m}) & mask) * {self.lates} + {i}" for m in range(NODES)]
+                lines.append(f"p{i}{time} = {_cubic(weights, 'history[i{}]')}")
                 if self.uses_change or sensitive:
-                    lines.append(f"q{i}{time} = {_cubic('change', i, number, 'history[i{}]')}")
-                if not sensitive:
-                    continue
-                slope = f"past_slopes[i{{}} * {LANES} + l]"
-                own = f"q{i}{time} * w[{self._row('d', i)} + l]"
-                lines.append(f"for l in range({LANES}):")
-                lines.append(f"    w[{self._row(f'p{time}', i)} + l] = {_cubic('weight', i, number, slope)} - {own}")
-                if self.uses_change:
-                    lines.append(f"    w[{self._row(f'q{time}', i)} + l] = {_cubic('change', i, number, slope)}")
+                    lines.append(f"q{i}{time} = {_cubic(changes, 'history[i{}]')}")
+                if sensitive:
+                    slope = f"past_slopes[i{{}} * {LANES} + l]"
+                    own = f"q{i}{time} * w[{self.row(f'd{time}', i)} + l]"
+                    lines.append(f"for l in range({LANES}):")
+                    lines.append(f"    w[{self.row(f'p{time}', i)} + l] = {_cubic(weights, slope)} - {own}")
+                    if self.uses_change:
+                        lines.append(f"    w[{self.row(f'q{time}', i)} + l] = {_cubic(changes, slope)}")
         return lines
 
     def _runge_kutta(self, *, sensitive: bool) -> list[str]:
-        n = self._states
         lines: list[str] = []
-        stages = (("1", "0a"), ("2", "1m"), ("3", "2m"), ("4", "3b"))
-        shares = {"1": "0.5 * h", "2": "0.5 * h", "3": "h"}
-        weights = {"1": "h / 6.0", "2": "h / 3.0", "3": "h / 3.0", "4": "h / 6.0"}
-        for stage, stand in stages:
-            names = ", ".join(f"k{stage}_{i}" for i in range(n))
-            if n:
-                lines.append(f"({names},) = rates({self._arguments(stand)})")
-            if sensitive and n:
-                lines += self._slopes_call("rates", stand)
-                lines += [f"for l in range({LANES}):"]
-                lines += [
-                    f"    g{i} = {self._lane('rates', i, 'x' if stage == '1' else 's', stand[1])}" for i in range(n)
-                ]
-                for i in range(n):
-                    before = f"w[{self._row('x' if stage == '1' else 'a', i)} + l]"
-                    lines.append(f"    w[{self._row('a', i)} + l] = {before} + {weights[stage]} * g{i}")
-                    if stage in shares:
-                        lines.append(
-                            f"    w[{self._row('s', i)} + l] = w[{self._row('x', i)} + l] + {shares[stage]} * g{i}"
-                        )
-            if stage in shares:
-                lines += [f"s{stage}_{i} = x{i} + {shares[stage]} * k{stage}_{i}" for i in range(n)]
-        lines += [f"x{i} = x{i} + h / 6.0 * (k1_{i} + 2.0 * k2_{i} + 2.0 * k3_{i} + k4_{i})" for i in range(n)]
+        for stage, stand in (("1", "0a"), ("2", "1m"), ("3", "2m"), ("4", "3b")):
+            lines += self.assigned(f"k{stage}_", "rates", stand)
+            if sensitive:
+                lines += self._stage_derivatives(stage, stand)
+            if stage in SHARES:
+                lines += [f"s{stage}_{i} = x{i} + {SHARES[stage]} * k{stage}_{i}" for i in range(self.states)]
+        total = "h / 6.0 * (k1_{0} + 2.0 * k2_{0} + 2.0 * k3_{0} + k4_{0})"
+        return [*lines, *(f"x{i} = x{i} + {total.format(i)}" for i in range(self.states))]
+
+    def _stage_derivatives(self, stage: str, stand: str) -> list[str]:
+        state = "x" if stage == "1" else "s"
+        if not self.states:
+            return []
+        lines = [*self._slopes_call("rates", stand), f"for l in range({LANES}):"]
+        lines += [f"    g{i} = {self._lane('rates', i, state, stand[1])}" for i in range(self.states)]
+        for i in range(self.states):
+            before = self.row("x" if stage == "1" else "a", i)
+            lines.append(f"    w[{self.row('a', i)} + l] = w[{before} + l] + {WEIGHTS[stage]} * g{i}")
+            if stage in SHARES:
+                lines.append(f"    w[{self.row('s', i)} + l] = w[{self.row('x', i)} + l] + {SHARES[stage]} * g{i}")
         return lines
 
     def _carry(self, *, sensitive: bool) -> list[str]:
-        lines = [f"p{i}a = p{i}b" for i in range(self._lates)]
-        lines += [f"q{i}a = q{i}b" for i in range(self._lates) if self.uses_change]
-        if sensitive:
-            pairs = [(self._row("x", i), self._row("a", i)) for i in range(self._states)]
-            pairs += [(self._row("pa", i), self._row("pb", i)) for i in range(self._lates)]
-            pairs += [(self._row("qa", i), self._row("qb", i)) for i in range(self._lates) if self.uses_change]
-            if pairs:
-                lines += [f"for l in range({LANES}):"]
-                lines += [f"    w[{new} + l] = w[{old} + l]" for new, old in pairs]
+        lines = [f"p{i}a = p{i}b" for i in range(self.lates)]
+        lines += [f"q{i}a = q{i}b" for i in range(self.lates) if self.uses_change]
+        pairs = [(self.row("x", i), self.row("a", i)) for i in range(self.states)]
+        pairs += [(self.row("pa", i), self.row("pb", i)) for i in range(self.lates)]
+        pairs += [(self.row("qa", i), self.row("qb", i)) for i in range(self.lates) if self.uses_change]
+        if sensitive and pairs:
+            lines.append(f"for l in range({LANES}):")
+            lines += [f"    w[{new} + l] = w[{old} + l]" for new, old in pairs]
         return [*lines, "k += 1"]
 
 
-def _cubic(weights: str, late: int, number: int, value: str) -> str:
+def _cubic(weights: list[str], value: str) -> str:
     """Return the sum of four nodes with their weights."""
-    return " + ".join(f"{weights}[{late}, {number}, {m}] * {value.format(m)}" for m in range(NODES))
+    return " + ".join(f"{weight} * {value.format(m)}" for m, weight in enumerate(weights))
 
 
-def _indented(lines: Iterable[str]) -> str:
-    return "\n".join(f"    {line}" for line in lines) + "\n"
-
-
-def _more(lines: Iterable[str]) -> list[str]:
+def _more(lines: list[str]) -> list[str]:
     return [f"    {line}" for line in lines]

@@ -156,7 +156,7 @@ class March:
 
     @property
     def _stencil(self) -> Stencils:
-        return stencils(self.delay_s, self.step_s)
+        return stencils(self.delay_s, self.step_s, varies=bool(self.built.hoisted.varying))
 
     def _shifted(self, y: FloatArray, before: ArrayLike, output: int, samples: int) -> tuple[FloatArray, FloatArray]:
         """Return an output at the samples and how fast it changes there [1/s]."""

@@ -66,10 +66,10 @@ def simulate(
         running to start from.
     """
     vector = np.asarray(values)
-    _expect_values(structure, vector, wanted)
+    expect_values(structure, vector, wanted)
     time = np.asarray(time_s, dtype=np.float64)
-    interval = _interval(structure, time)
-    table = _table(structure, inputs, time.size)
+    interval = uniform_interval(structure, time)
+    table = input_table(structure, inputs, time.size)
     real = np.asarray(vector.real, dtype=np.float64)
     built = build(structure, held_zeros(structure, real, tuple(wanted)))
     march = March.planned(built, vector, interval, longest_step_s, hold=hold)
@@ -83,7 +83,8 @@ def simulate(
     )
 
 
-def _expect_values(structure: Structure, values: FloatArray, wanted: Sequence[str]) -> None:
+def expect_values(structure: Structure, values: FloatArray, wanted: Sequence[str]) -> None:
+    """Check the parameter values and the names of the wanted ones."""
     if values.shape != (len(structure.parameters),):
         raise StructureError(
             f"structure {structure.name}: expected {len(structure.parameters)} parameter values "
@@ -96,7 +97,8 @@ def _expect_values(structure: Structure, values: FloatArray, wanted: Sequence[st
         )
 
 
-def _interval(structure: Structure, time: FloatArray) -> float:
+def uniform_interval(structure: Structure, time: FloatArray) -> float:
+    """Return the interval of uniform times."""
     if time.ndim != 1 or time.size < 2:
         raise StructureError(f"simulation of {structure.name}: expected two or more times, found shape {time.shape}.")
     interval = float(time[-1] - time[0]) / (time.size - 1)
@@ -105,7 +107,8 @@ def _interval(structure: Structure, time: FloatArray) -> float:
     return interval
 
 
-def _table(structure: Structure, inputs: Mapping[str, ArrayLike], samples: int) -> FloatArray:
+def input_table(structure: Structure, inputs: Mapping[str, ArrayLike], samples: int) -> FloatArray:
+    """Return the inputs in their order, shape (samples, inputs)."""
     if set(inputs) != set(structure.inputs):
         raise StructureError(
             f"simulation of {structure.name}: expected the inputs {', '.join(structure.inputs)}, found "
