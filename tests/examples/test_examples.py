@@ -106,6 +106,16 @@ def test_two_inputs(run):
     assert tied["d_c"] == pytest.approx(22.5, rel=5e-3)
 
 
+def test_underway(run, capsys):
+    defined = run("underway.py")
+    printed = capsys.readouterr().out
+    assert "finds 4 numbers for the 5 free parameters of FREE-SHIP" in printed
+    for name, true in (("w", 0.20), ("t", 0.15), ("e", 4.0)):
+        estimate = defined["estimates"][name]
+        assert estimate.value == pytest.approx(true, abs=3.0 * estimate.std), name
+        assert estimate.std < 0.07, name
+
+
 def test_every_example_is_run():
     here = Path(__file__).read_text(encoding="utf-8")
     with_demo = (Path(__file__).parents[1] / "cli" / "test_readme.py").read_text(encoding="utf-8")
