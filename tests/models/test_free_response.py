@@ -76,14 +76,20 @@ def test_a_lag_goes_on_with_its_own_two_motions():
     np.testing.assert_allclose(found[2], (81.0 / below) / s, rtol=1e-12)
 
 
-def test_a_delay_goes_on_with_what_is_under_way():
-    """A constant until the start: (1 - exp(-s t)) / s; a line through zero there: (exp(-s t) - 1 + s t) / s^2."""
+@pytest.mark.parametrize("delay", [0.4, 1e-3, 1e-7, 0.0])
+def test_a_delay_goes_on_with_what_is_under_way(delay):
+    """The transforms of 1 / t and of 2 (1 - 2 v / t) / t^2 over 0 < v < t, integrated by many midpoints."""
     shapes, _ = free_responses(structure("OL3"))
     s = 2j * np.pi * np.array([0.02, 0.7, 3.9])
-    found = shapes.response(shapes.vector({"K_p": 1.0, "K_i": 0.0, "t_d": 0.4}), s)
-    late = np.exp(-0.4 * s)
-    np.testing.assert_allclose(found[0], (1.0 - late) / s, rtol=1e-7)
-    np.testing.assert_allclose(found[1], (late - 1.0 + 0.4 * s) / s**2, rtol=1e-6)
+    found = shapes.response(shapes.vector({"K_p": 1.0, "K_i": 0.0, "t_d": delay}), s)
+    places = (np.arange(200_000) + 0.5) / 200_000
+    late = np.exp(-np.outer(s * delay, places))
+    np.testing.assert_allclose(found[0], late.mean(axis=1), rtol=1e-9)
+    if delay > 1e-4:
+        np.testing.assert_allclose(found[1], 2.0 * (late * (1.0 - 2.0 * places)).mean(axis=1) / delay, rtol=1e-7)
+    else:
+        # the integral of -2 s v (1 - 2 v / t) / t^2 is s / 3
+        np.testing.assert_allclose(found[1], s / 3.0, rtol=1e-4)
 
 
 @pytest.mark.parametrize(("name", "truth"), [("CL4", TRUTH), ("GAUGE-CLOSED", GAUGE | {"t_sp": 0.03, "t_gauge": 0.01})])

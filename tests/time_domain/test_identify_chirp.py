@@ -7,6 +7,7 @@ import pytest
 from numba import njit
 from scipy.signal import firwin, oaconvolve
 
+from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.errors import IdentificationError, SignalError
 from shaftprint.identify import (
     Settings,
@@ -22,6 +23,8 @@ from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain import identify_chirp, record_from_arrays, spectrum_of, spectrum_term
 from shaftprint.time_domain._bands import bands_of
 from shaftprint.time_domain._identify_chirp import Given
+from shaftprint.tug import Tug, simulate_signals
+from shaftprint.vessel import load_vessel
 
 TRUTH = {"tau_n": 0.39, "K_p": 1.8, "K_i": 4.3, "t_d": 0.12, "omega_n": 9.0, "zeta": 1.2}
 RATE_HZ = 50.0
@@ -223,6 +226,44 @@ def test_intervals_and_tests_are_right_over_repeats(make_record):
     # of 200 uniform numbers the mean scatters by 0.02, the share below 0.1 by 0.02
     assert 0.43 < p_values.mean() < 0.57
     assert 0.03 < np.mean(p_values < 0.1) < 0.17
+
+
+@pytest.mark.parametrize(("size", "widest"), [(2e-5, 0.1), (5e-4, np.inf)])
+def test_the_simulated_tug_at_small_amplitude_has_the_gauge_aware_loop(size, widest):
+    """Its equations share nothing with the models; the chirp begins at rest and ends at full speed.
+
+    With the louder noise both delays lie in one valley; an end of it must not look like knowledge of either.
+    """
+    vessel, thesis = load_vessel("stan-tug-1205"), load_campaign("thesis")
+    (chirp,) = (c for c in thesis.chirps if c.name == "C23")
+    early = chirp.model_copy(update={"start_s": 10.0, "stop_s": 560.0, "amplitude_v": 0.03})
+    campaign = Campaign(name="small chirp", duration_s=560.0, offset_v=thesis.offset_v, chirps=(early,))
+    truth, signals = Tug.stan_tug_1205(), simulate_signals(vessel, campaign, rate_hz=50.0)
+    channels = (signals.set_point_rev_s, signals.engine_speed_rev_s, signals.shaft_torque_nm)
+    u, n, m = (values / values[0] - 1.0 for values in channels)
+    rng = np.random.default_rng(4)
+    n, m = n + size * rng.standard_normal(u.size), m + 5.0 * size * rng.standard_normal(u.size)
+    record = record_from_arrays("C23", {"n_set": u}, {"n": n, "M_s": m}, rate_hz=50.0)
+    gauge = structure("GAUGE-CLOSED").held_at(g=truth.g, t_gauge=0.0)
+    found = identify_chirp(gauge, record, rng=np.random.default_rng(5))
+    expected = {
+        "K_p": truth.proportional_gain,
+        "K_i": truth.integral_gain_per_s,
+        "t_d": truth.governor_delay_s,
+        "t_sp": truth.set_point_latency_s,
+        "omega_n": truth.natural_frequency_rad_s,
+        "zeta": truth.damping_ratio,
+        # 2 pi I n_s0 / M_s0 of 17.0 and 54.006 kg m2 at 5.16492 rev/s and 1725 N m, by hand
+        "tau_dn": 0.3198,
+        "tau_up": 1.0160,
+        "k_q": 2.0,
+        "c_set": 1.0,
+    }
+    estimates = {e.name: e for e in found.parameters}
+    assert set(estimates) == set(expected)
+    for name, value in expected.items():
+        assert estimates[name].value == pytest.approx(value, abs=3.5 * estimates[name].std + 2e-3 * value), name
+        assert estimates[name].std <= widest * (value + 0.02), name
 
 
 # ---- what the noise is taken for ----

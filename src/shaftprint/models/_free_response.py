@@ -6,10 +6,9 @@ The Fourier transform of an output over a record that does not begin and end in 
 
 with real numbers ``c_j``, differences between the states at begin and end (Pintelon and Schoukens, System
 Identification: A Frequency Domain Approach, second edition, chapter 2 and appendix 2.B). A rational block ``N / D`` of
-order ``n`` goes on with ``s^j / D``, ``j < n``. A delay goes on with what is under way in it: a constant gives
-``(1 - exp(-s t)) / s``, and any block ``H`` that has had a constant input before gives ``(H(0) - H(s)) / s``; a line
-adds ``(H(s) - H(0) - s H'(0)) / s^2``. What lies behind in the signal's way passes it on: a free response in a loop
-of gain ``L`` is multiplied by ``1 / (1 + L)``.
+order ``n`` goes on with ``s^j / D``, ``j < n``. A delay goes on with what is under way in it, here a constant and a
+line; any other block ``H`` as if its input had been constant before, ``(H(0) - H(s)) / s``. What lies behind in the
+signal's way passes it on: a free response in a loop of gain ``L`` is multiplied by ``1 / (1 + L)``.
 
 In which order the signal meets two blocks in series is not written in a product. It is taken from left to right, but
 through a closed loop first; for the other order the span of the free responses is the same up to what happens
@@ -30,9 +29,10 @@ from shaftprint.models._structure import Structure
 
 # Share of a parameter by which it is moved to see how coefficients change: exact but for rounding up to second order.
 STEP = 1e-4
-# Laplace variable [rad/s] that stands for zero, and step of a slope there.
-NEAR_ZERO = 1e-4
-AROUND_ZERO = np.array([-NEAR_ZERO, NEAR_ZERO], dtype=np.complex128)
+# Laplace variable [rad/s] beside zero, where some blocks have no value.
+AROUND_ZERO = np.array([-1e-4, 1e-4], dtype=np.complex128)
+# Below this argument cosh(x) - sinh(x) / x loses its digits.
+SERIES_BELOW = 0.02
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,12 +83,55 @@ def _polynomial(coefficients: FloatArray, s: ComplexArray) -> ComplexArray:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class DelayFreeResponse(Block):
+    """Free response of a delay ``t`` in which a constant is under way, or a line about the middle of what is.
+
+    With ``x = s t / 2``: ``exp(-x) sinh(x) / x`` is ``(1 - exp(-s t)) / (s t)``, and ``s exp(-x) k(x)`` with
+    ``k(x) = (cosh(x) - sinh(x) / x) / x^2``. Both keep their digits, and their directions, down to a delay of zero.
+    """
+
+    of: Delay
+    line: bool = False
+    """Whether it is the line."""
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The delay."""
+        return self.of.parameters
+
+    def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
+        """Return the free response."""
+        x = 0.5 * s * values[0]
+        level, tilt, _ = _averages(x)
+        return np.asarray(np.exp(-x) * (s * tilt if self.line else level))
+
+    def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
+        """Return ``s / 2 exp(-x) (x k - sinh(x) / x)``, or ``s^2 / 2 exp(-x) (k' - k)``."""
+        x = 0.5 * s * values[0]
+        level, tilt, slope = _averages(x)
+        change = s * (slope - tilt) if self.line else x * tilt - level
+        return (np.asarray(0.5 * s * np.exp(-x) * change),)
+
+
+def _averages(x: ComplexArray) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """Return ``sinh(x) / x``, ``k(x) = (cosh(x) - sinh(x) / x) / x^2`` and ``k'``, by their series near zero."""
+    square = x * x
+    small = np.abs(x) < SERIES_BELOW
+    far = np.where(small, 1.0, x)
+    level = np.sinh(far) / far
+    tilt = (np.cosh(far) - level) / far**2
+    return (
+        np.where(small, 1.0 + square / 6.0 * (1.0 + square / 20.0), level),
+        np.where(small, (1.0 + square / 10.0 * (1.0 + square / 28.0)) / 3.0, tilt),
+        np.where(small, x / 15.0 * (1.0 + square / 14.0), (level - 3.0 * tilt) / far),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class DriftingFreeResponse(Block):
-    """Free response of a block whose input was constant, ``(H(0) - H(s)) / s``, or a line."""
+    """Free response ``(H(0) - H(s)) / s`` of a block whose input was constant."""
 
     of: Block
-    line: bool = False
-    """Whether the input was a line: ``(H(s) - H(0) - s H'(0)) / s^2``."""
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -97,20 +140,17 @@ class DriftingFreeResponse(Block):
 
     def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
         """Return the free response."""
-        return self._gone(s, self.of.transfer(s, *values), self.of.transfer(AROUND_ZERO, *values))
+        return _gone(s, self.of.transfer(s, *values), self.of.transfer(AROUND_ZERO, *values))
 
     def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
         """Return the same of the derivatives of ``H``."""
         there = self.of.derivatives(s, self.of.transfer(s, *values), *values)
         near = self.of.derivatives(AROUND_ZERO, self.of.transfer(AROUND_ZERO, *values), *values)
-        return tuple(self._gone(s, one, other) for one, other in zip(there, near, strict=True))
+        return tuple(_gone(s, one, other) for one, other in zip(there, near, strict=True))
 
-    def _gone(self, s: ComplexArray, there: ComplexArray, near: ComplexArray) -> ComplexArray:
-        """Return the free response of a response at ``s`` and beside zero."""
-        gone = (0.5 * (near[..., :1] + near[..., 1:]) - there) / s
-        if self.line:
-            gone = -(gone + (near[..., 1:] - near[..., :1]) / (2.0 * NEAR_ZERO)) / s
-        return np.asarray(gone)
+
+def _gone(s: ComplexArray, there: ComplexArray, near: ComplexArray) -> ComplexArray:
+    return np.asarray((near.mean(axis=-1, keepdims=True) - there) / s)
 
 
 def free_responses(structure: Structure) -> tuple[Structure, tuple[int, ...]]:
@@ -194,9 +234,10 @@ class _Finder:
             order = max(len(top), len(bottom)) - 1
             yield from (RationalFreeResponse(block, power) for power in range(order))
         elif not (held and values and not any(values)):
-            yield DriftingFreeResponse(block)
             if isinstance(block, Delay):
-                yield DriftingFreeResponse(block, line=True)
+                yield from (DelayFreeResponse(block), DelayFreeResponse(block, line=True))
+            else:
+                yield DriftingFreeResponse(block)
 
 
 def _closes_a_loop(node: Expression) -> bool:

@@ -144,10 +144,18 @@ class SpectrumTerm(Term):
         return found
 
     def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
-        """Return the weighted derivatives twice; on average they are those of a record from rest to rest."""
+        """Return the weighted derivatives of what the input does, without what free responses can follow, twice.
+
+        What the free responses tell of the parameters is left out. Their sizes are fitted to the noise where there is
+        little motion at begin and end, and the derivatives of such sizes look like knowledge: in a loop whose two
+        delays the data did not tell apart, their deviation came out at 0.016 s instead of far above 0.1 s.
+        """
         values = self.complete(theta)
-        outputs = self.structure.response(values, self.s) * self.spectrum.source if expected else self.spectrum.outputs
-        rows = self._projected(values, outputs)[0][1:]
+        slopes = self.structure.gradient(values, self.s)[1] * self.spectrum.source
+        rows = _real(self._weighted(-slopes))
+        if self.shapes is not None:
+            across, _, gram = self._across(self.nodes.at_lines(self.shapes.response(values, self.nodes.s)))
+            rows -= np.linalg.solve(gram, across @ rows.T).T @ across
         return rows, rows
 
     def judged(self, values: FloatArray, number: int) -> tuple[FittedSpectrum, TermTest]:
@@ -182,17 +190,21 @@ class SpectrumTerm(Term):
         if self.shapes is None:
             return _real(self._weighted(stacked)), stacked[0]
         shapes = self.shapes.stacked(values, self.nodes.s)
-        present = self.nodes.at_lines(shapes[0])
-        across = _real(np.stack([self.weights[:, c] * present[j] for j, c in enumerate(self.channels)]))
-        across /= np.maximum(length := np.linalg.norm(across, axis=1), TINY)[:, None]
-        gram = across @ across.T + RIDGE * np.eye(len(across))
-        sizes = np.linalg.solve(gram, across @ _real(self._weighted(stacked[:1]))[0]) / np.maximum(length, TINY)
+        across, length, gram = self._across(self.nodes.at_lines(shapes[0]))
+        sizes = np.linalg.solve(gram, across @ _real(self._weighted(stacked[:1]))[0]) / length
         for channel in set(self.channels):
             own = [j for j, c in enumerate(self.channels) if c == channel]
             stacked[:, channel] -= self.nodes.at_lines(np.einsum("j,kjl->kl", sizes[own], shapes[:, own]))
         table = _real(self._weighted(stacked))
         table[1:] -= np.linalg.solve(gram, across @ table[1:].T).T @ across
         return table, stacked[0]
+
+    def _across(self, shapes: ComplexArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return weighted free responses of length 1, shape (shapes, rows), their lengths, and their products."""
+        weighted = _real(np.stack([self.weights[:, c] * shapes[j] for j, c in enumerate(self.channels)]))
+        length = np.maximum(np.linalg.norm(weighted, axis=1), TINY)
+        weighted /= length[:, None]
+        return weighted, length, weighted @ weighted.T + RIDGE * np.eye(len(weighted))
 
     def _weighted(self, lines: ComplexArray) -> ComplexArray:
         """Return ``W`` times lines of shape (..., outputs, lines)."""
