@@ -1,6 +1,7 @@
 """The verb of the room: which nonlinearities a recording shows."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from shaftprint.nonlinearity._fit import GOVERNOR, fit_governor
@@ -11,6 +12,7 @@ from shaftprint.nonlinearity._nonlinearities import Nonlinearities, Suspicion
 from shaftprint.nonlinearity._record import make_record
 from shaftprint.nonlinearity._search import Outcome, Present, search, windup_statistic
 from shaftprint.nonlinearity._step_evidence import step_evidence
+from shaftprint.nonlinearity._systematic import with_systematic
 from shaftprint.nonlinearity._tails import chi_square_tail
 from shaftprint.nonlinearity._words import finding_of, nothing_found, sentence_of
 
@@ -56,7 +58,8 @@ def detect(
     record = make_record(signals, campaign, vessel)
     start = None if governor is None else {name: governor[name] for name in GOVERNOR}
     outcome = _with_windup(search(record, fit_governor(record, start), false_alarm=false_alarm), false_alarm)
-    found = outcome.fit
+    found = with_systematic(outcome.record, outcome.fit, signals, vessel)
+    outcome = replace(outcome, fit=found)
     limits = limit_evidence(outcome.record, found, signals)
     findings = tuple(finding_of(one, outcome, limits) for one in outcome.present) or (nothing_found(outcome),)
     return Nonlinearities(
@@ -82,11 +85,4 @@ def _with_windup(outcome: Outcome, false_alarm: float) -> Outcome:
     if p_value >= false_alarm:
         return outcome
     windup = Present(kind="governor windup", terms=("windup_s",), statistic=statistic, p_value=p_value)
-    return Outcome(
-        record=outcome.record,
-        linear=outcome.linear,
-        fit=outcome.fit,
-        present=(*outcome.present, windup),
-        absent=outcome.absent,
-        quantisation=outcome.quantisation,
-    )
+    return replace(outcome, present=(*outcome.present, windup))

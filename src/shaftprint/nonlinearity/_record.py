@@ -1,7 +1,7 @@
 """What the replay is fed with: the signals of a recording on its own, coarser grid, normalised at the working point."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -74,6 +74,10 @@ class Record:
     def values_of(self, steps: FloatArray) -> FloatArray:
         """Return the means over the steps of each value of the residual, shape (values,)."""
         return block_means(steps, self.thinning)
+
+    def only_smooth(self) -> "Record":
+        """Return the record with an infinite load outside of sines and chirps, where the residual is then 0."""
+        return replace(self, load=np.where(self.smooth, self.load, np.inf))
 
     @property
     def value_time_s(self) -> FloatArray:

@@ -1,6 +1,6 @@
 """Forward selection: the strongest nonlinearity joins the replay until nothing is left that chance does not explain."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +14,7 @@ from shaftprint.nonlinearity._tails import chi_square_tail
 _MOST_ROUNDS = 5
 _POLISH_ROUNDS = 8
 _MOST_POLISHED = 3
+_ALWAYS_FITTED = ("torque limit", "motoring limit")
 _LIMITS = ("limit", "m_min", "air")
 
 
@@ -72,8 +73,9 @@ def search(record: Record, linear: Fit, *, false_alarm: float) -> Outcome:
         Probability with which a linear line may show anything, all tests of a round together.
     """
     here, present, quantisation = linear, list[Present](), None
+    small = fit(record.only_smooth(), linear.values) if record.smooth.any() else None
     for _ in range(_MOST_ROUNDS):
-        tried = _try_all(record, here, false_alarm)
+        tried = _try_all(record, _bases(record, here, small), false_alarm)
         steps = None if quantisation is not None else find_quantisation(record, here)
         best = max(tried, key=_preference)
         wins = steps is not None and steps.is_rounding and steps.p_value < false_alarm
@@ -112,42 +114,66 @@ def _preference(tried: _Tried) -> float:
     return tried.statistic - len(tried.suspect.terms) * float(np.log(tried.fit.count))
 
 
-def _try_all(record: Record, here: Fit, false_alarm: float) -> list[_Tried]:
-    """Try every suspect: a scan with the governor to first order, then a fit of those that stand out most."""
-    plans = [(suspect, suspect.starts(record, here.values)) for suspect in SUSPECTS]
-    trials = max(sum(len(starts) for _, starts in plans), 1)
-    scanned = _scan(record, here, plans)
-    most = sorted((statistic for statistic, _ in scanned), reverse=True)[:_MOST_POLISHED][-1]
+def _try_all(record: Record, bases: Sequence[Fit], false_alarm: float) -> list[_Tried]:
+    """Try every suspect: a scan with the governor to first order, then a fit of those that stand out most.
+
+    Limits of the torque are fitted in any case: to first order the governor does not follow as far as it must.
+    """
+    here = bases[0]
+    scanned = [_scan(record, bases, suspect) for suspect in SUSPECTS]
+    trials = max(sum(one.trials for one in scanned), 1)
+    most = sorted((one.statistic for one in scanned), reverse=True)[:_MOST_POLISHED][-1]
     found = []
-    for suspect, (statistic, start) in zip(SUSPECTS, scanned, strict=True):
-        p_value = min(trials * chi_square_tail(statistic, len(suspect.terms)), 1.0)
-        polished = None
-        if p_value < false_alarm and statistic >= most:
+    for suspect, best in zip(SUSPECTS, scanned, strict=True):
+        statistic, polished = best.statistic, None
+        stands_out = trials * chi_square_tail(statistic, len(suspect.terms)) < false_alarm and statistic >= most
+        if best.trials and (stands_out or suspect.kind in _ALWAYS_FITTED):
             extra = (*here.free[len(GOVERNOR) :], *suspect.terms)
-            polished = fit(record, {**here.values, **start}, extra, rounds=_POLISH_ROUNDS)
+            polished = fit(record, best.values, extra, rounds=_POLISH_ROUNDS)
             statistic = _fall(here, polished)
-            p_value = min(trials * chi_square_tail(statistic, len(suspect.terms)), 1.0)
+        p_value = min(trials * chi_square_tail(statistic, len(suspect.terms)), 1.0)
         found.append(_Tried(suspect=suspect, statistic=statistic, p_value=p_value, fit=polished))
     return found
 
 
-def _scan(
-    record: Record, here: Fit, plans: list[tuple[Suspect, list[dict[str, float]]]]
-) -> list[tuple[float, dict[str, float]]]:
-    """Return for each suspect the largest statistic of its starts, with the start; the governor to first order."""
-    basis, _ = np.linalg.qr(here.slopes)
-    now = residual(record, here.values)
-    best = []
-    for _, starts in plans:
-        scores = []
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Scanned:
+    """The best start of one suspect."""
+
+    statistic: float
+    values: Mapping[str, float]
+    trials: int
+
+
+def _scan(record: Record, bases: Sequence[Fit], suspect: Suspect) -> _Scanned:
+    """Return the start with the largest statistic; the governor follows to first order from each of the bases."""
+    here = bases[0]
+    best = _Scanned(statistic=-np.inf, values=here.values, trials=0)
+    for base in bases:
+        basis, _ = np.linalg.qr(base.slopes)
+        now = residual(record, base.values)
+        starts = suspect.starts(record, base.values)
+        best = replace(best, trials=best.trials + len(starts))
         for start in starts:
-            change = residual(record, {**here.values, **start}) - now
-            innovations = here.whitened.residual + here.whitened.filtered(change[:, np.newaxis])[:, 0]
+            values = {**base.values, **start}
+            change = residual(record, values) - now
+            innovations = base.whitened.residual + base.whitened.filtered(change[:, np.newaxis])[:, 0]
             innovations = innovations - basis @ (basis.T @ innovations)
-            scores.append(here.count * float(np.log(here.whitened.squares / float(innovations @ innovations))))
-        top = int(np.argmax(scores)) if scores else -1
-        best.append((scores[top], starts[top]) if scores else (0.0, {}))
+            statistic = here.count * float(np.log(here.whitened.squares / float(innovations @ innovations)))
+            if statistic > best.statistic:
+                best = replace(best, statistic=statistic, values=values)
     return best
+
+
+def _bases(record: Record, here: Fit, small: Fit | None) -> list[Fit]:
+    """Return from where suspects are tried: the best fit, and the governor of the sines and chirps.
+
+    A linear governor that has to explain limited steps hides the limit: it has become too slow to reach it.
+    """
+    if small is None:
+        return [here]
+    values = {**here.values, **{name: small.values[name] for name in GOVERNOR}}
+    return [here, fit(record, values, here.free[len(GOVERNOR) :], rounds=0)]
 
 
 def _fall(before: Fit, after: Fit) -> float:

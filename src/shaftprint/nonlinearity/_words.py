@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from shaftprint.nonlinearity._limit_evidence import LimitEvidence
     from shaftprint.nonlinearity._search import Outcome, Present
 
+_KNOWN_SHARE = 0.5
+
 
 def finding_of(one: "Present", outcome: "Outcome", limits: "LimitEvidence") -> Finding:
     """Return a finding with its estimates and what speaks for it."""
@@ -160,10 +162,11 @@ def _turbocharger(outcome: "Outcome") -> tuple[tuple[Estimate, ...], str]:
 
 def _windup(outcome: "Outcome") -> tuple[tuple[Estimate, ...], str]:
     estimate = _own("T_aw", outcome, "windup_s", "s", "time constant with which the integrator is emptied at a limit")
-    return (estimate,), (
-        f"After a limit the speed overshoots longer than a linear governor lets it: the integrator is emptied with "
-        f"{estimate.value:.2g} ± {estimate.std:.2g} s."
-    )
+    known = estimate.std < _KNOWN_SHARE * estimate.value
+    slow = f"in {estimate.value:.2g} ± {estimate.std:.2g} s" if known else "so slowly that the time cannot be told"
+    return (
+        estimate,
+    ), f"The integrator goes on while a limit acts and is emptied {slow}: the speed overshoots for longer."
 
 
 def _own(name: str, outcome: "Outcome", term: str, unit: str, meaning: str, *, scale: float = 1.0) -> Estimate:
