@@ -64,7 +64,7 @@ def _closed(name: str, title: str, engine: Expression) -> Structure:
     """Return the closed loop of thesis eqs 4.25-4.27 around the engine's ``M_s / e``."""
     core = _core()
     torque = engine * Sensitivity(engine * core)
-    return Structure(name=name, title=title, input="n_set", outputs={"n": torque * core, "M_s": torque})
+    return Structure(name=name, title=title, input="n_set", outputs={"n": core * torque, "M_s": torque})
 
 
 def ol1() -> Structure:

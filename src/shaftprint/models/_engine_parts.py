@@ -37,10 +37,10 @@ def boosted(
 ) -> Quantity:
     """Return the highest torque for which there is air: the smoke limit of a turbocharged engine.
 
-    ``m_max(n) (a + (1 - a) b) - 1`` with the boost ``b`` behind the torque, ``tau_tc db/dt = (1 + M_b) / m_max(n) - b``:
-    steady running is never limited, a fast rise is. First-order turbocharger lag and a limit that follows the boost are
-    the common reduced form (Guzzella and Onder, Introduction to Modeling and Control of Internal Combustion Engine
-    Systems, 2010, sections 2.5 and 2.6).
+    ``m_max(n) (a + (1 - a) b) - 1`` with the boost ``b`` late behind the torque, ``tau_tc db/dt = (1 + M_b) / m_max(n)
+    - b``: steady running is never limited, a fast rise is. First-order turbocharger lag and a limit that follows the
+    boost are the common reduced form (Guzzella and Onder, Introduction to Modeling and Control of Internal Combustion
+    Engine Systems, 2010, sections 2.5 and 2.6).
 
     Parameters
     ----------

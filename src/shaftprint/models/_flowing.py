@@ -2,7 +2,8 @@
 
 A product is read from left to right: what stands first acts first, which matters as soon as a block is not linear. A
 loop is closed where its forward blocks and their sensitivity meet: of ``A * G * S(G H)`` the error is ``e = A u - H(G
-e)`` and the result ``G e``, without a second copy of ``G``.
+e)`` and the result ``G e``, without a second copy of ``G``. Where all blocks are linear, their order is none of the
+author's concern: they are put in that of the loop.
 """
 
 from collections.abc import Sequence
@@ -48,11 +49,20 @@ def along(flow: Flow, chain: Sequence[Expression], signal: Quantity) -> Quantity
         return signal
     last, sensitivity = closings[-1]
     loop = factors(sensitivity.loop)
-    before = list(chain[:last])
+    before = _in_order_of(loop, chain[:last])
     shared = _shared(before, loop)
     signal = along(flow, before[: len(before) - shared], signal)
     error = _error(flow, sensitivity, loop, signal)
     return along(flow, [*before[len(before) - shared :], *chain[last + 1 :]], error)
+
+
+def _in_order_of(loop: list[Expression], before: Sequence[Expression]) -> list[Expression]:
+    """Return the parts ahead of a sensitivity, those of its loop last and in its order, if all may change places."""
+    places = {id(part): place for place, part in enumerate(loop)}
+    if not all(_is_linear(part) for part in before):
+        return list(before)
+    inside = sorted((part for part in before if id(part) in places), key=lambda part: places[id(part)])
+    return [*(part for part in before if id(part) not in places), *inside]
 
 
 def _shared(before: list[Expression], loop: list[Expression]) -> int:
