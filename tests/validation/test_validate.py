@@ -11,7 +11,7 @@ from shaftprint.identify import Prior, Settings, identify
 from shaftprint.models import structure
 from shaftprint.spectra import estimate_response
 from shaftprint.tug import Noise, Tug, simulate_signals
-from shaftprint.validation import ValidationSettings, linear_prediction, model_of, validate
+from shaftprint.validation import ValidationSettings, linear_prediction, model_of, simulated_prediction, validate
 from shaftprint.vessel import load_vessel
 
 RATE_HZ = 100.0
@@ -223,6 +223,20 @@ def test_a_delay_of_one_sample_is_found_in_every_record(made, campaign):
         for delay in comparison.delays:
             assert delay.delay_s == pytest.approx(0.01, abs=4.0 * delay.std_s)
     assert found.of("C11", "1 to 5").delays[0].std_s < 1e-3
+
+
+def test_the_same_by_time_steps(made, campaign):
+    signals, values = made
+    asked = {"rng": np.random.default_rng(6), "records": ("St1",), "quadratic_propeller": False}
+    by_sines = validate(model_of(structure("CL4"), values), signals, campaign, **asked)
+    by_steps = validate(model_of(structure("CL4"), values), signals, campaign, **asked, predict=simulated_prediction)
+    for one, other in zip(by_sines.comparisons, by_steps.comparisons, strict=True):
+        assert other.outcome == one.outcome
+        assert [m.fit_percent for m in other.misfits] == pytest.approx([m.fit_percent for m in one.misfits], abs=0.5)
+    assert by_sines.sentences[0].startswith("The linear validation ")
+    # what is taken through time by its equations may have limits: nothing is said of linear models
+    assert by_steps.sentences[0].startswith("The validation ")
+    assert not any("linear in its speed" in finding for finding in by_steps.findings)
 
 
 def test_a_model_without_stated_uncertainty_says_so(made, campaign):

@@ -71,6 +71,7 @@ def validate(
     chosen = _with_sensor(_as_model(model, used), signals)
     names = default_records(campaign, chosen.used) if records is None else tuple(dict.fromkeys(records))
     excerpts = excerpts_of(campaign, names, used=chosen.used, allow_in_sample=allow_in_sample, settings=settings)
+    linear = predict is linear_prediction
     data = Data.of(signals, campaign, settings)
     comparisons: list[Comparison] = []
     for name in names:
@@ -82,8 +83,8 @@ def validate(
         settings=settings,
         comparisons=tuple(comparisons),
         outcome=_outcome(comparisons),
-        sentences=outcome_sentences(chosen, comparisons, settings),
-        findings=findings_of(chosen, comparisons, data.noise, quadratic_propeller=quadratic_propeller),
+        sentences=outcome_sentences(chosen, comparisons, settings, linear=linear),
+        findings=findings_of(chosen, comparisons, data.noise, quadratic_propeller=quadratic_propeller, linear=linear),
     )
 
 

@@ -18,33 +18,36 @@ _MOST = 3
 _TOLD = ("overshoot", "rise time")
 
 
-def outcome_sentences(model: Model, comparisons: Sequence[Comparison], settings: ValidationSettings) -> tuple[str, ...]:
+def outcome_sentences(
+    model: Model, comparisons: Sequence[Comparison], settings: ValidationSettings, *, linear: bool
+) -> tuple[str, ...]:
     """Return the verdict, the worst excerpts, and what the steps have in common."""
     judged = [c for c in comparisons if not c.excerpt.in_sample]
     if not judged:
         return (f"Nothing is proved: {model.name} was identified from every record that it was held against.",)
+    what = "The linear validation" if linear else "The validation"
     failed = [c for c in judged if c.outcome == "fails"]
     asked = f"{PERCENT * settings.largest_error:.0f} % of the motion"
     if failed:
         worst = sorted(failed, key=lambda c: -max(m.error_interval[0] for m in c.misfits))
         records = _listed([c.excerpt.record for c in failed])
         return (
-            f"The linear validation fails: {model.name} misses more than {asked} in {len(failed)} of {len(judged)} "
+            f"{what} fails: {model.name} misses more than {asked} in {len(failed)} of {len(judged)} "
             f"excerpts, of {records}.",
             *(_described(c) for c in worst[:_MOST]),
-            *_common_to_steps(failed),
+            *(_common_to_steps(failed) if linear else ()),
             *_what_holds(judged),
         )
     undecided = [c for c in judged if c.outcome == "undecided"]
     if undecided:
         return (
-            f"The linear validation does not fail, but noise hides whether it holds: {model.name} is within {asked} in "
+            f"{what} does not fail, but noise hides whether it holds: {model.name} is within {asked} in "
             f"{len(judged) - len(undecided)} of {len(judged)} excerpts; of "
             f"{_listed([_place(c) for c in undecided[:_MOST]])}"
             f"{f' and {len(undecided) - _MOST} more' if len(undecided) > _MOST else ''} the data do not say.",
         )
     return (
-        f"The linear validation passes: {model.name} misses at most {asked} beyond noise in all {len(judged)} "
+        f"{what} passes: {model.name} misses at most {asked} beyond noise in all {len(judged)} "
         f"excerpts, the most {_worst_of_all(judged)}.",
     )
 
@@ -115,7 +118,7 @@ def _worst_of_all(judged: Sequence[Comparison]) -> str:
 
 
 def findings_of(
-    model: Model, comparisons: Sequence[Comparison], noise: QuietNoise, *, quadratic_propeller: bool
+    model: Model, comparisons: Sequence[Comparison], noise: QuietNoise, *, quadratic_propeller: bool, linear: bool
 ) -> tuple[str, ...]:
     """Return what the reader should know of how a validation was made."""
     total = sum(stretch.shape[1] for stretch in noise.stretches) / noise.rate_hz
@@ -132,7 +135,7 @@ def findings_of(
         )
     if quadratic_propeller:
         found.append("the torque of the model follows the square of its speed, as that of a propeller in bollard pull")
-    else:
+    elif linear:
         found.append(
             "the torque of the model is linear in its speed, while that of a propeller goes with the square: at steps "
             "of the set point that is the larger part of what it misses"
