@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from shaftprint.identify import assess
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
@@ -114,6 +116,26 @@ def test_underway(run, capsys):
         estimate = defined["estimates"][name]
         assert estimate.value == pytest.approx(true, abs=3.0 * estimate.std), name
         assert estimate.std < 0.07, name
+
+
+def test_long_chirp(run):
+    fits = run("long_chirp.py")["fits"]
+    # the three parameters of CL2 cannot follow lag and delay: K_p falls to its bound, as in thesis table 5.3
+    two = {e.name: e for e in fits["CL2"].parameters}
+    assert set(two) == {"tau_n", "K_p", "K_i"}
+    assert two["K_p"].value < 0.1
+    # At 0.6 V the tug is not linear: the fit is refused, for good reason. What the data fix well is right all the same:
+    # the tug was given K_p 5.7, K_i 4.27, delays of 70.3 and 51.8 ms, and 17.0 kg m2 behind the gauge.
+    gauge = fits["GAUGE-CLOSED"]
+    assert not assess(gauge).trustworthy
+    assert gauge.p_value < 1e-6
+    assert gauge.value("tau_dn") == pytest.approx(0.3198, rel=0.02)
+    assert gauge.value("k_q") == pytest.approx(2.0, rel=0.02)
+    assert gauge.value("K_p") / gauge.value("K_i") == pytest.approx(5.7 / 4.27, rel=0.04)
+    assert gauge.value("t_d") + gauge.value("t_sp") == pytest.approx(0.1221, rel=0.04)
+    for output, percent in fits["GAUGE-CLOSED"].fit_percent.items():
+        assert fits["CL2"].fit_percent[output] < fits["CL4"].fit_percent[output] < percent
+        assert percent < fits["GAUGE-CLOSED"].fit_ceiling[output] + 0.5
 
 
 def test_every_example_is_run():
