@@ -92,7 +92,14 @@ def test_a_delay_goes_on_with_what_is_under_way(delay):
         np.testing.assert_allclose(found[1], s / 3.0, rtol=1e-4)
 
 
-@pytest.mark.parametrize(("name", "truth"), [("CL4", TRUTH), ("GAUGE-CLOSED", GAUGE | {"t_sp": 0.03, "t_gauge": 0.01})])
+@pytest.mark.parametrize(
+    ("name", "truth"),
+    [
+        ("CL4", TRUTH),
+        ("GAUGE-CLOSED", GAUGE | {"t_sp": 0.03, "t_gauge": 0.01}),
+        ("GAUGE-INFLOW", GAUGE | {"t_sp": 0.03, "t_gauge": 0.01, "kappa": 0.8, "tau_i": 0.15}),
+    ],
+)
 def test_derivatives_are_those_of_the_responses(name, truth):
     shapes, _ = free_responses(structure(name))
     s = 2j * np.pi * np.array([0.003, 0.1, 1.0, 3.9])
@@ -106,6 +113,25 @@ def test_derivatives_are_those_of_the_responses(name, truth):
         expected = (8.0 * (above - below) - (far_above - far_below)) / (12.0 * step)
         scale = np.abs(expected).max() + 1e-9
         np.testing.assert_allclose(slopes[place] / scale, expected / scale, atol=2e-6, err_msg=parameter.name)
+
+
+def test_a_pick_up_with_a_window_goes_on_with_the_mean_of_what_was():
+    """A constant before the start leaves a mean over T and late by d with its ramp: (1 - exp(-s d) sinc) / s."""
+    free = ("T_average", "t_pickup")
+    gauge = structure("GAUGE-CORE").held_at(T_hold=0.0).free_between(T_average=(0.0, 1.0), t_pickup=(0.0, 1.0))
+    shapes, _ = free_responses(gauge)
+    omega = 2.0 * np.pi * np.array([0.05, 0.7, 3.9])
+    values = shapes.vector({"T_average": 0.3, "t_pickup": 0.2})
+    found, slopes = shapes.gradient(values, 1j * omega, free)
+    late, mean = np.exp(-0.2j * omega), np.sinc(0.15 * omega / np.pi)
+    expected = (1.0 - late * mean) / (1j * omega)
+    apart = np.abs(found[:, None] - expected).max(axis=(1, 2))
+    place = int(np.argmin(apart))
+    assert apart[place] < 1e-8
+    # d/dT sin(a) / a with a = omega T / 2, and d/dd exp(-s d)
+    by_window = -late * (np.cos(0.15 * omega) - mean) / 0.3 / (1j * omega)
+    np.testing.assert_allclose(slopes[0, place], by_window, rtol=1e-6, atol=1e-9)
+    np.testing.assert_allclose(slopes[1, place], late * mean, rtol=1e-6, atol=1e-9)
 
 
 def test_held_parts_that_do_nothing_have_no_free_response():
