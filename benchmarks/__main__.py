@@ -2,13 +2,14 @@
 
 import argparse
 
-from benchmarks import family, long_chirp, profiles, raw_recording, repeats, start_up
+from benchmarks import family, long_chirp, nonlinear_loop, profiles, raw_recording, repeats, start_up
 from benchmarks.timing import print_machine
 
 ROWS = {
     1: (family.run, 9),
     2: (raw_recording.run, 3),
     3: (long_chirp.run, 7),
+    4: (nonlinear_loop.run, 7),
     5: (repeats.run, 5),
     8: (start_up.run, 25),
     9: (profiles.run, 15),
@@ -19,7 +20,7 @@ def main() -> None:
     """Run the chosen rows of the benchmarks and print what they took."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("--rows", type=int, nargs="+", choices=tuple(ROWS), default=tuple(ROWS), help="rows to run")
-    parser.add_argument("--repetitions", type=int, help="repetitions of each instead of 9, 3, 7, 5, 25 and 15")
+    parser.add_argument("--repetitions", type=int, help="repetitions of each instead of 9, 3, 7, 7, 5, 25 and 15")
     chosen = parser.parse_args()
     print_machine()
     for row in chosen.rows:

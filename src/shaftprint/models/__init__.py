@@ -27,7 +27,7 @@ from shaftprint.models._blocks import (
     PIGovernor,
     SecondOrderLag,
 )
-from shaftprint.models._calculus import derivatives, postorder, replaced
+from shaftprint.models._calculus import derivatives, postorder, rebuilt, replaced
 from shaftprint.models._catalogue import STRUCTURES, structure
 from shaftprint.models._check import check_structure
 from shaftprint.models._combination import Combination
@@ -132,6 +132,7 @@ __all__ = [
     "program_of",
     "quadratic_propeller",
     "rate_limited",
+    "rebuilt",
     "replaced",
     "second_order_lag",
     "stable_rows",

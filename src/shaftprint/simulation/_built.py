@@ -8,11 +8,12 @@ from types import ModuleType
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.models import Leaves, Program, Quantity, Structure, derivatives, evaluate, postorder, program_of
+from shaftprint.models import Program, Quantity, Structure, derivatives, postorder, program_of
 from shaftprint.simulation._compile import module_of
 from shaftprint.simulation._exact_text import ExactText
 from shaftprint.simulation._hoisted import Hoisted, hoisted
 from shaftprint.simulation._kernel_text import KernelText
+from shaftprint.simulation._plain_text import Plain, plain_function
 from shaftprint.simulation._steady import SteadyEquations
 
 
@@ -28,8 +29,8 @@ class Built:
     """Source text of the kernels."""
     steady: SteadyEquations
     """What vanishes in steady running."""
-    slopes: dict[str, tuple[list[Quantity], ...]]
-    """Derivatives of constants, delays and shifts to a parameter, by its name; found when first asked for."""
+    functions: dict[str | None, Plain]
+    """Functions of constants, delays, shifts and periods, and of their derivatives by parameter; made when wanted."""
 
     @property
     def kernels(self) -> ModuleType:
@@ -42,17 +43,30 @@ class Built:
         return module_of(ExactText(self.hoisted, len(self.program.inputs)).text())
 
     def constants(self, values: FloatArray, step_s: float) -> tuple[FloatArray, ...]:
-        """Return constants, delays, shifts and periods at parameter values, each of shape (count,)."""
-        leaves = _leaves(self.program, values, step_s)
-        return tuple(np.array(evaluate(part, leaves)) for part in self._of_parameters)
+        """Return constants, delays, shifts and periods at parameter values, each of shape (count,).
+
+        Delays that vary are those at rest.
+        """
+        if None not in self.functions:
+            self.functions[None] = plain_function(self._of_parameters)
+        return self._split(self.functions[None], values, step_s)
 
     def constant_slopes(self, values: FloatArray, step_s: float, name: str) -> tuple[FloatArray, ...]:
         """Return the derivatives of the same to a parameter."""
-        if name not in self.slopes:
+        if name not in self.functions:
             to = Quantity("parameter", place=self.program.parameters.index(name))
-            self.slopes[name] = tuple(derivatives(part, to) for part in self._of_parameters)
-        leaves = _leaves(self.program, values, step_s)
-        return tuple(np.array(evaluate(part, leaves)) for part in self.slopes[name])
+            self.functions[name] = plain_function(derivatives(self._of_parameters, to))
+        return self._split(self.functions[name], values, step_s)
+
+    def _split(self, function: Plain, values: FloatArray, step_s: float) -> tuple[FloatArray, ...]:
+        program = self.program
+        counts = (len(self.hoisted.constants), len(program.pasts), len(program.shifts), len(program.samples))
+        rest = [0.0] * max(len(program.states), len(program.pasts), len(program.inputs), len(program.samples))
+        with np.errstate(all="ignore"):
+            found = np.array(
+                function(values.tolist(), rest, rest, rest, rest, step_s), dtype=np.result_type(values, 0.0)
+            )
+        return tuple(np.split(found, np.cumsum(counts)[:-1]))
 
     def shifts_depend_on(self, names: Sequence[str]) -> bool:
         """Return whether a parameter shifts an output."""
@@ -60,18 +74,11 @@ class Built:
         return not found.isdisjoint(names)
 
     @property
-    def _of_parameters(self) -> tuple[Sequence[Quantity], ...]:
+    def _of_parameters(self) -> list[Quantity]:
         program = self.program
         delays = [late.delay for late in program.pasts]
-        return self.hoisted.constants, delays, program.shifts, [taken.period for taken in program.samples]
-
-
-def _leaves(program: Program, values: FloatArray, step_s: float) -> Leaves:
-    """Return parameters, and everything else at rest: delays that vary start from there."""
-    leaves: dict[tuple[str, int], FloatArray] = {("step", 0): np.asarray(step_s)}
-    for kind, count in (("input", len(program.inputs)), ("state", len(program.states)), ("past", len(program.pasts))):
-        leaves |= {(kind, i): np.asarray(0.0) for i in range(count)}
-    return leaves | {("parameter", i): np.asarray(value) for i, value in enumerate(values)}
+        periods = [taken.period for taken in program.samples]
+        return [*self.hoisted.constants, *delays, *program.shifts, *periods]
 
 
 _BUILT: "weakref.WeakKeyDictionary[Structure, dict[frozenset[str], Built]]" = weakref.WeakKeyDictionary()
@@ -94,6 +101,6 @@ def build(structure: Structure, zeros: frozenset[str]) -> Built:
             hoisted=ready,
             text=KernelText(ready, len(program.inputs)).text(),
             steady=SteadyEquations(program),
-            slopes={},
+            functions={},
         )
     return known[zeros]

@@ -13,27 +13,27 @@ from numba import njit
 from numpy import cos, exp, log, sin, sqrt, tanh
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def minimum(a, b):
     return a if a.real <= b.real else b
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def maximum(a, b):
     return a if b.real <= a.real else b
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def choose(a, b, at_most, above):
     return at_most if a.real <= b.real else above
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def absolute(a):
     return -a if a.real <= 0.0 else a
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def table_slope(a, places, values):
     x = a.real
     if x <= places[0] or x > places[-1]:
@@ -44,7 +44,7 @@ def table_slope(a, places, values):
     return (values[j] - values[j - 1]) / (places[j] - places[j - 1])
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def table(a, places, values):
     x = a.real
     if x <= places[0]:
@@ -57,7 +57,7 @@ def table(a, places, values):
     return values[j - 1] + (values[j] - values[j - 1]) / (places[j] - places[j - 1]) * (a - places[j - 1])
 
 
-@njit(cache=True)
+@njit(cache=True, fastmath={"contract"})
 def cubic(x):
     """Return Lagrange's weights of nodes 0, 1, 2, 3 at a place, and their slopes."""
     a, b, c, d = x, x - 1.0, x - 2.0, x - 3.0
@@ -80,7 +80,7 @@ LEAVES = {
     "past": "p{}",
     "past rate": "q{}",
     "sample": "z{}",
-    "constant": "c[{}]",
+    "constant": "c{}",
 }
 
 
@@ -129,7 +129,15 @@ class EquationText:
         names += [f"p{i}{time}" for i in range(self.lates)]
         names += [f"q{i}{time}" for i in range(self.lates)] if self.uses_change else []
         names += [f"z{i}" for i in range(self.samples)]
-        return ", ".join([*names, "c"])
+        return ", ".join([*names, *self._constants])
+
+    @property
+    def _constants(self) -> list[str]:
+        return [f"c{i}" for i in range(len(self.equations.constants))]
+
+    def unpacked(self) -> list[str]:
+        """Return how the constants get names: what is loaded once need not be loaded at every step."""
+        return [f"{name} = c[{i}]" for i, name in enumerate(self._constants)]
 
     def assigned(self, letter: str, group: str, stage: str) -> list[str]:
         """Return the line that gives the formulas of a group names, none where there are no formulas."""
@@ -147,7 +155,9 @@ class EquationText:
         names += [f"q{i}" for i in range(self.lates)] if self.uses_change else []
         names += [f"z{i}" for i in range(self.samples)]
         body = indented([*lines, f"return ({', '.join(found)},)"])
-        return f"@njit(cache=True)\ndef {name}({', '.join([*names, 'c'])}):\n{body}"
+        return (
+            f"@njit(cache=True, fastmath={{'contract'}})\ndef {name}({', '.join([*names, *self._constants])}):\n{body}"
+        )
 
 
 def indented(lines: Iterable[str]) -> str:

@@ -9,8 +9,9 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import StructureError
-from shaftprint.models import Program, Structure, program_of
-from shaftprint.simulation._steady import Steady, SteadyEquations
+from shaftprint.models import Program, Structure
+from shaftprint.simulation._built import build
+from shaftprint.simulation._steady import Steady
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -50,9 +51,8 @@ def equilibrium(structure: Structure, values: ArrayLike, inputs: Mapping[str, fl
         If there is none, or an input is missing.
     """
     vector = np.asarray(values, dtype=np.float64)
-    program = program_of(structure, held_zeros(structure, vector))
-    given = input_vector(structure, inputs)
-    return Equilibrium.of(program, inputs, SteadyEquations(program).solve(vector, given))
+    built = build(structure, held_zeros(structure, vector))
+    return Equilibrium.of(built.program, inputs, built.steady.solve(vector, input_vector(structure, inputs)))
 
 
 def input_vector(structure: Structure, inputs: Mapping[str, float]) -> FloatArray:

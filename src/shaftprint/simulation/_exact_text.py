@@ -21,7 +21,7 @@ class ExactText(EquationText):
     def _kernel(self) -> str:
         """Return the kernel: step ``k`` goes from node ``k``; the list of late signals has ``PRE`` nodes more."""
         lates = max(self.lates, 1)
-        body = [f"x{i} = start[{i}]" for i in range(self.states)]
+        body = [*self.unpacked(), *(f"x{i} = start[{i}]" for i in range(self.states))]
         body += [f"history = np.empty((h.size + {PRE + 1}) * {lates})"]
         if self.lates:
             body += [f"for m in range({PRE}):", f"    for j in range({lates}):"]
@@ -42,7 +42,7 @@ class ExactText(EquationText):
         step += [f"x{i} = x{i} + {total.format(i)}" for i in range(self.states)]
         body += [f"    {line}" for line in step]
         head = "def advance(h, u, rise, c, start, before, first, weight, change, y):"
-        return f"@njit(cache=True, nogil=True)\n{head}\n{indented(body)}"
+        return f"@njit(cache=True, nogil=True, fastmath={{'contract'}})\n{head}\n{indented(body)}"
 
     def _past_values(self) -> list[str]:
         lines: list[str] = []

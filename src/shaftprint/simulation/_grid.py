@@ -59,31 +59,42 @@ def cubic_weights(place: FloatArray) -> tuple[FloatArray, FloatArray]:
     return weight, slope
 
 
-def shifted(
-    y: FloatArray, before: FloatArray, shift_steps: complex, samples: int, every: int
-) -> tuple[FloatArray, FloatArray]:
-    """Return a recorded output at samples that are late by some steps, and how fast it changes there, a step.
+@dataclass(frozen=True, slots=True, eq=False)
+class Shift:
+    """Samples of a recorded output that is late by some steps, or early."""
 
-    Parameters
-    ----------
-    y
-        Values at all nodes, shape (nodes, ...).
-    before
-        What it was before the first, shape (...).
-    shift_steps
-        Steps by which the samples are late; negative where they are early.
-    every
-        Steps between two samples.
-    """
-    place = -shift_steps
-    first = int(np.floor(np.real(place))) - 1
-    weight, slope = cubic_weights(np.asarray(place - first))
-    value = np.zeros((samples, *y.shape[1:]), dtype=np.result_type(y, weight))
-    change = np.zeros_like(value)
-    wanted = np.arange(samples) * every + first
-    for node in range(NODES):
-        at = wanted + node
-        taken = np.where((at >= 0).reshape(-1, *[1] * (y.ndim - 1)), y[np.clip(at, 0, y.shape[0] - 1)], before)
-        value += weight[node] * taken
-        change += slope[node] * taken
-    return value, change
+    steps: complex
+    """Steps by which the samples are late; negative where they are early."""
+    samples: int
+    """Number of samples."""
+    every: int
+    """Steps between two samples."""
+
+    def value(self, y: FloatArray, before: FloatArray) -> FloatArray:
+        """Return the output at the samples, shape (samples, ...).
+
+        Parameters
+        ----------
+        y
+            Values at all nodes, shape (nodes, ...).
+        before
+            What it was before the first, shape (...).
+        """
+        return self._sum(y, before, 0)
+
+    def change(self, y: FloatArray, before: FloatArray) -> FloatArray:
+        """Return how fast the output changes at the samples, a step."""
+        return self._sum(y, before, 1)
+
+    def _sum(self, y: FloatArray, before: FloatArray, kind: int) -> FloatArray:
+        place = -self.steps
+        first = int(np.floor(np.real(place))) - 1
+        weights = cubic_weights(np.asarray(place - first))[kind]
+        ahead = max(0, -first)
+        last = (self.samples - 1) * self.every + first + NODES
+        behind = max(0, last - y.shape[0])
+        padded = np.concatenate([np.repeat(before[None], ahead, axis=0), y, np.repeat(y[-1:], behind, axis=0)])
+        start = first + ahead
+        stop = (self.samples - 1) * self.every + 1
+        parts = (weights[m] * padded[start + m : start + m + stop : self.every] for m in range(NODES))
+        return np.asarray(sum(parts))

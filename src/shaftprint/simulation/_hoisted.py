@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
 
-from shaftprint.models import Program, Quantity, derivatives, postorder, replaced
+from shaftprint.models import Program, Quantity, derivatives, postorder, rebuilt, replaced
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -32,7 +32,6 @@ def hoisted(program: Program) -> Hoisted:
     constants: list[Quantity] = []
     leaves: list[Quantity] = []
     known: dict[int, int] = {}
-    fixed: dict[int, bool] = {}
     varying = tuple(i for i, late in enumerate(program.pasts) if late.varies)
     delays = [program.pasts[i].delay for i in varying]
     roots = [
@@ -42,12 +41,8 @@ def hoisted(program: Program) -> Hoisted:
         *program.signals,
         *delays,
     ]
-    for node in postorder(roots):
-        fixed[id(node)] = (
-            node.operation in ("parameter", "number", "step")
-            if not node.of
-            else all(fixed[id(part)] for part in node.of)
-        )
+    roots = _without_division(roots)
+    fixed = _fixed(roots)
 
     def constant(node: Quantity) -> Quantity | None:
         if node.operation == "number" or not fixed[id(node)]:
@@ -72,6 +67,28 @@ def hoisted(program: Program) -> Hoisted:
         varying=varying,
         delays=tuple(parts),
     )
+
+
+def _fixed(roots: Sequence[Quantity]) -> dict[int, bool]:
+    """Return for every part whether it is a formula of parameters alone."""
+    found: dict[int, bool] = {}
+    for node in postorder(roots):
+        alone = node.operation in ("parameter", "number", "step")
+        found[id(node)] = all(found[id(part)] for part in node.of) if node.of else alone
+    return found
+
+
+def _without_division(roots: Sequence[Quantity]) -> list[Quantity]:
+    """Return formulas that multiply by the inverse of a formula of parameters instead: that is found once."""
+    fixed = _fixed(roots)
+    found: dict[int, Quantity] = {}
+    for node in postorder(roots):
+        parts = tuple(found[id(part)] for part in node.of)
+        if node.operation == "divide" and fixed[id(node.of[1])] and not fixed[id(node)]:
+            found[id(node)] = parts[0] * (1.0 / parts[1])
+        else:
+            found[id(node)] = rebuilt(node, parts)
+    return [found[id(root)] for root in roots]
 
 
 class Slopes:

@@ -66,9 +66,15 @@ class KernelText(EquationText):
         body = self._start()
         if sensitive:
             body += self._start_derivatives()
-        body += ["k = 0", "record = 0", "for i in range(u.shape[0] - 1):", "    for sub in range(per):"]
+        body += ["k = 0", "record = 0", "part = 1.0 / per"]
+        body += [f"rise{i} = 0.0" for i in range(self.inputs)]
+        body += ["for i in range(u.shape[0] - 1):"]
+        for i in range(self.inputs):
+            body += [f"    base{i} = u[i, {i}]", f"    rise{i} = 0.0 if held else part * (u[i + 1, {i}] - base{i})"]
+            body += [f"    r{i} = rise{i} / h"]
+        body += ["    for sub in range(per):"]
         step = [*self._stage_inputs(), *self._computed(sensitive=sensitive), *self._kept(sensitive=sensitive)]
-        step += ["if k % every == 0:", *_more([*self._record(sensitive=sensitive), "record += 1"])]
+        step += ["if every == 1 or sub == 0:", *_more([*self._record(sensitive=sensitive), "record += 1"])]
         step += self._delays(sensitive=sensitive)
         step += self._past_values(sensitive=sensitive)
         step += self._runge_kutta(sensitive=sensitive)
@@ -76,12 +82,17 @@ class KernelText(EquationText):
         body += [f"        {line}" for line in step]
         body += [f"u{i}a = u[u.shape[0] - 1, {i}]" for i in range(self.inputs)]
         body += self._record(sensitive=sensitive)
-        return f"@njit(cache=True, nogil=True)\n{head}\n{indented(body)}"
+        return f"@njit(cache=True, nogil=True, fastmath={{'contract'}})\n{head}\n{indented(body)}"
 
     def _start(self) -> list[str]:
         """Return how the states and the ring of late signals are filled; ``start`` has a value each in order."""
         n, lates, samples = self.states, self.lates, self.samples
-        lines = [f"x{i} = start[{i}]" for i in range(n)]
+        lines = [*self.unpacked(), *(f"x{i} = start[{i}]" for i in range(n))]
+        for i in (i for i in range(lates) if i not in self.equations.varying):
+            for number, time in enumerate("mb"):
+                lines.append(f"first{i}{time} = first[{i}, {number}]")
+                lines += [f"weight{i}{time}{m} = weight[{i}, {number}, {m}]" for m in range(NODES)]
+                lines += [f"change{i}{time}{m} = change[{i}, {number}, {m}]" for m in range(NODES)]
         lines += [f"p{i}a = start[{n + i}]" for i in range(lates)]
         lines += [f"z{i} = start[{n + lates + i}]" for i in range(samples)]
         lines += [f"before{i} = start[{n + lates + samples + i}]" for i in range(lates)]
@@ -115,16 +126,11 @@ class KernelText(EquationText):
         return lines
 
     def _stage_inputs(self) -> list[str]:
-        lines = ["a = sub / per", "b = (sub + 0.5) / per", "e = (sub + 1.0) / per"]
+        """Return the inputs at the start, middle and end of a step."""
+        lines: list[str] = []
         for i in range(self.inputs):
-            lines += [
-                f"base = u[i, {i}]",
-                f"rise = 0.0 if held else u[i + 1, {i}] - base",
-                f"u{i}a = base + a * rise",
-                f"u{i}m = base + b * rise",
-                f"u{i}b = base + e * rise",
-                f"r{i} = rise / (per * h)",
-            ]
+            for time, share in (("a", "sub"), ("m", "(sub + 0.5)"), ("b", "(sub + 1.0)")):
+                lines.append(f"u{i}{time} = base{i} + {share} * rise{i}")
         return lines
 
     def _computed(self, *, sensitive: bool) -> list[str]:
@@ -186,16 +192,16 @@ class KernelText(EquationText):
         """Return the pasts at the middle and the end of the step, and their derivatives along the lanes."""
         lines: list[str] = []
         for i in range(self.lates):
-            for number, time in enumerate("mb"):
-                weights = [f"weight[{i}, {number}, {m}]" for m in range(NODES)]
-                changes = [f"change[{i}, {number}, {m}]" for m in range(NODES)]
-                node = f"k + first[{i}, {number}]"
+            for time in "mb":
+                weights = [f"weight{i}{time}{m}" for m in range(NODES)]
+                changes = [f"change{i}{time}{m}" for m in range(NODES)]
+                node = f"k + first{i}{time}"
                 if i in self.equations.varying:
                     share = "0.5" if time == "m" else "1.0"
                     lines += [f"at = {share} - late{i}{time} / h", "node = min(int(np.floor(at.real)) - 1, -3)"]
-                    lines += ["node = max(node, 2 - mask)", "(b0, b1, b2, b3, c0, c1, c2, c3) = cubic(at - node)"]
-                    weights = [f"b{m}" for m in range(NODES)]
-                    changes = [f"c{m} / h" for m in range(NODES)]
+                    lines += ["node = max(node, 2 - mask)", "(w0, w1, w2, w3, q0, q1, q2, q3) = cubic(at - node)"]
+                    weights = [f"w{m}" for m in range(NODES)]
+                    changes = [f"q{m} / h" for m in range(NODES)]
                     node = "k + node"
                 lines += [f"i{m} = (({node} + {m}) & mask) * {self.lates} + {i}" for m in range(NODES)]
                 lines.append(f"p{i}{time} = {_cubic(weights, 'history[i{}]')}")

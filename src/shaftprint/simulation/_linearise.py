@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.models import Leaves, SmallSignal, Structure, program_of
+from shaftprint.models import Leaves, SmallSignal, Structure
+from shaftprint.simulation._built import build
 from shaftprint.simulation._equilibrium import Equilibrium, held_zeros, input_vector
-from shaftprint.simulation._steady import SteadyEquations
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -68,9 +68,10 @@ def linearise(structure: Structure, values: ArrayLike, inputs: Mapping[str, floa
         If there is no such steady running, or an input is missing.
     """
     vector = np.asarray(values, dtype=np.float64)
-    program = program_of(structure, held_zeros(structure, vector))
+    built = build(structure, held_zeros(structure, vector))
+    program = built.program
     given = input_vector(structure, inputs)
-    steady = SteadyEquations(program).solve(vector, given)
+    steady = built.steady.solve(vector, given)
     at: dict[tuple[str, int], FloatArray] = {("input", i): np.asarray(u) for i, u in enumerate(given)}
     for kind, found in (("state", steady.states), ("past", steady.pasts), ("sample", steady.samples)):
         at |= {(kind, i): np.asarray(value) for i, value in enumerate(found)}

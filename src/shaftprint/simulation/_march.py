@@ -4,12 +4,11 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.errors import StructureError
 from shaftprint.simulation._built import Built
-from shaftprint.simulation._grid import Stencils, shifted, stencils
+from shaftprint.simulation._grid import Shift, Stencils, stencils
 from shaftprint.simulation._kernel_text import LANES
 from shaftprint.simulation._steady import Steady
 
@@ -119,14 +118,15 @@ class March:
             for i in range(count):
                 own = y_slopes[:, i, : len(names)]
                 if moved:
-                    before = np.array([lane.outputs[i] for lane in lanes])
-                    _, change = self._shifted(y[:, i], start.outputs[i], i, samples)
-                    own, _ = self._shifted(own, before, i, samples)
-                    own = own - change[:, None] * np.array([lane.shifts[i] for lane in lanes])
+                    shift = self._shift(i, samples)
+                    own = shift.value(own, np.array([lane.outputs[i] for lane in lanes]))
+                    moves = np.array([lane.shifts[i] for lane in lanes]) / self.step_s
+                    if np.any(moves):
+                        own = own - shift.change(y[:, i], np.asarray(start.outputs[i]))[:, None] * moves
                 slopes[:, i, first : first + len(names)] = own
         if not moved:
             return y, slopes
-        values = [self._shifted(y[:, i], start.outputs[i], i, samples)[0] for i in range(count)]
+        values = [self._shift(i, samples).value(y[:, i], np.asarray(start.outputs[i])) for i in range(count)]
         return np.stack(values, axis=1), slopes
 
     @property
@@ -158,11 +158,9 @@ class March:
     def _stencil(self) -> Stencils:
         return stencils(self.delay_s, self.step_s, varies=bool(self.built.hoisted.varying))
 
-    def _shifted(self, y: FloatArray, before: ArrayLike, output: int, samples: int) -> tuple[FloatArray, FloatArray]:
-        """Return an output at the samples and how fast it changes there [1/s]."""
-        shift = self.shift_s[output] / self.step_s
-        value, change = shifted(y, np.asarray(before), shift, samples, self.parts)
-        return value, change / self.step_s
+    def _shift(self, output: int, samples: int) -> Shift:
+        """Return the samples of an output."""
+        return Shift(self.shift_s[output] / self.step_s, samples, self.parts)
 
     def _lane(self, name: str, inputs: FloatArray, start: Steady, *, given: bool) -> "Lane":
         """Return the derivatives to one parameter of all that the run starts from."""

@@ -6,16 +6,20 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.models import Leaves, Program, Quantity, derivatives, evaluate
+from shaftprint.models import Program, Quantity, derivatives
+from shaftprint.simulation._plain_text import Plain, plain_function
 
 LARGEST_STEPS = 80
+HALVINGS = 30
+# In how many steps inputs are led from rest to where they are, until one number is enough.
+LEADING_STEPS = (8, 64)
 # How far from still the largest rate may be left, beside the sizes of what it is made of.
 TOLERANCE = 1e-11
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Steady:
-    """Values in steady running, and their derivatives to some parameters."""
+    """Values in steady running, or their derivatives to a parameter."""
 
     states: FloatArray
     """Shape (states,); those that go on for ever at zero."""
@@ -37,19 +41,23 @@ class SteadyEquations:
     def __init__(self, program: Program) -> None:
         self.program = program
         self._still = [i for i, runs in enumerate(program.running) if not runs]
-        self._places = [("state", i) for i in self._still]
-        self._places += [("past", i) for i in range(len(program.pasts))]
-        self._places += [("sample", i) for i in range(len(program.samples))]
-        leaves = [Quantity(kind, place=place) for kind, place in self._places]
+        places = [("state", i) for i in self._still]
+        places += [("past", i) for i in range(len(program.pasts))]
+        places += [("sample", i) for i in range(len(program.samples))]
+        self._unknown = [Quantity(kind, place=place) for kind, place in places]
         formulas = [program.rates[i] for i in self._still]
         formulas += [
             late.signal - late.delay * late.drift - Quantity("past", place=i) for i, late in enumerate(program.pasts)
         ]
         formulas += [taken.value - Quantity("sample", place=i) for i, taken in enumerate(program.samples)]
         self._formulas = formulas
-        self._slopes = [derivatives(formulas, leaf) for leaf in leaves]
+        self._left = plain_function(formulas)
+        self._matrix = plain_function([slope for leaf in self._unknown for slope in derivatives(formulas, leaf)])
         lates = [late.signal for late in program.pasts]
-        self._wanted = [*lates, *(late.drift for late in program.pasts), *program.signals]
+        self._shown = [*lates, *(late.drift for late in program.pasts), *program.signals]
+        self._show = plain_function(self._shown)
+        self._show_slopes: Plain | None = None
+        self._moved: dict[int, Plain] = {}
 
     def solve(self, values: FloatArray, inputs: FloatArray, states: FloatArray | None = None) -> Steady:
         """Return steady running at constant inputs, or what belongs to given states.
@@ -71,17 +79,20 @@ class SteadyEquations:
         StructureError
             If there is no steady running.
         """
-        known = self._known(values, inputs)
-        at = np.zeros(len(self._places))
-        rows = slice(None)
+        at, rows = np.zeros(len(self._unknown)), slice(None)
+        whole = np.zeros(len(self.program.states)) if states is None else states
         if states is not None:
             at[: len(self._still)] = states[self._still]
             rows = slice(len(self._still), None)
-        at = self._newton(known, at, rows)
-        leaves = known | dict(zip(self._places, at, strict=True))
-        if states is not None:
-            leaves |= {("state", i): x for i, x in enumerate(states)}
-        return self._filled(leaves, states)
+        found = self._newton(values, inputs, at, rows, whole)
+        if found is None and states is None:
+            found = self._led(values, inputs)
+        if found is None:
+            raise StructureError(
+                f"structure {self.program.name}: no steady running was found at these inputs and parameters; is the "
+                "engine strong enough for it, and are all gains positive?"
+            )
+        return self._split(found, whole, self._at(self._show, values, inputs, found, whole))
 
     def slopes(self, steady: Steady, values: FloatArray, inputs: FloatArray, place: int, *, held: bool) -> Steady:
         """Return the derivatives of steady running to a parameter.
@@ -93,103 +104,112 @@ class SteadyEquations:
         held
             Whether the states were given.
         """
-        leaves = self._leaves(steady, values, inputs)
-        to = Quantity("parameter", place=place)
-        moved = _array(evaluate(derivatives(self._formulas, to), leaves))
+        count = len(self._formulas)
+        if place not in self._moved:
+            to = Quantity("parameter", place=place)
+            self._moved[place] = plain_function([*derivatives(self._formulas, to), *derivatives(self._shown, to)])
+        given = (values, inputs, steady.states, steady.pasts, steady.samples)
+        moved = self._call(self._moved[place], *given)
+        change = np.zeros(count)
         rows = slice(len(self._still), None) if held else slice(None)
-        change = np.zeros(len(self._places))
-        matrix = self._jacobian(leaves)[rows, rows]
-        change[rows] = np.linalg.lstsq(matrix, -moved[rows], rcond=None)[0]
-        program = self.program
-        along = dict(zip(self._places, change, strict=True)) | {("parameter", place): 1.0}
-        formulas = self._wanted
-        total = np.zeros(len(formulas))
-        for (kind, number), slope in along.items():
-            if slope != 0.0:
-                parts = derivatives(formulas, Quantity(kind, place=number))
-                total += float(slope) * _array(evaluate(parts, leaves))
-        count, still = len(program.pasts), len(self._still)
-        states = np.zeros(len(program.states))
-        states[self._still] = change[:still]
-        return Steady(
-            states=states,
-            pasts=change[still : still + count],
-            samples=change[still + count :],
-            lates=total[:count],
-            drifts=total[count : 2 * count],
-            outputs=total[2 * count :],
-        )
+        if np.any(moved[:count][rows]):
+            matrix = self._call(self._matrix, *given).reshape(count, count).T[rows, rows]
+            change[rows] = np.linalg.lstsq(matrix, -moved[:count][rows], rcond=None)[0]
+        shown = moved[count:]
+        if np.any(change):
+            shown = shown + self._call(self._show_slope_function(), *given).reshape(count, -1).T @ change
+        return self._split(change, np.zeros(len(self.program.states)), shown)
 
-    def _known(self, values: FloatArray, inputs: FloatArray) -> dict[tuple[str, int], FloatArray]:
-        program = self.program
-        known: dict[tuple[str, int], FloatArray] = {("step", 0): np.asarray(1.0)}
-        known |= {("parameter", i): np.asarray(v) for i, v in enumerate(values)}
-        known |= {("input", i): np.asarray(u) for i, u in enumerate(inputs)}
-        for kind, count in (("input rate", len(inputs)), ("past rate", len(program.pasts))):
-            known |= {(kind, i): np.asarray(0.0) for i in range(count)}
-        known |= {("state", i): np.asarray(0.0) for i, runs in enumerate(program.running) if runs}
-        return known
+    def _show_slope_function(self) -> Plain:
+        if self._show_slopes is None:
+            self._show_slopes = plain_function(
+                [slope for leaf in self._unknown for slope in derivatives(self._shown, leaf)]
+            )
+        return self._show_slopes
 
-    def _leaves(self, steady: Steady, values: FloatArray, inputs: FloatArray) -> Leaves:
-        leaves = self._known(values, inputs)
-        leaves |= {("state", i): x for i, x in enumerate(steady.states)}
-        leaves |= {("past", i): x for i, x in enumerate(steady.pasts)}
-        return leaves | {("sample", i): x for i, x in enumerate(steady.samples)}
+    def _led(self, values: FloatArray, inputs: FloatArray) -> FloatArray | None:
+        """Return steady running reached by leading the inputs there from rest: no limit is met on the way in vain."""
+        whole = np.zeros(len(self.program.states))
+        for steps in LEADING_STEPS:
+            at: FloatArray | None = np.zeros(len(self._unknown))
+            for share in np.linspace(0.0, 1.0, steps + 1):
+                if at is not None:
+                    at = self._newton(values, share * inputs, at, slice(None), whole)
+            if at is not None:
+                return at
+        return None
 
-    def _jacobian(self, leaves: Leaves) -> FloatArray:
-        columns = [_array(evaluate(slopes, leaves)) for slopes in self._slopes]
-        return np.array(columns).T.reshape(len(self._formulas), len(columns))
+    @staticmethod
+    def _call(
+        function: Plain,
+        values: FloatArray,
+        inputs: FloatArray,
+        states: FloatArray,
+        pasts: FloatArray,
+        samples: FloatArray,
+    ) -> FloatArray:
+        with np.errstate(all="ignore"):
+            found = function(values.tolist(), states.tolist(), pasts.tolist(), samples.tolist(), inputs.tolist(), 1.0)
+        return np.array(found, dtype=np.float64)
 
-    def _newton(self, known: dict[tuple[str, int], FloatArray], at: FloatArray, rows: slice) -> FloatArray:
-        """Return a place where the equations of some rows vanish, moving their own unknowns only."""
-        left = self._left(known, at)[rows]
+    def _at(
+        self, function: Plain, values: FloatArray, inputs: FloatArray, at: FloatArray, whole: FloatArray
+    ) -> FloatArray:
+        """Return formulas at a place of the unknowns."""
+        still, pasts = len(self._still), len(self.program.pasts)
+        states = whole.copy()
+        states[self._still] = at[:still]
+        return self._call(function, values, inputs, states, at[still : still + pasts], at[still + pasts :])
+
+    def _newton(
+        self, values: FloatArray, inputs: FloatArray, at: FloatArray, rows: slice, whole: FloatArray
+    ) -> FloatArray | None:
+        """Return a place where the equations of some rows vanish, moving their own unknowns only; None if not found."""
+        left = self._at(self._left, values, inputs, at, whole)[rows]
         for _ in range(LARGEST_STEPS):
             if not left.size or np.abs(left).max() <= TOLERANCE * (1.0 + np.abs(at).max(initial=0.0)):
                 return at
-            matrix = self._jacobian(known | dict(zip(self._places, at, strict=True)))[rows, rows]
-            if not np.all(np.isfinite(matrix)):
-                break
+            square = self._at(self._matrix, values, inputs, at, whole).reshape(at.size, at.size).T
+            matrix = square[rows, rows]
+            if not (np.all(np.isfinite(matrix)) and np.all(np.isfinite(left))):
+                return None
             step = np.asarray(np.linalg.lstsq(matrix, -left, rcond=1e-12)[0], dtype=np.float64)
-            at, left = self._shortened(known, at, left, rows, step)
-        if np.all(np.isfinite(left)) and np.abs(left).max() <= np.sqrt(TOLERANCE):
-            return at
-        raise StructureError(
-            f"structure {self.program.name}: no steady running was found at these inputs and parameters; is the engine "
-            "strong enough for it, and are all gains positive?"
-        )
+            moved = self._shortened(values, inputs, at, left, rows, whole, step)
+            if moved is None:
+                break
+            at, left = moved
+        return at if np.abs(left).max() <= np.sqrt(TOLERANCE) else None
 
     def _shortened(
-        self, known: dict[tuple[str, int], FloatArray], at: FloatArray, left: FloatArray, rows: slice, step: FloatArray
-    ) -> tuple[FloatArray, FloatArray]:
-        """Return the place after a step, halved until what is left falls."""
+        self,
+        values: FloatArray,
+        inputs: FloatArray,
+        at: FloatArray,
+        left: FloatArray,
+        rows: slice,
+        whole: FloatArray,
+        step: FloatArray,
+    ) -> tuple[FloatArray, FloatArray] | None:
+        """Return the place after a step, halved until what is left falls; None if it does not."""
         share = 1.0
-        for _ in range(30):
+        for _ in range(HALVINGS):
             tried = at.copy()
             tried[rows] += share * step
-            found = self._left(known, tried)[rows]
+            found = self._at(self._left, values, inputs, tried, whole)[rows]
             if np.all(np.isfinite(found)) and np.linalg.norm(found) < np.linalg.norm(left):
                 return tried, found
             share *= 0.5
-        return tried, found
+        return None
 
-    def _left(self, known: dict[tuple[str, int], FloatArray], at: FloatArray) -> FloatArray:
-        return _array(evaluate(self._formulas, known | dict(zip(self._places, at, strict=True))))
-
-    def _filled(self, leaves: dict[tuple[str, int], FloatArray], states: FloatArray | None) -> Steady:
-        program = self.program
-        count = len(program.pasts)
-        found = _array(evaluate(self._wanted, leaves))
-        names = (("state", len(program.states)), ("past", len(program.pasts)), ("sample", len(program.samples)))
-        taken = [np.array([float(leaves[kind, i]) for i in range(count)]) for kind, count in names]
+    def _split(self, at: FloatArray, whole: FloatArray, shown: FloatArray) -> Steady:
+        still, pasts = len(self._still), len(self.program.pasts)
+        states = whole.copy()
+        states[self._still] = at[:still]
         return Steady(
-            states=taken[0] if states is None else states,
-            pasts=taken[1],
-            samples=taken[2],
-            lates=found[:count],
-            drifts=found[count : 2 * count],
-            outputs=found[2 * count :],
+            states=states,
+            pasts=at[still : still + pasts],
+            samples=at[still + pasts :],
+            lates=shown[:pasts],
+            drifts=shown[pasts : 2 * pasts],
+            outputs=shown[2 * pasts :],
         )
-
-
-def _array(values: list[FloatArray]) -> FloatArray:
-    return np.array(values, dtype=np.float64)
