@@ -2,12 +2,16 @@
 
 The free bodies are those of ``_gauge_catalogue``; for small signals the structures are ``GAUGE-CLOSED``::
 
-    governor    e = DB(c_set n_set(t - t_sp) - n)      X = RL(clip(K_p e + I, X_min, X_max))
+    governor    e = DB(c_set n_set - n)                 X = RL(clip(K_p e + I, X_min, X_max))
     engine      M_b = clip(v F X(t - t_d) + g n, m_min, m_max(n))
     upstream    tau_up dn/dt = M_b - M_s
     downstream  tau_dn dn/dt = M_s - M_p                M_p = k_q ((1 + n)^2 - 1) / 2
 
 All are deviations from the working point; the limits are over the brake torque there, ``1 + M_b <= m_max``.
+
+The latency of the set point stands behind the loop, where it does the same: whatever comes late, so does all that
+follows. Ahead of it, a jump of the set point would meet the rate limit at a whole step of the simulation, and what is
+simulated would change with ``t_sp`` in jumps of a step, its derivative zero.
 """
 
 from collections.abc import Mapping
@@ -90,15 +94,14 @@ def limited(
         equations=_Loop(limits, curve, period_s),
         of=(GAUGE_K_P, GAUGE_K_I, V_ONE, T_D, GAUGE_OMEGA_N, GAUGE_ZETA, TAU_DN, TAU_UP, K_Q, G, DROOP, *extra),
     )
-    demand = Delay(T_SP) * Gain(C_SET)
-    ports = loop.ports()
+    demand, ports = Gain(C_SET), loop.ports()
     return Structure(
         name=name or f"GAUGE-{'-'.join(limits).upper() or 'QUADRATIC'}",
         title=f"gauge-aware closed loop, quadratic propeller{''.join(f', {limit}' for limit in limits)}",
         input="n_set",
         outputs={
-            "n": demand * ports["n"] * SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP),
-            "M_s": demand * ports["M_s"] * Delay(T_GAUGE) * FirstOrderLag(T_FILTER),
+            "n": demand * ports["n"] * Delay(T_SP) * SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP),
+            "M_s": demand * ports["M_s"] * Delay(T_SP) * Delay(T_GAUGE) * FirstOrderLag(T_FILTER),
         },
         combinations=gauge_combinations(),
     )
