@@ -17,6 +17,7 @@ simulated would change with ``t_sp`` in jumps of a step, its derivative zero.
 from collections.abc import Mapping
 from typing import Any
 
+from shaftprint.errors import StructureError
 from shaftprint.models._blocks import FirstOrderLag, Gain
 from shaftprint.models._delays import Delay, SpeedSensor
 from shaftprint.models._diagram import Diagram
@@ -83,9 +84,14 @@ def limited(
 
     Raises
     ------
-    KeyError
-        If there is no limit of a name.
+    StructureError
+        If there is no limit of a name, or a smoke limit without a torque limit.
     """
+    unknown = [limit for limit in limits if limit not in OPTIONS]
+    if unknown:
+        raise StructureError(f"there is no limit {unknown[0]!r}; there are {', '.join(OPTIONS)}.")
+    if "smoke" in limits and "torque" not in limits:
+        raise StructureError("a smoke limit needs the torque limit of which it gives a part: name both.")
     extra = tuple(p for limit in limits for p in OPTIONS[limit])
     loop = Diagram(
         name="limited loop",
