@@ -8,6 +8,7 @@ from scipy.signal import lfilter
 
 from shaftprint.errors import IdentificationError, StructureError
 from shaftprint.identify import (
+    Draw,
     Settings,
     Unweighted,
     assess,
@@ -20,6 +21,7 @@ from shaftprint.identify import (
 )
 from shaftprint.identify._propagation import propagation
 from shaftprint.models import FirstOrderLag, Gain, Parameter, Structure
+from shaftprint.simulation import Trace
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain import (
     NoiseModel,
@@ -66,7 +68,8 @@ class Recursion:
             "k": run(b0 * u[:-1] + b1 * u[1:], rests),
             "T": run(da * y[:-1] + k * (db0 * u[:-1] + db1 * u[1:]), 0.0),
         }
-        return np.stack([y, *(slopes[name] for name in wanted)])[:, None]
+        rows = np.array([slopes[name] for name in wanted]).reshape(-1, u.size)
+        return Trace(time_s=record.drive_time_s, outputs={"y": y}, derivatives={"y": rows})
 
     def rest(self, structure, values, record):
         return np.array([float(structure.named(values)["k"]) * record.drive["u"][0]])
@@ -291,6 +294,30 @@ def test_search_from_many_starts_needs_no_known_one(lag):
     )
     assert found.value("T") == pytest.approx(T, rel=0.1)
     assert sum(cluster.starts for cluster in found.clusters) == 5
+
+
+class RunsAway(Draw):
+    """Starts at which the stand-in finds no steady running."""
+
+    def starts(self, lower, upper, count, rng):
+        return np.tile([1.0, 0.055], (count, 1))
+
+
+def test_starts_that_run_away_are_drawn_again(lag):
+    term = output_error(lag, make_record(10), settings=STAND_IN)
+    np.testing.assert_array_equal(term.evaluable(np.array([[1.0, 0.055], [1.5, 0.7]])), [False, True])
+    found = identify_in_time(
+        [term], rng=np.random.default_rng(1), settings=Settings(starts=4, draw=RunsAway()), time=STAND_IN
+    )
+    assert found.value("T") == pytest.approx(T, rel=0.1)
+    assert sum(cluster.starts for cluster in found.clusters) == 4
+
+
+def test_many_starts_at_once_give_what_each_gives_alone(lag):
+    term = output_error(lag, make_record(10, count=200), settings=STAND_IN)
+    theta = np.random.default_rng(2).uniform(0.2, 2.0, (9, 2))
+    together = term.table(theta)
+    np.testing.assert_array_equal(together, np.concatenate([term.table(row[None]) for row in theta]))
 
 
 def test_wrong_structure_is_rejected_though_the_noise_is_taken_from_its_residuals(lag):

@@ -86,10 +86,21 @@ def test_filter_is_the_plain_sum_at_every_new_sample():
     np.testing.assert_allclose(decimator.filtered(values).reshape(6, -1), plain, atol=1e-13)
 
 
+@pytest.mark.parametrize("length", [153, 159, 160, 208, 209, 400])
+def test_filter_of_columns_is_that_of_rows_whatever_the_length(length):
+    decimator = Decimator(every=7)
+    values = np.random.default_rng(4).standard_normal((length, 6))[:, ::2]
+    plain = [np.convolve(column, decimator.taps, mode="valid")[::7] for column in values.T]
+    np.testing.assert_allclose(decimator.thinned(values), np.transpose(plain), atol=1e-13)
+    assert decimator.thinned(values[:100]).shape == (0, 3)
+    assert decimator.thinned(values[:, :0]).shape[1] == 0
+
+
 def test_one_for_one_changes_nothing():
     values = np.random.default_rng(2).standard_normal(50)
     assert Decimator(every=1).half == 0
     np.testing.assert_array_equal(Decimator(every=1).filtered(values), values)
+    np.testing.assert_array_equal(Decimator(every=1).thinned(values[:, None])[:, 0], values)
 
 
 def test_noise_of_the_new_samples_has_no_empty_band():

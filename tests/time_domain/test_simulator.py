@@ -80,6 +80,6 @@ def test_rest_at_the_first_input(loop):
     )
     values = loop.vector(VALUES)
     states = ExactDelays().rest(loop, values, record)
-    still = ExactDelays()(loop, values, record, (), initial=states)[0]
-    np.testing.assert_allclose(still[0], 0.1, rtol=1e-9)
-    np.testing.assert_allclose(still[1], 0.2, rtol=1e-9)
+    still = ExactDelays()(loop, values, record, (), initial=states).outputs
+    np.testing.assert_allclose(still["n"], 0.1, rtol=1e-9)
+    np.testing.assert_allclose(still["M_s"], 0.2, rtol=1e-9)

@@ -121,6 +121,10 @@ class Experiment(Term):
         shaped = weighted if self.tails.normal else self.tails.shaped(weighted)
         return shaped.reshape(*shaped.shape[:2], -1)
 
+    def evaluable(self, theta: FloatArray) -> BoolArray:
+        """Return true: a frequency response is finite for all parameters."""
+        return np.ones(theta.shape[0], dtype=np.bool_)
+
     def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
         """Return the weighted derivatives, and where they are no likelihood's the same times a root of ``W C W^T``."""
         table = _weighted(self._stacked(theta[None, :], None), self.elements)

@@ -125,6 +125,10 @@ class Objective:
         """Return whether the models of all terms are stable, shape (rows,), for parameters (rows, parameters)."""
         return np.asarray(np.all([term.stable(values) for term in self.terms], axis=0))
 
+    def evaluable(self, theta: FloatArray) -> BoolArray:
+        """Return whether all terms can be evaluated, shape (starts,), at free parameters (starts, free)."""
+        return np.asarray(np.all([term.evaluable(theta[:, term.columns]) for term in self.terms], axis=0))
+
     def of_starts(self, theta: FloatArray, starts: IntArray) -> tuple[FloatArray, FloatArray]:
         """Return the same as ``residuals``: every start has the same problem."""
         return self.residuals(theta)

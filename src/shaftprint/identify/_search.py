@@ -18,6 +18,7 @@ from shaftprint.identify._levenberg_marquardt import Allowed, Descent, descend
 from shaftprint.identify._objective import Objective
 from shaftprint.identify._settings import Settings
 from shaftprint.identify._stability import stable_models
+from shaftprint.identify._starts import LatinHypercube
 
 POLISH_TOLERANCE = 1e-14
 # Standard deviations below this share of their values are those of hardly any noise.
@@ -27,6 +28,8 @@ FIRST_FLOOR, FLOOR_STEP = 0.1, 0.1
 CHOSEN = 10
 # An unstable start is drawn again so many times.
 REDRAWS = 50
+# A start whose simulation runs away is drawn again so many times: each costs a simulation.
+SIMULATED_REDRAWS = 10
 
 
 def search(objective: Objective, settings: Settings, rng: np.random.Generator) -> Descent:
@@ -78,12 +81,12 @@ def _starts(objective: Objective, settings: Settings, rng: np.random.Generator, 
     lower, upper = objective.lower, objective.upper
     start = settings.draw.starts(lower, upper, settings.starts, rng)
     if allowed is None:
-        return start
+        return _evaluable(objective, start, allowed, rng)
     for _ in range(REDRAWS):
         unstable = ~allowed(start)
         count = int(unstable.sum())
         if not count:
-            return start
+            return _evaluable(objective, start, allowed, rng)
         start[unstable] = settings.draw.starts(lower, upper, count, rng)
     stable = allowed(start)
     if not stable.any():
@@ -92,6 +95,24 @@ def _starts(objective: Objective, settings: Settings, rng: np.random.Generator, 
             "the bounds, or allow unstable models."
         )
     return np.asarray(start[stable][np.arange(settings.starts) % int(stable.sum())])
+
+
+def _evaluable(
+    objective: Objective, start: FloatArray, allowed: Allowed | None, rng: np.random.Generator
+) -> FloatArray:
+    """Return the starts, those at which a term cannot be evaluated drawn again.
+
+    There a simulation has run away and knows no slope, so that the start would stay where it is.
+    """
+    lost = np.flatnonzero(~objective.evaluable(start))
+    for _ in range(SIMULATED_REDRAWS if start.shape[0] > 1 else 0):
+        if not lost.size:
+            break
+        drawn = LatinHypercube().starts(objective.lower, objective.upper, lost.size, rng)
+        good = objective.evaluable(drawn) & (True if allowed is None else allowed(drawn))
+        start[lost[good]] = drawn[good]
+        lost = lost[~good]
+    return start
 
 
 def _descended(objective: Objective, start: FloatArray, settings: Settings, allowed: Allowed | None) -> Descent:

@@ -136,6 +136,10 @@ class Term(ABC):
         """
 
     @abstractmethod
+    def evaluable(self, theta: FloatArray) -> BoolArray:
+        """Return whether the model can be evaluated at free parameters of this term, shape (starts,)."""
+
+    @abstractmethod
     def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
         """Return rows whose products are the information, and rows whose products are the variance of the slope.
 

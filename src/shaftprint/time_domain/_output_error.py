@@ -11,10 +11,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray, IntArray, frozen_float
+from shaftprint.arrays import BoolArray, FloatArray, IntArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import LineTest, Repeats, Term, TermTest, fit_ceiling, fit_percent
 from shaftprint.models import Structure
+from shaftprint.time_domain._at_once import at_once
 from shaftprint.time_domain._input_response import excited, explained_part
 from shaftprint.time_domain._nuisance import drift_columns, orthonormal, without
 from shaftprint.time_domain._record import Record
@@ -134,13 +135,28 @@ class OutputError(Term):
     def table(self, theta: FloatArray, repeats: Repeats | None = None) -> FloatArray:
         """Return turned residuals and derivatives, a simulation a start, shape (starts, 1 + free, 1 + free)."""
         found = np.zeros((theta.shape[0], self.row_count, self.row_count))
-        for start, values in enumerate(self.complete(theta)):
+        own = self.complete(theta)
+
+        def fill(start: int) -> None:
             data = repeats.data(start) if isinstance(repeats, RecordRepeats) else self.measured
-            rows = self._rows(values, data)
+            rows = self._rows(own[start], data)
             if rows is None:
                 found[start, 0, 0] = np.sqrt(2.0 * AWAY * max(self.cost_of_nothing, 1.0))
-                continue
-            found[start] = turned(rows[0])
+            else:
+                found[start] = turned(rows[0])
+
+        at_once(fill, theta.shape[0])
+        return found
+
+    def evaluable(self, theta: FloatArray) -> BoolArray:
+        """Return whether the simulation of each start stays within bounds, shape (starts,)."""
+        found = np.zeros(theta.shape[0], dtype=np.bool_)
+        own = self.complete(theta)
+
+        def fill(start: int) -> None:
+            found[start] = self._simulated(own[start], ()) is not None
+
+        at_once(fill, theta.shape[0])
         return found
 
     def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:

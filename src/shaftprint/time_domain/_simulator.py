@@ -8,7 +8,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.models import Structure
-from shaftprint.simulation import equilibrium, simulate
+from shaftprint.simulation import Trace, equilibrium, simulate
 from shaftprint.time_domain._record import Record
 
 # Normalised deviations beyond this have run away.
@@ -26,8 +26,8 @@ class Simulator(Protocol):
         wanted: Sequence[str],
         *,
         initial: FloatArray | None = None,
-    ) -> FloatArray:
-        """Return outputs and below them their derivatives, shape (1 + wanted, outputs, samples of the drive).
+    ) -> Trace:
+        """Return the outputs at every sample of the drive, and their derivatives.
 
         Parameters
         ----------
@@ -54,14 +54,11 @@ class ExactDelays:
         wanted: Sequence[str],
         *,
         initial: FloatArray | None = None,
-    ) -> FloatArray:
-        """Return outputs and below them their derivatives, shape (1 + wanted, outputs, samples of the drive)."""
+    ) -> Trace:
+        """Return the outputs at every sample of the drive, and their derivatives."""
         inputs = {name: record.drive[name] for name in structure.inputs}
-        trace = simulate(
+        return simulate(
             structure, values, record.drive_time_s, inputs, wanted=wanted, hold=record.hold, initial=initial
-        )
-        return np.stack(
-            [np.concatenate([trace.outputs[n][None], trace.derivatives[n]]) for n in structure.outputs], axis=1
         )
 
     def rest(self, structure: Structure, values: FloatArray, record: Record) -> FloatArray:
@@ -88,6 +85,8 @@ def on_record(
         except StructureError:
             # at the model's own values it was found to work: here there is no steady running to start from
             return None
-        if not np.all(np.abs(fine[0]) < RUN_AWAY) or not np.all(np.isfinite(fine)):
-            return None
-    return np.ascontiguousarray(record.decimator.filtered(fine).swapaxes(1, 2))
+        found = np.empty((1 + len(wanted), record.samples, len(structure.outputs)))
+        for place, name in enumerate(structure.outputs):
+            found[0, :, place] = record.decimator.thinned(fine.outputs[name][:, None])[:, 0]
+            found[1:, :, place] = record.decimator.thinned(fine.derivatives[name].T).T
+    return found if np.all(np.abs(found[0]) < RUN_AWAY) and np.all(np.isfinite(found)) else None

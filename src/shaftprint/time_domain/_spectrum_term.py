@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.arrays import ComplexArray, FloatArray, IntArray
+from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from shaftprint.identify import FittedTerm, LineTest, Repeats, Term, TermTest
 from shaftprint.models import Structure
 from shaftprint.time_domain._bands import ORDERS
@@ -142,6 +142,10 @@ class SpectrumTerm(Term):
             outputs = repeats.outputs[row] if isinstance(repeats, SpectrumRepeats) else self.spectrum.outputs
             found[row] = self._projected(values, outputs)[0]
         return found
+
+    def evaluable(self, theta: FloatArray) -> BoolArray:
+        """Return true: a frequency response is finite for all parameters."""
+        return np.ones(theta.shape[0], dtype=np.bool_)
 
     def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
         """Return the weighted derivatives of what the input does, without what free responses can follow, twice.
