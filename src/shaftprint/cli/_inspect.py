@@ -12,6 +12,7 @@ from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._raw_levels import levels_of
 from shaftprint.cli._signal_tables import print_lines, print_signals
 from shaftprint.cli._tables import print_table
+from shaftprint.nonlinearity import detect
 from shaftprint.recording import Recording, read_recording
 from shaftprint.signals import ChannelReport, inspect_channels, prepare_signals
 from shaftprint.spectra import Spectra, estimate_spectra
@@ -96,9 +97,12 @@ def _print_test(opened: Recording, ship: Vessel, asked: Campaign, *, hidden: boo
         signals = prepare_signals(opened, ship, asked, progress=steps.reach)
         steps.begin("Measuring the test lines")
         spectra = estimate_spectra(signals, asked)
+        steps.begin("Looking for nonlinearities")
+        found = detect(signals, asked, ship)
     print_signals(signals)
     print_lines(spectra)
     print_findings("Findings on the signals", signals.findings)
+    print_findings("Nonlinearities", [found.sentence, *(finding.evidence for finding in found.findings)])
     click.echo(verdict(spectra))
 
 

@@ -65,8 +65,9 @@ def limit_evidence(record: Record, found: Fit, signals: "Signals") -> LimitEvide
             if (last - first) * record.step_s >= _SHORTEST_S:
                 rows.append(_stretch(record, engine, limit, first, last, signals))
     table = np.array(sorted(rows)).reshape(-1, 7)
-    curved = found.values["limit"] < NONE
-    relative = found.std("limit") / found.values["limit"] if "limit" in found.free else 0.0
+    # a curve that was taken from the vessel file is not one that was found
+    curved = "limit" in found.free
+    relative = found.std("limit") / found.values["limit"] if curved else 0.0
     curve = found.values["limit"] * record.curve_torque if curved else np.empty(0)
     return LimitEvidence(
         start_s=table[:, 0],

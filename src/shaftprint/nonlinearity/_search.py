@@ -14,6 +14,11 @@ from shaftprint.nonlinearity._tails import chi_square_tail
 _MOST_ROUNDS = 5
 _POLISH_ROUNDS = 8
 _MOST_POLISHED = 3
+_MOST_PUSHES = 3
+_PUSH_S = 0.02
+_LEAST_FALL = 0.5
+# With this share of the torque at once a smoke limiter is a torque limit.
+_IDLE_AIR = 0.95
 _ALWAYS_FITTED = ("torque limit", "motoring limit")
 _LIMITS = ("limit", "m_min", "air")
 
@@ -72,28 +77,35 @@ def search(record: Record, linear: Fit, *, false_alarm: float) -> Outcome:
     false_alarm
         Probability with which a linear line may show anything, all tests of a round together.
     """
-    here, present, quantisation = linear, list[Present](), None
-    small = fit(record.only_smooth(), linear.values) if record.smooth.any() else None
+    small = fit(record.only_smooth(), linear.values) if record.smooth.any() else linear
+    linear = best_fit(record, linear.values, (), small)
+    here, present, quantisation, idle = linear, list[Present](), None, list[Kind]()
     for _ in range(_MOST_ROUNDS):
         tried = _try_all(record, _bases(record, here, small), false_alarm)
         steps = None if quantisation is not None else find_quantisation(record, here)
         best = max(tried, key=_preference)
-        wins = steps is not None and steps.is_rounding and steps.p_value < false_alarm
-        if wins and steps is not None and steps.statistic > _preference(best):
+        if steps is not None and _wins(steps, best, false_alarm):
             quantisation = steps
             record = replace(record, set_point=rounded(record, steps))
-            here = fit(record, here.values, here.free[len(GOVERNOR) :])
+            here = best_fit(record, here.values, here.free[len(GOVERNOR) :], small)
             present.append(
                 Present(kind="quantised set point", terms=(), statistic=steps.statistic, p_value=steps.p_value)
             )
             continue
         if best.fit is None or best.p_value >= false_alarm:
             break
-        kind, terms = best.suspect.kind, best.suspect.terms
-        present.append(Present(kind=kind, terms=terms, statistic=best.statistic, p_value=best.p_value))
-        here = _with_windup(record, best.fit)
-    here, present = _without_idle(record, here, present, false_alarm)
-    absent = [(one.suspect.kind, max(one.statistic, 0.0), one.p_value) for one in tried]
+        one = Present(kind=best.suspect.kind, terms=best.suspect.terms, statistic=best.statistic, p_value=best.p_value)
+        here = _with_windup(record, best.fit, small)
+        here, present = _without_idle(record, here, [*present, one], false_alarm, small)
+        if one not in present:
+            idle.append(one.kind)
+            break
+    absent = [
+        (one.suspect.kind, 0.0, 1.0)
+        if one.suspect.kind in idle
+        else (one.suspect.kind, max(one.statistic, 0.0), one.p_value)
+        for one in tried
+    ]
     if quantisation is None and steps is not None:
         absent.append(("quantised set point", steps.statistic, steps.p_value))
     kinds = {one.kind for one in present}
@@ -105,6 +117,11 @@ def search(record: Record, linear: Fit, *, false_alarm: float) -> Outcome:
         absent=tuple(one for one in absent if one[0] not in kinds),
         quantisation=quantisation,
     )
+
+
+def _wins(steps: Quantisation, best: _Tried, false_alarm: float) -> bool:
+    """Return whether steps of the set point explain more than the best of the terms."""
+    return steps.is_rounding and steps.p_value < false_alarm and steps.statistic > _preference(best)
 
 
 def _preference(tried: _Tried) -> float:
@@ -130,7 +147,8 @@ def _try_all(record: Record, bases: Sequence[Fit], false_alarm: float) -> list[_
         if best.trials and (stands_out or suspect.kind in _ALWAYS_FITTED):
             extra = (*here.free[len(GOVERNOR) :], *suspect.terms)
             polished = fit(record, best.values, extra, rounds=_POLISH_ROUNDS)
-            statistic = _fall(here, polished)
+            idle = polished.values["air"] > _IDLE_AIR and "air" in suspect.terms
+            polished, statistic = (None, 0.0) if idle else (polished, _fall(here, polished))
         p_value = min(trials * chi_square_tail(statistic, len(suspect.terms)), 1.0)
         found.append(_Tried(suspect=suspect, statistic=statistic, p_value=p_value, fit=polished))
     return found
@@ -165,38 +183,71 @@ def _scan(record: Record, bases: Sequence[Fit], suspect: Suspect) -> _Scanned:
     return best
 
 
-def _bases(record: Record, here: Fit, small: Fit | None) -> list[Fit]:
+def _bases(record: Record, here: Fit, small: Fit) -> list[Fit]:
     """Return from where suspects are tried: the best fit, and the governor of the sines and chirps.
 
     A linear governor that has to explain limited steps hides the limit: it has become too slow to reach it.
     """
-    if small is None:
-        return [here]
-    values = {**here.values, **{name: small.values[name] for name in GOVERNOR}}
-    return [here, fit(record, values, here.free[len(GOVERNOR) :], rounds=0)]
+    return [here, fit(record, _with_governor(here.values, small), here.free[len(GOVERNOR) :], rounds=0)]
+
+
+def _with_governor(values: Mapping[str, float], small: Fit) -> dict[str, float]:
+    return {**values, **{name: small.values[name] for name in GOVERNOR}}
+
+
+def best_fit(record: Record, values: Mapping[str, float], extra: Sequence[str], small: Fit) -> Fit:
+    """Return the best of several fits: with the governor from where it stands and from that of the sines.
+
+    What is compared must be at its best: else a term wins that only leads out of a poorer optimum. Delays between steps
+    of the replay are interpolated, which puts kinks into the valley in which ``t_d`` and ``t_sp`` stand for each other:
+    the result is pushed along it both ways until neither is better.
+    """
+    best = min(
+        (fit(record, start, extra) for start in (values, _with_governor(values, small))),
+        key=lambda one: one.whitened.squares,
+    )
+    for _ in range(_MOST_PUSHES):
+        pushed = [fit(record, _pushed(best.values, by_s), extra, rounds=_POLISH_ROUNDS) for by_s in (-_PUSH_S, _PUSH_S)]
+        better = min(pushed, key=lambda one: one.whitened.squares)
+        if _fall(best, better) < _LEAST_FALL:
+            break
+        best = better
+    return best
+
+
+def _pushed(values: Mapping[str, float], by_s: float) -> dict[str, float]:
+    """Return values with a part of the delay moved from before the loop into it."""
+    return {
+        **values,
+        "t_d": max(values["t_d"] + by_s, 0.5 * _PUSH_S),
+        "t_sp": max(values["t_sp"] - by_s, 0.5 * _PUSH_S),
+    }
 
 
 def _fall(before: Fit, after: Fit) -> float:
     return before.count * float(np.log(before.whitened.squares / after.whitened.squares))
 
 
-def _with_windup(record: Record, found: Fit) -> Fit:
+def _with_windup(record: Record, found: Fit, small: Fit) -> Fit:
     """Free the time constant of the back-calculation as soon as there is a limit for it."""
     extra = found.free[len(GOVERNOR) :]
     if "windup_s" not in extra and any(name in extra for name in _LIMITS):
         extra = (*extra, "windup_s")
-    return fit(record, found.values, extra)
+    return best_fit(record, found.values, extra, small)
 
 
-def _without_idle(record: Record, here: Fit, present: list[Present], false_alarm: float) -> tuple[Fit, list[Present]]:
+def _without_idle(
+    record: Record, here: Fit, present: list[Present], false_alarm: float, small: Fit
+) -> tuple[Fit, list[Present]]:
     """Take out what later terms explain better, as long as the data do not miss it."""
     kept = list(present)
     for one in present:
         if not one.terms or len(kept) < 2:
             continue
         extra = tuple(name for name in here.free[len(GOVERNOR) :] if name not in one.terms)
-        without = fit(record, {**here.values, **{name: ABSENT[name] for name in one.terms}}, extra)
-        if chi_square_tail(_fall(without, here), len(one.terms)) >= false_alarm:
+        absent = {**here.values, **{name: ABSENT[name] for name in one.terms}}
+        without = best_fit(record, absent, extra, small)
+        if len(SUSPECTS) * chi_square_tail(_fall(without, here), len(one.terms)) >= false_alarm:
             here = without
             kept.remove(one)
     return here, kept
@@ -204,6 +255,5 @@ def _without_idle(record: Record, here: Fit, present: list[Present], false_alarm
 
 def windup_statistic(record: Record, found: Fit, windup_s: float) -> float:
     """Return how much worse the data go with an integrator that is emptied within a time, as a statistic."""
-    extra: Sequence[str] = tuple(name for name in found.free[len(GOVERNOR) :] if name != "windup_s")
-    held = fit(record, {**found.values, "windup_s": windup_s}, extra)
-    return _fall(held, found)
+    extra = tuple(name for name in found.free[len(GOVERNOR) :] if name != "windup_s")
+    return _fall(fit(record, {**found.values, "windup_s": windup_s}, extra), found)

@@ -46,7 +46,8 @@ class StepEvidence:
     up_minus_down_std: FloatArray
     """Its standard deviation, shape (4,)."""
     p_value: FloatArray
-    """Probability of that asymmetry by chance, shape (4,); 1 where there are not both."""
+    """Probability of that asymmetry by chance, each number alone, shape (4,); 1 where there are not both. The least of
+    four, times four, falls below 5 % in 15 % of linear recordings."""
     time_s: FloatArray
     """Time since the jump of the curves [s], shape (samples,)."""
     speed: FloatArray
@@ -119,6 +120,9 @@ def _one_step(
     shaken = np.array([_numbers(curves[1] + one, before, step_s) for one in quiet[:_MOST_NOISE]])
     std = shaken.std(axis=0, ddof=1) if len(shaken) > 2 else np.full(len(NUMBERS), np.nan)
     measured, expected = (_numbers(curve, before, step_s) for curve in curves)
+    if len(shaken):
+        # noise alone makes a step overshoot and settle late: expected is what the noise makes of it on average
+        expected = shaken.mean(axis=0)
     return size, measured, expected, std, np.concatenate(curves)
 
 
