@@ -55,6 +55,7 @@ from shaftprint.models._own_blocks import FunctionBlock, RationalBlock
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._program import Computed, Late, Program, program_of
 from shaftprint.models._quantity import Quantity, choose, clip, maximum, minimum, table
+from shaftprint.models._sailing_at_large import pitch_actuator, sailing_at_large
 from shaftprint.models._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
 from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
 from shaftprint.models._small_signal import SmallSignal
@@ -127,6 +128,7 @@ __all__ = [
     "margins",
     "maximum",
     "minimum",
+    "pitch_actuator",
     "poles",
     "postorder",
     "program_of",
@@ -134,6 +136,7 @@ __all__ = [
     "rate_limited",
     "rebuilt",
     "replaced",
+    "sailing_at_large",
     "second_order_lag",
     "stable_rows",
     "step_response",

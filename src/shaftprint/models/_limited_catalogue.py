@@ -14,8 +14,8 @@ follows. Ahead of it, a jump of the set point would meet the rate limit at a who
 simulated would change with ``t_sp`` in jumps of a step, its derivative zero.
 """
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, TypeAlias
 
 from shaftprint.errors import StructureError
 from shaftprint.models._blocks import FirstOrderLag, Gain
@@ -87,17 +87,12 @@ def limited(
     StructureError
         If there is no limit of a name, or a smoke limit without a torque limit.
     """
-    unknown = [limit for limit in limits if limit not in OPTIONS]
-    if unknown:
-        raise StructureError(f"there is no limit {unknown[0]!r}; there are {', '.join(OPTIONS)}.")
-    if "smoke" in limits and "torque" not in limits:
-        raise StructureError("a smoke limit needs the torque limit of which it gives a part: name both.")
-    extra = tuple(p for limit in limits for p in OPTIONS[limit])
+    extra = parameters_of(limits)
     loop = Diagram(
         name="limited loop",
         input="demand",
         outputs=("n", "M_s", "X"),
-        equations=_Loop(limits, curve, period_s),
+        equations=LimitedLoop(limits, curve, period_s, bollard_load),
         of=(GAUGE_K_P, GAUGE_K_I, V_ONE, T_D, GAUGE_OMEGA_N, GAUGE_ZETA, TAU_DN, TAU_UP, K_Q, G, DROOP, *extra),
     )
     demand, ports = Gain(C_SET), loop.ports()
@@ -113,16 +108,44 @@ def limited(
     )
 
 
-class _Loop:
-    """Equations of the loop with some limits."""
+def parameters_of(limits: tuple[str, ...]) -> tuple[Parameter, ...]:
+    """Return the parameters that some limits bring.
 
-    def __init__(self, limits: tuple[str, ...], curve: tuple[tuple[float, float], ...], period_s: float) -> None:
+    Raises
+    ------
+    StructureError
+        If there is no limit of a name, or a smoke limit without a torque limit.
+    """
+    unknown = [limit for limit in limits if limit not in OPTIONS]
+    if unknown:
+        raise StructureError(f"there is no limit {unknown[0]!r}; there are {', '.join(OPTIONS)}.")
+    if "smoke" in limits and "torque" not in limits:
+        raise StructureError("a smoke limit needs the torque limit of which it gives a part: name both.")
+    return tuple(p for limit in limits for p in OPTIONS[limit])
+
+
+Load: TypeAlias = Callable[[Flow, Quantity, Any], tuple[Quantity, Mapping[str, Quantity]]]
+"""Takes equations, shaft speed and parameters; gives the torque of the propeller, and what else there is to see."""
+
+
+def bollard_load(flow: Flow, speed: Quantity, p: Any) -> tuple[Quantity, Mapping[str, Quantity]]:
+    """Return the torque of a propeller at the quay, and nothing else."""
+    return quadratic_propeller(speed, p.k_q), {}
+
+
+class LimitedLoop:
+    """Equations of governor, engine and line with some limits, around any load."""
+
+    def __init__(
+        self, limits: tuple[str, ...], curve: tuple[tuple[float, float], ...], period_s: float, load: Load
+    ) -> None:
         self._limits = limits
         self._curve = curve
         self._period_s = period_s
+        self._load = load
 
     def __call__(self, flow: Flow, demand: Quantity, p: Any) -> Mapping[str, Quantity]:
-        """Return speed, torque at the gauge and rack."""
+        """Return speed, torque at the gauge and rack, and what the load shows."""
         speed = flow.state("n")
         error = demand - speed
         if "deadband" in self._limits:
@@ -133,10 +156,10 @@ class _Loop:
         late = second_order_lag(flow, flow.delayed(rack, p.t_d), p.omega_n, p.zeta)
         asked = p.v * late + p.g * speed
         brake = flow.close(burnt, asked if lowest is None else clip(asked, lowest, highest), "engine torque")
-        load = quadratic_propeller(speed, p.k_q)
+        load, shown = self._load(flow, speed, p)
         acceleration = (brake - load) / (p.tau_dn + p.tau_up)
         flow.rate(speed, acceleration)
-        return {"n": speed, "M_s": load + p.tau_dn * acceleration, "X": rack}
+        return {"n": speed, "M_s": load + p.tau_dn * acceleration, "X": rack, **shown}
 
     def _torque_limits(self, flow: Flow, speed: Quantity, burnt: Quantity, p: Any) -> tuple[Quantity | None, Quantity]:
         """Return the lowest and highest brake torque; no lowest where torque is not limited."""

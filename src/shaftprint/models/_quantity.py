@@ -11,6 +11,8 @@ from itertools import pairwise
 from numbers import Real
 from typing import TypeAlias, Union
 
+import numpy as np
+
 from shaftprint.errors import StructureError
 
 Number: TypeAlias = Union["Quantity", float]
@@ -157,6 +159,9 @@ def quantity(value: Number) -> Quantity:
 
 
 def _quantity(value: object) -> Quantity | None:
+    if isinstance(value, np.ndarray) and value.ndim == 0:
+        # what NumPy makes of one formula
+        value = value.item()
     if isinstance(value, Quantity):
         return value
     return number(float(value)) if isinstance(value, Real) else None

@@ -1,0 +1,162 @@
+"""A ship that sails free, at large: open-water curves instead of their slopes, resistance instead of its slope.
+
+With ``n`` and ``v`` the deviations of shaft and ship over their values at the working point, and ``J_0`` the advance
+ratio there::
+
+    J = J_0 (1 + v) / (1 + n)
+    Q / Q_0 = (1 + n)^2 K_Q(J) / K_Q(J_0)        T / T_0 = (1 + n)^2 K_T(J) / K_T(J_0)        R / R_0 = (1 + v)^e
+    tau_u dv/dt = sigma T(n, v) + (1 - sigma) T(0, v) - R(v)
+
+each over its value at the working point (D. Stapersma and A. Vrijdag, Linearisation of a ship propulsion system model,
+Ocean Engineering 142, 2017, 441-457, sections 2 and 3, before the linearisation). For small signals the structure is
+FREE-LOG with the slopes that the curves have at ``J_0``.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+from shaftprint.errors import StructureError
+from shaftprint.models._blocks import FirstOrderLag, Gain
+from shaftprint.models._delays import Delay, SpeedSensor
+from shaftprint.models._diagram import Diagram
+from shaftprint.models._flow import Flow
+from shaftprint.models._gauge_catalogue import (
+    C_SET,
+    GAUGE_K_I,
+    GAUGE_K_P,
+    GAUGE_OMEGA_N,
+    GAUGE_ZETA,
+    T_AVERAGE,
+    T_D,
+    T_FILTER,
+    T_GAUGE,
+    T_HOLD,
+    T_PICKUP,
+    T_SP,
+    TAU_DN,
+    TAU_UP,
+    V_ONE,
+    G,
+)
+from shaftprint.models._known_propeller import HIGHEST_WAKE, KnownPropeller
+from shaftprint.models._limited_catalogue import DROOP, LimitedLoop, parameters_of
+from shaftprint.models._limits import first_order_lag, rate_limited
+from shaftprint.models._parameter import Parameter
+from shaftprint.models._quantity import Number, Quantity, number, quantity
+from shaftprint.models._sailing_catalogue import K_Q_HELD, SIGMA, T_LOG, TAU_U, E
+from shaftprint.models._structure import Structure
+
+
+def sailing_at_large(
+    propeller: KnownPropeller,
+    *limits: str,
+    curve: tuple[tuple[float, float], ...] = (),
+    period_s: float = 0.0,
+    name: str = "FREE-LARGE",
+) -> Structure:
+    """Return the closed loop of a free-sailing ship with open-water curves and some limits.
+
+    Parameters
+    ----------
+    propeller
+        Curves and working point.
+    limits, curve, period_s
+        As in ``limited``.
+    name
+        What to call it.
+
+    Raises
+    ------
+    StructureError
+        If there is no limit of a name, or the propeller does not pull at its working point.
+    PropellerError
+        If the curves do not hold the pitch.
+    """
+    lowest = propeller.lowest_wake()
+    wake = Parameter("w", "-", lowest, HIGHEST_WAKE, max(0.2, lowest), "wake fraction")
+    loop = Diagram(
+        name="limited loop of a ship",
+        input="demand",
+        outputs=("n", "M_s", "X", "v_s"),
+        equations=LimitedLoop(limits, curve, period_s, SailingLoad(propeller)),
+        of=(
+            *(GAUGE_K_P, GAUGE_K_I, V_ONE, T_D, GAUGE_OMEGA_N, GAUGE_ZETA, TAU_DN, TAU_UP, K_Q_HELD, G, DROOP),
+            *(wake, E, TAU_U, SIGMA),
+            *parameters_of(limits),
+        ),
+    )
+    demand, ports = Gain(C_SET), loop.ports()
+    return Structure(
+        name=name,
+        title=f"closed loop of a free-sailing ship, {propeller.curve.name}{''.join(f', {limit}' for limit in limits)}",
+        input="n_set",
+        outputs={
+            "n": demand * ports["n"] * Delay(T_SP) * SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP),
+            "M_s": demand * ports["M_s"] * Delay(T_SP) * Delay(T_GAUGE) * FirstOrderLag(T_FILTER),
+            "v_s": demand * ports["v_s"] * Delay(T_SP) * Delay(T_LOG),
+        },
+    )
+
+
+class SailingLoad:
+    """The propeller of a ship with a speed of its own."""
+
+    def __init__(self, propeller: KnownPropeller) -> None:
+        pitch = propeller.pitch_ratio
+        self._thrust = tuple(propeller.curve.thrust.powers_of_advance(pitch))
+        self._torque = tuple(propeller.curve.torque.powers_of_advance(pitch))
+        self._advance_without_wake = propeller.ship_speed_m_s / (propeller.shaft_speed_rev_s * propeller.diameter_m)
+
+    def __call__(self, flow: Flow, speed: Quantity, p: Any) -> tuple[Quantity, Mapping[str, Quantity]]:
+        """Return the torque of the propeller, a deviation, and the speed of the ship."""
+        ship = flow.state("v_s")
+        at_rest = self._advance_without_wake * (1.0 - p.w)
+        torque = _loaded(self._torque, at_rest, speed, ship)
+        thrust = p.sigma * _loaded(self._thrust, at_rest, speed, ship)
+        thrust = thrust + (1.0 - p.sigma) * _loaded(self._thrust, at_rest, number(0.0), ship)
+        resistance = (p.e * (1.0 + ship).log()).exp()
+        flow.rate(ship, (thrust - resistance) / p.tau_u)
+        return 0.5 * p.k_q * (torque - 1.0), {"v_s": ship}
+
+
+def _loaded(powers: tuple[float, ...], at_rest: Quantity, speed: Quantity, ship: Quantity) -> Quantity:
+    """Return thrust or torque over its value at the working point, ``(1 + n)^2 K(J) / K(J_0)``."""
+    turned = 1.0 + speed
+    return turned * turned * _polynomial(powers, at_rest * (1.0 + ship) / turned) / _polynomial(powers, at_rest)
+
+
+def _polynomial(powers: tuple[float, ...], advance: Quantity) -> Quantity:
+    """Return ``c_0 + c_1 J + c_2 J^2 + ...`` by Horner's rule."""
+    value: Quantity = number(0.0)
+    for coefficient in reversed(powers):
+        value = value * advance + float(coefficient)
+    return value
+
+
+def pitch_actuator(
+    flow: Flow, set_point: Quantity, *, lag_s: Number, fastest: Number, period_s: Number = 0.0
+) -> Quantity:
+    """Return the pitch that a hydraulic actuator reaches: behind a lag, and no faster than its pumps allow.
+
+    ``tau_th dtheta/dt = theta_set - theta`` with ``|dtheta_set/dt| <= r``: controllable pitch propellers of ships take
+    15 to 30 s from full ahead to full astern.
+
+    Parameters
+    ----------
+    set_point
+        Pitch asked for, in any unit.
+    lag_s
+        Lag of the actuator [s].
+    fastest
+        Fastest change [1/s] in units of the set point.
+    period_s
+        Period of the pitch controller [s]; 0 for every step of the simulation.
+
+    Raises
+    ------
+    StructureError
+        If the fastest change is the number zero.
+    """
+    if quantity(fastest).equals(0.0):
+        raise StructureError("pitch actuator: expected a fastest change above zero; without one the pitch never moves.")
+    return first_order_lag(flow, rate_limited(flow, set_point, fastest, period_s=period_s), lag_s, "pitch")
