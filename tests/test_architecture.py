@@ -68,13 +68,13 @@ def test_imports_stand_at_the_top(path):
 
 @pytest.mark.parametrize("path", FILES, ids=lambda p: p.relative_to(SOURCE).as_posix())
 def test_rooms_are_entered_by_their_door(path):
-    """Outside its own room nobody imports a file that starts with ``_``."""
-    own = path.relative_to(SOURCE).parts[0]
+    """Outside its own room or folder nobody imports a file that starts with ``_``."""
+    here = ("shaftprint", *path.relative_to(SOURCE).parent.parts)
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("shaftprint."):
-            _, other, *inside = node.module.split(".")
-            if other != own:
-                assert not any(part.startswith("_") for part in inside), f"line {node.lineno}: {node.module}"
+            parts = node.module.split(".")
+            home = next((parts[:i] for i, part in enumerate(parts) if part.startswith("_")), [])
+            assert here[: len(home)] == tuple(home), f"line {node.lineno}: {node.module}"
 
 
 # ---- names and descriptions ----

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted, identify
-from shaftprint.identify._build_objective import build_objective
-from shaftprint.identify._covariance import estimate_covariance
-from shaftprint.identify._levenberg_marquardt import descend
+from shaftprint.identify.fit._covariance import estimate_covariance
+from shaftprint.identify.likelihood._build_objective import build_objective
+from shaftprint.identify.search._levenberg_marquardt import descend
 from shaftprint.models import Constant, Gain, Parameter, Structure, structure
 
 REPEATS = 400

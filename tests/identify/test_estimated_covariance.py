@@ -7,8 +7,8 @@ import pytest
 import scipy.stats
 
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, identify, refit
-from shaftprint.identify._build_objective import build_objective
-from shaftprint.identify._covariance import estimate_covariance
+from shaftprint.identify.fit._covariance import estimate_covariance
+from shaftprint.identify.likelihood._build_objective import build_objective
 from shaftprint.models import structure
 
 REPEATS = 2000

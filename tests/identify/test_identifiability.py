@@ -12,7 +12,7 @@ import pytest
 
 from shaftprint.errors import StructureError
 from shaftprint.identify import identifiability
-from shaftprint.identify._formulas import unit_of
+from shaftprint.identify.foresight._formulas import unit_of
 from shaftprint.models import (
     STRUCTURES,
     Delay,

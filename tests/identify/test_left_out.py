@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings, Unweighted, identify
-from shaftprint.identify._left_out import foretold
+from shaftprint.identify.comparison._left_out import foretold
 from shaftprint.models import structure
 
 SETTINGS = Settings(starts=6, stability="ignored")

@@ -5,8 +5,8 @@ import pytest
 import scipy.stats
 
 from shaftprint.identify import Prior, Settings, Unweighted, identify, refit
-from shaftprint.identify._likelihood_ratio import likelihood_ratio
-from shaftprint.identify._nesting import Nesting, nesting
+from shaftprint.identify.comparison._likelihood_ratio import likelihood_ratio
+from shaftprint.identify.comparison._nesting import Nesting, nesting
 from shaftprint.models import Parameter, PIGovernor, RationalBlock, Structure, structure
 
 LAGGED = {"tau_n": 0.35, "K_p": 1.6, "K_i": 4.4, "t_d": 0.0, "omega_n": 10.0, "zeta": 0.6}

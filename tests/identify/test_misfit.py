@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shaftprint.identify import Settings, Unweighted, identify
-from shaftprint.identify._misfit import explained, misfit_words, worst_lines
+from shaftprint.identify.judgement._misfit import explained, misfit_words, worst_lines
 from shaftprint.models import structure
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shaftprint.identify import Settings, identify
-from shaftprint.identify._nesting import nesting
+from shaftprint.identify.comparison._nesting import nesting
 from shaftprint.models import Gain, Parameter, PIGovernor, RationalBlock, Structure, structure
 
 SETTINGS = Settings(starts=20)

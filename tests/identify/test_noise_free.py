@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from shaftprint.identify import Prior, Settings, Unweighted, identify
-from shaftprint.identify._build_objective import build_objective
-from shaftprint.identify._search import _floors
+from shaftprint.identify.likelihood._build_objective import build_objective
+from shaftprint.identify.search._search import _floors
 from shaftprint.models import structure
 from shaftprint.spectra import FrequencyResponse
 

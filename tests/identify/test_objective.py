@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted, identify
-from shaftprint.identify._build_objective import build_objective
+from shaftprint.identify.likelihood._build_objective import build_objective
 from shaftprint.models import structure
 
 NOTHING = {"priors": {}, "regularisation": {}}

@@ -7,7 +7,7 @@ import pytest
 
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import MaximumLikelihood, Settings, StudentT, identify, profile_intervals, refit
-from shaftprint.identify._covariance import estimate_covariance
+from shaftprint.identify.fit._covariance import estimate_covariance
 from shaftprint.models import structure
 
 REPEATS = 2000

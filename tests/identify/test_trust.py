@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Prior, Requirements, Settings, identify, profile
-from shaftprint.identify._trust import trusted_numbers
+from shaftprint.identify.judgement._trust import trusted_numbers
 from shaftprint.models import Combination, Gain, Parameter, PIGovernor, Structure, structure
 from shaftprint.spectra import FrequencyResponse
 

@@ -1,0 +1,147 @@
+"""Does one structure hold another as a special case? Found out by letting it imitate the other.
+
+The larger structure is fitted to the response of the smaller one, at the smaller one's optimum and at two places beside
+it. Where nothing is left each time, the smaller lies within the larger. What the imitation looks like decides how a
+likelihood ratio is distributed: a parameter that ends at a bound, or means nothing there, breaks the usual law.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import IdentificationError
+from shaftprint.identify.fit import Identification, identify
+from shaftprint.identify.likelihood import Objective, chi_square_tail, load_factors
+from shaftprint.spectra import FrequencyResponse
+
+# Squared distance over the square of the response itself below which nothing is left.
+SAME_RESPONSE = 1e-9
+# Without noise the optimum is found from few starts.
+STARTS = 20
+# Places beside the optimum: shares of the way to the middle of the bounds.
+BESIDE = (0.03, 0.1)
+# Share of the width between its bounds within which a parameter stands at one.
+AT_BOUND = 1e-5
+# Scaled singular values below this share of the largest are none.
+RANK_TOLERANCE = 1e-6
+# A likelihood ratio below this is none: the larger structure has stopped where the smaller one is.
+NO_GAIN = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Nesting:
+    """How a larger structure holds a smaller one."""
+
+    values: FloatArray
+    """Free parameters of the larger structure that imitate the optimum of the smaller one, shape (free,)."""
+    extra: int
+    """How many parameters more the data could find."""
+    at_bound: tuple[str, ...]
+    """Parameters of the larger structure that end at a bound."""
+    meaningless: tuple[str, ...]
+    """Parameters of the larger structure that have no influence there."""
+
+    def p_value(self, statistic: float) -> float:
+        """Return the probability of a likelihood ratio that large or larger if the smaller structure holds.
+
+        It holds where no parameter is meaningless and at most one of those that the larger structure has more stands
+        at a bound: half of the weight then lies on one degree of freedom less.
+        """
+        if statistic <= NO_GAIN:
+            return 1.0
+        full = chi_square_tail(statistic, self.extra)
+        if not self.at_bound:
+            return full
+        return 0.5 * full + (0.5 * chi_square_tail(statistic, self.extra - 1) if self.extra > 1 else 0.0)
+
+
+def nesting(small: Identification, large: Identification, *, rng: np.random.Generator) -> Nesting | None:
+    """Return how one fitted structure holds another; None where it does not.
+
+    Parameters
+    ----------
+    small, large
+        Fits to the same data.
+    rng
+        Source of the start values.
+    """
+    if len(small.parameters) >= len(large.parameters):
+        return None
+    found = _imitation(small, large, small.values, rng)
+    if found is None or any(_imitation(small, large, beside, rng) is None for beside in _places_beside(small)):
+        return None
+    objective = large.objective
+    parameters = objective.free_parameters
+    at_bound = np.minimum(found - objective.lower, objective.upper - found) < AT_BOUND * (
+        objective.upper - objective.lower
+    )
+    own = large.values[list(objective.free)]
+    rank, lost = _rank(objective, own), _lost(objective, found, own)
+    return Nesting(
+        values=frozen_float(found),
+        extra=rank - _rank(small.objective, small.values[list(small.objective.free)]),
+        at_bound=tuple(p.name for p, there in zip(parameters, at_bound, strict=True) if there),
+        meaningless=tuple(p.name for p, gone in zip(parameters, lost, strict=True) if gone),
+    )
+
+
+def response_of(identification: Identification, values: FloatArray) -> FrequencyResponse:
+    """Return the data's response with the model's in its place, all else the same.
+
+    Parameters
+    ----------
+    values
+        All parameters, shape (parameters,).
+    """
+    data = identification.response
+    model = identification.structure.response(values, 1j * data.omega_rad_s, factors=load_factors(data))
+    return replace(data, response=model.reshape(data.response.shape))
+
+
+def _places_beside(small: Identification) -> list[FloatArray]:
+    objective = small.objective
+    own = small.values[list(objective.free)]
+    middle = 0.5 * (objective.lower + objective.upper)
+    return [objective.complete(own + share * (middle - own)) for share in BESIDE]
+
+
+def _imitation(
+    small: Identification, large: Identification, values: FloatArray, rng: np.random.Generator
+) -> FloatArray | None:
+    """Return the free parameters with which the larger structure gives the smaller one's response; None if none do."""
+    neutral = replace(
+        large.settings, priors={}, regularisation={}, stability="ignored", starts=min(large.settings.starts, STARTS)
+    )
+    data = response_of(small, values)
+    names = [name for name, fitted in zip(data.lines, small.fitted, strict=True) if fitted]
+    try:
+        found = identify(large.structure, data, rng=rng, settings=neutral, lines=names)
+    except IdentificationError:
+        # more free parameters than data: without its priors the larger structure cannot be fitted
+        return None
+    whole = found.objective.cost_of_nothing
+    return found.values[list(found.objective.free)] if found.cost < SAME_RESPONSE * whole else None
+
+
+def _slopes(objective: Objective, theta: FloatArray) -> FloatArray:
+    """Return the derivatives of the residuals of the data, shape (free, rows)."""
+    rows = objective.prior_rows.shape[0]
+    _, slopes = objective.residuals(theta[None, :])
+    return slopes[0, :, : slopes.shape[2] - rows]
+
+
+def _rank(objective: Objective, theta: FloatArray) -> int:
+    """Return how many combinations of the free parameters the data can find."""
+    slopes = _slopes(objective, theta)
+    scale = np.linalg.norm(slopes, axis=1)
+    scaled = slopes / np.where(scale > 0.0, scale, 1.0)[:, None]
+    sizes = np.linalg.svd(scaled, compute_uv=False)
+    return int(np.sum(sizes > RANK_TOLERANCE * sizes[0]))
+
+
+def _lost(objective: Objective, theta: FloatArray, own: FloatArray) -> FloatArray:
+    """Return which parameters have influence at the larger structure's own optimum but none at the imitation."""
+    here = np.linalg.norm(_slopes(objective, theta), axis=1)
+    there = np.linalg.norm(_slopes(objective, own), axis=1)
+    return np.asarray(here < RANK_TOLERANCE * there)

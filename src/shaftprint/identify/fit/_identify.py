@@ -1,0 +1,178 @@
+"""The verb of the room: fit a structure to a frequency response."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import IdentificationError
+from shaftprint.identify.fit._covariance import estimate_covariance
+from shaftprint.identify.fit._fit_test import tested_fit
+from shaftprint.identify.fit._identification import Cluster, Identification
+from shaftprint.identify.fit._sensor import with_sensor
+from shaftprint.identify.likelihood import Objective, Source, Term, build_joint_objective
+from shaftprint.identify.search import Descent, Settings, polish, search
+from shaftprint.models import Structure
+from shaftprint.spectra import FrequencyResponse
+
+# Starts belong to one optimum when their costs differ by less than this share, ...
+SAME_COST = 1e-3
+# ... or by less than this share of the cost of no model at all (for data without noise).
+SAME_COST_OF_NOTHING = 1e-9
+# ... and no parameter differs by more than this share of the width between its bounds.
+SAME_PLACE = 0.02
+
+
+def identify(
+    structure: Structure,
+    response: FrequencyResponse,
+    *,
+    rng: np.random.Generator,
+    settings: Settings | None = None,
+    lines: Sequence[str] | None = None,
+) -> Identification:
+    """Fit a structure to a frequency response from many starts; the lowest cost that is stable wins.
+
+    Parameters
+    ----------
+    structure
+        Structure with the response's input and outputs. Held parameters of a speed sensor take the response's values.
+    response
+        Data with covariance.
+    rng
+        Source of the start values.
+    settings
+        How to search and weigh.
+    lines
+        Names of the lines to fit; those that the response marks as used by default.
+
+    Raises
+    ------
+    IdentificationError
+        If structure and response do not fit together, there are too few data, or no start reached a stable model.
+    """
+    return _identified([(structure, response)], rng, settings or Settings(), lines)
+
+
+def identify_jointly(
+    pairs: Sequence[tuple[Structure, FrequencyResponse] | Term],
+    *,
+    rng: np.random.Generator,
+    settings: Settings | None = None,
+) -> Identification:
+    """Fit structures to several responses and records at once: campaigns, repeats, working points.
+
+    The data are independent of each other, and parameters of one name are one parameter.
+
+    Parameters
+    ----------
+    pairs
+        Each structure with the response it is fitted to, at the lines which that marks as used. A structure may stand
+        there several times; for another working point it is ``Structure.scaled``, or has other names. Data of another
+        kind, such as records in time, are terms, which hold their structure.
+    rng
+        Source of the start values.
+    settings
+        How to search and weigh.
+
+    Raises
+    ------
+    IdentificationError
+        If a structure and its response do not fit together, two structures describe a parameter differently, there are
+        too few data, or no start reached stable models.
+    """
+    return _identified(pairs, rng, settings or Settings(), None)
+
+
+def _identified(
+    pairs: Sequence[Source],
+    rng: np.random.Generator,
+    settings: Settings,
+    lines: Sequence[str] | None,
+) -> Identification:
+    _expect_right_kinds(pairs, rng)
+    objective = build_joint_objective(
+        [pair if isinstance(pair, Term) else (with_sensor(*pair), pair[1]) for pair in pairs],
+        weighting=settings.weighting,
+        priors=settings.priors,
+        regularisation=settings.regularisation,
+        lines=lines,
+    )
+    descent = search(objective, settings, rng)
+    sharp = bool(descent.converged[np.argmin(descent.cost)])
+    clusters, winner = _judged(objective, _clustered(objective, descent), settings, sharp=sharp)
+    judged = [term.judged(winner.values, number) for number, term in enumerate(objective.terms)]
+    return Identification(
+        parts=tuple(part for part, _ in judged),
+        objective=objective,
+        settings=settings,
+        values=winner.values,
+        covariance=frozen_float(estimate_covariance(objective, winner.values[list(objective.free)])),
+        cost=winner.cost,
+        fit_test=tested_fit(objective, winner.values, [test for _, test in judged]),
+        clusters=clusters,
+    )
+
+
+def _expect_right_kinds(pairs: Sequence[Source], rng: np.random.Generator) -> None:
+    for pair in pairs:
+        if isinstance(pair, Term):
+            continue
+        if not isinstance(pair, tuple) or len(pair) != 2:
+            raise IdentificationError(f"joint fit: expected pairs (structure, response), found {type(pair).__name__}.")
+        kinds = tuple(type(item) for item in pair)
+        if not (issubclass(kinds[0], Structure) and issubclass(kinds[1], FrequencyResponse)):
+            raise IdentificationError(
+                f"fit: expected a Structure and a FrequencyResponse, found {' and '.join(k.__name__ for k in kinds)}; "
+                "models.structure() gives a shipped structure by its name."
+            )
+    if not isinstance(rng, np.random.Generator):
+        raise IdentificationError(f"rng: expected numpy.random.default_rng(seed), found {rng!r}.")
+
+
+def _clustered(objective: Objective, descent: Descent) -> list[tuple[FloatArray, float, int]]:
+    """Return parameters, cost and number of starts of each distinct optimum, lowest cost first."""
+    order = np.argsort(descent.cost, kind="stable")
+    theta, cost = descent.theta[order], descent.cost[order]
+    nothing = objective.cost_of_nothing
+    width = objective.upper - objective.lower
+    found: list[tuple[FloatArray, float, int]] = []
+    while cost.size:
+        close = cost - cost[0] <= SAME_COST * cost[0] + SAME_COST_OF_NOTHING * nothing
+        close &= np.all(np.abs(theta - theta[0]) <= SAME_PLACE * width, axis=1)
+        close[0] = True
+        found.append((theta[0], float(cost[0]), int(close.sum())))
+        theta, cost = theta[~close], cost[~close]
+    return found
+
+
+def _judged(
+    objective: Objective, found: list[tuple[FloatArray, float, int]], settings: Settings, *, sharp: bool
+) -> tuple[tuple[Cluster, ...], Cluster]:
+    """Return all optima and the winner: the lowest cost that is stable, polished to the last digit.
+
+    ``sharp`` says whether the first optimum already is.
+    """
+    clusters: list[Cluster] = []
+    winner: Cluster | None = None
+    for theta, cost, starts in found:
+        if winner is not None:
+            values = frozen_float(objective.complete(theta))
+            clusters.append(Cluster(values=values, cost=cost, starts=starts, stable=None))
+            continue
+        place, lowest = theta, cost
+        if clusters or not sharp:
+            polished = polish(objective, theta, settings)
+            place, lowest = polished.theta[0], float(polished.cost[0])
+        values = frozen_float(objective.complete(place))
+        stable = bool(objective.stable(values[None, :])[0])
+        cluster = Cluster(values=values, cost=lowest, starts=starts, stable=stable)
+        clusters.append(cluster)
+        if stable or settings.stability == "ignored":
+            winner = cluster
+    if winner is None:
+        raise IdentificationError(
+            f"structure {objective.name}: none of {settings.starts} starts reached a stable model; the "
+            f"lowest cost is {clusters[0].cost:.4g}. Check the data and bounds, or allow unstable models."
+        )
+    return tuple(clusters), winner

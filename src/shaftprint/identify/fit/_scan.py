@@ -1,0 +1,233 @@
+"""The cost along one parameter: every optimum of a delay, not only the one that a search happened to reach.
+
+A delay is the parameter in which a response has many optima: one for every turn of the fast lines' phase. With the
+delay held, the gains of an open loop are a linear problem that needs no search, so that the whole curve is exact
+(delay profile). For other parameters and structures the same curve comes from a batched search at every point.
+Stability is not asked: the curve is that of the data.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import IdentificationError
+from shaftprint.identify.fit._identification import Identification
+from shaftprint.identify.fit._identify import identify
+from shaftprint.identify.likelihood import Objective
+from shaftprint.identify.search import Conditional, Draw, Settings, descend
+from shaftprint.models import Parameter, Structure
+from shaftprint.spectra import FrequencyResponse
+
+FIRST_POINTS = 65
+# Halvings of an interval of the first grid.
+LEVELS = 5
+# An interval is resolved when its middle lies within this share of the curve's height of the cubic through its ends.
+RESOLVED = 2e-3
+# Optima of the fit that are starts of the search at each value.
+KNOWN = 6
+POLISH_TOLERANCE, POLISH_ITERATIONS = 1e-14, 200
+# Optima closer than this share of the width between the bounds are one.
+SAME_PLACE = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Minimum:
+    """An optimum on the curve."""
+
+    value: float
+    """Where, in the parameter's unit."""
+    cost: float
+    """Half the sum of squared residuals there, all parameters at their best."""
+    values: FloatArray
+    """All parameters, shape (parameters,)."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Scan:
+    """The lowest cost along one parameter, and its optima."""
+
+    parameter: Parameter
+    """The parameter that was held at each value of the grid."""
+    grid: FloatArray
+    """Its values, ascending, shape (points,)."""
+    cost: FloatArray
+    """Lowest cost at each of them, shape (points,)."""
+    values: FloatArray
+    """All parameters there, shape (points, parameters)."""
+    closed_form: tuple[str, ...]
+    """Names of the parameters that were solved in closed form: the response is linear in them all."""
+    minima: tuple[Minimum, ...]
+    """Optima of the whole problem that the curve leads to, lowest cost first."""
+
+    @property
+    def best(self) -> Minimum:
+        """The lowest optimum."""
+        return self.minima[0]
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What the curve says, in words."""
+        name, unit = self.parameter.name, "" if self.parameter.unit == "-" else f" {self.parameter.unit}"
+        solved = f"; {', '.join(self.closed_form)} solved in closed form" if self.closed_form else ""
+        where = f"from {self.grid[0]:.4g} to {self.grid[-1]:.4g}{unit} ({self.grid.size} values{solved})"
+        if len(self.minima) == 1:
+            return (f"The cost along {name} {where} has one optimum, at {self.best.value:.4g}{unit}.",)
+        listed = ", ".join(f"{m.value:.4g}{unit} (cost {m.cost:.4g})" for m in self.minima[:6])
+        more = f" and {len(self.minima) - 6} more" if len(self.minima) > 6 else ""
+        return (f"The cost along {name} {where} has {len(self.minima)} optima: {listed}{more}.",)
+
+
+def scan(identification: Identification, parameter: str, *, grid: ArrayLike | None = None, starts: int = 8) -> Scan:
+    """Return the lowest cost along a parameter of an identified structure.
+
+    Parameters
+    ----------
+    identification
+        Its data, weights, priors and bounds are used; its optima are starts of the search.
+    parameter
+        Name of a free parameter.
+    grid
+        Values of the parameter, ascending; from bound to bound when not given, as fine as the curve asks for.
+    starts
+        Starts of the search at each value, for parameters that cannot be solved in closed form.
+
+    Raises
+    ------
+    IdentificationError
+        If the parameter is not free or a value lies outside its bounds.
+    """
+    objective = identification.objective
+    names = _free_names(objective)
+    if parameter not in names:
+        raise IdentificationError(
+            f"scan of {parameter}: structure {objective.name} has the free parameters "
+            f"{', '.join(names)}; free another with free_between()."
+        )
+    conditional = Conditional.of(objective, names.index(parameter))
+    found = identification.clusters[:KNOWN]
+    known = np.array([cluster.values for cluster in found])[:, list(objective.free)]
+    if grid is None:
+        at, theta, cost = _refined(conditional, known, starts)
+    else:
+        at = _checked(objective, parameter, grid)
+        theta, cost = conditional.lowest(at, known, starts=starts)
+    return Scan(
+        parameter=objective.free_parameters[conditional.held],
+        grid=frozen_float(at),
+        cost=frozen_float(cost),
+        values=frozen_float(objective.complete(theta)),
+        closed_form=tuple(names[i] for i in conditional.closed),
+        minima=_minima(conditional, at, theta, cost),
+    )
+
+
+def scan_response(
+    structure: Structure,
+    response: FrequencyResponse,
+    parameter: str,
+    *,
+    settings: Settings | None = None,
+    lines: Sequence[str] | None = None,
+    grid: ArrayLike | None = None,
+    starts: int = 8,
+) -> Scan:
+    """Return the lowest cost along a parameter of a structure, before any fit.
+
+    Parameters
+    ----------
+    structure, response, settings, lines
+        The problem, as in ``identify``.
+    parameter, grid, starts
+        As in ``scan``.
+
+    Raises
+    ------
+    IdentificationError
+        If structure and response do not fit together, the parameter is not free or a value lies outside its bounds.
+    """
+    once = replace(settings or Settings(), starts=1, draw=_Middle(), stability="ignored")
+    # nothing is drawn: the only start is the middle of the box
+    one = identify(structure, response, rng=np.random.default_rng(0), settings=once, lines=lines)
+    return scan(one, parameter, grid=grid, starts=starts)
+
+
+class _Middle(Draw):
+    """The middle of the box as the only start."""
+
+    __slots__ = ()
+
+    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
+        return np.tile(0.5 * (lower + upper), (count, 1))
+
+
+def _free_names(objective: Objective) -> tuple[str, ...]:
+    return tuple(p.name for p in objective.free_parameters)
+
+
+def _checked(objective: Objective, parameter: str, grid: ArrayLike) -> FloatArray:
+    at = np.asarray(grid, dtype=np.float64)
+    place = _free_names(objective).index(parameter)
+    lower, upper = objective.lower[place], objective.upper[place]
+    inside = at.ndim == 1 and at.size > 0 and bool(np.all((at >= lower) & (at <= upper)))
+    if not inside or not np.all(np.diff(at) > 0.0):
+        raise IdentificationError(
+            f"scan of {parameter}: expected ascending values from {lower:g} to {upper:g}, its bounds, found {at}."
+        )
+    return at
+
+
+def _refined(conditional: Conditional, known: FloatArray, starts: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return values from bound to bound, their optima and costs: finer where a cubic does not follow the curve."""
+    place = conditional.held
+    at = np.linspace(conditional.objective.lower[place], conditional.objective.upper[place], FIRST_POINTS)
+    theta, cost = conditional.lowest(at, known, starts=starts)
+    open_ends = np.ones(at.size - 1, dtype=np.bool_)
+    for _ in range(LEVELS):
+        left = np.flatnonzero(open_ends)
+        if left.size == 0:
+            break
+        slope, width = conditional.slope(theta), np.diff(at)[left]
+        foretold = 0.5 * (cost[left] + cost[left + 1]) + width * (slope[left] - slope[left + 1]) / 8.0
+        middle = 0.5 * (at[left] + at[left + 1])
+        between, lowest = conditional.between(middle, theta[left], theta[left + 1])
+        height = float(np.ptp(np.concatenate([cost, lowest])))
+        rough = np.abs(lowest - foretold) > RESOLVED * height
+        open_ends = np.repeat(False, at.size - 1)
+        open_ends[left] = rough
+        open_ends = np.insert(open_ends, left + 1, rough)
+        at, cost = np.insert(at, left + 1, middle), np.insert(cost, left + 1, lowest)
+        theta = np.insert(theta, left + 1, between, axis=0)
+    theta, cost = conditional.carried(theta, cost)
+    return at, theta, cost
+
+
+def _minima(conditional: Conditional, at: FloatArray, theta: FloatArray, cost: FloatArray) -> tuple[Minimum, ...]:
+    """Return the optima that the lowest points of the curve lead to, each once, lowest cost first."""
+    objective, held = conditional.objective, conditional.held
+    slope = conditional.slope(theta)
+    falling, rising = slope < 0.0, slope > 0.0
+    low = np.zeros(at.size, dtype=np.bool_)
+    inner = np.flatnonzero(~rising[:-1] & ~falling[1:])
+    low[np.where(cost[inner] <= cost[inner + 1], inner, inner + 1)] = True
+    low[0] |= not falling[0]
+    low[-1] |= not rising[-1]
+    low[np.argmin(cost)] = True
+    descent = descend(
+        objective.of_starts,
+        theta[low],
+        objective.lower,
+        objective.upper,
+        tolerance=POLISH_TOLERANCE,
+        max_iterations=POLISH_ITERATIONS,
+    )
+    width = objective.upper[held] - objective.lower[held]
+    found: list[Minimum] = []
+    for row in np.argsort(descent.cost, kind="stable"):
+        value = float(descent.theta[row, held])
+        if all(abs(value - other.value) > SAME_PLACE * width for other in found):
+            values = frozen_float(objective.complete(descent.theta[row]))
+            found.append(Minimum(value=value, cost=float(descent.cost[row]), values=values))
+    return tuple(found)

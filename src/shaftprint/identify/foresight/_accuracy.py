@@ -1,0 +1,250 @@
+"""How well a test would find the parameters, before it is made: Cramer-Rao standard deviations in words.
+
+The inverse of the Fisher information ``J^T C^-1 J``, priors included, at assumed parameter values: no unbiased estimate
+from such lines is better on average (Cramer, Mathematical Methods of Statistics, section 32.3), and a fit weighted by
+the covariance attains it where the standard deviations are small against the curvature of the response. Where a
+covariance was estimated, what its degrees of freedom cost is in it, averaged over the noise.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import IdentificationError
+from shaftprint.identify.fit import Estimate, estimate_covariance, variance_along, with_sensor
+from shaftprint.identify.foresight._groups import Group, inseparable_groups
+from shaftprint.identify.likelihood import MaximumLikelihood, Objective, Prior, build_joint_objective
+from shaftprint.models import Combination, Structure
+from shaftprint.spectra import FrequencyResponse
+
+# Standard deviations over the value that the words tell apart.
+LEVELS = (0.01, 0.05, 0.2)
+# A parameter is no better known than before where the test leaves more than this share of the prior's deviation.
+NOTHING_NEW = 0.8
+# Share of a parameter's range over which slopes are taken.
+STEP = 1e-6
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Accuracy:
+    """Standard deviations and correlations that a test would give."""
+
+    objective: Objective
+    """The lines with their covariance, the structures and the priors."""
+    values: FloatArray
+    """Assumed values of all parameters, in the objective's order, shape (parameters,)."""
+    covariance: FloatArray
+    """Covariance of the free parameters, shape (free, free); infinite variances where nothing is known."""
+    parameters: tuple[Estimate, ...]
+    """Every free parameter at its assumed value, with its standard deviation."""
+    combinations: tuple[Estimate, ...]
+    """Combinations of parameters, with their standard deviations to first order."""
+    groups: tuple[Group, ...]
+    """Parameters that the test cannot separate, the worst first."""
+    priors: Mapping[str, Prior]
+    """What was taken as known beforehand, by name of the parameter."""
+
+    @property
+    def correlation(self) -> FloatArray:
+        """Correlation of the free parameters, shape (free, free); nan where a variance is infinite."""
+        std = np.sqrt(np.diag(self.covariance))
+        std[np.isinf(std)] = np.nan
+        return np.asarray(self.covariance / np.outer(std, std))
+
+    def estimate(self, name: str) -> Estimate:
+        """Return one parameter or combination.
+
+        Raises
+        ------
+        IdentificationError
+            If there is none of that name.
+        """
+        found = {estimate.name: estimate for estimate in (*self.parameters, *self.combinations)}
+        if name not in found:
+            raise IdentificationError(f"accuracy of {self.objective.name}: {name} is not among {', '.join(found)}.")
+        return found[name]
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What the test would find and how well, what it cannot separate, and where first order is too little."""
+        return (*self._levels(), *(group.sentence for group in self.groups), *self._nothing_new(), *self._at_bounds())
+
+    @property
+    def text(self) -> str:
+        """The sentences, one a line."""
+        return "\n".join(self.sentences)
+
+    def _levels(self) -> list[str]:
+        every = [e for e in (*self.parameters, *self.combinations) if e.value != 0.0]
+        share = {e.name: e.std / abs(e.value) for e in every}
+        found = []
+        below = 0.0
+        for level in LEVELS:
+            names = [name for name, part in share.items() if below < part <= level]
+            if names:
+                found.append(f"Known to {100 * level:g} % or better: {', '.join(names)}.")
+            below = level
+        poor = [name for name, part in share.items() if LEVELS[-1] < part < 1.0]
+        lost = [name for name, part in share.items() if part >= 1.0]
+        if poor:
+            found.append(f"Hardly known, worse than {100 * LEVELS[-1]:g} %: {', '.join(poor)}.")
+        if lost:
+            found.append(f"Not known: {', '.join(lost)}.")
+        return found
+
+    def _nothing_new(self) -> list[str]:
+        std = {e.name: e.std for e in self.parameters}
+        return [
+            f"{name} stays what was known beforehand, {prior.mean:g} +/- {prior.std:g}: the test says little about it."
+            for name, prior in self.priors.items()
+            if std[name] > NOTHING_NEW * prior.std
+        ]
+
+    def _at_bounds(self) -> list[str]:
+        found = []
+        for parameter, estimate in zip(self.objective.free_parameters, self.parameters, strict=True):
+            reached = [
+                bound
+                for bound, distance in (
+                    (parameter.lower, estimate.value - parameter.lower),
+                    (parameter.upper, parameter.upper - estimate.value),
+                )
+                if distance < estimate.std < np.inf
+            ]
+            if reached:
+                found.append(
+                    f"{estimate.name}: one standard deviation, {estimate.std:.2g}, reaches past the bound "
+                    f"{' and '.join(f'{bound:g}' for bound in reached)}; its interval will end there, and these first-"
+                    "order numbers are only a rough guide to it."
+                )
+        return found
+
+
+def predict_accuracy(
+    structure: Structure,
+    response: FrequencyResponse,
+    *,
+    values: Mapping[str, float] | None = None,
+    priors: Mapping[str, Prior] | None = None,
+    combinations: Sequence[Combination] = (),
+    lines: Sequence[str] | None = None,
+) -> Accuracy:
+    """Return how well given lines would find the parameters of a structure.
+
+    Parameters
+    ----------
+    structure
+        The structure.
+    response
+        Lines with their covariance, of a recording or of ``planned_response``; its values do not matter.
+    values
+        Assumed parameter values by name; the structure's own where not given.
+    priors
+        What is known of free parameters beforehand, by name.
+    combinations
+        Combinations to report besides those of the structure.
+    lines
+        Names of the lines to fit; those that the response marks as used by default.
+
+    Raises
+    ------
+    StructureError
+        If a value names no parameter of the structure.
+    IdentificationError
+        If structure and response do not fit together, a prior names no free parameter, no parameter is free or a value
+        is outside its bounds.
+    """
+    return _predicted([(structure, response)], values or {}, priors or {}, combinations, lines)
+
+
+def predict_joint_accuracy(
+    pairs: Sequence[tuple[Structure, FrequencyResponse]],
+    *,
+    values: Mapping[str, float] | None = None,
+    priors: Mapping[str, Prior] | None = None,
+    combinations: Sequence[Combination] = (),
+) -> Accuracy:
+    """Return how well several tests together would find the parameters; parameters of one name are one parameter.
+
+    Parameters
+    ----------
+    pairs
+        Each structure with its lines; for another working point it is ``Structure.scaled``.
+    values, priors, combinations
+        See ``predict_accuracy``.
+
+    Raises
+    ------
+    IdentificationError
+        As ``predict_accuracy``, or if two structures describe a parameter differently.
+    """
+    return _predicted(pairs, values or {}, priors or {}, combinations, None)
+
+
+def _predicted(
+    pairs: Sequence[tuple[Structure, FrequencyResponse]],
+    values: Mapping[str, float],
+    priors: Mapping[str, Prior],
+    combinations: Sequence[Combination],
+    lines: Sequence[str] | None,
+) -> Accuracy:
+    objective = build_joint_objective(
+        [(with_sensor(structure, response), response) for structure, response in pairs],
+        weighting=MaximumLikelihood(),
+        priors=priors,
+        regularisation={},
+        lines=lines,
+    )
+    assumed = _assumed(objective, values)
+    theta = assumed[list(objective.free)]
+    covariance = estimate_covariance(objective, theta, expected=True)
+    parameters = tuple(
+        Estimate(name=p.name, unit=p.unit, value=float(value), std=float(np.sqrt(variance)))
+        for p, value, variance in zip(objective.free_parameters, theta, np.diag(covariance), strict=True)
+    )
+    named = {c.name: c for c in (*objective.combinations, *combinations)}
+
+    def estimate(combination: Combination) -> Estimate:
+        return _derived(objective, theta, combination)
+
+    return Accuracy(
+        objective=objective,
+        values=frozen_float(assumed),
+        covariance=frozen_float(covariance),
+        parameters=parameters,
+        combinations=tuple(estimate(combination) for combination in named.values()),
+        groups=inseparable_groups(objective, parameters, covariance, tuple(named.values()), estimate),
+        priors=dict(priors),
+    )
+
+
+def _assumed(objective: Objective, values: Mapping[str, float]) -> FloatArray:
+    unknown = [name for name in values if name not in objective.names]
+    if unknown:
+        raise IdentificationError(
+            f"accuracy of {objective.name}: {', '.join(unknown)} is no parameter of it; it has "
+            f"{', '.join(objective.names)}."
+        )
+    for parameter in objective.parameters:
+        value = values.get(parameter.name, parameter.value)
+        if not parameter.lower <= value <= parameter.upper:
+            raise IdentificationError(
+                f"accuracy of {objective.name}: expected {parameter.name} from {parameter.lower:g} to "
+                f"{parameter.upper:g} {parameter.unit}, found {value:g}."
+            )
+    return np.array([values.get(p.name, held) for p, held in zip(objective.parameters, objective.held, strict=True)])
+
+
+def _derived(objective: Objective, theta: FloatArray, combination: Combination) -> Estimate:
+    """Return a combination with its standard deviation to first order; infinite where it cannot be formed."""
+    step = STEP * (objective.upper - objective.lower)
+    moves = np.diag(step)
+    table = np.concatenate([theta[None, :], theta + moves, theta - moves])
+    with np.errstate(all="ignore"):
+        found = np.broadcast_to(combination.of(objective.named(objective.complete(table))), table.shape[:1])
+        slopes = (found[1 : 1 + theta.size] - found[1 + theta.size :]) / (2.0 * step)
+    known = np.isfinite(found[0]) and bool(np.all(np.isfinite(slopes)))
+    variance = variance_along(objective, theta, slopes, expected=True) if known else np.inf
+    return Estimate(name=combination.name, unit=combination.unit, value=float(found[0]), std=float(np.sqrt(variance)))

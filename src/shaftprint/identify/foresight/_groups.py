@@ -1,0 +1,183 @@
+"""Groups of parameters that a test cannot separate, and what it does know of two of them together."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.identify.fit import Estimate
+from shaftprint.identify.foresight._formulas import Formula, Term, single, sum_of
+from shaftprint.identify.likelihood import Objective
+from shaftprint.models import Combination, Delay, Parameter, SecondOrderLag
+
+# Two parameters cannot be separated when they correlate more than this ...
+CORRELATED = 0.9
+# ... and one of them is known worse than this share of its value.
+POOR = 0.05
+# What is known of both together must be better known than either of them by this factor to be worth telling.
+BETTER = 3.0
+MEANING = "known of both together"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Group:
+    """Parameters that a test cannot separate: what it does not know of one, it does not know of the others."""
+
+    names: tuple[str, ...]
+    """Names of the parameters."""
+    correlation: float
+    """Correlation of two of them, with sign, the largest in magnitude."""
+    known: tuple[Estimate, ...]
+    """What the test does know of two of them together, the best known first."""
+
+    @property
+    def sentence(self) -> str:
+        """It in words."""
+        how = f"correlation {self.correlation:.2f}" if len(self.names) == 2 else "correlations up to "
+        how += "" if len(self.names) == 2 else f"{abs(self.correlation):.2f}"
+        start = f"With these lines {_and(self.names)} cannot be separated ({how})"
+        if not self.known:
+            return f"{start}."
+        known = [f"{e.name} is known to {100.0 * _share(e):.2g} %" for e in self.known]
+        return f"{start}; {_and(known)}."
+
+
+def inseparable_groups(
+    objective: Objective,
+    parameters: Sequence[Estimate],
+    covariance: FloatArray,
+    named: Sequence[Combination],
+    estimate: Callable[[Combination], Estimate],
+) -> tuple[Group, ...]:
+    """Return the groups of parameters that a test cannot separate, the worst first.
+
+    Parameters
+    ----------
+    objective
+        The structures.
+    parameters, covariance
+        Free parameters and their covariance, shape (free, free).
+    named
+        Combinations with a name of their own.
+    estimate
+        Gives a combination its standard deviation.
+    """
+    std = np.sqrt(np.diag(covariance))
+    with np.errstate(invalid="ignore"):
+        correlation = covariance / np.outer(std, std)
+    share = [_share(e) for e in parameters]
+    usable = [i for i, s in enumerate(std) if np.isfinite(s)]
+    strong = [
+        (i, j)
+        for i, j in sorted(combinations(usable, 2), key=lambda pair: -abs(correlation[pair]))
+        if abs(correlation[i, j]) >= CORRELATED and max(share[i], share[j]) >= POOR
+    ]
+    found = []
+    for members in _connected(len(parameters), strong):
+        inside = [(i, j) for i, j in strong if i in members]
+        offered = [
+            (best, i, j)
+            for i, j in combinations(members, 2)
+            if (best := _best(objective, parameters[i].name, parameters[j].name, named, estimate)) is not None
+            and BETTER * _share(best) < min(share[i], share[j])
+        ]
+        found.append(
+            Group(
+                names=tuple(parameters[i].name for i in members),
+                correlation=float(correlation[inside[0]]),
+                known=_not_following(offered, len(parameters)),
+            )
+        )
+    return tuple(found)
+
+
+def _connected(count: int, edges: Sequence[tuple[int, int]]) -> list[list[int]]:
+    """Return the groups that edges tie together, each in ascending order, in the order of their first edge."""
+    group = list(range(count))
+    for i, j in edges:
+        group = [group[i] if label == group[j] else label for label in group]
+    labels = dict.fromkeys(group[i] for i, _ in edges)
+    return [[place for place, label in enumerate(group) if label == wanted] for wanted in labels]
+
+
+def _not_following(offered: Sequence[tuple[Estimate, int, int]], count: int) -> tuple[Estimate, ...]:
+    """Return the best known of what is offered, without those that tie two parameters which others tie already."""
+    group = list(range(count))
+    found = []
+    for estimate, i, j in sorted(offered, key=lambda offer: _share(offer[0])):
+        if group[i] != group[j]:
+            group = [group[i] if label == group[j] else label for label in group]
+            found.append(estimate)
+    return tuple(found)
+
+
+def _best(
+    objective: Objective,
+    first: str,
+    second: str,
+    named: Sequence[Combination],
+    estimate: Callable[[Combination], Estimate],
+) -> Estimate | None:
+    return min(map(estimate, _together(objective, first, second, named)), key=_share, default=None)
+
+
+def _share(estimate: Estimate) -> float:
+    share = estimate.std / abs(estimate.value) if estimate.value else np.inf
+    return share if np.isfinite(share) else np.inf
+
+
+def _together(objective: Objective, first: str, second: str, named: Sequence[Combination]) -> list[Combination]:
+    """Return what might be known of two parameters together: named combinations, sums, products, quotients."""
+    values = objective.named(objective.held)
+    own = [c for c in named if not any(c.is_defined_by(_without(values, name)) for name in (first, second))]
+    one, other = (_term(objective, name, order) for order, name in enumerate((first, second)))
+    formulas = [Formula(factors=((one, 1), (other, power))) for power in (1, -1)]
+    if one.unit == other.unit:
+        formulas += [Formula(factors=((sum_of(one, other, sign, order=2), 1),)) for sign in (1, -1)]
+    for mine, others in combinations(_lateness(objective), 2):
+        if {first, second} <= {*mine[1], *others[1]}:
+            formulas.append(Formula(factors=((sum_of(mine[0], others[0], 1, order=2), 1),)))
+    return [*own, *(Combination(name=f.name, unit=f.unit, of=f.of, meaning=MEANING) for f in formulas)]
+
+
+def _without(values: dict[str, FloatArray], name: str) -> dict[str, FloatArray]:
+    return {key: value for key, value in values.items() if key != name}
+
+
+def _term(objective: Objective, name: str, order: int) -> Term:
+    return single(name, objective.parameters[objective.names.index(name)].unit, order=order)
+
+
+def _lateness(objective: Objective) -> list[tuple[Term, tuple[str, ...]]]:
+    """Return what each late block does to slow lines, as a delay, with the parameters that are in it.
+
+    A lag ``omega_n^2 / (s^2 + 2 zeta omega_n s + omega_n^2)`` is ``1 - 2 zeta / omega_n s`` for small ``s``.
+    """
+    found: dict[str, tuple[Term, tuple[str, ...]]] = {}
+    for block in (block for term in objective.terms for block in term.structure.blocks):
+        if isinstance(block, Delay):
+            found.setdefault(block.time.name, (_time(block.time), (block.time.name,)))
+        if isinstance(block, SecondOrderLag):
+            omega_n, zeta = block.frequency.name, block.damping.name
+            found.setdefault(omega_n, (_lag_time(omega_n, zeta), (omega_n, zeta)))
+    return list(found.values())
+
+
+def _time(parameter: Parameter) -> Term:
+    return single(parameter.name, parameter.unit, order=0)
+
+
+def _lag_time(omega_n: str, zeta: str) -> Term:
+    return Term(
+        name=f"2 {zeta} / {omega_n}",
+        unit="s",
+        of=lambda values: 2.0 * values[zeta] / values[omega_n],
+        parts=1,
+        order=1,
+    )
+
+
+def _and(names: Sequence[str]) -> str:
+    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]

@@ -1,0 +1,129 @@
+"""The response that a test would measure: its lines with the covariance that their length and the noise give them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import IdentificationError
+from shaftprint.identify.foresight._noise_levels import NoiseLevels
+from shaftprint.models import Structure
+from shaftprint.spectra import FrequencyResponse, plan_windows
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign
+
+
+def planned_response(campaign: "Campaign", noise: NoiseLevels) -> FrequencyResponse:
+    """Return the lines that the sines of a campaign would give, each over its whole periods; the values are zero.
+
+    Lines above the highest frequency of the noise levels are not used: a recording of the same ship had no usable line
+    there.
+
+    Raises
+    ------
+    ResponseError
+        If the campaign has no sine, two of one frequency, or one of less than two periods.
+    """
+    windows = plan_windows(campaign)
+    amplitudes = {sine.name: sine.amplitude_v for sine in campaign.sines}
+    return planned_lines(
+        [window.frequency_hz for window in windows],
+        noise=noise,
+        amplitude=[noise.set_point_per_v * amplitudes[window.line] for window in windows],
+        duration_s=[window.duration_s for window in windows],
+        lines=[window.line for window in windows],
+    )
+
+
+def planned_lines(
+    frequency_hz: ArrayLike,
+    *,
+    noise: NoiseLevels,
+    amplitude: ArrayLike,
+    duration_s: ArrayLike,
+    lines: Sequence[str] = (),
+) -> FrequencyResponse:
+    """Return test lines with the covariance that they would have; the values are zero.
+
+    Parameters
+    ----------
+    frequency_hz
+        Frequency of each line [Hz], ascending, shape (lines,).
+    noise
+        Noise of the outputs.
+    amplitude
+        Amplitude of the set point over the working-point speed, of each line or of all, such as 0.127.
+    duration_s
+        Length of each line or of all [s]; lines of one multisine or square wave last equally long.
+    lines
+        Names of the lines; numbered when empty.
+
+    Raises
+    ------
+    IdentificationError
+        If an amplitude or a length is not positive.
+    """
+    frequency = np.atleast_1d(np.asarray(frequency_hz, dtype=np.float64))
+    height, length = (np.broadcast_to(np.asarray(values, float), frequency.shape) for values in (amplitude, duration_s))
+    if not np.all(height > 0.0) or not np.all(length > 0.0):
+        raise IdentificationError("planned lines: expected positive amplitudes and lengths.")
+    spread = noise.at(frequency) * (2.0 / (length * height**2))[:, None, None]
+    highest = noise.frequency_hz[-1]
+    used = frequency <= highest
+    names = tuple(lines) or tuple(f"line {number}" for number in range(1, frequency.size + 1))
+    return FrequencyResponse(
+        frequency_hz=frequency,
+        response=np.zeros((len(noise.outputs), 1, frequency.size), dtype=np.complex128),
+        covariance=_real(spread),
+        inputs=("n_set",),
+        outputs=noise.outputs,
+        lines=names,
+        used=used,
+        remarks={
+            name: f"above {highest:g} Hz, beyond which nothing is known of the noise"
+            for name, is_used in zip(names, used, strict=True)
+            if not is_used
+        },
+    )
+
+
+def expected_response(
+    response: FrequencyResponse, structure: Structure, values: Mapping[str, float] | None = None
+) -> FrequencyResponse:
+    """Return a planned response with the values that a structure gives: a test without noise, to be fitted.
+
+    Parameters
+    ----------
+    response
+        The lines, with the structure's inputs and outputs.
+    structure
+        What answers.
+    values
+        Parameter values by name; the structure's own where not given.
+
+    Raises
+    ------
+    StructureError
+        If a name is not a parameter of the structure.
+    IdentificationError
+        If inputs or outputs differ.
+    """
+    if structure.inputs != response.inputs or tuple(structure.outputs) != response.outputs:
+        raise IdentificationError(
+            f"structure {structure.name} goes from {', '.join(structure.inputs)} to {', '.join(structure.outputs)}, "
+            f"the planned response from {', '.join(response.inputs)} to {', '.join(response.outputs)}."
+        )
+    exact = structure.response(structure.vector(values or {}), 1j * response.omega_rad_s)
+    return replace(response, response=exact.reshape(response.response.shape))
+
+
+def _real(covariance: np.ndarray) -> FloatArray:
+    """Return the covariance of [Re, Im] of circular complex noise, shape (lines, 2 outputs, 2 outputs)."""
+    upper = np.concatenate([covariance.real, -covariance.imag], axis=2)
+    lower = np.concatenate([covariance.imag, covariance.real], axis=2)
+    found: FloatArray = 0.5 * np.concatenate([upper, lower], axis=1)
+    return found

@@ -1,0 +1,67 @@
+"""Intervals that a test would find, before it is made: profiles of a test without noise."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.identify.fit import identify
+from shaftprint.identify.foresight._planned_response import expected_response
+from shaftprint.identify.likelihood import Prior
+from shaftprint.identify.search import Draw, Settings
+from shaftprint.identify.uncertainty import Interval, profile
+from shaftprint.models import Structure
+from shaftprint.spectra import FrequencyResponse
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _At(Draw):
+    """One start, at given free parameters."""
+
+    theta: FloatArray
+
+    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
+        """Return the one start."""
+        return self.theta[None, :]
+
+
+def predict_intervals(
+    structure: Structure,
+    response: FrequencyResponse,
+    *,
+    values: Mapping[str, float] | None = None,
+    priors: Mapping[str, Prior] | None = None,
+) -> dict[str, Interval]:
+    """Return the 95 % profile-likelihood intervals that a test would give on average, by name.
+
+    Unlike the standard deviations of ``predict_accuracy`` they are right where the response is not linear in the
+    parameters, and end at bounds: they are the profile intervals of the exact response with the planned covariance.
+
+    Parameters
+    ----------
+    structure
+        The structure.
+    response
+        Lines with their covariance; its values do not matter.
+    values
+        Assumed parameter values by name; the structure's own where not given.
+    priors
+        What is known of free parameters beforehand, by name.
+
+    Raises
+    ------
+    StructureError
+        If a value names no parameter of the structure.
+    IdentificationError
+        If structure and response do not fit together, or a prior names no free parameter.
+    """
+    outputs = tuple(structure.outputs)
+    lines = response if response.outputs == outputs else response.of_outputs(*outputs)
+    assumed = structure.vector(values or {})
+    free = np.array([value for p, value in zip(structure.parameters, assumed, strict=True) if not p.held])
+    settings = Settings(priors=dict(priors or {}), starts=1, draw=_At(free), stability="ignored")
+    fit = identify(
+        structure, expected_response(lines, structure, values), rng=np.random.default_rng(0), settings=settings
+    )
+    return dict(profile(fit).intervals)

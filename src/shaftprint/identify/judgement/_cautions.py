@@ -1,0 +1,82 @@
+"""What does not speak against the numbers of a fit, but is close to it, in sentences."""
+
+import math
+
+import numpy as np
+
+from shaftprint.identify.judgement._evidence import Evidence, gain_reserve, loop_delay_s
+from shaftprint.identify.judgement._good_lines import crossings_rad_s
+from shaftprint.identify.judgement._phrases import listed, probability
+from shaftprint.identify.judgement._search_words import wrong_basin_words
+
+# A fit that is better than this probability allows has less noise than its covariance says.
+TOO_GOOD = 0.999
+
+
+def cautions_of(evidence: Evidence) -> tuple[str, ...]:
+    """Return what a reader of a trustworthy fit must know all the same."""
+    return (
+        *_small_margins(evidence),
+        *_perhaps_unstable(evidence),
+        *_beyond_the_lines(evidence),
+        *_too_good(evidence),
+        *_unweighted(evidence),
+        *wrong_basin_words(evidence.search.optima),
+    )
+
+
+def _small_margins(evidence: Evidence) -> list[str]:
+    margins, needs = evidence.margins, evidence.requirements
+    if margins is None or evidence.loop != "small":
+        return []
+    delay = loop_delay_s(evidence.identification)
+    small = []
+    if gain_reserve(margins) < needs.gain_margin:
+        small.append(f"a gain margin of {gain_reserve(margins):.2f}, where {needs.gain_margin:g} is the least")
+    degrees = float(np.degrees(abs(margins.phase_margin_rad)))
+    if degrees < needs.phase_margin_deg:
+        small.append(f"a phase margin of {degrees:.0f} deg, where {needs.phase_margin_deg:g} is the least")
+    if margins.delay_margin_s < needs.delay_margin_share * delay:
+        small.append(f"a delay margin of {margins.delay_margin_s:.2g} s beside a delay of {delay:.2g} s in the loop")
+    return [f"The loop has little to spare: {listed(small)}."]
+
+
+def _perhaps_unstable(evidence: Evidence) -> list[str]:
+    """Return that the data allow unstable sets too."""
+    if evidence.profile is None or evidence.margins is None:
+        return []
+    if evidence.identification.objective.stable(evidence.profile.points).all():
+        return []
+    return ["The data allow unstable loops too: some parameter sets at the ends of the 95 % intervals are."]
+
+
+def _beyond_the_lines(evidence: Evidence) -> list[str]:
+    """Return that the loop decides on its stability where there are no lines."""
+    if evidence.identification.objective.others:
+        return []
+    experiment = evidence.identification.objective.experiments[0]
+    omega = experiment.s.imag[np.any(evidence.good[0], axis=0)]
+    outside = [c for c in crossings_rad_s(evidence.identification) if not omega[0] <= c <= omega[-1]]
+    if not outside:
+        return []
+    told = listed([f"{crossing:.2g}" for crossing in outside])
+    return [
+        f"The margins are extrapolated: the loop gain passes 1 or -1 at {told} rad/s, and the good lines reach from "
+        f"{omega[0]:.2g} to {omega[-1]:.2g} rad/s."
+    ]
+
+
+def _too_good(evidence: Evidence) -> list[str]:
+    p_value = evidence.identification.p_value
+    if p_value is None or p_value <= TOO_GOOD or math.isinf(evidence.identification.chi_square):
+        return []
+    return [
+        f"The fit is better than the noise lets one expect ({probability(p_value)}): the covariance of the data is too "
+        "large, and so are the standard deviations."
+    ]
+
+
+def _unweighted(evidence: Evidence) -> list[str]:
+    if evidence.identification.is_likelihood:
+        return []
+    return ["The fit was not weighted by the noise: whether the structure explains the data is judged coarsely."]

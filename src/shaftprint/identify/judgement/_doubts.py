@@ -1,0 +1,93 @@
+"""The reasons for which a fit is not trustworthy, each a sentence where it holds and nothing where it does not."""
+
+import numpy as np
+
+from shaftprint.identify.fit import WITHIN
+from shaftprint.identify.judgement._evidence import Evidence
+from shaftprint.identify.judgement._good_lines import gap_at_crossing
+from shaftprint.identify.judgement._misfit import explained, misfit_words
+from shaftprint.identify.judgement._phrases import probability
+from shaftprint.identify.judgement._search_words import rival_words
+
+
+def too_few_good_data(evidence: Evidence) -> str:
+    """Return that lines are too few or too noisy for the parameters."""
+    fit, needs = evidence.identification, evidence.requirements
+    count = len(fit.parameters) - len(fit.settings.priors)
+    wanted = needs.data_per_parameter * count
+    lines = sum(experiment.s.size for experiment in fit.objective.experiments)
+    asked = f"for {count} parameters that the data must find at least {wanted:.0f} are wanted"
+    if fit.objective.others and evidence.good_data >= wanted:
+        return ""
+    if fit.data_count < wanted:
+        return f"There are too few lines: {lines} lines give {fit.data_count} numbers, {asked}; measure more lines."
+    if evidence.good_data >= wanted:
+        return ""
+    return (
+        f"The data are too noisy: of {lines} lines {evidence.good_lines or 'none'} are known to better than "
+        f"{100.0 * needs.largest_line_std:.0f} % in some output, which gives {evidence.good_data} good numbers, "
+        f"{asked}; measure longer, or with a larger amplitude."
+    )
+
+
+def gap_where_it_matters(evidence: Evidence) -> str:
+    """Return that no good line shows where the loop gain passes 1 or -1."""
+    if evidence.identification.objective.others:
+        # records tell of more frequencies than the lines do
+        return ""
+    good = np.any(evidence.good[0], axis=0)
+    gap = gap_at_crossing(evidence.identification, good, evidence.requirements)
+    if gap is None:
+        return ""
+    low, high = gap
+    return (
+        f"There is a gap in the data: no good line lies between {low:.2g} and {high:.2g} rad/s, a factor "
+        f"{high / low:.1f}, and there the loop decides on its stability; measure a line between."
+    )
+
+
+def not_explained(evidence: Evidence) -> str:
+    """Return that the structure does not follow the data within their noise."""
+    fit = evidence.identification
+    if explained(fit, rejected=evidence.requirements.lowest_p_value):
+        return ""
+    name = fit.objective.name
+    if not fit.is_likelihood:
+        percent = "; ".join(
+            f"{output} {value:.1f} % where a perfect model has {fit.fit_ceiling[output]:.1f} %"
+            for output, value in fit.fit_percent.items()
+        )
+        return f"The structure {name} does not explain the data: FitPercent of {percent}."
+    whole = "" if fit.p_value is None else f", {probability(fit.p_value)}"
+    return (
+        f"The structure {name} does not explain the data within their noise (chi-square {fit.chi_square:.0f} for "
+        f"{fit.degrees_of_freedom} degrees of freedom{whole}); {misfit_words(fit)}."
+    )
+
+
+def better_when_unstable(evidence: Evidence) -> str:
+    """Return that an unstable model fits better than the noise explains."""
+    worst = min((optimum.distance for optimum in evidence.search.passed_over), default=0.0)
+    if worst > -WITHIN:
+        return ""
+    return (
+        "The best model is unstable and was passed over, though what was tested was not unstable: the stable one fits "
+        f"worse by {-worst:.1f} of deviance, where {WITHIN:.2f} is the 95 % limit."
+    )
+
+
+def not_unique(evidence: Evidence) -> str:
+    """Return that another optimum fits as well."""
+    rivals = evidence.search.rivals
+    return rival_words(evidence.identification, rivals[0]) if rivals else ""
+
+
+def unstable(evidence: Evidence) -> str:
+    """Return that the identified loop is unstable."""
+    margins = evidence.margins
+    if margins is None or margins.stable:
+        return ""
+    return (
+        f"The identified loop is unstable, with {margins.unstable_poles} poles in the right half plane, though what "
+        "was tested was not."
+    )

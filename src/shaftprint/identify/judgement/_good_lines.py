@@ -1,0 +1,73 @@
+"""Which lines of a response say something, and where a gap is between them."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.identify.fit import Identification
+from shaftprint.identify.judgement._requirements import Requirements
+from shaftprint.identify.likelihood import Experiment
+
+if TYPE_CHECKING:
+    from shaftprint.spectra import SignalToNoise
+
+
+def good_channels(
+    experiment: Experiment, signal_to_noise: "SignalToNoise | None", requirements: Requirements
+) -> BoolArray:
+    """Return which channels of which fitted lines are known well enough to say something, shape (channels, lines).
+
+    Parameters
+    ----------
+    signal_to_noise
+        Local signal-to-noise ratios of the recording; the lines are found by name.
+    """
+    good = _relative_std(experiment) <= requirements.largest_line_std
+    if signal_to_noise is None:
+        return good
+    names = [name for name, fitted in zip(experiment.response.lines, experiment.fitted, strict=True) if fitted]
+    limit = requirements.lowest_line_snr_db
+    given = [i for i, channel in enumerate(signal_to_noise.channels) if channel in experiment.response.inputs]
+    for place, name in enumerate(names):
+        if name not in signal_to_noise.lines:
+            continue
+        ratios = signal_to_noise.local_db[signal_to_noise.lines.index(name)]
+        if np.any(ratios[given] < limit) or np.all(np.delete(ratios, given) < limit):
+            good[:, place] = False
+    return good
+
+
+def _relative_std(experiment: Experiment) -> FloatArray:
+    """Return the standard deviation of each channel over its size, shape (channels, lines)."""
+    variance = np.diagonal(experiment.noise_covariance, axis1=1, axis2=2).T
+    half = variance.shape[0] // 2
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.sqrt(variance[:half] + variance[half:]) / np.abs(experiment.measured))
+
+
+def crossings_rad_s(identification: Identification) -> tuple[float, ...]:
+    """Return where the loop gain passes 1 in size or -1 in phase: what happens there decides on stability."""
+    margins = identification.margins
+    if margins is None:
+        return ()
+    found = (margins.phase_margin_rad_s, margins.gain_margin_rad_s)
+    return tuple(omega for omega in found if np.isfinite(omega))
+
+
+def gap_at_crossing(
+    identification: Identification, good: BoolArray, requirements: Requirements
+) -> tuple[float, float] | None:
+    """Return the frequencies [rad/s] between which no good line shows a crossing of the loop gain; None where none are.
+
+    Parameters
+    ----------
+    good
+        Which fitted lines of the first response are good, shape (lines,).
+    """
+    omega = identification.objective.experiments[0].s.imag[good]
+    for crossing in crossings_rad_s(identification):
+        above = int(np.searchsorted(omega, crossing))
+        if 0 < above < omega.size and omega[above] > requirements.largest_spacing * omega[above - 1]:
+            return float(omega[above - 1]), float(omega[above])
+    return None

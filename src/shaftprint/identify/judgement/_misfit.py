@@ -1,0 +1,80 @@
+"""Does the structure explain the data, and if not, where not."""
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.identify.fit import Identification
+from shaftprint.identify.judgement._phrases import spans
+from shaftprint.identify.likelihood import Part, channel_names, channels_of, load_factors
+
+# Below this probability a fit is rejected, and a line where it is that of the worst of all lines (Bonferroni).
+REJECTED = 0.01
+# Without weights: how many times what the noise leaves may be left.
+UNWEIGHTED_EXCESS = 2.0
+# A channel is named when its squared deviations are this many times those of every other.
+STANDS_OUT = 3.0
+
+
+def explained(identification: Identification, *, rejected: float = REJECTED) -> bool:
+    """Return whether the structure explains the data within their noise.
+
+    Weighted by the covariance, the whole must not be rejected, nor any single line against the worst of as many lines.
+    Without weights, no output may miss more than twice what noise alone would: that is coarse.
+
+    Parameters
+    ----------
+    rejected
+        Probability below which a fit or line is rejected.
+    """
+    if not identification.is_likelihood:
+        return all(
+            100.0 - percent <= UNWEIGHTED_EXCESS * (100.0 - ceiling)
+            for part in identification.parts
+            for percent, ceiling in zip(part.fit_percent.values(), part.fit_ceiling.values(), strict=True)
+        )
+    whole = identification.p_value
+    return (whole is None or whole >= rejected) and not worst_lines(identification, rejected=rejected)
+
+
+def worst_lines(identification: Identification, *, rejected: float = REJECTED) -> tuple[str, ...]:
+    """Return the names of the lines of the first response that lie farther off than the worst of as many may.
+
+    Where the first of the fitted data are records, those that do.
+    """
+    lines = identification.line_tests
+    return tuple(line.name for line in lines if line.experiment == 0 and line.p_value * len(lines) < rejected)
+
+
+def misfit_words(identification: Identification) -> str:
+    """Return where the misfit is largest: in which channel, at which lines."""
+    worst = worst_lines(identification)
+    if not worst:
+        return "the misfit is spread over all lines"
+    if not isinstance(identification.parts[0], Part):
+        return f"the misfit is largest in {', '.join(worst)}"
+    response = identification.response
+    places = [response.lines.index(name) for name in worst]
+    omega = response.omega_rad_s[places]
+    band = f"{omega[0]:.2g} rad/s" if len(worst) == 1 else f"{omega[0]:.2g} to {omega[-1]:.2g} rad/s"
+    channel = _standing_out(identification, places)
+    where = f"in {channel} " if channel else ""
+    return f"the misfit is largest {where}at {spans(worst, response.lines)} ({band})"
+
+
+def _standing_out(identification: Identification, places: list[int]) -> str:
+    """Return the channel that is farther off than all others at some lines; nothing where none is or there is one."""
+    squares = _squares(identification)[:, places].sum(axis=1)
+    order = np.argsort(squares)
+    if squares.size == 1 or squares[order[-1]] < STANDS_OUT * squares[order[-2]]:
+        return ""
+    return channel_names(identification.response)[int(order[-1])]
+
+
+def _squares(identification: Identification) -> FloatArray:
+    """Return the squared deviation of each channel at each line over its variance, shape (channels, lines)."""
+    response = identification.response
+    values, s = identification.own_values(), 1j * response.omega_rad_s
+    gap = channels_of(response) - identification.structure.response(values, s, factors=load_factors(response))
+    variance = np.diagonal(response.covariance, axis1=1, axis2=2).T
+    half = gap.shape[0]
+    return np.asarray(gap.real**2 / variance[:half] + gap.imag**2 / variance[half:])

@@ -1,0 +1,152 @@
+"""What a fit that fails may be missing: the causes that would explain most of its misfit.
+
+For each cause the fall of the squared misfit is computed that one more parameter of its direction would bring, beside
+the free ones (score test: Rao, Large sample tests of statistical hypotheses concerning several parameters, 1948). The
+best is taken along, then the next best is looked for. These are hints: causes that look alike in the lines at hand
+cannot be told apart, and sizes are right to first order.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.identify.fit import Identification
+from shaftprint.identify.judgement._causes import Cause, causes_of
+from shaftprint.identify.judgement._misfit import REJECTED, explained
+from shaftprint.identify.judgement._phrases import number
+from shaftprint.identify.likelihood import Experiment
+
+MOST = 3
+# A cause is worth naming where it takes away this share of the misfit beyond the noise, and chi-square with one degree
+# of freedom exceeds the last number by chance once in a hundred thousand times.
+LEAST_SHARE, LEAST_FALL = 0.2, 19.5
+# Of causes that explain nearly as much as the best, the best founded is named.
+NEARLY = 0.97
+# A direction of which less than this share is left beside the free parameters is one of theirs.
+OWN = 1e-4
+# A cause that changes the response by more than itself is not of first order.
+FIRST_ORDER = 1.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Suspect:
+    """A cause that would explain much of a misfit."""
+
+    words: str
+    """What may be wrong, as a clause."""
+    estimate: float
+    """Its size, to first order."""
+    std: float
+    """Standard deviation of the size."""
+    unit: str
+    """Unit of the size."""
+    share: float
+    """Share of the misfit beyond the noise that it takes away, given those named before it."""
+    rough: bool
+    """Whether the size is so large that a first-order estimate of it says little."""
+
+    @property
+    def sentence(self) -> str:
+        """The suspicion in words, with its size where that can be told."""
+        share = 100.0 * min(self.share, 1.0)
+        size = "" if self.rough else f" (by about {number(self.estimate, self.unit, digits=2)})"
+        return f"A hint: {share:.0f} % of the misfit would go if {self.words}{size}."
+
+
+def suspects_of(identification: Identification, *, rejected: float = REJECTED) -> tuple[Suspect, ...]:
+    """Return what would explain most of a fit's misfit, the most first; nothing for a fit that explains its data.
+
+    What a cause does to records in time is not known: for a fit to any there are no hints.
+
+    Parameters
+    ----------
+    rejected
+        Probability below which the fit is rejected.
+    """
+    if explained(identification, rejected=rejected) or identification.objective.others:
+        return ()
+    misfit, basis = _misfit(identification)
+    spare = misfit.size - basis.shape[1]
+    causes = _gathered(identification)
+    beyond = float(misfit @ misfit) - spare
+    found: list[Suspect] = []
+    while len(found) < MOST and causes:
+        directions = np.array([direction for _, direction in causes])
+        sizes = np.linalg.norm(directions, axis=1)
+        beside = directions - (directions @ basis) @ basis.T
+        left = np.linalg.norm(beside, axis=1)
+        left[left < OWN * sizes] = np.inf
+        pulls = beside @ misfit / left
+        backward = np.array([cause.one_sided for cause, _ in causes]) & (pulls < 0.0)
+        falls = np.where(backward, 0.0, pulls**2)
+        if falls.max() < max(LEAST_SHARE * beyond, LEAST_FALL):
+            break
+        best = int(np.flatnonzero(falls >= NEARLY * falls.max())[0])
+        cause, _ = causes.pop(best)
+        estimate = float(pulls[best] / left[best])
+        found.append(
+            Suspect(
+                words=cause.words,
+                estimate=estimate,
+                std=float(1.0 / left[best]),
+                unit=cause.unit,
+                share=float(falls[best] / beyond),
+                rough=_changes(identification, cause, estimate) > FIRST_ORDER,
+            )
+        )
+        along = beside[best] / left[best]
+        misfit = misfit - (along @ misfit) * along
+        basis = np.column_stack([basis, along])
+    return tuple(found)
+
+
+def _changes(identification: Identification, cause: Cause, size: float) -> float:
+    """Return the largest share by which a cause of some size changes the first response."""
+    model = identification.objective.experiments[0].model(identification.values)
+    return float(np.max(np.abs(size * cause.effect) / np.abs(model)))
+
+
+def _misfit(identification: Identification) -> tuple[FloatArray, FloatArray]:
+    """Return what is left of the residuals beside the free parameters, and an orthonormal basis of theirs."""
+    objective = identification.objective
+    parts, slopes = [], []
+    for experiment, part in zip(objective.experiments, identification.experiments, strict=True):
+        _, gradient = experiment.structure.gradient(
+            experiment.own(identification.values), experiment.s, factors=experiment.factors
+        )
+        own = np.zeros((part.whitened.size, len(objective.free)))
+        own[:, list(experiment.columns)] = np.array([_whitened(experiment, slope) for slope in gradient]).T
+        parts.append(part.whitened.ravel())
+        slopes.append(own)
+    theta = identification.values[list(objective.free)]
+    for place, mean, weight in objective.prior_rows:
+        parts.append(np.array([(mean - theta[int(place)]) * weight]))
+        slopes.append(weight * np.eye(theta.size)[[int(place)]])
+    residuals, table = np.concatenate(parts), np.concatenate(slopes)
+    scale = np.linalg.norm(table, axis=0)
+    left, sizes, _ = np.linalg.svd(table / np.where(scale > 0.0, scale, 1.0), full_matrices=False)
+    basis = left[:, sizes > OWN * sizes[0]]
+    return residuals - basis @ (basis.T @ residuals), basis
+
+
+def _gathered(identification: Identification) -> list[tuple[Cause, FloatArray]]:
+    """Return the causes of all experiments, those of one wording as one, each with its whitened direction."""
+    objective = identification.objective
+    sizes = [part.whitened.size for part in identification.experiments]
+    total = sum(sizes) + objective.prior_rows.shape[0]
+    found: dict[str, tuple[Cause, FloatArray]] = {}
+    first = 0
+    for experiment, size in zip(objective.experiments, sizes, strict=True):
+        for cause in causes_of(experiment, identification.values):
+            _, direction = found.setdefault(cause.words, (cause, np.zeros(total)))
+            direction[first : first + size] = _whitened(experiment, cause.effect)
+        first += size
+    return [(cause, direction) for cause, direction in found.values() if direction.any()]
+
+
+def _whitened(experiment: Experiment, channels: ComplexArray) -> FloatArray:
+    """Return ``L^-1 [Re, Im]`` of the fitted lines, one line after the other."""
+    parts = np.concatenate([channels.real, channels.imag]).T
+    root = np.linalg.cholesky(experiment.covariance)
+    return np.asarray(np.linalg.solve(root, parts[:, :, None]).ravel())

@@ -1,0 +1,76 @@
+"""Which numbers of a fit may be trusted, and why the others may not."""
+
+import math
+from collections.abc import Mapping
+
+from shaftprint.identify.fit import Estimate, Identification
+from shaftprint.identify.judgement._phrases import number
+from shaftprint.identify.judgement._requirements import Requirements
+from shaftprint.identify.uncertainty import Interval, Profile
+from shaftprint.normal import NORMAL_95
+
+
+def trusted_numbers(
+    identification: Identification, profile: Profile | None, requirements: Requirements
+) -> tuple[tuple[str, ...], dict[str, str]]:
+    """Return the names of the parameters and combinations that may be trusted, and of the others why they may not.
+
+    Parameters
+    ----------
+    profile
+        Profile likelihood of the fit; its intervals are then asked instead of the standard deviations.
+    """
+    intervals = {} if profile is None else profile.intervals
+    reasons = {
+        estimate.name: _doubt(identification, estimate, intervals.get(estimate.name), requirements)
+        for estimate in (*identification.parameters, *identification.combinations)
+    }
+    return (
+        tuple(name for name, reason in reasons.items() if not reason),
+        {name: reason for name, reason in reasons.items() if reason},
+    )
+
+
+def _doubt(
+    identification: Identification, estimate: Estimate, interval: Interval | None, requirements: Requirements
+) -> str:
+    """Return why a number may not be trusted; nothing where it may."""
+    if estimate.at_bound:
+        return f"it stopped at its bound {number(estimate.value, estimate.unit)}"
+    if not math.isfinite(estimate.value):
+        return "it has no value at the estimate"
+    if interval is not None and (interval.lower_open or interval.upper_open):
+        return f"the data set no {_open_ends(interval)} end to it"
+    std = _deviation(estimate, interval)
+    if not math.isfinite(std):
+        return "the data say nothing about it"
+    prior = identification.settings.priors.get(estimate.name)
+    if prior is not None and std > requirements.largest_prior_share * prior.std:
+        left = min(100.0 * std / prior.std, 100.0)
+        return f"it was known beforehand and hardly measured: {left:.0f} % of that deviation is left"
+    size = _size(identification, estimate)
+    if std > requirements.largest_std * size:
+        return f"it is known to {100.0 * std / size:.0f} % only" if size > 0.0 else "it cannot be told from 0"
+    return ""
+
+
+def _open_ends(interval: Interval) -> str:
+    if interval.lower_open and interval.upper_open:
+        return "lower and upper"
+    return "lower" if interval.lower_open else "upper"
+
+
+def _deviation(estimate: Estimate, interval: Interval | None) -> float:
+    """Return the standard deviation: that of the wider side of the interval, where there is one."""
+    if interval is None:
+        return estimate.std
+    return max(interval.upper - estimate.value, estimate.value - interval.lower) / NORMAL_95
+
+
+def _size(identification: Identification, estimate: Estimate) -> float:
+    """Return what a deviation is compared with: the value, or the range of a parameter that may have either sign."""
+    bounds: Mapping[str, tuple[float, float]] = {
+        parameter.name: (parameter.lower, parameter.upper) for parameter in identification.objective.free_parameters
+    }
+    lower, upper = bounds.get(estimate.name, (0.0, 0.0))
+    return max(abs(estimate.value), upper - lower if lower < 0.0 < upper else 0.0)

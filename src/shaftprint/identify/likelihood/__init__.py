@@ -1,0 +1,43 @@
+"""What a fit minimises: lines, records and earlier knowledge as terms of one likelihood, with their weights."""
+
+from shaftprint.identify.likelihood._build_objective import Source, build_joint_objective
+from shaftprint.identify.likelihood._chi_square import chi_square_tail
+from shaftprint.identify.likelihood._experiment import Experiment, ResponseRepeats
+from shaftprint.identify.likelihood._fit_percent import fit_ceiling, fit_percent
+from shaftprint.identify.likelihood._known import PRIOR_OF_G, priors_from_vessel
+from shaftprint.identify.likelihood._line_test import LineTest
+from shaftprint.identify.likelihood._load_factors import load_factors, with_load
+from shaftprint.identify.likelihood._objective import Objective, Redrawn
+from shaftprint.identify.likelihood._part import Part, channel_names, channels_of
+from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.likelihood._term import FittedTerm, Repeats, Term, TermTest
+from shaftprint.identify.likelihood._weighting import MaximumLikelihood, StudentT, Unweighted, Weighting
+
+__all__ = [
+    "PRIOR_OF_G",
+    "Experiment",
+    "FittedTerm",
+    "LineTest",
+    "MaximumLikelihood",
+    "Objective",
+    "Part",
+    "Prior",
+    "Redrawn",
+    "Repeats",
+    "ResponseRepeats",
+    "Source",
+    "StudentT",
+    "Term",
+    "TermTest",
+    "Unweighted",
+    "Weighting",
+    "build_joint_objective",
+    "channel_names",
+    "channels_of",
+    "chi_square_tail",
+    "fit_ceiling",
+    "fit_percent",
+    "load_factors",
+    "priors_from_vessel",
+    "with_load",
+]

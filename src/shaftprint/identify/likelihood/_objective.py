@@ -1,0 +1,202 @@
+"""What a fit minimises: weighted residuals of all terms, and rows for what is known beforehand.
+
+The cost is half the sum of squares of all residuals. For maximum likelihood it is the negative log-likelihood, up to a
+constant, of all terms together, frequency responses and records in time: they are independent of each other, and
+parameters of one name are one parameter.
+A prior ``mean +/- std`` of a parameter is one more row, ``(theta - mean) / std``.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, FloatArray, IntArray
+from shaftprint.identify.likelihood._experiment import Experiment
+from shaftprint.identify.likelihood._term import Repeats, Term
+from shaftprint.models import Combination, Parameter, Structure
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Redrawn:
+    """Other data for the same problem, one row a repeat."""
+
+    repeats: tuple[Repeats, ...]
+    """Of each term."""
+    prior_means: FloatArray
+    """Means of the prior rows, shape (repeats, prior rows)."""
+
+    def chosen(self, repeats: IntArray | slice) -> "Redrawn":
+        """Return some of the repeats."""
+        return Redrawn(
+            repeats=tuple(drawn.chosen(repeats) for drawn in self.repeats), prior_means=self.prior_means[repeats]
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Objective:
+    """A fit problem: terms and prior rows, ready to be evaluated for many parameter sets at once."""
+
+    parameters: tuple[Parameter, ...]
+    """Independent parameters of all structures, each once, those of the first structure first."""
+    terms: tuple[Term, ...]
+    """The responses and records with their structures."""
+    prior_rows: FloatArray
+    """Rows ``(index of free parameter, mean, 1 / std)`` of priors and regularisation, shape (rows, 3)."""
+    prior_counts: FloatArray
+    """1 for a row that is knowledge, 0 for one that only regularises, shape (rows,)."""
+    held: FloatArray
+    """Values of all parameters; the free ones are replaced in each evaluation, shape (parameters,)."""
+    free: tuple[int, ...]
+    """Places of the free parameters."""
+
+    @property
+    def experiments(self) -> tuple[Experiment, ...]:
+        """The terms that are frequency responses."""
+        return tuple(term for term in self.terms if isinstance(term, Experiment))
+
+    @property
+    def others(self) -> tuple[Term, ...]:
+        """The terms that are none."""
+        return tuple(term for term in self.terms if not isinstance(term, Experiment))
+
+    @property
+    def structure(self) -> Structure:
+        """The structure of the first term."""
+        return self.terms[0].structure
+
+    @property
+    def name(self) -> str:
+        """Names of the structures, each once."""
+        return " + ".join(dict.fromkeys(term.structure.name for term in self.terms))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all parameters."""
+        return tuple(p.name for p in self.parameters)
+
+    @property
+    def free_parameters(self) -> tuple[Parameter, ...]:
+        """The parameters that the fit may change."""
+        return tuple(self.parameters[i] for i in self.free)
+
+    @property
+    def lower(self) -> FloatArray:
+        """Lower bounds of the free parameters."""
+        return np.array([p.lower for p in self.free_parameters])
+
+    @property
+    def upper(self) -> FloatArray:
+        """Upper bounds of the free parameters."""
+        return np.array([p.upper for p in self.free_parameters])
+
+    @property
+    def combinations(self) -> tuple[Combination, ...]:
+        """The combinations that the structures name, each once."""
+        found: dict[str, Combination] = {}
+        for combination in (c for term in self.terms for c in term.structure.combinations):
+            found.setdefault(combination.name, combination)
+        return tuple(found.values())
+
+    @property
+    def data_count(self) -> int:
+        """Number of independent real data: two a complex value of a response."""
+        return sum(term.data_count for term in self.terms)
+
+    @property
+    def cost_of_nothing(self) -> float:
+        """Half the square sum of the residuals of a model that gives zero."""
+        return sum(term.cost_of_nothing for term in self.terms)
+
+    def complete(self, theta: FloatArray) -> FloatArray:
+        """Return all parameters, shape (..., parameters), from the free ones, shape (..., free)."""
+        values = np.empty((*theta.shape[:-1], self.held.size))
+        values[...] = self.held
+        values[..., self.free] = theta
+        return values
+
+    def named(self, values: FloatArray) -> dict[str, FloatArray]:
+        """Return every parameter of every structure by name, tied ones included, from values (..., parameters)."""
+        found: dict[str, FloatArray] = {}
+        for term in self.terms[::-1]:
+            found |= term.structure.named(term.own(values))
+        return found
+
+    def stable(self, values: FloatArray) -> BoolArray:
+        """Return whether the models of all terms are stable, shape (rows,), for parameters (rows, parameters)."""
+        return np.asarray(np.all([term.stable(values) for term in self.terms], axis=0))
+
+    def evaluable(self, theta: FloatArray) -> BoolArray:
+        """Return whether all terms can be evaluated, shape (starts,), at free parameters (starts, free)."""
+        return np.asarray(np.all([term.evaluable(theta[:, term.columns]) for term in self.terms], axis=0))
+
+    def of_starts(self, theta: FloatArray, starts: IntArray) -> tuple[FloatArray, FloatArray]:
+        """Return the same as ``residuals``: every start has the same problem."""
+        return self.residuals(theta)
+
+    def residuals(self, theta: FloatArray, redrawn: Redrawn | None = None) -> tuple[FloatArray, FloatArray]:
+        """Return weighted residuals and their derivatives for many parameter sets.
+
+        Parameters
+        ----------
+        theta
+            Free parameters, shape (starts, free).
+        redrawn
+            Other data for each start.
+
+        Returns
+        -------
+            Residuals, shape (starts, rows), and Jacobian, shape (starts, free, rows); rows term by term,
+            those of the priors last.
+        """
+        parts = [self._part(i, theta, redrawn) for i in range(len(self.terms))]
+        if self.prior_rows.size:
+            parts.append(self._prior_part(theta, self.prior_rows[:, 1] if redrawn is None else redrawn.prior_means))
+        table = parts[0] if len(parts) == 1 else np.concatenate(parts, axis=2)
+        return table[:, 0], table[:, 1:]
+
+    def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
+        """Return rows whose products are the information, and rows whose products are the variance of the slope.
+
+        Parameters
+        ----------
+        theta
+            Free parameters, shape (free,).
+        expected
+            Whether to average over the noise instead of taking the data as they are.
+
+        Returns
+        -------
+            See ``Term.sensitivity``, each of shape (free, rows); rows that only regularise have no noise.
+        """
+        knowledge = self._prior_part(theta[None, :], self.prior_rows[:, 1])[0, 1:]
+        parts = [self.sensitivity_to(term, theta, expected=expected) for term in self.terms]
+        parts.append((knowledge, knowledge * self.prior_counts))
+        rows, noise = zip(*parts, strict=True)
+        return np.concatenate(rows, axis=1), np.concatenate(noise, axis=1)
+
+    def sensitivity_to(self, term: Term, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
+        """Return the sensitivity of one term, with a row for every free parameter."""
+        found = []
+        for own in term.sensitivity(theta[list(term.columns)], expected=expected):
+            spread = np.zeros((theta.size, own.shape[1]))
+            spread[list(term.columns)] = own
+            found.append(spread)
+        return found[0], found[1]
+
+    def _part(self, number: int, theta: FloatArray, redrawn: Redrawn | None) -> FloatArray:
+        """Return residuals of one term and below them their derivatives to all free parameters."""
+        term = self.terms[number]
+        repeats = None if redrawn is None else redrawn.repeats[number]
+        if term.columns == tuple(range(theta.shape[1])):
+            return term.table(theta, repeats)
+        own = term.table(theta[:, term.columns], repeats)
+        table = np.zeros((theta.shape[0], 1 + theta.shape[1], own.shape[2]))
+        table[:, [0, *(1 + column for column in term.columns)]] = own
+        return table
+
+    def _prior_part(self, theta: FloatArray, means: FloatArray) -> FloatArray:
+        index = self.prior_rows[:, 0].astype(int)
+        table = np.zeros((theta.shape[0], 1 + theta.shape[1], index.size))
+        table[:, 0] = (theta[:, index] - means) * self.prior_rows[:, 2]
+        table[:, 1 + index, np.arange(index.size)] = self.prior_rows[:, 2]
+        return table

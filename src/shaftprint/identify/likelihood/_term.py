@@ -1,0 +1,201 @@
+"""One part of the likelihood, whatever its data are: what an objective asks of it, and what it tells of itself.
+
+Terms are independent of each other. Each has a structure, whose free parameters are some of those of the objective;
+parameters of one name are one parameter. A frequency response is a term (``Experiment``), and so are records in time
+and whatever another room makes.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, FloatArray, IntArray
+from shaftprint.identify.likelihood._line_test import LineTest
+from shaftprint.models import Structure, stable_rows
+
+
+class Repeats(ABC):
+    """Other data for one term, one row a repeat of the test."""
+
+    __slots__ = ()
+
+    @abstractmethod
+    def chosen(self, repeats: IntArray | slice) -> Self:
+        """Return some of the repeats."""
+
+
+class FittedTerm(ABC):
+    """How well one term is explained by the parameters that were found."""
+
+    __slots__ = ()
+
+    structure: Structure
+    """The structure, with its held and free parameters."""
+    fit_percent: Mapping[str, float]
+    """FitPercent of each output (thesis eq. 2.41)."""
+    fit_ceiling: Mapping[str, float]
+    """FitPercent that the noise allows, of each output."""
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """What messages call the data."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class TermTest:
+    """What a term adds to the test of fit."""
+
+    chi_square: float
+    """Sum of squared distances."""
+    count: int
+    """Number of independent data in it."""
+    mean: float
+    """What the sum is on average for the true model; ``count`` where all noise is known."""
+    variance: float
+    """Variance of the sum; twice ``count`` where all noise is known."""
+    lines: tuple[LineTest, ...]
+    """Its parts."""
+
+
+class Term(ABC):
+    """One part of the likelihood: residuals whose half square sum is its negative logarithm, up to a constant."""
+
+    __slots__ = ()
+
+    structure: Structure
+    """The structure with its held and free parameters."""
+    held: FloatArray
+    """Values of the structure's parameters; the free ones are replaced, shape (structure's parameters,)."""
+    free: tuple[int, ...]
+    """Places of the free parameters among the structure's."""
+    places: tuple[int, ...]
+    """Places of the free parameters among all parameters of the objective; see ``placed``."""
+    columns: tuple[int, ...]
+    """Places of the same among the free parameters of the objective."""
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """What messages call the data."""
+
+    @property
+    @abstractmethod
+    def data_count(self) -> int:
+        """Number of independent real data."""
+
+    @property
+    @abstractmethod
+    def row_count(self) -> int:
+        """Number of rows of ``sensitivity``."""
+
+    @property
+    @abstractmethod
+    def is_likelihood(self) -> bool:
+        """Whether the residuals are weighted by their noise."""
+
+    @property
+    @abstractmethod
+    def least_deviation(self) -> float:
+        """Smallest standard deviation of a datum, as a share of the value it belongs to; infinite where none is."""
+
+    @property
+    @abstractmethod
+    def cost_of_nothing(self) -> float:
+        """Half the square sum of the residuals of a model that gives zero."""
+
+    @abstractmethod
+    def placed(self, names: Sequence[str], free: Sequence[str]) -> Self:
+        """Return the term as part of an objective.
+
+        Parameters
+        ----------
+        names, free
+            Names of all parameters and of the free parameters of the objective.
+        """
+
+    @abstractmethod
+    def with_floor(self, floor: float) -> Self:
+        """Return the term as if no value were known better than to a share of itself."""
+
+    @abstractmethod
+    def table(self, theta: FloatArray, repeats: Repeats | None = None) -> FloatArray:
+        """Return residuals and below them their derivatives, shape (starts, 1 + free, rows).
+
+        Rows may be any rotation of the residuals. A model that cannot be evaluated has a large finite residual.
+
+        Parameters
+        ----------
+        theta
+            Free parameters of this term, shape (starts, free).
+        repeats
+            Other data for each start, from ``redrawn``.
+        """
+
+    @abstractmethod
+    def evaluable(self, theta: FloatArray) -> BoolArray:
+        """Return whether the model can be evaluated at free parameters of this term, shape (starts,)."""
+
+    @abstractmethod
+    def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
+        """Return rows whose products are the information, and rows whose products are the variance of the slope.
+
+        Parameters
+        ----------
+        theta
+            Free parameters of this term, shape (free,).
+        expected
+            Whether to average over the noise instead of taking the data as they are.
+
+        Returns
+        -------
+            ``J`` and ``N``, each of shape (free, rows): ``J J^T`` is the second derivative of the cost, and ``N N^T``
+            the covariance of its slope, the same for a likelihood.
+        """
+
+    @abstractmethod
+    def judged(self, values: FloatArray, number: int) -> tuple[FittedTerm, TermTest]:
+        """Return how well the data are explained.
+
+        Parameters
+        ----------
+        values
+            All parameters of the objective, shape (parameters,).
+        number
+            Number of the term in the objective.
+        """
+
+    @abstractmethod
+    def redrawn(self, values: FloatArray, count: int, rng: np.random.Generator) -> Repeats:
+        """Return what repeats of the test would give, were the parameters true.
+
+        Parameters
+        ----------
+        values
+            All parameters of the objective, shape (parameters,).
+        count
+            Number of repeats.
+
+        Raises
+        ------
+        IdentificationError
+            If the data cannot be drawn anew.
+        """
+
+    def complete(self, theta: FloatArray) -> FloatArray:
+        """Return all parameters of the structure, shape (..., parameters), from its free ones, shape (..., free)."""
+        values = np.empty((*theta.shape[:-1], self.held.size))
+        values[...] = self.held
+        values[..., self.free] = theta
+        return values
+
+    def own(self, values: FloatArray) -> FloatArray:
+        """Return the parameters of the structure, shape (..., parameters), from those of the objective."""
+        return self.complete(values[..., self.places])
+
+    def stable(self, values: FloatArray) -> BoolArray:
+        """Return whether the model is stable, shape (rows,), for parameters of the objective (rows, parameters)."""
+        return stable_rows(self.structure, self.own(values))

@@ -1,0 +1,54 @@
+"""How to search and weigh."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Literal, get_args
+
+from shaftprint.errors import IdentificationError
+from shaftprint.identify.likelihood import MaximumLikelihood, Prior, Weighting
+from shaftprint.identify.search._starts import Draw, LatinHypercube
+
+Stability = Literal["after", "during", "ignored"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Settings:
+    """How a fit searches and weighs; the defaults follow thesis section 5.1, but weigh by the measured covariance."""
+
+    weighting: Weighting = field(default_factory=MaximumLikelihood)
+    """How lines and outputs are weighed."""
+    priors: Mapping[str, Prior] = field(default_factory=dict)
+    """What is known of parameters beforehand; it counts in the uncertainty."""
+    regularisation: Mapping[str, Prior] = field(default_factory=dict)
+    """A pull towards values that is not knowledge: it does not count in the uncertainty."""
+    starts: int = 50
+    """Number of starts."""
+    draw: Draw = field(default_factory=LatinHypercube)
+    """How the starts are drawn within the bounds."""
+    max_iterations: int = 100
+    """Limit of iterations of each start."""
+    tolerance: float = 1e-5
+    """Share of the cost below which a further gain is not worth a step (0.001 %)."""
+    stability: Stability = "after"
+    """Whether an unstable model may win: sorted out ``after`` the search, kept out ``during`` it, or ``ignored``."""
+
+    def __post_init__(self) -> None:
+        """Check counts and kinds.
+
+        Raises
+        ------
+        IdentificationError
+            If starts, iterations or tolerance are not positive, the stability rule is unknown, or a prior is none.
+        """
+        for name, prior in (*self.priors.items(), *self.regularisation.items()):
+            if not isinstance(prior, Prior):
+                raise IdentificationError(f"prior of {name}: expected Prior(mean, std), found {prior!r}.")
+        if self.starts < 1 or self.max_iterations < 1 or not self.tolerance > 0.0:
+            raise IdentificationError(
+                f"search settings: expected positive starts, iterations and tolerance, found {self.starts}, "
+                f"{self.max_iterations} and {self.tolerance}."
+            )
+        if self.stability not in get_args(Stability):
+            raise IdentificationError(
+                f"search settings: expected stability {', '.join(get_args(Stability))}, found {self.stability!r}."
+            )

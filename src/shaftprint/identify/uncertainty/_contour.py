@@ -1,0 +1,263 @@
+"""How far a number can be moved before the cost has risen by a given amount: the ends of profile-likelihood intervals.
+
+The largest value of a number ``c(theta)`` on the contour where the cost reaches ``T`` is the end of its profile: there
+no change of the other parameters lowers the cost (Venzon and Moolgavkar, A method for computing profile-likelihood-
+based confidence intervals, 1988). With the slope ``a`` of the number, the gradient ``g = J r`` and the matrix
+``A = J J^T`` of the cost, the parabola at ``theta`` has its largest ``a^T delta`` on the contour at
+
+    delta = t A^-1 a - A^-1 g,    t^2 = 2 (T - cost + g^T A^-1 g / 2) / (a^T A^-1 a).
+
+Bounds are an active set for ``delta``. The step is repeated until it promises no more; where it makes matters worse,
+``A`` is damped as in Levenberg-Marquardt. Worse is what lowers ``c`` less twice the excess of the cost over ``T``,
+expressed in units of ``c`` by the multiplier ``1 / t`` (an exact penalty). All numbers and sides go in one batch.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, FloatArray, IntArray
+from shaftprint.identify.likelihood import Objective
+from shaftprint.identify.uncertainty._numbers import Numbers
+
+ROUNDS = 200
+# Units of the number that one unit of excess cost outweighs, over those that the multiplier says.
+PENALTY = 2.0
+# An end is good when the next step would move it by less than this share of its distance from the estimate, ...
+PRECISION = 2e-3
+# ... and the root of the rise of the cost, in standard deviations, is right to this share.
+SHARP = 5e-3
+BOUND_PASSES = 24
+# In the last passes one parameter changes at a time, as in the search for the optimum.
+SINGLE_PASSES = 16
+LEAST_DAMPING = 1e-12
+FIRST_DAMPING = 1e-2
+MOST_DAMPING = 1e10
+# With more damping than this a small step says nothing.
+TRUSTED_DAMPING = 1e-5
+# A step that was good leaves this share of the damping.
+RELIEF = 0.1
+# Curvature of a parameter without influence: the system stays solvable.
+SMALLEST_SCALE = 1e-100
+TINY = 1e-300
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Ends:
+    """The furthest points that were found, one row a number and side."""
+
+    theta: FloatArray
+    """Free parameters, shape (rows, free)."""
+    value: FloatArray
+    """The number there, shape (rows,)."""
+    is_open: BoolArray
+    """Whether bounds of the search stopped the number before the cost had risen far enough, shape (rows,)."""
+
+
+def furthest(numbers: Numbers, start: FloatArray, side: FloatArray, distance: FloatArray) -> Ends:
+    """Return where each number is furthest from its estimate while the cost rises no more than allowed.
+
+    Parameters
+    ----------
+    numbers
+        The number of each row.
+    start
+        Free parameters of the estimate, shape (free,).
+    side
+        -1 for the smallest, 1 for the largest value, shape (rows,).
+    distance
+        Root of twice the rise of the cost that is allowed: standard deviations of a normal estimate, shape (rows,).
+    """
+    lower, upper = numbers.objective.lower, numbers.objective.upper
+    theta = np.broadcast_to(start, (side.size, start.size)).copy()
+    is_open = np.zeros(side.size, dtype=np.bool_)
+    at = _Position.at_estimate(numbers, start, side, distance)
+    for _ in range(ROUNDS):
+        step = _model_step(at, lower, upper)
+        stopped, done = _judged(at, step)
+        if done.any():
+            rows = at.rows[done]
+            theta[rows] = np.minimum(np.maximum(at.theta[done] + step.delta[done], lower), upper)
+            is_open[rows] = stopped[done]
+            at, step = at.chosen(~done), step.chosen(~done)
+            if at.rows.size == 0:
+                break
+        at.advance(numbers, np.minimum(np.maximum(at.theta + step.delta, lower), upper), step)
+    theta[at.rows], is_open[at.rows] = at.theta, at.root < (1.0 - SHARP) * at.distance
+    return Ends(theta=theta, value=numbers.values(theta), is_open=is_open)
+
+
+@dataclass(slots=True, eq=False)
+class _Step:
+    """What the parabola of the cost says to do next, one row each."""
+
+    delta: FloatArray
+    pull: FloatArray
+    """``t``: rise of the cost for a unit of the number; 0 where only the cost is to be lowered."""
+    stuck: BoolArray
+    """Whether bounds hold all parameters that the number depends on."""
+
+    def chosen(self, rows: BoolArray) -> "_Step":
+        """Return some of the rows."""
+        return _Step(self.delta[rows], self.pull[rows], self.stuck[rows])
+
+
+@dataclass(slots=True, eq=False)
+class _Position:
+    """Where the rows stand that still move; ``value`` and ``slope`` are turned so that more is further."""
+
+    rows: IntArray
+    side: FloatArray
+    distance: FloatArray
+    limit: FloatArray
+    start: FloatArray
+    theta: FloatArray
+    cost: FloatArray
+    gradient: FloatArray
+    hessian: FloatArray
+    value: FloatArray
+    slope: FloatArray
+    damping: FloatArray
+    growth: FloatArray
+
+    @classmethod
+    def at_estimate(cls, numbers: Numbers, start: FloatArray, side: FloatArray, distance: FloatArray) -> "_Position":
+        """Return the position of every row before its first step."""
+        count = side.size
+        cost, gradient, hessian = _parabola(numbers.objective, start[None, :])
+        theta = np.broadcast_to(start, (count, start.size))
+        curvature = np.broadcast_to(np.diag(hessian[0]), theta.shape)
+        value = side * numbers.values(theta)
+        return cls(
+            rows=np.arange(count),
+            side=side,
+            distance=distance,
+            limit=cost + 0.5 * distance**2,
+            start=value,
+            theta=theta,
+            cost=np.repeat(cost, count),
+            gradient=np.repeat(gradient, count, axis=0),
+            hessian=np.repeat(hessian, count, axis=0),
+            value=value,
+            slope=side[:, None] * numbers.slopes(theta, curvature),
+            damping=np.full(count, LEAST_DAMPING),
+            growth=np.ones(count),
+        )
+
+    @property
+    def root(self) -> FloatArray:
+        """Root of twice the rise of the cost, shape (rows,)."""
+        return np.sqrt(np.maximum(2.0 * (self.cost - self.limit) + self.distance**2, 0.0))
+
+    def chosen(self, rows: BoolArray) -> "_Position":
+        """Return some of the rows."""
+        return _Position(*(getattr(self, name)[rows] for name in self.__slots__))
+
+    def advance(self, numbers: Numbers, trial: FloatArray, step: _Step) -> None:
+        """Go to the trials that lie further or nearer to the contour; damp the other rows."""
+        asked = numbers.chosen(self.rows)
+        cost, gradient, hessian = _parabola(numbers.objective, trial)
+        value = self.side * asked.values(trial)
+        excess = np.maximum(cost, self.limit) - np.maximum(self.cost, self.limit)
+        slope = self.side[:, None] * asked.slopes(trial, _diagonal(hessian))
+        known = np.isfinite(value) & np.isfinite(slope).all(axis=1)
+        moved = np.where(known, value, self.value) - self.value
+        # Where the parabola never comes down to the contour, or bounds leave the number no way, the cost decides; a
+        # step that takes it to its bound inside the contour is good.
+        good = np.where(step.pull > 0.0, step.pull * moved > PENALTY * excess, cost < self.cost)
+        good = known & np.where(step.stuck & (moved > 0.0), cost <= self.limit, good)
+        damping = np.where(good, RELIEF * self.damping, np.maximum(self.damping, FIRST_DAMPING) * self.growth)
+        self.damping = np.maximum(damping, LEAST_DAMPING)
+        self.growth = np.where(good, 1.0, 2.0 * self.growth)
+        if good.all():
+            self.theta, self.gradient, self.slope, self.hessian = trial, gradient, slope, hessian
+            self.cost, self.value = cost, value
+            return
+        row = good[:, None]
+        self.theta, self.gradient = np.where(row, trial, self.theta), np.where(row, gradient, self.gradient)
+        self.slope, self.hessian = np.where(row, slope, self.slope), np.where(row[:, :, None], hessian, self.hessian)
+        self.cost, self.value = np.where(good, cost, self.cost), np.where(good, value, self.value)
+
+
+def _parabola(objective: Objective, theta: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return cost, gradient and Gauss-Newton matrix of every row."""
+    r, jacobian = objective.residuals(theta)
+    gradient = (jacobian @ r[:, :, None])[:, :, 0]
+    return 0.5 * np.vecdot(r, r), gradient, jacobian @ jacobian.swapaxes(1, 2)
+
+
+def _diagonal(matrix: FloatArray) -> FloatArray:
+    """Return a view of the diagonal of every row's matrix."""
+    rows, size, _ = matrix.shape
+    return matrix.reshape(rows, -1)[:, :: size + 1]
+
+
+def _judged(at: _Position, step: _Step) -> tuple[BoolArray, BoolArray]:
+    """Return which rows bounds have stopped, and which are done, those included."""
+    gain = np.vecdot(at.slope, step.delta)
+    small = np.abs(gain) <= PRECISION * np.abs(at.value + gain - at.start)
+    small &= at.damping <= TRUSTED_DAMPING
+    reached = small & (np.abs(at.root - at.distance) <= SHARP * at.distance)
+    fall = -np.vecdot(at.gradient, step.delta)
+    stopped = small & step.stuck & (fall <= SHARP * at.distance**2) & (at.cost < at.limit)
+    lost = ~reached & (at.damping > MOST_DAMPING)
+    return stopped | (lost & (at.root < (1.0 - SHARP) * at.distance)), reached | stopped | lost
+
+
+def _model_step(at: _Position, lower: FloatArray, upper: FloatArray) -> _Step:
+    """Return the step to the furthest point of the parabola's contour that is inside the box."""
+    to_lower, to_upper = lower - at.theta, upper - at.theta
+    damped = at.hessian.copy()
+    diagonal = _diagonal(damped)
+    diagonal += at.damping[:, None] * np.maximum(diagonal, SMALLEST_SCALE)
+    low = (to_lower >= 0.0) & (at.slope < 0.0)
+    high = (to_upper <= 0.0) & (at.slope > 0.0)
+    for turn in range(BOUND_PASSES):
+        step = _step_beside(at, damped, low, high, to_lower, to_upper)
+        below, above = step.delta < to_lower, step.delta > to_upper
+        tilt = at.gradient + (damped @ step.delta[:, :, None])[:, :, 0] - step.pull[:, None] * at.slope
+        # No rise of the cost buys a row more that is stuck: its parameters stay where the number wants them.
+        tilt = np.where(step.stuck[:, None] & (at.slope != 0.0), -at.slope, tilt)
+        back_up, back_down = low & (tilt < 0.0), high & (tilt > 0.0)
+        below, above = below & ~low, above & ~high
+        change = below | above | back_up | back_down
+        if not change.any():
+            return step
+        if turn >= BOUND_PASSES - SINGLE_PASSES:
+            change &= np.cumsum(change, axis=1) == 1
+        low = (low & ~(back_up & change)) | (below & change)
+        high = (high & ~(back_down & change)) | (above & change)
+    step.delta = np.minimum(np.maximum(step.delta, to_lower), to_upper)
+    return step
+
+
+def _step_beside(
+    at: _Position,
+    damped: FloatArray,
+    low: BoolArray,
+    high: BoolArray,
+    to_lower: FloatArray,
+    to_upper: FloatArray,
+) -> _Step:
+    """Return the step with some parameters put on their bounds."""
+    held = low | high
+    slope, gradient, system, base = at.slope, at.gradient, damped, at.cost
+    free_gradient = gradient
+    if held.any():
+        put = np.where(low, to_lower, np.where(high, to_upper, 0.0))
+        moved = (damped @ put[:, :, None])[:, :, 0]
+        base = base + np.vecdot(gradient, put) + 0.5 * np.vecdot(put, moved)
+        slope = np.where(held, 0.0, slope)
+        free_gradient = np.where(held, 0.0, gradient + moved)
+        gradient = np.where(held, -put, free_gradient)
+        system = np.where(held[:, :, None] | held[:, None, :], 0.0, damped)
+        _diagonal(system)[held] = 1.0
+    found = np.linalg.solve(system, np.concatenate([slope[:, :, None], gradient[:, :, None]], axis=2))
+    along, down = found[:, :, 0], found[:, :, 1]
+    reach = np.vecdot(slope, along)
+    fall = np.vecdot(free_gradient, down)
+    room = at.limit - base + 0.5 * fall
+    stuck = reach <= TINY
+    pull = np.sqrt(2.0 * np.maximum(room, 0.0) / np.where(stuck, 1.0, reach))
+    pull = np.where(stuck, 0.0, pull)
+    return _Step(delta=pull[:, None] * along - down, pull=pull, stuck=stuck)

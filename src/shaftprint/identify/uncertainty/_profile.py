@@ -1,0 +1,117 @@
+"""Profile-likelihood intervals: right also where the standard deviation is not, because the cost is no parabola.
+
+The profile of a number ``c(theta)`` is the lowest cost at each of its values. The 95 % interval are the values
+whose profile exceeds the lowest cost by less than 1.92, half the 95 % point of chi-square with one degree of
+freedom (Venzon and Moolgavkar, A method for computing profile-likelihood-based confidence intervals, 1988). Both ends
+of all numbers are searched for in one batch.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import IdentificationError
+from shaftprint.identify.fit import Identification
+from shaftprint.identify.uncertainty._contour import furthest
+from shaftprint.identify.uncertainty._numbers import Numbers, all_numbers
+from shaftprint.models import Combination
+from shaftprint.normal import NORMAL_95
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Interval:
+    """A 95 % interval of one parameter or combination."""
+
+    name: str
+    """Name of the parameter or combination."""
+    lower: float
+    """Lower end."""
+    upper: float
+    """Upper end."""
+    lower_open: bool
+    """Whether the data set no lower end: a bound of the search stands there."""
+    upper_open: bool
+    """Whether the data set no upper end: a bound of the search stands there."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Profile:
+    """Profile-likelihood intervals, and the parameter sets at their ends."""
+
+    intervals: Mapping[str, Interval]
+    """95 % interval of every free parameter and combination, by name."""
+    points: FloatArray
+    """All parameters at the end of each interval, shape (points, parameters): sets that the data allow at 95 %."""
+
+
+def profile_distance(identification: Identification) -> float:
+    """Return how far a 95 % interval reaches, as root of twice the rise of the cost: 1.96 for a known covariance."""
+    return NORMAL_95
+
+
+def profile_intervals(identification: Identification) -> dict[str, Interval]:
+    """Return the 95 % profile-likelihood interval of every free parameter and combination, by name.
+
+    A combination that is infinite at the estimate, as a quotient by a parameter at 0, has the whole axis.
+
+    Raises
+    ------
+    IdentificationError
+        If the fit was not weighted by the covariance: its cost is no likelihood.
+    """
+    return dict(profile(identification).intervals)
+
+
+def profile(identification: Identification, numbers: Sequence[Combination] = ()) -> Profile:
+    """Return the profile-likelihood intervals with the parameter sets at their ends.
+
+    Parameters
+    ----------
+    numbers
+        Further numbers that follow from the parameters, such as stability margins; their formulas take and give arrays.
+
+    Raises
+    ------
+    IdentificationError
+        If the fit was not weighted by the covariance: its cost is no likelihood.
+    """
+    expect_likelihood(identification)
+    objective = identification.objective
+    names = all_numbers(objective, numbers)
+    best = identification.values[list(objective.free)]
+    combinations = (*objective.combinations, *numbers)
+    every = Numbers(objective, combinations, np.arange(len(names)))
+    # A combination is infinite where a parameter that it divides by is at its bound 0: it has no end to look for.
+    at_best = np.broadcast_to(best, (len(names), best.size))
+    slopes = every.slopes(at_best, np.zeros_like(at_best))
+    finite = np.flatnonzero(np.isfinite(every.values(at_best)) & np.isfinite(slopes).all(axis=1))
+    asked = every.chosen(np.repeat(finite, 2))
+    side = np.tile([-1.0, 1.0], finite.size)
+    ends = furthest(asked, best, side, np.full(side.size, profile_distance(identification)))
+    found = {name: Interval(name=name, lower=-np.inf, upper=np.inf, lower_open=True, upper_open=True) for name in names}
+    for i, place in enumerate(finite):
+        found[names[place]] = Interval(
+            name=names[place],
+            lower=float(ends.value[2 * i]),
+            upper=float(ends.value[2 * i + 1]),
+            lower_open=bool(ends.is_open[2 * i]),
+            upper_open=bool(ends.is_open[2 * i + 1]),
+        )
+    return Profile(intervals=found, points=frozen_float(objective.complete(ends.theta)))
+
+
+def expect_likelihood(identification: Identification) -> None:
+    """Refuse a fit whose cost is no likelihood.
+
+    Raises
+    ------
+    IdentificationError
+        If it was not weighted by the covariance.
+    """
+    if not identification.is_likelihood:
+        raise IdentificationError(
+            f"structure {identification.objective.name}: a profile likelihood needs a fit weighted by the "
+            "covariance; fit with MaximumLikelihood()."
+        )
