@@ -73,7 +73,7 @@ def of_recordings(title: str, result: Result) -> str:
     return _table(title, header, rows) + f"\n{note}\n"
 
 
-def write_between_marks(path: Path, text: str) -> None:
+def write_between_marks(path: Path, text: str, begin_mark: str = BEGIN, end_mark: str = END) -> None:
     """Replace what stands between the two marks of a document.
 
     Raises
@@ -82,11 +82,11 @@ def write_between_marks(path: Path, text: str) -> None:
         If the document does not have both marks.
     """
     whole = path.read_text(encoding="utf-8")
-    before, begin, rest = whole.partition(BEGIN)
-    _, end, after = rest.partition(END)
+    before, begin, rest = whole.partition(begin_mark)
+    _, end, after = rest.partition(end_mark)
     if not begin or not end:
-        raise ValueError(f"{path}: expected the marks {BEGIN!r} and {END!r}, found not both.")
-    path.write_text(f"{before}{BEGIN}\n{text}\n{END}{after}", encoding="utf-8")
+        raise ValueError(f"{path}: expected the marks {begin_mark!r} and {end_mark!r}, found not both.")
+    path.write_text(f"{before}{begin_mark}\n{text}\n{end_mark}{after}", encoding="utf-8")
 
 
 def _range(numbers: Sequence[Number], of: Callable[[Number], float], pattern: str) -> str:
