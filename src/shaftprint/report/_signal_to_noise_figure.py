@@ -16,8 +16,10 @@ from shaftprint.report._style import (
 from shaftprint.report._symbols import mathtext
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from shaftprint.arrays import BoolArray, FloatArray
     from shaftprint.report._style import LineLook
     from shaftprint.spectra import Spectra
 
@@ -45,29 +47,7 @@ def plot_signal_to_noise(spectra: "Spectra", *, aliasing_limit_hz: float | None 
         figure = new_figure(8.0)
         axes = figure.subplots()
         for place, channel in enumerate(ratios.channels):
-            style: LineLook = look(place)
-            values = ratios.local_db[:, place]
-            axes.plot(omega, values, color=style.colour, linestyle=style.dashes, linewidth=0.9)
-            for chosen, fill in ((used, style.colour), (~used, "white")):
-                axes.plot(
-                    omega[chosen],
-                    values[chosen],
-                    linestyle="none",
-                    marker=style.marker,
-                    markersize=4.0,
-                    color=style.colour,
-                    markerfacecolor=fill,
-                )
-            axes.plot(
-                [],
-                [],
-                color=style.colour,
-                linestyle=style.dashes,
-                linewidth=0.9,
-                marker=style.marker,
-                markersize=4.0,
-                label=mathtext(channel),
-            )
+            _draw(axes, omega, ratios.local_db[:, place], used, look(place), mathtext(channel))
         axes.axhline(THESIS_LIMIT_DB, color="black", linewidth=0.9, label=f"{THESIS_LIMIT_DB:g} dB, the thesis' limit")
         if aliasing_limit_hz is not None:
             axes.axvline(
@@ -81,3 +61,31 @@ def plot_signal_to_noise(spectra: "Spectra", *, aliasing_limit_hz: float | None 
         axes.set_ylabel("local signal-to-noise ratio [dB]")
         legend_below(figure, legend_entries((axes,)))
         return figure
+
+
+def _draw(
+    axes: "Axes", omega: "FloatArray", values: "FloatArray", used: "BoolArray", style: "LineLook", label: str
+) -> None:
+    """Draw one channel: its line, and a marker a test line, hollow where it is not used."""
+    axes.plot(omega, values, color=style.colour, linestyle=style.dashes, linewidth=0.9)
+    for chosen, fill in ((used, style.colour), (~used, "white")):
+        axes.plot(
+            omega[chosen],
+            values[chosen],
+            linestyle="none",
+            marker=style.marker,
+            markersize=4.0,
+            color=style.colour,
+            markerfacecolor=fill,
+        )
+    # the legend shows line and marker together
+    axes.plot(
+        [],
+        [],
+        color=style.colour,
+        linestyle=style.dashes,
+        linewidth=0.9,
+        marker=style.marker,
+        markersize=4.0,
+        label=label,
+    )

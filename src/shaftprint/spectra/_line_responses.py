@@ -77,15 +77,8 @@ def response_of_lines(
     covariance = np.empty((len(measurements), 2 * len(outputs), 2 * len(outputs)))
     for place, line in enumerate(measurements):
         known = _known_outputs(signals, line)
-        amplitude, noise = _amplitudes(line, channels if "v_s" in known else channels[:3], signals, sensor)
-        if signals.mode != "thesis":
-            amplitude, noise = without_cross_term(
-                amplitude,
-                noise,
-                harmonic=line.harmonic[0, channels[1]],
-                variance=line.harmonic_variance[0, channels[1]],
-                load=load[place],
-            )
+        shown = channels if "v_s" in known else channels[:3]
+        amplitude, noise = _amplitudes(line, shown, signals, sensor, load=load[place])
         samples = line.noise.complex_samples
         values, spread = response_of_line(amplitude, noise, complex_samples=samples, weighted=len(outputs))
         # the common error takes part in the factor of the weights: speed and torque alone keep what they would have
@@ -124,9 +117,12 @@ def _known_outputs(signals: "Signals", line: LineMeasurement) -> tuple[str, ...]
 
 
 def _amplitudes(
-    line: LineMeasurement, channels: list[int], signals: "Signals", sensor: "SpeedSignal"
+    line: LineMeasurement, channels: list[int], signals: "Signals", sensor: "SpeedSignal", *, load: float
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return the amplitudes of set point, speed, torque, ship and rack, as far as measured, and their noise."""
+    """Return the amplitudes of set point, speed, torque, ship and rack, as far as measured, and their noise.
+
+    Except in the thesis' way the torque is without the cross term of its quadratic propeller.
+    """
     frequency = line.window.frequency_hz
     scale = np.array([1.0, 1.0 / pick_up_gain(sensor, frequency), 1.0], dtype=np.complex128)
     if len(channels) > scale.size and signals.ship_speed is not None:
@@ -138,7 +134,13 @@ def _amplitudes(
         amplitude = np.append(amplitude, line.rack.amplitude)
         own = line.rack.covariance[[*channels, -1]]
         noise = np.block([[noise, own[:-1, np.newaxis].conj()], [own[np.newaxis]]])
-    return scale * amplitude, scale[:, np.newaxis] * noise * scale.conj()
+    amplitude, noise = scale * amplitude, scale[:, np.newaxis] * noise * scale.conj()
+    if signals.mode == "thesis":
+        return amplitude, noise
+    speed = channels[1]
+    return without_cross_term(
+        amplitude, noise, harmonic=line.harmonic[0, speed], variance=line.harmonic_variance[0, speed], load=load
+    )
 
 
 def _with_unknown_output(

@@ -85,10 +85,7 @@ def voyage(
             f"tug: expected governor_delay_s of 0 or at least {3.0 * step_s:g}, three steps of the simulation, "
             f"found {plant.delay_s:g}; give a longer delay or none."
         )
-    parts = [interpolation_weights(stage - delay_steps) for stage in (0.0, 0.5, 1.0)]
-    delay = Delay(
-        first=np.array([node for node, _ in parts], dtype=np.int64), weights=np.array([weight for _, weight in parts])
-    )
+    delay = _delay(delay_steps)
     state = equilibrium(plant, demand.first)
     ring = np.full(1 << int(np.ceil(np.log2(delay_steps + 8.0))), state[RACK])
     boost = np.array([steady_boost(plant, demand.first)])
@@ -112,3 +109,11 @@ def voyage(
             ship_speed_m_s=way,
         )
         done += count
+
+
+def _delay(steps: float) -> Delay:
+    """Return where the delayed rack is found at the stages of a step, for a delay in steps."""
+    parts = [interpolation_weights(stage - steps) for stage in (0.0, 0.5, 1.0)]
+    return Delay(
+        first=np.array([node for node, _ in parts], dtype=np.int64), weights=np.array([weight for _, weight in parts])
+    )

@@ -49,13 +49,10 @@ class Weighting(ABC):
         """
 
 
-@dataclass(frozen=True, slots=True)
-class MaximumLikelihood(Weighting):
-    """Weights from the full covariance of each line.
+class ByCovariance(Weighting):
+    """Weights from the full covariance of each line, whatever the tails are."""
 
-    Where it is known ``2 cost`` is a chi-square and the fit efficient. Where it was estimated the degrees of freedom
-    are respected (``Tails``): a line of few of them counts less, and less still when it lies far off.
-    """
+    __slots__ = ()
 
     @property
     def is_likelihood(self) -> bool:
@@ -68,6 +65,15 @@ class MaximumLikelihood(Weighting):
     def matrices(self, response: FrequencyResponse, covariance: FloatArray) -> FloatArray:
         """Return the inverse Cholesky factors of the covariances."""
         return np.linalg.inv(np.linalg.cholesky(covariance))
+
+
+@dataclass(frozen=True, slots=True)
+class MaximumLikelihood(ByCovariance):
+    """Weights from the full covariance of each line.
+
+    Where it is known ``2 cost`` is a chi-square and the fit efficient. Where it was estimated the degrees of freedom
+    are respected (``Tails``): a line of few of them counts less, and less still when it lies far off.
+    """
 
     def tails(self, degrees_of_freedom: FloatArray, size: int) -> Tails:
         """Return the tails that the degrees of freedom of the covariances give."""
@@ -112,7 +118,7 @@ class Unweighted(Weighting):
 
 
 @dataclass(frozen=True, slots=True)
-class StudentT(Weighting):
+class StudentT(ByCovariance):
     """Weights from the full covariance, but a line far off counts little: robust against a bad line.
 
     Each line of ``m`` real numbers has the multivariate t density with its covariance ``C`` as scale: up to a constant
@@ -136,18 +142,6 @@ class StudentT(Weighting):
             raise IdentificationError(
                 f"Student-t weighting: expected positive degrees of freedom, found {self.degrees_of_freedom}."
             )
-
-    @property
-    def is_likelihood(self) -> bool:
-        """Whether the cost is a negative log-likelihood."""
-        return True
-
-    def expect_outputs(self, outputs: Sequence[str]) -> None:
-        """Check nothing: all outputs are weighed by their covariance."""
-
-    def matrices(self, response: FrequencyResponse, covariance: FloatArray) -> FloatArray:
-        """Return the inverse Cholesky factors of the covariances."""
-        return np.linalg.inv(np.linalg.cholesky(covariance))
 
     def tails(self, degrees_of_freedom: FloatArray, size: int) -> Tails:
         """Return the tails of the t density, or those of the covariance where its degrees of freedom are fewer."""
