@@ -53,6 +53,7 @@ from shaftprint.report._response_figures import (
 from shaftprint.report._scan_figure import plot_scan
 from shaftprint.report._sensitivity import plot_sensitivity
 from shaftprint.report._signal_to_noise_figure import plot_signal_to_noise
+from shaftprint.report._simulation_figure import SimulatedSignal, plot_simulation
 from shaftprint.report._step_figure import plot_step_delays
 from shaftprint.report._strip_figure import plot_strip_angles
 from shaftprint.report._style import save_figure
@@ -67,6 +68,7 @@ __all__ = [
     "Curve",
     "Explanation",
     "Family",
+    "SimulatedSignal",
     "Table",
     "ThesisMode",
     "closed_loop_curve",
@@ -103,6 +105,7 @@ __all__ = [
     "plot_scan",
     "plot_sensitivity",
     "plot_signal_to_noise",
+    "plot_simulation",
     "plot_staircase",
     "plot_step_delays",
     "plot_strip_angles",

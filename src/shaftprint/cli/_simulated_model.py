@@ -1,0 +1,134 @@
+"""The model that ``simulate`` takes through time: from a fingerprint, by name, or from the user's own file."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.cli._own_structure import chosen_structures
+from shaftprint.errors import FingerprintError, StructureError
+from shaftprint.fingerprint import Fingerprint, read_fingerprint
+from shaftprint.models import STRUCTURES, Structure, limited
+
+LIMITED_HELP = "GAUGE-QUADRATIC, GAUGE-TORQUE, GAUGE-TORQUE-RATE and so on: GAUGE-CLOSED at large, with limits"
+_PREFIX, _NO_LIMIT = "GAUGE-", "QUADRATIC"
+_LIMITS = ("torque", "rate", "deadband", "smoke")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class SimulatedModel:
+    """A structure with its values, where each comes from, and how well they are known."""
+
+    structure: Structure
+    """The structure."""
+    values: FloatArray
+    """All its parameters, shape (parameters,)."""
+    origins: tuple[str, ...]
+    """Where each value comes from, in words."""
+    uncertain: tuple[str, ...]
+    """Parameters whose uncertainty is known."""
+    covariance: FloatArray
+    """Their covariance, shape (uncertain, uncertain)."""
+    not_known: tuple[str, ...]
+    """Parameters of which the test said nothing: no band holds them."""
+
+
+def fingerprint_at(path: Path | None) -> Fingerprint | None:
+    """Return the fingerprint of a file, or of the folder with it; None where no path is given."""
+    if path is None:
+        return None
+    return read_fingerprint(path / "fingerprint.json" if path.is_dir() else path)
+
+
+def simulated_model(name: str | None, fingerprint: Fingerprint | None, given: Mapping[str, float]) -> SimulatedModel:
+    """Return the model to simulate.
+
+    Parameters
+    ----------
+    name
+        Structure; that of the fingerprint if not given.
+    fingerprint
+        Where values and covariance come from.
+    given
+        Values that the user states.
+
+    Raises
+    ------
+    click.UsageError
+        If there is neither a name nor a fingerprint.
+    FingerprintError
+        If the fingerprint has a parameter that the structure lacks.
+    StructureError
+        If there is no such structure or parameter, or a value is missing.
+    """
+    if name is None and fingerprint is None:
+        raise click.UsageError("expected a model: give --fingerprint, or --structure with --set.")
+    chosen = _chosen(name or ("" if fingerprint is None else fingerprint.structure))
+    unknown = [parameter for parameter in given if parameter not in chosen.names]
+    if unknown:
+        raise StructureError(
+            f"--set {', '.join(unknown)}: expected a parameter of {chosen.name}, one of {', '.join(chosen.names)}."
+        )
+    if fingerprint is None:
+        return _by_name(chosen, given)
+    return _of_fingerprint(chosen, fingerprint, given)
+
+
+def _chosen(name: str) -> Structure:
+    """Return a shipped structure, one with limits by their names, or one of the user's own file."""
+    upper = name.upper()
+    if upper not in STRUCTURES and upper.startswith(_PREFIX):
+        words = upper.removeprefix(_PREFIX).lower().split("-")
+        if upper == _PREFIX + _NO_LIMIT:
+            return limited()
+        if set(words) <= set(_LIMITS):
+            return limited(*words, name=upper)
+    (found,) = chosen_structures([name])
+    return found
+
+
+def _by_name(chosen: Structure, given: Mapping[str, float]) -> SimulatedModel:
+    return SimulatedModel(
+        structure=chosen,
+        values=frozen_float(chosen.vector(given)),
+        origins=tuple("--set" if name in given else "usual value" for name in chosen.names),
+        uncertain=(),
+        covariance=frozen_float(np.zeros((0, 0))),
+        not_known=(),
+    )
+
+
+def _of_fingerprint(chosen: Structure, fingerprint: Fingerprint, given: Mapping[str, float]) -> SimulatedModel:
+    found = {quantity.name: quantity.value for quantity in fingerprint.parameters}
+    known = found | fingerprint.held
+    foreign = [name for name in known if name not in chosen.names]
+    if foreign:
+        raise FingerprintError(
+            f"fingerprint of {fingerprint.structure}: expected the parameters of structure {chosen.name}, found "
+            f"{', '.join(foreign)} too; name the structure that it was identified with, or one that has all of them."
+        )
+    missing = [p for p in chosen.parameters if not p.held and p.name not in known and p.name not in given]
+    if missing:
+        usual = " ".join(f"--set {p.name}={p.value:g}" for p in missing)
+        raise StructureError(
+            f"structure {chosen.name}: expected values of {', '.join(p.name for p in missing)}, which the fingerprint "
+            f"of {fingerprint.structure} does not have; give them, usual ones are {usual}."
+        )
+    std = {quantity.name: quantity.std for quantity in fingerprint.parameters}
+    free = [name for name in found if name not in given]
+    uncertain = [name for name in free if np.isfinite(std[name]) and std[name] > 0.0]
+    places = [list(found).index(name) for name in uncertain]
+    fixed = {name: value for name, value in (fingerprint.held | dict(given)).items() if name in chosen.names}
+    origins = dict.fromkeys(chosen.names, "usual value") | dict.fromkeys(known, "fingerprint")
+    origins |= dict.fromkeys(given, "--set")
+    return SimulatedModel(
+        structure=chosen.held_at(**fixed),
+        values=frozen_float(chosen.vector(known | dict(given))),
+        origins=tuple(origins[name] for name in chosen.names),
+        uncertain=tuple(uncertain),
+        covariance=frozen_float(np.array(fingerprint.covariance).reshape(len(found), -1)[np.ix_(places, places)]),
+        not_known=tuple(name for name in free if not np.isfinite(std[name])),
+    )

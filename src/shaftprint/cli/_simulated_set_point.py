@@ -1,0 +1,262 @@
+"""What drives a simulation: a campaign, or columns of a file, in the units of the structure."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import click
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.campaign import Campaign, load_campaign, setpoint
+from shaftprint.errors import RecordingError
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.models import Structure
+from shaftprint.recording import Channel, read_recording
+from shaftprint.vessel import load_vessel
+
+SET_POINT, SET_POINT_CHANNEL = "n_set", "set point"
+# Set points of a campaign are held for no longer than this: a sine of 4 Hz loses 0.07 % of its amplitude by it.
+LONGEST_HOLD_S = 5e-3
+# What is put out and what is logged as set point differ by the error of the voltmeter; more is another working point.
+SAME_WORKING_POINT = 0.05
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Place:
+    """The working point about which the structure deviates, and the line from voltage to speed."""
+
+    engine_speed_rpm: float
+    """Engine speed [rpm]."""
+    shaft_torque_nm: float
+    """Shaft torque at the gauge [N m]."""
+    slope_rpm_per_v: float | None
+    """Engine speed for one volt of set point [rpm/V]; None where it is not known."""
+    intercept_rpm: float | None
+    """Engine speed of that line at no voltage [rpm]; None for the one that gives the working point at the offset."""
+
+    def deviation(self, volts: FloatArray, *, offset_v: float | None = None) -> FloatArray:
+        """Return the set point as a deviation from the working point [-].
+
+        Parameters
+        ----------
+        volts
+            Set point [V].
+        offset_v
+            Set point that is put out at the working point [V]; as measured by the line if not given.
+
+        Raises
+        ------
+        click.UsageError
+            If nothing says what a volt asks for.
+        """
+        if self.slope_rpm_per_v is None or (self.intercept_rpm is None and offset_v is None):
+            raise click.UsageError(
+                "a set point in volt needs --fingerprint, or a campaign, --vessel and --rpm-per-volt."
+            )
+        if offset_v is not None:
+            return frozen_float(self.slope_rpm_per_v * (volts - offset_v) / self.engine_speed_rpm)
+        speed = self.slope_rpm_per_v * volts + (self.intercept_rpm or 0.0)
+        return frozen_float(speed / self.engine_speed_rpm - 1.0)
+
+    def is_put_out_at(self, offset_v: float) -> bool:
+        """Return whether the offset of a campaign is that of the working point, but for the error of a voltmeter."""
+        if self.intercept_rpm is None:
+            return True
+        return abs(float(self.deviation(np.array([offset_v]))[0])) < SAME_WORKING_POINT
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Drive:
+    """Inputs over time."""
+
+    time_s: FloatArray
+    """Uniform times of what is written [s], shape (samples,)."""
+    every: int
+    """Steps of the inputs between two of these times."""
+    inputs: Mapping[str, FloatArray]
+    """Each input, shape ((samples - 1) every + 1,)."""
+    shown: Mapping[str, FloatArray]
+    """Each input at the times that are written, shape (samples,)."""
+    units: Mapping[str, str]
+    """Unit of each input; empty where a file does not say."""
+    hold: bool
+    """Whether an input keeps its value until the next, instead of being straight between two."""
+    remark: str = ""
+    """What a reader must know about it."""
+
+    @property
+    def fine_time_s(self) -> FloatArray:
+        """Times of the inputs [s]."""
+        count = next(iter(self.inputs.values())).size
+        interval = (self.time_s[1] - self.time_s[0]) / self.every
+        return frozen_float(self.time_s[0] + interval * np.arange(count))
+
+
+def place_of(fingerprint: Fingerprint | None, vessel: str | None, rpm_per_volt: float | None) -> Place | None:
+    """Return the working point of a fingerprint or a vessel file; None where neither is given.
+
+    Raises
+    ------
+    click.UsageError
+        If both are given, or a slope without a vessel file.
+    """
+    if fingerprint is not None:
+        if vessel is not None or rpm_per_volt is not None:
+            raise click.UsageError("--vessel and --rpm-per-volt are for a simulation without --fingerprint.")
+        conditions = fingerprint.conditions
+        speed = conditions.engine_speed.value
+        # what a deviation of the set point is multiplied by, so that speed follows it at low frequency
+        scale = fingerprint.quantity("set-point scale").value
+        slope = fingerprint.quantity("set-point slope").value
+        intercept = fingerprint.quantity("set-point intercept").value
+        return Place(
+            engine_speed_rpm=speed,
+            shaft_torque_nm=conditions.shaft_torque.value,
+            slope_rpm_per_v=scale * slope,
+            intercept_rpm=speed + scale * (intercept - speed),
+        )
+    if vessel is None:
+        if rpm_per_volt is not None:
+            raise click.UsageError("--rpm-per-volt needs --vessel, which says at what speed.")
+        return None
+    point = load_vessel(vessel).working_point
+    return Place(
+        engine_speed_rpm=point.engine_speed_rpm,
+        shaft_torque_nm=point.shaft_torque_nm,
+        slope_rpm_per_v=rpm_per_volt,
+        intercept_rpm=None,
+    )
+
+
+def campaign_drive(
+    name: str, structure: Structure, place: Place | None, *, rate_hz: float, span: tuple[float, float] | None
+) -> Drive:
+    """Return the set point of a campaign.
+
+    It is held for short times at what it is in their middle: steps stay steps, and sines are not late.
+
+    Parameters
+    ----------
+    rate_hz
+        Samples a second that are written [Hz].
+    span
+        Begin and end [s]; the whole campaign if not given.
+
+    Raises
+    ------
+    click.UsageError
+        If the structure has another input than the set point, the line from volt is not known, or the campaign does
+        not hold the span.
+    """
+    if structure.inputs != (SET_POINT,):
+        raise click.UsageError(
+            f"--campaign sets {SET_POINT}, structure {structure.name} goes from {', '.join(structure.inputs)}; give "
+            "its inputs with --input."
+        )
+    if place is None:
+        raise click.UsageError("--campaign is in volt: give --fingerprint, or --vessel and --rpm-per-volt.")
+    campaign = load_campaign(name)
+    begin, end = span or (0.0, campaign.duration_s)
+    if end > campaign.duration_s:
+        raise click.UsageError(f"--between: campaign {campaign.name} ends at {campaign.duration_s:g} s, not {end:g} s.")
+    every = int(np.ceil(1.0 / (rate_hz * LONGEST_HOLD_S) - 1e-9))
+    samples = _at_least_two(int(np.floor((end - begin) * rate_hz + 1e-9)) + 1)
+    time = frozen_float(begin + np.arange(samples) / rate_hz)
+    interval = 1.0 / (rate_hz * every)
+    middle = frozen_float(begin + interval * (np.arange((samples - 1) * every + 1) + 0.5))
+    return Drive(
+        time_s=time,
+        every=every,
+        inputs={SET_POINT: _asked(campaign, place, middle)},
+        # a step that is due now has been made
+        shown={SET_POINT: _asked(campaign, place, frozen_float(time + 1e-9))},
+        units={SET_POINT: "-"},
+        hold=True,
+        remark=_remark(campaign, place),
+    )
+
+
+def _asked(campaign: Campaign, place: Place, time_s: FloatArray) -> FloatArray:
+    offset_v = campaign.offset_v if place.is_put_out_at(campaign.offset_v) else None
+    return place.deviation(setpoint(campaign, time_s), offset_v=offset_v)
+
+
+def _remark(campaign: Campaign, place: Place) -> str:
+    if place.is_put_out_at(campaign.offset_v):
+        return (
+            f"{campaign.offset_v:g} V of the campaign is taken as the working point, {place.engine_speed_rpm:.1f} rpm."
+        )
+    return (
+        f"{campaign.offset_v:g} V of the campaign is another working point than {place.engine_speed_rpm:.1f} rpm. "
+        "The fingerprint's line from volt to rpm was taken; a linear structure is carried away from where it holds."
+    )
+
+
+def file_drive(
+    path: Path, structure: Structure, place: Place | None, *, hold: bool, span: tuple[float, float] | None
+) -> Drive:
+    """Return inputs that are columns of a file: named as those of the structure, or a set point in rpm or volt.
+
+    Raises
+    ------
+    RecordingError
+        If the file cannot be read, a column is missing, or two have different clocks.
+    """
+    with read_recording(path) as recording:
+        taken = {name: _channel(recording.channels, name, path) for name in structure.inputs}
+        clocks = {(channel.rate_hz, channel.start_s, channel.count) for channel in taken.values()}
+        if len(clocks) != 1:
+            raise RecordingError(f"{path}: expected one clock for {', '.join(taken)}, found {len(clocks)}.")
+        ((rate_hz, start_s, count),) = clocks
+        first, last = 0, count
+        if span is not None:
+            first, last = (round((at - start_s) * rate_hz) for at in span)
+            if first < 0 or last >= count:
+                raise RecordingError(
+                    f"{path}: expected {span[0]:g} to {span[1]:g} s within the file, found {start_s:g} to "
+                    f"{start_s + (count - 1) / rate_hz:g} s."
+                )
+            last += 1
+        _at_least_two(last - first)
+        time = start_s + np.arange(first, last) / rate_hz
+        inputs = {name: _in_own_units(channel, path, name, place, first, last) for name, channel in taken.items()}
+    units = {name: "-" if name == SET_POINT else channel.unit for name, channel in taken.items()}
+    return Drive(time_s=time, every=1, inputs=inputs, shown=inputs, units=units, hold=hold)
+
+
+def _channel(channels: Mapping[str, Channel], name: str, path: Path) -> Channel:
+    for title in (name, SET_POINT_CHANNEL) if name == SET_POINT else (name,):
+        if title in channels:
+            return channels[title]
+    also = ' (deviation) or "set point [rpm]" or "set point [V]"' if name == SET_POINT else ""
+    raise RecordingError(f'{path}: expected a column "{name}"{also}, found {", ".join(channels)}.')
+
+
+def _in_own_units(channel: Channel, path: Path, name: str, place: Place | None, first: int, last: int) -> FloatArray:
+    values = channel.values(first, last)
+    if not np.all(np.isfinite(values)):
+        at = channel.time_s(first, last)[~np.isfinite(values)][0]
+        raise RecordingError(f"{path}, column {channel.name}: expected numbers, found none at {at:g} s.")
+    if name != SET_POINT or (channel.name == SET_POINT and channel.unit in ("-", "")):
+        return values
+    if place is None:
+        raise click.UsageError(
+            f"{path}: a set point in {channel.unit or 'no unit'} needs a working point: give --fingerprint or --vessel."
+        )
+    match channel.unit:
+        case "rpm":
+            return values / place.engine_speed_rpm - 1.0
+        case "V":
+            return place.deviation(values)
+        case _:
+            raise RecordingError(
+                f'{path}, column {channel.name}: expected a set point in "rpm" or "V", or "{SET_POINT} [-]", found the '
+                f'unit "{channel.unit}".'
+            )
+
+
+def _at_least_two(samples: int) -> int:
+    if samples < 2:
+        raise click.UsageError("--between: expected a stretch of two samples or more, found less; begin comes first.")
+    return samples

@@ -1,0 +1,128 @@
+"""A model taken through time, with how well its outputs are known, as columns of a file and panels of a figure."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.cli._progress import Steps
+from shaftprint.cli._simulated_model import SimulatedModel
+from shaftprint.cli._simulated_set_point import Drive, Place
+from shaftprint.recording import Channel, write_csv
+from shaftprint.report import SimulatedSignal
+from shaftprint.simulation import simulate
+
+# Derivatives that the simulation takes at a time; more at once would only take more memory.
+AT_ONCE = 8
+DEVIATIONS = ("n_set", "n", "e", "M_s", "X", "v_s", "theta")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Prediction:
+    """Outputs over time in the structure's own units."""
+
+    outputs: Mapping[str, FloatArray]
+    """Each output, shape (samples,)."""
+    std: Mapping[str, FloatArray] | None
+    """Standard deviation of each by the covariance of the parameters, shape (samples,); None where none is known."""
+
+
+def predicted(model: SimulatedModel, drive: Drive, *, steps: Steps) -> Prediction:
+    """Return the outputs of a model, and by their exact derivatives what the covariance of its parameters does to them.
+
+    Parameters
+    ----------
+    model, drive
+        What is simulated, and what drives it.
+    steps
+        Progress of the command.
+
+    Raises
+    ------
+    StructureError
+        If the structure cannot be simulated, or has no steady running at the first inputs.
+    """
+    groups = [model.uncertain[first : first + AT_ONCE] for first in range(0, len(model.uncertain), AT_ONCE)] or [()]
+    steps.begin("Simulating", total=float(len(groups)))
+    slopes: dict[str, list[FloatArray]] = {name: [] for name in model.structure.outputs}
+    for group in groups:
+        trace = simulate(model.structure, model.values, drive.fine_time_s, drive.inputs, wanted=group, hold=drive.hold)
+        outputs = {name: values[:: drive.every].copy() for name, values in trace.outputs.items()}
+        for name, rows in trace.derivatives.items():
+            slopes[name].append(rows[:, :: drive.every].copy())
+        steps.advance(1.0)
+    if not model.uncertain:
+        return Prediction(outputs=outputs, std=None)
+    std = {name: _deviation(np.concatenate(rows), model.covariance) for name, rows in slopes.items()}
+    return Prediction(outputs=outputs, std=std)
+
+
+def _deviation(slopes: FloatArray, covariance: FloatArray) -> FloatArray:
+    """Return ``sqrt(g C g^T)`` at each time; no less than zero where rounding would have it so."""
+    variance = np.einsum("is,is->s", covariance @ slopes, slopes)
+    return frozen_float(np.sqrt(np.maximum(variance, 0.0)))
+
+
+def signals_of(drive: Drive, prediction: Prediction, place: Place | None) -> tuple[SimulatedSignal, ...]:
+    """Return inputs and outputs with names and units: rpm and N m where the working point is known."""
+    found = []
+    for name, values in drive.shown.items():
+        found.append(_signal(name, drive.units[name], values, None, place, is_input=True))
+    for name, values in prediction.outputs.items():
+        std = None if prediction.std is None else prediction.std[name]
+        found.append(_signal(name, "-" if name in DEVIATIONS else "", values, std, place, is_input=False))
+    return tuple(found)
+
+
+def _signal(
+    name: str, unit: str, values: FloatArray, std: FloatArray | None, place: Place | None, *, is_input: bool
+) -> SimulatedSignal:
+    title, size = name, None
+    if place is not None:
+        match name:
+            case "n_set":
+                title, unit, size = "set point", "rpm", place.engine_speed_rpm
+            case "n":
+                title, unit, size = "engine speed", "rpm", place.engine_speed_rpm
+            case "M_s":
+                title, unit, size = "shaft torque", "N m", place.shaft_torque_nm
+    if size is not None:
+        values = size * (1.0 + values)
+        std = None if std is None else size * std
+    return SimulatedSignal(
+        title=title,
+        unit=unit,
+        values=frozen_float(values),
+        std=None if std is None else frozen_float(std),
+        is_input=is_input,
+    )
+
+
+def write_signals(path: Path, time_s: FloatArray, signals: tuple[SimulatedSignal, ...], *, overwrite: bool) -> None:
+    """Write signals as CSV, whole or not at all: a column each, and one for each standard deviation.
+
+    Raises
+    ------
+    RecordingError
+        If the file cannot be written.
+    """
+    columns = []
+    for signal in signals:
+        columns.append((signal.title, signal.unit, signal.values))
+        if signal.std is not None:
+            columns.append((f"{signal.title} std", signal.unit, signal.std))
+    rate_hz = (time_s.size - 1) / float(time_s[-1] - time_s[0])
+    write_csv(path, [_channel(*column, rate_hz, float(time_s[0])) for column in columns], overwrite=overwrite)
+
+
+def _channel(title: str, unit: str, values: FloatArray, rate_hz: float, start_s: float) -> Channel:
+    return Channel(
+        name=title,
+        unit=unit,
+        rate_hz=rate_hz,
+        start_s=start_s,
+        count=values.size,
+        source=lambda start, stop: values[start:stop],
+    )
