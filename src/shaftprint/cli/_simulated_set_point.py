@@ -16,8 +16,11 @@ from shaftprint.recording import Channel, read_recording
 from shaftprint.vessel import load_vessel
 
 SET_POINT, SET_POINT_CHANNEL = "n_set", "set point"
-# Set points of a campaign are held for no longer than this: a sine of 4 Hz loses 0.07 % of its amplitude by it.
-LONGEST_HOLD_S = 5e-3
+# Steps of a simulated campaign: a limit that a jump meets is seen half a step early. Longer stretches than a million
+# steps get longer steps.
+SHORTEST_STEP_S, LONGEST_STEP_S, MOST_STEPS = 1e-3, 5e-3, 1e6
+# Beside a jump, on both sides.
+_BESIDE_S = 1e-7
 # What is put out and what is logged as set point differ by the error of the voltmeter; more is another working point.
 SAME_WORKING_POINT = 0.05
 
@@ -134,7 +137,7 @@ def campaign_drive(
 ) -> Drive:
     """Return the set point of a campaign.
 
-    It is held for short times at what it is in their middle: steps stay steps, and sines are not late.
+    It is straight over short times; at a jump it is half-way, so that it is neither late nor early.
 
     Parameters
     ----------
@@ -160,19 +163,21 @@ def campaign_drive(
     begin, end = span or (0.0, campaign.duration_s)
     if end > campaign.duration_s:
         raise click.UsageError(f"--between: campaign {campaign.name} ends at {campaign.duration_s:g} s, not {end:g} s.")
-    every = int(np.ceil(1.0 / (rate_hz * LONGEST_HOLD_S) - 1e-9))
+    step_s = float(np.clip((end - begin) / MOST_STEPS, SHORTEST_STEP_S, LONGEST_STEP_S))
+    every = int(np.ceil(1.0 / (rate_hz * step_s) - 1e-9))
     samples = _at_least_two(int(np.floor((end - begin) * rate_hz + 1e-9)) + 1)
     time = frozen_float(begin + np.arange(samples) / rate_hz)
-    interval = 1.0 / (rate_hz * every)
-    middle = frozen_float(begin + interval * (np.arange((samples - 1) * every + 1) + 0.5))
+    fine = begin + np.arange((samples - 1) * every + 1) / (rate_hz * every)
+    asked = 0.5 * (_asked(campaign, place, fine - _BESIDE_S) + _asked(campaign, place, fine + _BESIDE_S))
+    asked[0] = _asked(campaign, place, fine[:1] + _BESIDE_S)[0]
     return Drive(
         time_s=time,
         every=every,
-        inputs={SET_POINT: _asked(campaign, place, middle)},
+        inputs={SET_POINT: asked},
         # a step that is due now has been made
-        shown={SET_POINT: _asked(campaign, place, frozen_float(time + 1e-9))},
+        shown={SET_POINT: _asked(campaign, place, time + _BESIDE_S)},
         units={SET_POINT: "-"},
-        hold=True,
+        hold=False,
         remark=_remark(campaign, place),
     )
 
