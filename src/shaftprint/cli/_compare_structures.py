@@ -7,12 +7,11 @@ import numpy as np
 
 from shaftprint.cli._chain import measure, response_of
 from shaftprint.cli._comparison_tables import print_comparison
-from shaftprint.cli._fit_options import fit_options, settings_of, structures_of
+from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
 from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.identify import Prior, compare_structures, expect_comparable
-from shaftprint.signals import Mode
+from shaftprint.identify import compare_structures, expect_comparable
 
 
 @click.command("compare-structures")
@@ -42,13 +41,7 @@ def command(
     campaign: str,
     names: tuple[str, ...],
     folds: int,
-    priors: tuple[tuple[str, Prior], ...],
-    freed: tuple[str, ...],
-    held: tuple[tuple[str, float], ...],
-    mode: Mode,
-    unweighted: bool,
-    starts: int,
-    seed: int,
+    options: FitOptions,
     no_progress: bool,
 ) -> None:
     """Say which of several structures a recording wants, and why.
@@ -57,25 +50,17 @@ def command(
     beside it stand a test of each fit, of each structure within a larger one, and how well each foretells
     lines that were left out. --structure, --prior, --free and --hold may be repeated.
     """
-    structures = structures_of(names, dict(held), freed)
+    structures = structures_of(names, options)
     expect_comparable(structures)
     trial = load_trial(vessel, campaign)
     with progress(hidden=no_progress) as steps:
-        measurement = measure(recording, trial, mode=mode, steps=steps)
-        settings = settings_of(
-            structures,
-            measurement,
-            trial,
-            priors=dict(priors),
-            freed=freed,
-            unweighted=unweighted,
-            starts=starts,
-        )
+        measurement = measure(recording, trial, mode=options.mode, steps=steps)
+        settings = settings_of(structures, measurement, trial, options)
         steps.begin("Comparing the structures")
         comparison = compare_structures(
             structures,
             response_of(structures[0], measurement.responses),
-            rng=np.random.default_rng(seed),
+            rng=np.random.default_rng(options.seed),
             settings=settings,
             folds=folds,
         )

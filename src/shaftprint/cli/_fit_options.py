@@ -1,28 +1,23 @@
 """The options of the commands that fit structures: which, what is known, how they are weighed and searched."""
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import reduce
+from dataclasses import dataclass, fields
+from functools import reduce, wraps
 from typing import Any
 
 import click
 
 from shaftprint.cli._chain import Measurement, known_beforehand, response_of
 from shaftprint.cli._inputs import Trial
-from shaftprint.cli._known_values import named_prior, named_value
+from shaftprint.cli._known_values import hold_option, prior_option
 from shaftprint.cli._own_structure import chosen_structures
 from shaftprint.errors import StructureError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted
 from shaftprint.models import Structure
+from shaftprint.signals import Mode
 
 _OPTIONS = (
-    click.option(
-        "--prior",
-        "priors",
-        metavar="NAME=MEAN+-STD",
-        type=named_prior,
-        multiple=True,
-        help="What is known of a parameter beforehand, such as g=0+-0.1; instead of what the vessel file knows.",
-    ),
+    prior_option,
     click.option(
         "--free",
         "freed",
@@ -30,9 +25,7 @@ _OPTIONS = (
         multiple=True,
         help="Take nothing as known of a parameter, such as tau_up, of which the vessel file knows the inertia.",
     ),
-    click.option(
-        "--hold", "held", metavar="NAME=VALUE", type=named_value, multiple=True, help="Hold a parameter at a value."
-    ),
+    hold_option,
     click.option(
         "--mode",
         type=click.Choice(["shaftprint", "thesis"]),
@@ -46,12 +39,41 @@ _OPTIONS = (
 )
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FitOptions:
+    """What a user chose of how to fit."""
+
+    priors: tuple[tuple[str, Prior], ...]
+    """What is known beforehand, by parameter."""
+    freed: tuple[str, ...]
+    """Parameters of which nothing is taken as known."""
+    held: tuple[tuple[str, float], ...]
+    """Parameters that are held, and at what value."""
+    mode: Mode
+    """How signals and lines are prepared."""
+    unweighted: bool
+    """Whether all lines are weighed alike."""
+    starts: int
+    """Number of starts of each search."""
+    seed: int
+    """Seed of the starts."""
+
+
 def fit_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add ``--prior``, ``--free``, ``--hold``, ``--mode``, ``--unweighted``, ``--starts`` and ``--seed``."""
-    return reduce(lambda wrapped, option: option(wrapped), reversed(_OPTIONS), command)
+    """Add ``--prior``, ``--free``, ``--hold``, ``--mode``, ``--unweighted``, ``--starts`` and ``--seed``.
+
+    The command takes them as one ``options``, a ``FitOptions``.
+    """
+
+    @wraps(command)
+    def gathered(**given: Any) -> Any:
+        options = FitOptions(**{field.name: given.pop(field.name) for field in fields(FitOptions)})
+        return command(options=options, **given)
+
+    return reduce(lambda wrapped, option: option(wrapped), reversed(_OPTIONS), gathered)
 
 
-def structures_of(names: Sequence[str], held: Mapping[str, float], freed: Sequence[str]) -> tuple[Structure, ...]:
+def structures_of(names: Sequence[str], options: FitOptions) -> tuple[Structure, ...]:
     """Return the structures with what is held in those that have it; each name given must be of use in one.
 
     Raises
@@ -60,6 +82,7 @@ def structures_of(names: Sequence[str], held: Mapping[str, float], freed: Sequen
         If there is no such structure, or a parameter that is held or freed is in none of them.
     """
     chosen = chosen_structures(names)
+    held = dict(options.held)
     unused = [name for name in held if not any(name in found.names for found in chosen)]
     if unused:
         raise StructureError(
@@ -70,7 +93,7 @@ def structures_of(names: Sequence[str], held: Mapping[str, float], freed: Sequen
         found.held_at(**{name: value for name, value in held.items() if name in found.names}) for found in chosen
     )
     anywhere = _free_names(taken)
-    unknown = [name for name in freed if name not in anywhere]
+    unknown = [name for name in options.freed if name not in anywhere]
     if unknown:
         raise StructureError(
             f"--free {', '.join(unknown)}: expected a free parameter, one of {', '.join(sorted(anywhere))}."
@@ -82,11 +105,7 @@ def settings_of(
     structures: Sequence[Structure],
     measurement: Measurement,
     trial: Trial,
-    *,
-    priors: Mapping[str, Prior],
-    freed: Sequence[str],
-    unweighted: bool,
-    starts: int,
+    options: FitOptions,
 ) -> dict[str, Settings]:
     """Return how each structure is fitted, by name: with what the vessel file knows of it and what the user states.
 
@@ -98,12 +117,12 @@ def settings_of(
     found = {}
     for chosen in structures:
         response_of(chosen, measurement.responses)
-        given = _given(chosen, structures, priors)
+        given = _given(chosen, structures, dict(options.priors))
         known = known_beforehand(chosen, trial.vessel, measurement.signals, given)
         found[chosen.name] = Settings(
-            weighting=Unweighted() if unweighted else MaximumLikelihood(),
-            starts=starts,
-            priors={name: prior for name, prior in known.items() if name not in freed},
+            weighting=Unweighted() if options.unweighted else MaximumLikelihood(),
+            starts=options.starts,
+            priors={name: prior for name, prior in known.items() if name not in options.freed},
         )
     return found
 

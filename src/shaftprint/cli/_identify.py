@@ -9,15 +9,13 @@ from shaftprint.cli._chain import fingerprint_of, fit, measure
 from shaftprint.cli._comparison_tables import print_comparison
 from shaftprint.cli._comparisons import comparisons_of
 from shaftprint.cli._fingerprint_tables import print_fingerprint
-from shaftprint.cli._fit_options import fit_options, settings_of, structures_of
+from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
 from shaftprint.cli._fit_tables import print_fits
 from shaftprint.cli._inputs import campaign_option, load_trial, structure_sources, vessel_option
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._results import where, write_results
-from shaftprint.identify import Prior
-from shaftprint.signals import Mode
 
 
 @click.command("identify")
@@ -42,13 +40,7 @@ def command(
     vessel: str,
     campaign: str,
     names: tuple[str, ...],
-    priors: tuple[tuple[str, Prior], ...],
-    freed: tuple[str, ...],
-    held: tuple[tuple[str, float], ...],
-    mode: Mode,
-    unweighted: bool,
-    starts: int,
-    seed: int,
+    options: FitOptions,
     output: Path,
     force: bool,
     no_progress: bool,
@@ -58,24 +50,16 @@ def command(
     Writes the fingerprint as JSON, the figures and a report into a folder, and prints the tables.
     --structure, --prior, --free and --hold may be repeated.
     """
-    structures = structures_of(names, dict(held), freed)
+    structures = structures_of(names, options)
     trial = load_trial(vessel, campaign)
     trial = replace(trial, sources=(*trial.sources, *structure_sources(names)))
     with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
-        measurement = measure(recording, trial, mode=mode, steps=steps)
-        settings = settings_of(
-            structures,
-            measurement,
-            trial,
-            priors=dict(priors),
-            freed=freed,
-            unweighted=unweighted,
-            starts=starts,
-        )
-        fits = fit(structures, measurement, settings=settings, seed=seed, steps=steps)
+        measurement = measure(recording, trial, mode=options.mode, steps=steps)
+        settings = settings_of(structures, measurement, trial, options)
+        fits = fit(structures, measurement, settings=settings, seed=options.seed, steps=steps)
         steps.begin("Finding the intervals")
         fingerprint = fingerprint_of(fits[0], measurement, trial)
-        comparisons = comparisons_of(fits, seed=seed, steps=steps)
+        comparisons = comparisons_of(fits, seed=options.seed, steps=steps)
         write_results(folder, recording, trial, measurement, fits, fingerprint, steps=steps, comparisons=comparisons)
     print_fingerprint(fingerprint)
     if len(fits) > 1:

@@ -60,3 +60,16 @@ def _number(text: str) -> float:
     if not math.isfinite(number):
         raise ValueError(text)
     return number
+
+
+prior_option = click.option(
+    "--prior",
+    "priors",
+    metavar="NAME=MEAN+-STD",
+    type=named_prior,
+    multiple=True,
+    help="What is known of a parameter beforehand, such as g=0+-0.1; instead of what the vessel file knows.",
+)
+hold_option = click.option(
+    "--hold", "held", metavar="NAME=VALUE", type=named_value, multiple=True, help="Hold a parameter at a value."
+)

@@ -10,7 +10,7 @@ import numpy as np
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.cli._chain import known_beforehand, measure
 from shaftprint.cli._inputs import NAMES, campaign_option, load_trial
-from shaftprint.cli._known_values import named_prior, named_value
+from shaftprint.cli._known_values import hold_option, named_value, prior_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, chosen_structures
 from shaftprint.cli._prediction_tables import print_prediction
 from shaftprint.cli._progress import no_progress_option, progress
@@ -65,20 +65,11 @@ class _Ship:
     type=click.FloatRange(min=0.0, min_open=True),
     help="Engine speed that one volt of set point asks for, without a recording; needs --vessel.",
 )
-@click.option(
-    "--prior",
-    "priors",
-    metavar="NAME=MEAN+-STD",
-    type=named_prior,
-    multiple=True,
-    help="What is known of a parameter beforehand, such as g=0+-0.1; instead of what the vessel file knows.",
-)
+@prior_option
 @click.option(
     "--free", "freed", metavar="NAME", multiple=True, help="Take nothing as known of a parameter, such as tau_up."
 )
-@click.option(
-    "--hold", "held", metavar="NAME=VALUE", type=named_value, multiple=True, help="Hold a parameter at a value."
-)
+@hold_option
 @click.option(
     "--value",
     "values",

@@ -1,22 +1,22 @@
 """``shaftprint validate``: a model against chirps and steps that it was not identified from."""
 
+from functools import partial
 from pathlib import Path
 
 import click
 import numpy as np
 
-from shaftprint.cli._chain import fit, measure
+from shaftprint.cli._chain import Measurement, fit, measure
 from shaftprint.cli._fingerprint_model import fingerprint_model
-from shaftprint.cli._fit_options import fit_options, settings_of, structures_of
-from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
+from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
+from shaftprint.cli._inputs import Trial, campaign_option, load_trial, vessel_option
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP
-from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.cli._progress import Steps, no_progress_option, progress
 from shaftprint.cli._validation_results import write_validations
 from shaftprint.cli._validation_tables import print_compared_models, print_validation
 from shaftprint.fingerprint import read_fingerprint
-from shaftprint.identify import Prior
-from shaftprint.signals import Mode
+from shaftprint.models import Structure
 from shaftprint.validation import Model, identified_model, thesis_models, validate
 
 DEFAULT_STRUCTURE = "GAUGE-CLOSED"
@@ -66,13 +66,7 @@ def command(
     allow_in_sample: bool,
     linear_torque: bool,
     thesis_sets: bool,
-    priors: tuple[tuple[str, Prior], ...],
-    freed: tuple[str, ...],
-    held: tuple[tuple[str, float], ...],
-    mode: Mode,
-    unweighted: bool,
-    starts: int,
-    seed: int,
+    options: FitOptions,
     output: Path | None,
     force: bool,
     no_progress: bool,
@@ -86,39 +80,26 @@ def command(
     trial = load_trial(vessel, campaign)
     kept = None if fingerprint is None else read_fingerprint(_file(fingerprint))
     names = (structure or (DEFAULT_STRUCTURE if kept is None else kept.structure),)
-    structures = structures_of(names, dict(held), freed)
+    structures = structures_of(names, options)
     with progress(hidden=no_progress) as steps:
-        measurement = measure(recording, trial, mode=mode, steps=steps)
+        measurement = measure(recording, trial, mode=options.mode, steps=steps)
         if kept is None:
-            settings = settings_of(
-                structures,
-                measurement,
-                trial,
-                priors=dict(priors),
-                freed=freed,
-                unweighted=unweighted,
-                starts=starts,
-            )
-            found = fit(structures, measurement, settings=settings, seed=seed, steps=steps)
-            model = identified_model(found[0])
+            model = _identified(structures, measurement, trial, options, steps)
         else:
             model = fingerprint_model(kept, structures[0], measurement.signals)
         models: tuple[Model, ...] = (model, *(thesis_models() if thesis_sets else ()))
         steps.begin("Validating", total=float(len(models)))
+        validated = partial(
+            validate,
+            records=records or None,
+            used=used,
+            allow_in_sample=allow_in_sample,
+            quadratic_propeller=not linear_torque,
+        )
         validations = []
         for one in models:
-            validations.append(
-                validate(
-                    one,
-                    measurement.signals,
-                    trial.campaign,
-                    rng=np.random.default_rng(seed),
-                    records=records or None,
-                    used=used,
-                    allow_in_sample=allow_in_sample,
-                    quadratic_propeller=not linear_torque,
-                )
-            )
+            rng = np.random.default_rng(options.seed)
+            validations.append(validated(one, measurement.signals, trial.campaign, rng=rng))
             steps.advance(1.0)
     if output is not None:
         with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
@@ -128,6 +109,14 @@ def command(
         print_compared_models(validations)
     if output is not None:
         click.echo(f"Figures: {output}")
+
+
+def _identified(
+    structures: tuple[Structure, ...], measurement: Measurement, trial: Trial, options: FitOptions, steps: Steps
+) -> Model:
+    """Return the model that the sines of the recording give."""
+    settings = settings_of(structures, measurement, trial, options)
+    return identified_model(fit(structures, measurement, settings=settings, seed=options.seed, steps=steps)[0])
 
 
 def _file(fingerprint: Path) -> Path:
