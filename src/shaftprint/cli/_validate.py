@@ -15,7 +15,7 @@ from shaftprint.cli._own_structure import OWN_FILE_HELP
 from shaftprint.cli._progress import Steps, no_progress_option, progress
 from shaftprint.cli._validation_results import write_validations
 from shaftprint.cli._validation_tables import print_compared_models, print_validation
-from shaftprint.fingerprint import read_fingerprint
+from shaftprint.fingerprint import Fingerprint, read_fingerprint
 from shaftprint.models import Structure
 from shaftprint.validation import Model, identified_model, thesis_models, validate
 
@@ -83,10 +83,7 @@ def command(
     structures = structures_of(names, options)
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode=options.mode, steps=steps)
-        if kept is None:
-            model = _identified(structures, measurement, trial, options, steps)
-        else:
-            model = fingerprint_model(kept, structures[0], measurement.signals)
+        model = _model(kept, structures, measurement, trial, options, steps=steps)
         models: tuple[Model, ...] = (model, *(thesis_models() if thesis_sets else ()))
         steps.begin("Validating", total=float(len(models)))
         validated = partial(
@@ -111,10 +108,18 @@ def command(
         click.echo(f"Figures: {output}")
 
 
-def _identified(
-    structures: tuple[Structure, ...], measurement: Measurement, trial: Trial, options: FitOptions, steps: Steps
+def _model(
+    kept: Fingerprint | None,
+    structures: tuple[Structure, ...],
+    measurement: Measurement,
+    trial: Trial,
+    options: FitOptions,
+    *,
+    steps: Steps,
 ) -> Model:
-    """Return the model that the sines of the recording give."""
+    """Return the model of a fingerprint that was kept, otherwise the one that the sines of the recording give."""
+    if kept is not None:
+        return fingerprint_model(kept, structures[0], measurement.signals)
     settings = settings_of(structures, measurement, trial, options)
     return identified_model(fit(structures, measurement, settings=settings, seed=options.seed, steps=steps)[0])
 
