@@ -138,6 +138,30 @@ def test_long_chirp(run):
         assert percent < fits["GAUGE-CLOSED"].fit_ceiling[output] + 0.5
 
 
+def test_limits(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    defined = run("limits.py")
+    assert (tmp_path / "limits.svg").stat().st_size > 10_000
+    time, traces, ship = defined["time_s"], defined["traces"], defined["LINE"] | defined["LIMITS"]
+    line_s = ship["tau_up"] + ship["tau_dn"]
+    strongest = {}
+    for name, trace in traces.items():
+        speed = trace.outputs["n"]
+        # tau dn/dt = engine torque - propeller torque, so that the engine's follows from the speed alone
+        strongest[name] = line_s * np.gradient(speed, time) + (1.0 + speed) ** 2
+    curve = np.array(defined["curve"])
+    allowed = ship["m_max"] * np.interp(traces["GAUGE-TORQUE-RATE"].outputs["n"], *curve.T)
+    motored = ship["m_min"] * (1.0 + 0.5 * traces["GAUGE-TORQUE-RATE"].outputs["n"])
+    assert np.all(strongest["GAUGE-TORQUE-RATE"] < allowed + 0.02)
+    assert np.all(strongest["GAUGE-TORQUE-RATE"] > motored - 0.02)
+    assert strongest["GAUGE-CLOSED"].min() < 2.0 * ship["m_min"]
+    # steady at 676.6 rpm: the torque goes with the square of the speed, or linear, falls by twice its change
+    steady = np.searchsorted(time, 10.9)
+    low = 676.6 / 1183.8
+    assert traces["GAUGE-TORQUE-RATE"].outputs["M_s"][steady] == pytest.approx(low**2 - 1.0, abs=1e-3)
+    assert traces["GAUGE-CLOSED"].outputs["M_s"][steady] == pytest.approx(2.0 * (low - 1.0), abs=1e-3)
+
+
 def test_every_example_is_run():
     here = Path(__file__).read_text(encoding="utf-8")
     with_demo = (Path(__file__).parents[1] / "cli" / "test_readme.py").read_text(encoding="utf-8")
