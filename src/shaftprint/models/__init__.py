@@ -11,6 +11,9 @@ quantity        unit    meaning and sign
 ``E_n``         s       integral of ``e``
 ``M_s``         -       deviation of shaft torque at the gauge over its working-point value; positive when the engine
                         drives the propeller
+``X``           -       deviation of the fuel rack over its working-point value; positive for more fuel
+``v_s``         -       deviation of the speed of the ship over its working-point value; positive faster ahead
+``theta_set``   -       deviation of the set point of the pitch over its working-point value; positive for more thrust
 ``s``           rad/s   Laplace variable, ``1j omega`` on the frequency axis
 ``tau``         s       inertia time ``2 pi I n_s0 / M_s0``, of the inertia that the index names
 =============== ======= ==============================================================================================
