@@ -29,7 +29,7 @@ def print_simulation(
     rows = [
         (p.name, with_uncertainty(value, std[p.name]) if p.name in std else f"{value:.6g}", p.unit, origin, p.meaning)
         for p, value, origin in zip(structure.parameters, model.values, model.origins, strict=True)
-        if not (p.held and value == 0.0 and origin == "usual value")
+        if not (p.held and value == 0.0 and origin != "--set")
     ]
     print_table(
         f"{structure.name}: {structure.title}", ("parameter", "value", "unit", "from", "meaning"), rows, spare=True
