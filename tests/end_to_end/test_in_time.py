@@ -2,60 +2,91 @@
 
 import numpy as np
 import pytest
+from scipy.special import chdtrc
 
 from shaftprint.identify import Settings, identify
 from shaftprint.models import structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
-from shaftprint.spectra import estimate_spectra
+from shaftprint.spectra import estimate_response
 from shaftprint.time_domain import identify_in_time, records_of
+from shaftprint.tug import sail
 
-# lines well above the drifts and below the limits of the engine, of equal data: settled whole periods
-LINES = ("S4", "S5", "S6", "S7", "S8")
 # all that is known of the line but what the test is asked for
-TRUTH = {"t_d": 0.0703, "g": 0.0}
+HELD = ("t_d", "g")
+
+
+def normalised(truth, signals):
+    """The truth as the measured working point normalises it: with that, not the true one, deviations were divided.
+
+    Torque is divided by the measured torque, speed by the measured speed, and the set point by the measured line.
+    """
+    point, true = signals.working_point, truth.normalised
+    torque = truth.shaft_torque_nm / point.shaft_torque_nm
+    both = torque * point.engine_speed_rev_s * 60.0 / truth.engine_speed_rpm
+    line = signals.calibration.slope_rev_s_per_v * signals.dc_scale * 60.0
+    return {
+        **{name: both * true[name] for name in ("K_p", "K_i", "tau_dn", "tau_up", "g")},
+        **{name: true[name] for name in ("t_d", "omega_n", "zeta", "k_q", "t_sp")},
+        "c_set": truth.set_point_slope_rpm_per_v / line,
+        "t_gauge": 0.0,
+    }
+
+
+def fitted(path, vessel, campaign, truth):
+    """Truth and fits of a recording: equal data, the settled whole periods of all sines, in which no limit acts."""
+    assert not any(truth.limited.get(sine.name, 0.0) for sine in campaign.sines)
+    with read_recording(path) as recording:
+        signals = prepare_signals(recording, vessel, campaign)
+    true = normalised(truth, signals)
+    asked = structure("GAUGE-CLOSED").held_at(**{name: true[name] for name in HELD})
+    rng = np.random.default_rng(1)
+    lines = identify(asked, estimate_response(signals, campaign), rng=rng)
+    records = records_of(signals, campaign, [sine.name for sine in campaign.sines], settled=True)
+    in_time = identify_in_time([(asked, r) for r in records], rng=rng, settings=Settings(starts=1), start=lines)
+    return true, lines, in_time
 
 
 @pytest.fixture(scope="module")
-def both(short_trip, vessel, short_campaign):
-    with read_recording(short_trip.path) as recording:
-        signals = prepare_signals(recording, vessel, short_campaign)
-    response = estimate_spectra(signals, short_campaign).response
-    asked = structure("GAUGE-CLOSED").held_at(**TRUTH)
-    rng = np.random.default_rng(1)
-    lines = identify(asked, response, rng=rng, lines=LINES)
-    records = records_of(signals, short_campaign, LINES, settled=True)
-    in_time = identify_in_time([(asked, r) for r in records], rng=rng, settings=Settings(starts=1), start=lines)
-    return lines, in_time
+def fits(short_trip, vessel, short_campaign, tmp_path_factory):
+    other = tmp_path_factory.mktemp("other") / "other.nc"
+    trips = [(short_trip.path, short_trip.truth), (other, sail(vessel, short_campaign, other, seed=4))]
+    return [fitted(path, vessel, short_campaign, truth) for path, truth in trips]
 
 
-def test_estimates_in_frequency_and_time_agree_within_their_intervals(both):
-    lines, in_time = both
-    for one, other in zip(lines.parameters, in_time.parameters, strict=True):
-        assert abs(one.value - other.value) < 1.96 * np.hypot(one.std, other.std), one.name
+def test_estimates_in_frequency_and_time_agree_within_their_intervals(fits):
+    for _, lines, in_time in fits:
+        for one, other in zip(lines.parameters, in_time.parameters, strict=True):
+            assert abs(one.value - other.value) < 1.96 * np.hypot(one.std, other.std), one.name
 
 
-def test_uncertainties_in_frequency_and_time_are_alike(both):
-    """Equal data: within 20 % on average over the parameters.
+def test_uncertainties_in_frequency_and_time_are_alike(fits):
+    """Equal data: within 20 %, on average over the parameters of both recordings.
 
-    Not for each of them: over six recordings single ratios went from 0.75 to 1.50, and their mean for ``k_q`` was 1.23.
+    The means of eighty recordings are within 20 % for every single parameter (``docs/time-domain.md``); of two they
+    scatter by a tenth about those, for noise estimated from the dozen lines beside a slow sine is not known better.
     """
-    lines, in_time = both
-    ratio = np.log([other.std / one.std for one, other in zip(lines.parameters, in_time.parameters, strict=True)])
-    assert abs(ratio.mean()) < np.log(1.2), np.exp(ratio)
+    ratio = np.array([
+        [other.std / one.std for one, other in zip(lines.parameters, in_time.parameters, strict=True)]
+        for _, lines, in_time in fits
+    ])  # fmt: skip
+    assert abs(np.log(ratio).mean()) < np.log(1.2), ratio.mean()
+    of_each = ratio.mean(axis=0)
+    assert np.all((of_each > 0.7) & (of_each < 1.4)), of_each
 
 
-def test_estimates_in_time_hold_the_truth(both, short_trip):
-    _, in_time = both
-    for estimate in in_time.parameters:
-        if estimate.name in short_trip.truth.normalised:
-            assert abs(estimate.value - short_trip.truth.normalised[estimate.name]) < 3.5 * estimate.std, estimate.name
+def test_both_hold_the_truth_within_what_they_state(fits):
+    """All ten numbers at once, with their correlations: a chi-square of ten degrees of freedom for each fit."""
+    for true, *both in fits:
+        for fit in both:
+            off = np.array([p.value - true[p.name] for p in fit.parameters])
+            assert chdtrc(off.size, off @ np.linalg.solve(fit.covariance, off)) > 1e-3
 
 
-def test_the_fit_in_time_explains_its_records(both):
-    _, in_time = both
-    assert in_time.p_value > 0.001
-    assert [part.record.name for part in in_time.parts] == list(LINES)
-    for part in in_time.parts:
-        for output, percent in part.fit_percent.items():
-            assert percent > part.fit_ceiling[output] - 2.0
+def test_the_fit_in_time_explains_its_records(fits, short_campaign):
+    for _, _, in_time in fits:
+        assert in_time.p_value > 0.001
+        assert [part.record.name for part in in_time.parts] == [sine.name for sine in short_campaign.sines]
+        for part in in_time.parts:
+            for output, percent in part.fit_percent.items():
+                assert percent > part.fit_ceiling[output] - 2.0

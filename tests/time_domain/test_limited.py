@@ -119,13 +119,18 @@ def test_sines_add_what_they_know_and_nothing_of_the_limit(found, sines):
     assert [part.name for part in found["all"].parts] == ["record chirp", "record steps", "response of n, M_s"]
 
 
-def test_without_the_limit_the_steps_are_not_explained(line, tests):
+def test_without_the_limit_the_steps_give_wrong_numbers_and_more_noise(found, tests):
+    """The test of fit asks linear questions and does not see it: that is what ``nonlinearity`` is for."""
     linear = structure("GAUGE-CLOSED").held_at(**KNOWN)
     start = {name: value for name, value in TRUTH.items() if name != "m_max"}
     fit = identify_in_time(
         [(linear, tests["steps"])], rng=np.random.default_rng(1), settings=Settings(starts=1), start=start
     )
-    assert fit.p_value < 1e-6
+    off = {p.name: abs(p.value - TRUTH[p.name]) / p.std for p in fit.parameters}
+    assert off["k_q"] > 5.0
+    with_limit = found["records"].parts[1]
+    assert np.all(np.diag(fit.parts[0].noise.power) > [5.0, 2.0] * np.diag(with_limit.noise.power))
+    assert with_limit.fit_percent["n"] > fit.fit_percent["n"] + 3.0
 
 
 def test_derivatives_through_a_limit_are_those_of_the_cost(line, tests):

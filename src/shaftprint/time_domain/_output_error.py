@@ -16,7 +16,7 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify import LineTest, Repeats, Term, TermTest, fit_ceiling, fit_percent
 from shaftprint.models import Structure
 from shaftprint.time_domain._at_once import at_once
-from shaftprint.time_domain._input_response import POWERS, excited, explained_part
+from shaftprint.time_domain._input_response import excited, explained_part
 from shaftprint.time_domain._nuisance import drift_columns, orthonormal, without
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._record_fit import RecordFit
@@ -284,7 +284,7 @@ class OutputError(Term):
 
     def _tested(self, rows: FloatArray, basis: FloatArray) -> tuple[float, int]:
         """Return how much of the residuals lies along inputs and parameters, and in how many directions."""
-        moves, size = np.concatenate([excited(self.record, power) for power in POWERS]), len(self.structure.outputs)
+        moves, size = excited(self.record), len(self.structure.outputs)
         directions = np.zeros((size, *moves.shape, size))
         for output in range(size):
             directions[output, :, :, output] = moves
