@@ -16,6 +16,11 @@ from shaftprint.time_domain._identify_chirp import identify_chirp, spectrum_term
 from shaftprint.time_domain._identify_in_time import TimeSettings, identify_in_time, output_error, with_noise_at
 from shaftprint.time_domain._known_start import KnownStart
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise, white_noise
+from shaftprint.time_domain._nonlinear_fit import NonlinearFit, identify_nonlinear
+from shaftprint.time_domain._nonlinear_numbers import LimitNumber, limit_numbers
+from shaftprint.time_domain._nonlinear_orders import without_orders
+from shaftprint.time_domain._nonlinear_settings import NonlinearSettings
+from shaftprint.time_domain._nonlinear_structure import LimitedModel, structure_for
 from shaftprint.time_domain._output_error import OutputError, RecordRepeats
 from shaftprint.time_domain._record import Record, record_from_arrays
 from shaftprint.time_domain._record_fit import RecordFit
@@ -31,7 +36,11 @@ __all__ = [
     "ExactDelays",
     "FittedSpectrum",
     "KnownStart",
+    "LimitNumber",
+    "LimitedModel",
     "NoiseModel",
+    "NonlinearFit",
+    "NonlinearSettings",
     "OutputError",
     "Record",
     "RecordFit",
@@ -45,12 +54,16 @@ __all__ = [
     "estimate_noise",
     "identify_chirp",
     "identify_in_time",
+    "identify_nonlinear",
+    "limit_numbers",
     "output_error",
     "record_from_arrays",
     "records_of",
     "spectrum_of",
     "spectrum_term",
+    "structure_for",
     "white_noise",
     "whiteness_p_value",
     "with_noise_at",
+    "without_orders",
 ]

@@ -1,0 +1,209 @@
+"""The verb: identify a line with its limits, from small signals and large in one likelihood.
+
+Sines that no limit reaches are frequency responses, for which a limited structure is its linear one, exactly; steps,
+chirps and the sines that a limit does reach are records.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shaftprint.campaign import Campaign
+from shaftprint.errors import IdentificationError
+from shaftprint.identify import Identification, Prior, Settings, identify, priors_from_vessel
+from shaftprint.models import Structure, structure
+from shaftprint.signals import Signals
+from shaftprint.spectra import FrequencyResponse, estimate_response
+from shaftprint.time_domain._identify_in_time import output_error, with_noise_at
+from shaftprint.time_domain._nonlinear_covariance import with_scatter_of_blocks
+from shaftprint.time_domain._nonlinear_drive import sharpened
+from shaftprint.time_domain._nonlinear_numbers import LimitNumber, limit_numbers
+from shaftprint.time_domain._nonlinear_orders import without_orders
+from shaftprint.time_domain._nonlinear_search import Part, best_ends, first_pass, free_values, from_these
+from shaftprint.time_domain._nonlinear_settings import NonlinearSettings
+from shaftprint.time_domain._nonlinear_structure import LimitedModel
+from shaftprint.time_domain._nonlinear_touched import touched
+from shaftprint.time_domain._output_error import OutputError
+from shaftprint.time_domain._record import Record
+from shaftprint.time_domain._records_of import records_of
+from shaftprint.vessel import Vessel
+
+LINEAR = "GAUGE-CLOSED"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class NonlinearFit:
+    """A line with its limits."""
+
+    identification: Identification
+    """The fit: parameters of line and limits with their covariance, and what it leaves; records first, sines last."""
+    linear: Identification
+    """The linear fit to the sines from which it started."""
+    limits: tuple[LimitNumber, ...]
+    """Levels, rates and widths in the units of the ship."""
+    lines: tuple[str, ...]
+    """Sines that were fitted as frequency responses."""
+    records: tuple[str, ...]
+    """Tests that were fitted in time."""
+    starts: int
+    """Number of starts."""
+    reached: int
+    """How many of them reached the optimum of the coarse records that led to the one that won."""
+    left_out: tuple[str, ...]
+    """Findings that the structure has no place for."""
+
+
+def identify_nonlinear(
+    signals: Signals,
+    campaign: Campaign,
+    vessel: Vessel,
+    model: LimitedModel,
+    *,
+    rng: np.random.Generator,
+    records: Sequence[str] | None = None,
+    linear: Identification | None = None,
+    priors: Mapping[str, Prior] | None = None,
+    settings: NonlinearSettings | None = None,
+) -> NonlinearFit:
+    """Fit a line with its limits to sines, staircases and chirps in one likelihood.
+
+    Parameters
+    ----------
+    signals, campaign, vessel
+        The prepared recording, what was asked, and the installation.
+    model
+        The limited structure, from ``structure_for``; parameters that are held stay.
+    rng
+        Source of the starts.
+    records
+        Names of the staircases and chirps to fit; all by default. Leave some out to validate on them.
+    linear
+        Fit of GAUGE-CLOSED to the sines, to start from; made if not given.
+    priors
+        What is known beforehand; by default what the vessel file knows.
+    settings
+        How to search.
+
+    Raises
+    ------
+    SignalError
+        If the recording does not hold a record.
+    IdentificationError
+        If there is no staircase or chirp, or no start reached stable models.
+    """
+    how = settings or NonlinearSettings()
+    names = _large_tests(campaign) if records is None else list(records)
+    if not names:
+        raise IdentificationError(
+            f"campaign {campaign.name}: expected a staircase or a chirp, which limits show in, found none."
+        )
+    known = priors_from_vessel(model.structure, vessel, signals.working_point, mode=signals.mode)
+    known = {name: prior for name, prior in (known if priors is None else priors).items() if _is_free(model, name)}
+    response = estimate_response(signals, campaign)
+    quiet = without_orders(signals, vessel)
+    first = linear or _linear(response, known, rng)
+    start = {p.name: p.value for p in first.parameters} | dict(model.start)
+    task = _Task(quiet, campaign, model.structure, response, known, how, names, rng)
+    sines = task.touched(start)
+    for _ in range(2):
+        found, reached = task.solved(start, sines, model.names)
+        start = {p.name: p.value for p in found.parameters}
+        before, sines = sines, task.touched(start)
+        if set(sines) == set(before):
+            break
+    found = with_scatter_of_blocks(found)
+    return NonlinearFit(
+        identification=found,
+        linear=first,
+        limits=limit_numbers(found, signals.working_point, vessel),
+        lines=tuple(line for line in _lines(response) if line not in before),
+        records=(*before, *names),
+        starts=how.starts,
+        reached=reached,
+        left_out=model.left_out,
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Task:
+    """What stays the same while sines change sides."""
+
+    signals: Signals
+    campaign: Campaign
+    structure: Structure
+    response: FrequencyResponse
+    priors: Mapping[str, Prior]
+    how: NonlinearSettings
+    names: Sequence[str]
+    rng: np.random.Generator
+
+    def touched(self, values: Mapping[str, float]) -> tuple[str, ...]:
+        """Return the names of the sines that limits reach at some values."""
+        names = _lines(self.response)
+        return touched(self.structure, values, self._records(names, self.how.rate_hz, self.how.drive_hz))
+
+    def solved(
+        self, start: Mapping[str, float], sines: Sequence[str], drawn: Sequence[str]
+    ) -> tuple[Identification, int]:
+        """Return the fit, and how many starts of the first pass reached what led to it."""
+        how = self.how
+        common = {"rng": self.rng, "settings": how, "priors": self.priors}
+        coarse = self._renewed(self._parts(sines, how.coarse_rate_hz, how.coarse_drive_hz), start)
+        many = first_pass(coarse, start, drawn, **common)  # type: ignore[arg-type]
+        ends = best_ends(many, how.kept)
+        parts = self._parts(sines, how.rate_hz, how.drive_hz)
+        best = {p.name: p.value for p in many.parameters}
+        for number in range(how.rounds):
+            parts = self._renewed(parts, best)
+            starts = ends if number == how.rounds - 1 else np.array([list(free_values(parts, best).values())])
+            few = from_these(parts, starts, **common)  # type: ignore[arg-type]
+            best = {p.name: p.value for p in few.parameters}
+            ends[0] = np.array(list(free_values(parts, best).values()))
+        return few, many.reached
+
+    def _parts(self, sines: Sequence[str], rate_hz: float, drive_hz: float) -> list[Part]:
+        untouched = np.array([line not in sines for line in self.response.lines])
+        records = self._records([*sines, *self.names], rate_hz, drive_hz)
+        parts: list[Part] = [output_error(self.structure, record) for record in records]
+        if np.any(self.response.used & untouched):
+            # small signals of the limited structure are those of the linear one, whose formulas are at hand
+            gauge = structure(LINEAR)
+            held = {p.name: p.value for p in self.structure.parameters if p.held and p.name in gauge.names}
+            parts.append((gauge.held_at(**held), replace(self.response, used=self.response.used & untouched)))
+        return parts
+
+    def _records(self, names: Sequence[str], rate_hz: float, drive_hz: float) -> list[Record]:
+        found = records_of(self.signals, self.campaign, names, rate_hz=rate_hz, settled=True) if names else ()
+        return [sharpened(record, self.campaign, rate_hz=drive_hz) for record in found]
+
+    def _renewed(self, parts: Sequence[Part], values: Mapping[str, float]) -> list[Part]:
+        """Return the parts, records with the noise that is left at some values."""
+        return [
+            with_noise_at(
+                part, part.structure.vector({p.name: values.get(p.name, p.value) for p in part.structure.free})
+            )
+            if isinstance(part, OutputError)
+            else part
+            for part in parts
+        ]
+
+
+def _linear(response: FrequencyResponse, priors: Mapping[str, Prior], rng: np.random.Generator) -> Identification:
+    gauge = structure(LINEAR)
+    names = {p.name for p in gauge.free}
+    known = {name: prior for name, prior in priors.items() if name in names}
+    return identify(gauge, response, rng=rng, settings=Settings(priors=known))
+
+
+def _large_tests(campaign: Campaign) -> list[str]:
+    return [stair.name for stair in campaign.staircases] + [chirp.name for chirp in campaign.chirps]
+
+
+def _is_free(model: LimitedModel, name: str) -> bool:
+    return name in {p.name for p in model.structure.free}
+
+
+def _lines(response: FrequencyResponse) -> list[str]:
+    """Return the names of the lines that are in use."""
+    return [line for line, used in zip(response.lines, response.used, strict=True) if used]

@@ -1,0 +1,102 @@
+"""Levels, rates and widths of limits in the units of the ship, with all of their uncertainty."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.identify import Estimate, Identification
+from shaftprint.signals import WorkingPoint
+from shaftprint.units import rpm_from_rev_s
+from shaftprint.vessel import Vessel
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LimitNumber:
+    """One number of a limit."""
+
+    name: str
+    """Symbol, with the unit where it is not that of the structure."""
+    unit: str
+    """Unit, ``-`` where there is none."""
+    value: float
+    """Estimate."""
+    std: float
+    """Standard deviation: of the fit, and of working point and torque scale by which the data were divided."""
+    meaning: str
+    """What it is."""
+    at_bound: bool = False
+    """Whether the search stopped at a bound."""
+
+
+def limit_numbers(fit: Identification, working_point: WorkingPoint, vessel: Vessel) -> tuple[LimitNumber, ...]:
+    """Return the numbers of the limits of a fit.
+
+    With the working point ``M_s0`` wrong by a share ``e``, deviations are right in N m: ``m_max = 1 + dM / M_s0`` is
+    wrong by ``(m_max - 1) e``, ``M_s0 m_max`` by ``M_s0 e``, and ``r_x`` by ``r_x e``. A torque gauge that shows too
+    much by a share shifts levels in N m by it, and nothing else.
+
+    Parameters
+    ----------
+    fit
+        A fit of a limited structure.
+    working_point, vessel
+        What the data were divided by, gear and full-load curve.
+    """
+    estimates = {estimate.name: estimate for estimate in fit.parameters}
+    return tuple(number for name in estimates for number in _numbers(estimates[name], working_point, vessel))
+
+
+def _numbers(estimate: Estimate, point: WorkingPoint, vessel: Vessel) -> Iterator[LimitNumber]:
+    doubt = point.shaft_torque_std_nm / point.shaft_torque_nm
+    gauge = vessel.sensors.shaft_torque.scale_std_fraction or 0.0
+    brake_nm = point.shaft_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
+    speed = point.engine_speed_rev_s
+    curve = np.array(vessel.engine.full_load_speed_rpm), np.array(vessel.engine.full_load_torque_nm)
+    full_nm = float(np.interp(rpm_from_rev_s(speed), *curve))
+
+    def number(
+        name: str, unit: str, meaning: str, *, scale: float = 1.0, shares: tuple[float, ...] = ()
+    ) -> LimitNumber:
+        parts = (scale * estimate.std, *(scale * share for share in shares))
+        return LimitNumber(
+            name=name,
+            unit=unit,
+            value=scale * estimate.value,
+            std=float(np.linalg.norm(parts)) if np.isfinite(estimate.std) else float(np.inf),
+            meaning=meaning,
+            at_bound=estimate.at_bound,
+        )
+
+    in_nm = (doubt, estimate.value * gauge)
+    match estimate.name:
+        case "m_max":
+            own = ((estimate.value - 1.0) * doubt,)
+            yield number("m_max", "-", "torque limit over the brake torque of the working point", shares=own)
+            yield number(
+                "M_max", "N m", "torque limit of the engine at the working-point speed", scale=brake_nm, shares=in_nm
+            )
+            share = brake_nm / full_nm
+            yield number(
+                "share", "-", "the same over the full-load curve of the vessel file", scale=share, shares=in_nm
+            )
+        case "m_min":
+            own = ((estimate.value - 1.0) * doubt,)
+            yield number("m_min", "-", "lowest brake torque over that of the working point", shares=own)
+            yield number(
+                "M_min", "N m", "torque of the motored engine at the working-point speed", scale=brake_nm, shares=in_nm
+            )
+        case "r_x":
+            own = (estimate.value * doubt,)
+            yield number("r_x", "1/s", "fastest change of the fuel rack over that of the working point", shares=own)
+            yield number("R_x", "N m/s", "the same as brake torque", scale=brake_nm, shares=(estimate.value * gauge,))
+        case "d_e":
+            rpm = rpm_from_rev_s(speed)
+            yield number("d_e", "-", "speed error within which the governor does nothing, half of the band")
+            yield number("d_e_rpm", "rpm", "the same in engine speed", scale=rpm)
+        case "T_aw":
+            yield number("T_aw", "s", "time in which the integrator is led back at a limit")
+        case "a_0":
+            yield number("a_0", "-", "torque without boost over full-load torque")
+        case "tau_tc":
+            yield number("tau_tc", "s", "lag of the turbocharger")

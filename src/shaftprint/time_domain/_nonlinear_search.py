@@ -1,0 +1,96 @@
+"""From many starts to few: what is not linear drawn over all its range, what is linear where the sines have it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.identify import Draw, Identification, LatinHypercube, Prior, Settings, Term, identify_jointly
+from shaftprint.models import Structure
+from shaftprint.spectra import FrequencyResponse
+from shaftprint.time_domain._nonlinear_settings import NonlinearSettings
+
+Part: TypeAlias = tuple[Structure, FrequencyResponse] | Term
+
+# A range whose ends differ by more than this factor is drawn by its logarithm.
+WIDE_RANGE = 20.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Given(Draw):
+    """Starts that are all given."""
+
+    values: FloatArray
+    """Free parameters, shape (starts, free)."""
+
+    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
+        """Return them within the bounds, from the first on again where more are asked for."""
+        return np.asarray(np.clip(self.values, lower, upper)[np.arange(count) % self.values.shape[0]])
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SomeDrawn(Draw):
+    """One start given, the others like it but for some parameters, which are drawn over all their range."""
+
+    first: FloatArray
+    """Free parameters of the first start, shape (free,)."""
+    drawn: tuple[int, ...]
+    """Places of the parameters that are drawn."""
+
+    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
+        """Return the given start and ``count - 1`` others from a Latin hypercube."""
+        found = np.tile(np.clip(self.first, lower, upper), (count, 1))
+        places = list(self.drawn)
+        low, high = lower[places], upper[places]
+        wide = (low > 0.0) & (high > WIDE_RANGE * low)
+        low, high = np.where(wide, np.log(np.where(wide, low, 1.0)), low), np.where(wide, np.log(high), high)
+        table = LatinHypercube().starts(low, high, count - 1, rng)
+        found[1:, places] = np.where(wide, np.exp(np.where(wide, table, 0.0)), table)
+        return found
+
+
+def free_values(parts: Sequence[Part], known: Mapping[str, float]) -> dict[str, float]:
+    """Return the free parameters of all parts in their order, known ones at their values."""
+    structures = [part.structure if isinstance(part, Term) else part[0] for part in parts]
+    return {p.name: float(known.get(p.name, p.value)) for structure in structures for p in structure.free}
+
+
+def first_pass(
+    parts: Sequence[Part],
+    start: Mapping[str, float],
+    drawn: Sequence[str],
+    *,
+    rng: np.random.Generator,
+    settings: NonlinearSettings,
+    priors: Mapping[str, Prior],
+) -> Identification:
+    """Return the fit from all starts, on coarse records."""
+    values = free_values(parts, start)
+    places = tuple(list(values).index(name) for name in drawn)
+    draw = SomeDrawn(np.array(list(values.values())), places)
+    return identify_jointly(parts, rng=rng, settings=_settings(settings, priors, draw, settings.starts))
+
+
+def from_these(
+    parts: Sequence[Part],
+    starts: FloatArray,
+    *,
+    rng: np.random.Generator,
+    settings: NonlinearSettings,
+    priors: Mapping[str, Prior],
+) -> Identification:
+    """Return the fit from given starts, shape (starts, free)."""
+    return identify_jointly(parts, rng=rng, settings=_settings(settings, priors, Given(starts), starts.shape[0]))
+
+
+def best_ends(found: Identification, count: int) -> FloatArray:
+    """Return the free parameters of the lowest optima, shape (count or fewer, free)."""
+    places = list(found.objective.free)
+    ends = [cluster.values[places] for cluster in found.clusters if np.isfinite(cluster.cost)]
+    return np.array(ends[:count])
+
+
+def _settings(how: NonlinearSettings, priors: Mapping[str, Prior], draw: Draw, starts: int) -> Settings:
+    return Settings(priors=priors, starts=starts, draw=draw, max_iterations=how.max_iterations, tolerance=how.tolerance)

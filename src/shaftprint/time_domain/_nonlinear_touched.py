@@ -1,0 +1,45 @@
+"""Which sines a limit reaches: their frequency response is not that of small signals."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from shaftprint.models import Structure
+from shaftprint.time_domain._identify_in_time import output_error
+from shaftprint.time_domain._record import Record
+from shaftprint.time_domain._simulator import ExactDelays, on_record
+
+# Values at which a limit does nothing, whatever is asked for.
+IDLE: Mapping[str, float] = {"m_max": 6.0, "m_min": -2.0, "r_x": 100.0, "d_e": 0.0, "a_0": 1.0}
+# A sine is touched where limits change more than this share of its motion: a tenth of what its noise hides.
+TOUCHED = 2e-3
+
+
+def touched(structure: Structure, values: Mapping[str, float], records: Sequence[Record]) -> tuple[str, ...]:
+    """Return the names of the records whose simulation the limits of a structure change.
+
+    Parameters
+    ----------
+    values
+        Values of its free parameters by name.
+    records
+        Sines, each with its settled samples in use.
+    """
+    found = []
+    for record in records:
+        own = output_error(structure, record).structure
+        known = {p.name: values[p.name] for p in own.free if p.name in values}
+        idle = {name: value for name, value in IDLE.items() if name in own.names}
+        pair = [
+            on_record(ExactDelays(), own, own.vector(each), record, ())
+            for each in (known, {**known, **{p.name: idle[p.name] for p in own.parameters if p.name in idle}})
+        ]
+        limited_run, linear_run = pair
+        if limited_run is None or linear_run is None:
+            found.append(record.name)
+            continue
+        change = (limited_run - linear_run)[0, record.used]
+        motion = linear_run[0, record.used] - linear_run[0, record.used].mean(axis=0)
+        if np.any(np.linalg.norm(change, axis=0) > TOUCHED * np.linalg.norm(motion, axis=0)):
+            found.append(record.name)
+    return tuple(found)
