@@ -98,6 +98,14 @@ def test_a_ship_at_its_torque_limit_turns_as_fast_as_the_limit_allows(run, here)
     assert "GAUGE-TORQUE: gauge-aware closed loop" in result.output
 
 
+def test_limited_structures_have_names_in_other_commands_too(run):
+    result = run("structures", "gauge-torque-rate", "GAUGE-QUADRATIC")
+    assert result.exit_code == 0, result.stderr
+    assert "GAUGE-TORQUE-RATE: gauge-aware closed loop, quadratic propeller, torque, rate" in result.output
+    assert "r_x" in result.output
+    assert "GAUGE-QUADRATIC: gauge-aware closed loop, quadratic propeller," in result.output
+
+
 def test_without_limits_the_torque_goes_with_the_square_of_the_speed(run, here):
     result = run(
         "simulate", "--structure", "GAUGE-QUADRATIC", *PLAIN, "--vessel", "stan-tug-1205", "--rpm-per-volt", -200.0,

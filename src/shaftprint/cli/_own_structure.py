@@ -10,6 +10,7 @@ from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import CodeType, ModuleType
 
+from shaftprint.cli._limited_structure import limited_structure
 from shaftprint.errors import ShaftprintError, StructureError
 from shaftprint.models import STRUCTURES, Structure, check_structure, structure
 
@@ -33,7 +34,7 @@ def chosen_structures(texts: Sequence[str]) -> tuple[Structure, ...]:
     for text in texts:
         own = own_file(text)
         if own is None:
-            found.setdefault(text.upper(), structure(text))
+            found.setdefault(text.upper(), limited_structure(text) or structure(text))
             continue
         path, name = own
         key = f"{path.resolve()}:{name}"

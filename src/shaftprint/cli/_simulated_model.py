@@ -11,11 +11,9 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.cli._own_structure import chosen_structures
 from shaftprint.errors import FingerprintError, StructureError
 from shaftprint.fingerprint import Fingerprint, read_fingerprint
-from shaftprint.models import STRUCTURES, Structure, limited
+from shaftprint.models import Structure
 
 LIMITED_HELP = "GAUGE-QUADRATIC, GAUGE-TORQUE, GAUGE-TORQUE-RATE and so on: GAUGE-CLOSED at large, with limits"
-_PREFIX, _NO_LIMIT = "GAUGE-", "QUADRATIC"
-_LIMITS = ("torque", "rate", "deadband", "smoke")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -66,7 +64,7 @@ def simulated_model(name: str | None, fingerprint: Fingerprint | None, given: Ma
     """
     if name is None and fingerprint is None:
         raise click.UsageError("expected a model: give --fingerprint, or --structure with --set.")
-    chosen = _chosen(name or ("" if fingerprint is None else fingerprint.structure))
+    (chosen,) = chosen_structures([name or ("" if fingerprint is None else fingerprint.structure)])
     unknown = [parameter for parameter in given if parameter not in chosen.names]
     if unknown:
         raise StructureError(
@@ -75,19 +73,6 @@ def simulated_model(name: str | None, fingerprint: Fingerprint | None, given: Ma
     if fingerprint is None:
         return _by_name(chosen, given)
     return _of_fingerprint(chosen, fingerprint, given)
-
-
-def _chosen(name: str) -> Structure:
-    """Return a shipped structure, one with limits by their names, or one of the user's own file."""
-    upper = name.upper()
-    if upper not in STRUCTURES and upper.startswith(_PREFIX):
-        words = upper.removeprefix(_PREFIX).lower().split("-")
-        if upper == _PREFIX + _NO_LIMIT:
-            return limited()
-        if set(words) <= set(_LIMITS):
-            return limited(*words, name=upper)
-    (found,) = chosen_structures([name])
-    return found
 
 
 def _by_name(chosen: Structure, given: Mapping[str, float]) -> SimulatedModel:
