@@ -27,6 +27,7 @@ def test_commands_are_those_that_were_asked_for():
         "inertia",
         "explain",
         "show",
+        "limits",
         "simulate",
         "validate",
         "new",

@@ -19,6 +19,7 @@ COMMANDS = {
     "identify": "Identify the fingerprint from a recording.",
     "compare-structures": "Say which of several structures a recording wants, and why.",
     "validate": "Hold a model against chirps and steps that it was not identified from.",
+    "limits": "Find which limits a line has, and their levels and rates with uncertainty.",
     "simulate": "Predict what speed and torque do for a set point, with limits where the model has them.",
     "explain": "Say where the numbers of the thesis' way come from on one recording.",
     "show": "Print a saved fingerprint.",
