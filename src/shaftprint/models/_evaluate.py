@@ -89,11 +89,6 @@ def _table_slope(real: Array, points: tuple[tuple[float, float], ...]) -> Array:
     return np.where(outside, 0.0, _raw_slope(left, points))
 
 
-def stacked(values: list[Array]) -> FloatArray:
-    """Return scalars as one array, complex if one of them is."""
-    return np.array(values) if values else np.empty(0)
-
-
 def _before(places: FloatArray, x: FloatArray) -> IntArray:
     """Return the stretch of a table in which each place lies."""
     return np.clip(np.searchsorted(places, x, side="left") - 1, 0, places.size - 2).astype(np.int64)

@@ -146,6 +146,7 @@ class Flow:
         StructureError
             If it depends on itself at once, and not linearly.
         """
+        value = self._without_closed(value)
         if depends(value, signal):
             slope = derivative(value, signal)
             if depends(slope, signal):
@@ -156,3 +157,15 @@ class Flow:
             value = rest / (1.0 - slope)
         self.unknowns[signal.place] = value
         return signal
+
+    def _without_closed(self, value: Quantity) -> Quantity:
+        """Return a formula with what unknown signals turned out to be: a loop may run through one of them."""
+        found = value
+        while True:
+            (opened,) = replaced([found], self._closed)
+            if opened is found:
+                return found
+            found = opened
+
+    def _closed(self, node: Quantity) -> Quantity | None:
+        return self.unknowns.get(node.place) if node.operation == "unknown" else None

@@ -6,6 +6,7 @@ e)`` and the result ``G e``, without a second copy of ``G``. Where all blocks ar
 author's concern: they are put in that of the loop.
 """
 
+import math
 from collections.abc import Sequence
 
 from shaftprint.errors import StructureError
@@ -16,6 +17,9 @@ from shaftprint.models._expression import Constant, Expression, Inverse, Paralle
 from shaftprint.models._flow import Flow
 from shaftprint.models._quantity import Quantity, number
 from shaftprint.models._realisation import Ratio, product, realised, total
+
+# How often the change of an input or of a late signal can be taken.
+KNOWN_CHANGES = 1
 
 
 def factors(expression: Expression) -> list[Expression]:
@@ -44,7 +48,7 @@ def along(flow: Flow, chain: Sequence[Expression], signal: Quantity) -> Quantity
     """Return what a chain of expressions makes of a signal, closing the loops in it."""
     closings = [(i, part) for i, part in enumerate(chain) if isinstance(part, Sensitivity)]
     if not closings:
-        for part in chain:
+        for part in _in_order_of_changes(flow, chain):
             signal = _of_part(flow, part, signal)
         return signal
     last, sensitivity = closings[-1]
@@ -63,6 +67,30 @@ def _in_order_of(loop: list[Expression], before: Sequence[Expression]) -> list[E
         return list(before)
     inside = sorted((part for part in before if id(part) in places), key=lambda part: places[id(part)])
     return [*(part for part in before if id(part) not in places), *inside]
+
+
+def _in_order_of_changes(flow: Flow, chain: Sequence[Expression]) -> list[Expression]:
+    """Return a chain so that every change it forms is known: what falls off first, what rises next, what is late last.
+
+    The given order is kept where it will do, so that states are shared with other outputs.
+    """
+    falls = {id(part): _falls(flow, part) for part in chain}
+    known = KNOWN_CHANGES
+    for fall in (falls[id(part)] for part in chain):
+        known = min(known, KNOWN_CHANGES) if fall is None else known + fall
+        if known < 0 and all(_is_linear(part) for part in chain):
+            return sorted(chain, key=lambda part: _place(falls[id(part)]))
+    return list(chain)
+
+
+def _place(fall: int | None) -> float:
+    return math.inf if fall is None else -fall
+
+
+def _falls(flow: Flow, part: Expression) -> int | None:
+    """Return by how many powers of ``s`` a part falls off, negative where it rises; None where it is not rational."""
+    ratio = ratio_of(flow, part)
+    return None if ratio is None else len(ratio[1]) - len(ratio[0])
 
 
 def _shared(before: list[Expression], loop: list[Expression]) -> int:
@@ -151,17 +179,21 @@ def split_shift(flow: Flow, expression: Expression, signal: Quantity) -> tuple[Q
     while end and _is_linear(parts[end - 1]):
         end -= 1
     shift = number(0.0)
-    found = along(flow, parts[:end], signal)
+    rest: list[Expression] = []
+    sensors: list[SpeedSensor] = []
     for part in parts[end:]:
         if isinstance(part, SpeedSensor):
             shift = shift + part.lateness(flow)
-            found = part.means(flow, found)
+            sensors.append(part)
         elif isinstance(part, Delay):
             shift = shift + flow.parameter(part.time.name)
         elif isinstance(part, Inverse) and isinstance(part.of, Delay):
             shift = shift - flow.parameter(part.of.time.name)
         else:
-            found = along(flow, [part], found)
+            rest.append(part)
+    found = along(flow, rest, along(flow, parts[:end], signal))
+    for sensor in sensors:
+        found = sensor.means(flow, found)
     return found, shift
 
 

@@ -15,11 +15,9 @@ from shaftprint.models._block import Block
 from shaftprint.models._expression import Polynomials
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._quantity import Quantity
+from shaftprint.models._tie import IMAGINARY_STEP
 
 Coefficients: TypeAlias = Callable[..., tuple[Sequence[ArrayLike], Sequence[ArrayLike]]]
-
-# Imaginary step on a real coefficient: its square is lost beside 1, so that no digit of the derivative is.
-IMAGINARY_STEP = 1e-30
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -19,8 +19,6 @@ class Late:
 
     signal: Quantity
     """The signal."""
-    change: Quantity
-    """How fast it changes."""
     drift: Quantity
     """How fast it changes in steady running: not at all, but for sums that go on for ever."""
     delay: Quantity
@@ -173,7 +171,6 @@ def _late(resolver: "_Resolver", past: Past) -> Late:
     signal = resolver(past.signal)
     return Late(
         signal=signal,
-        change=resolver.change(signal),
         drift=resolver.drift(signal),
         delay=resolver(past.delay),
     )
@@ -204,7 +201,10 @@ class _Resolver:
     def change(self, formula: Quantity) -> Quantity:
         """Return how fast a formula changes that has been resolved.
 
-        Inputs are straight between their points, so that the change of their change is none.
+        Raises
+        ------
+        StructureError
+            If it contains how fast an input or a late signal changes: those have corners, or are known too roughly.
         """
         return swept([formula], self._slope_in_time)[0]
 
@@ -223,6 +223,12 @@ class _Resolver:
             return Quantity("input rate", name=leaf.name, place=leaf.place)
         if leaf.operation == "past":
             return Quantity("past rate", name=leaf.name, place=leaf.place)
+        if leaf.operation in ("input rate", "past rate"):
+            raise StructureError(
+                f"structure {self._name}: the equations need the second change of "
+                f"{'an input' if leaf.operation == 'input rate' else 'a late signal'}; put a lag beside it, or leave "
+                "a power of s out of the numerator."
+            )
         return None
 
     def _leaf(self, node: Quantity) -> Quantity | None:

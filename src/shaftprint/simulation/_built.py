@@ -8,6 +8,7 @@ from types import ModuleType
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.errors import StructureError
 from shaftprint.models import Program, Quantity, Structure, derivatives, postorder, program_of
 from shaftprint.simulation._compile import module_of
 from shaftprint.simulation._exact_text import ExactText
@@ -25,27 +26,37 @@ class Built:
     """The equations."""
     hoisted: Hoisted
     """The same with constants in the place of formulas of parameters."""
-    text: str
-    """Source text of the kernels."""
     steady: SteadyEquations
     """What vanishes in steady running."""
     functions: dict[str | None, Plain]
     """Functions of constants, delays, shifts and periods, and of their derivatives by parameter; made when wanted."""
+    modules: dict[type[KernelText | ExactText], ModuleType]
+    """Compiled kernels by what their text is made of; made when wanted."""
 
     @property
     def kernels(self) -> ModuleType:
-        """The compiled kernels."""
-        return module_of(self.text)
+        """The compiled kernels on a uniform grid."""
+        return self._module(KernelText)
 
     @property
     def exact_kernels(self) -> ModuleType:
         """The compiled kernel of exact steps."""
-        return module_of(ExactText(self.hoisted, len(self.program.inputs)).text())
+        return self._module(ExactText)
+
+    def _module(self, kind: type[KernelText | ExactText]) -> ModuleType:
+        if kind not in self.modules:
+            self.modules[kind] = module_of(kind(self.hoisted, len(self.program.inputs)).text())
+        return self.modules[kind]
 
     def constants(self, values: FloatArray, step_s: float) -> tuple[FloatArray, ...]:
-        """Return constants, delays, shifts and periods at parameter values, each of shape (count,).
+        """Return constants, delays [s], shifts [s] and periods [s] at parameter values, each of shape (count,).
 
         Delays that vary are those at rest.
+
+        Raises
+        ------
+        StructureError
+            If a formula is not finite, as where it divides by a time constant of zero.
         """
         if None not in self.functions:
             self.functions[None] = plain_function(self._of_parameters)
@@ -65,6 +76,13 @@ class Built:
         with np.errstate(all="ignore"):
             found = np.array(
                 function(values.tolist(), rest, rest, rest, rest, step_s), dtype=np.result_type(values, 0.0)
+            )
+        if not np.all(np.isfinite(found)):
+            zero = [name for name, value in zip(program.parameters, values, strict=True) if value == 0.0]
+            raise StructureError(
+                f"simulation of {program.name}: expected equations that are finite, found a division by zero or a "
+                f"number that is none; at zero are {', '.join(zero) or 'no parameters'}: bound a time constant away "
+                "from zero, or hold it there with held_at and leave it out of what is wanted."
             )
         return tuple(np.split(found, np.cumsum(counts)[:-1]))
 
@@ -99,8 +117,8 @@ def build(structure: Structure, zeros: frozenset[str]) -> Built:
         known[zeros] = Built(
             program=program,
             hoisted=ready,
-            text=KernelText(ready, len(program.inputs)).text(),
             steady=SteadyEquations(program),
             functions={},
+            modules={},
         )
     return known[zeros]

@@ -44,6 +44,16 @@ def cache_folder() -> Path:
     return base / "shaftprint"
 
 
+def plain_module_of(text: str) -> ModuleType:
+    """Return the module of a text of ours that is not compiled: no file is needed."""
+    name = f"shaftprint_formulas_{hashlib.sha256(text.encode()).hexdigest()[:16]}"
+    module = ModuleType(name)
+    loader = _Written(text, Path(f"{name}.py"))
+    module.__spec__ = importlib.machinery.ModuleSpec(name, loader)
+    loader.exec_module(module)
+    return module
+
+
 def module_of(text: str) -> ModuleType:
     """Return the module of a text of ours; only the text is run, never what a file holds.
 

@@ -1,10 +1,17 @@
-"""Source text that every kernel of a program shares: its equations as functions of numbers."""
+"""Source text that every kernel of a program shares: its equations as functions of one list of values.
+
+All that the equations are made of stands in one list ``v``, in the order of ``EquationText.starts``; what they make of
+it is written behind. Derivatives stand in a list ``w`` of the same order with ``LANES`` numbers for each value, one for
+each parameter, a block that the compiler can treat as one vector.
+"""
 
 from collections.abc import Iterable, Sequence
 
-from shaftprint.models import Quantity
+from shaftprint.models import Quantity, postorder
 from shaftprint.simulation._hoisted import Hoisted, Slopes
 from shaftprint.simulation._text import statements
+
+LANES = 8
 
 HEADER = '''"""Compiled equations of a structure; written by shaftprint, and written anew when they are missing."""
 
@@ -12,28 +19,31 @@ import numpy as np
 from numba import njit
 from numpy import cos, exp, log, sin, sqrt, tanh
 
+INNER = njit(error_model="numpy", fastmath={"contract"}, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+OUTER = njit(error_model="numpy", fastmath={"contract"}, nogil=True, cache=True)
 
-@njit(cache=True, fastmath={"contract"})
+
+@INNER
 def minimum(a, b):
     return a if a.real <= b.real else b
 
 
-@njit(cache=True, fastmath={"contract"})
+@INNER
 def maximum(a, b):
     return a if b.real <= a.real else b
 
 
-@njit(cache=True, fastmath={"contract"})
+@INNER
 def choose(a, b, at_most, above):
     return at_most if a.real <= b.real else above
 
 
-@njit(cache=True, fastmath={"contract"})
+@INNER
 def absolute(a):
     return -a if a.real <= 0.0 else a
 
 
-@njit(cache=True, fastmath={"contract"})
+@INNER
 def table_slope(a, places, values):
     x = a.real
     if x <= places[0] or x > places[-1]:
@@ -44,7 +54,7 @@ def table_slope(a, places, values):
     return (values[j] - values[j - 1]) / (places[j] - places[j - 1])
 
 
-@njit(cache=True, fastmath={"contract"})
+@INNER
 def table(a, places, values):
     x = a.real
     if x <= places[0]:
@@ -55,32 +65,16 @@ def table(a, places, values):
     while places[j] < x:
         j += 1
     return values[j - 1] + (values[j] - values[j - 1]) / (places[j] - places[j - 1]) * (a - places[j - 1])
-
-
-@njit(cache=True, fastmath={"contract"})
-def cubic(x):
-    """Return Lagrange's weights of nodes 0, 1, 2, 3 at a place, and their slopes."""
-    a, b, c, d = x, x - 1.0, x - 2.0, x - 3.0
-    return (
-        -b * c * d / 6.0,
-        a * c * d / 2.0,
-        -a * b * d / 2.0,
-        a * b * c / 6.0,
-        -(c * d + b * d + b * c) / 6.0,
-        (c * d + a * d + a * c) / 2.0,
-        -(b * d + a * d + a * b) / 2.0,
-        (b * c + a * c + a * b) / 6.0,
-    )
 '''
 
 LEAVES = {
     "state": "x{}",
-    "input": "u{}",
-    "input rate": "r{}",
     "past": "p{}",
     "past rate": "q{}",
     "sample": "z{}",
     "constant": "c{}",
+    "input": "u{}",
+    "input rate": "r{}",
 }
 
 
@@ -89,75 +83,106 @@ class EquationText:
 
     def __init__(self, equations: Hoisted, inputs: int) -> None:
         self.equations = equations
-        self.states = len(equations.rates)
         self.inputs = inputs
-        self.lates = len(equations.lates)
-        self.samples = len(equations.values)
-        self.outputs = len(equations.signals)
-        self.groups = {
+        self.groups: dict[str, Sequence[Quantity]] = {
             "rates": equations.rates,
             "lates": equations.lates,
-            "outputs": equations.signals,
             "values": equations.values,
+            "outputs": equations.signals,
             "delays": equations.delays,
         }
-        self.slopes = {name: Slopes(group) for name, group in self.groups.items()}
-        self.uses_change = any(
-            leaf.operation == "past rate" for slopes in self.slopes.values() for _, leaf in slopes.entries
-        )
+        states, lates, samples = (len(self.groups[name]) for name in ("rates", "lates", "values"))
+        counts = {
+            "state": states,
+            "past": lates,
+            "past rate": lates,
+            "sample": samples,
+            "constant": len(equations.constants),
+            "input": inputs,
+            "input rate": inputs,
+            "result": max(len(group) for group in self.groups.values()),
+            # what a kernel keeps: states at the start and the end of a step; late signals, how fast they change, and
+            # delays, each at its middle and its end; delays at the last node
+            "node": states,
+            "total": states,
+            "late": 2 * lates,
+            "late rate": 2 * lates,
+            "delay": 2 * lates,
+            "before": len(equations.varying),
+        }
+        self.counts = counts
+        self.starts: dict[str, int] = {}
+        self.size = 0
+        for kind, count in counts.items():
+            self.starts[kind] = self.size
+            self.size += count
+
+    def constants(self) -> str:
+        """Return the lines that name numbers and places of all kinds of values, known when a kernel is compiled."""
+        places = {f"{kind.upper().replace(' ', '_')}_0": start for kind, start in self.starts.items()}
+        counts = {
+            "SIZE": self.size,
+            "LANES": LANES,
+            "STATES": self.counts["state"],
+            "LATES": self.counts["past"],
+            "SAMPLES": self.counts["sample"],
+            "INPUTS": self.inputs,
+            "OUTPUTS": len(self.equations.signals),
+            "VARYING": len(self.equations.varying),
+            "CHANGES": int(self._uses_changes),
+        }
+        return "".join(f"{name} = {value}\n" for name, value in (counts | places).items())
 
     def functions(self, *, slopes: bool) -> list[str]:
-        """Return the functions of the formulas, and of their derivatives where they are wanted."""
+        """Return a function for each group of formulas, and one that finds their derivatives too where wanted."""
         found = [self._function(name, group) for name, group in self.groups.items()]
         if slopes:
-            found += [self._function(f"{name}_slopes", group.formulas) for name, group in self.slopes.items()]
-        return [text for text in found if text]
-
-    def arguments(self, stage: str) -> str:
-        """Return what the functions take.
-
-        Parameters
-        ----------
-        stage
-            Which states, 0 for those of the node, and at which time: ``a``, ``m`` or ``b`` for the start, middle and
-            end of the step.
-        """
-        state, time = stage[0], stage[1]
-        names = [f"{'x' if state == '0' else f's{state}_'}{i}" for i in range(self.states)]
-        names += [f"u{i}{time}" for i in range(self.inputs)]
-        names += [f"r{i}" for i in range(self.inputs)]
-        names += [f"p{i}{time}" for i in range(self.lates)]
-        names += [f"q{i}{time}" for i in range(self.lates)] if self.uses_change else []
-        names += [f"z{i}" for i in range(self.samples)]
-        return ", ".join([*names, *self._constants])
+            found += [self._with_slopes(f"{name}_along", group) for name, group in self.groups.items()]
+        return found
 
     @property
-    def _constants(self) -> list[str]:
-        return [f"c{i}" for i in range(len(self.equations.constants))]
-
-    def unpacked(self) -> list[str]:
-        """Return how the constants get names: what is loaded once need not be loaded at every step."""
-        return [f"{name} = c[{i}]" for i, name in enumerate(self._constants)]
-
-    def assigned(self, letter: str, group: str, stage: str) -> list[str]:
-        """Return the line that gives the formulas of a group names, none where there are no formulas."""
-        count = len(self.groups[group])
-        names = ", ".join(f"{letter}{i}" for i in range(count))
-        return [f"({names},) = {group}({self.arguments(stage)})"] if count else []
+    def _uses_changes(self) -> bool:
+        """Return whether the equations ask how fast a late signal changes."""
+        formulas = [formula for group in self.groups.values() for formula in group]
+        return any(node.operation == "past rate" for node in postorder(formulas))
 
     def _function(self, name: str, formulas: Sequence[Quantity]) -> str:
-        if not formulas:
-            return ""
         lines, found = statements(formulas, LEAVES)
-        names = [f"x{i}" for i in range(self.states)]
-        names += [f"u{i}" for i in range(self.inputs)] + [f"r{i}" for i in range(self.inputs)]
-        names += [f"p{i}" for i in range(self.lates)]
-        names += [f"q{i}" for i in range(self.lates)] if self.uses_change else []
-        names += [f"z{i}" for i in range(self.samples)]
-        body = indented([*lines, f"return ({', '.join(found)},)"])
-        return (
-            f"@njit(cache=True, fastmath={{'contract'}})\ndef {name}({', '.join([*names, *self._constants])}):\n{body}"
-        )
+        body = [*self._leaves(formulas), *lines, *self._results(found), "return"]
+        return f"@INNER\ndef {name}(v):\n{indented(body)}"
+
+    def _with_slopes(self, name: str, formulas: Sequence[Quantity]) -> str:
+        slopes = Slopes(formulas)
+        every = [*formulas, *slopes.formulas]
+        lines, found = statements(every, LEAVES)
+        body = [*self._leaves(every), *lines, *self._results(found[: len(formulas)])]
+        factors = found[len(formulas) :]
+        if formulas:
+            body.append(f"for lane in range({LANES}):")
+        for place in range(len(formulas)):
+            terms = [
+                f"{factor} * w[{LANES * self._place(leaf)} + lane]"
+                for factor, (formula, leaf) in zip(factors, slopes.entries, strict=True)
+                if formula == place
+            ]
+            result = LANES * (self.starts["result"] + place)
+            body.append(f"    w[{result} + lane] = {' + '.join(terms) or '0.0'}")
+        return f"@INNER\ndef {name}(v, w):\n{indented([*body, 'return'])}"
+
+    def _place(self, leaf: Quantity) -> int:
+        return self.starts[leaf.operation] + leaf.place
+
+    def _leaves(self, formulas: Sequence[Quantity]) -> list[str]:
+        """Return the lines that give names to the values that formulas are made of."""
+        leaves = {
+            LEAVES[node.operation].format(node.place): self._place(node)
+            for node in postorder(formulas)
+            if node.operation in LEAVES
+        }
+        return [f"{name} = v[{place}]" for name, place in leaves.items()]
+
+    def _results(self, found: Sequence[str]) -> list[str]:
+        return [f"v[{self.starts['result'] + place}] = {name}" for place, name in enumerate(found)]
 
 
 def indented(lines: Iterable[str]) -> str:

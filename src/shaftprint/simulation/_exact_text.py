@@ -4,11 +4,59 @@ The steps are those of ``_kernel_text``, each with its own length, inputs and st
 two nodes at one time, the first with what was before and the second with what is after; the step between them is empty.
 """
 
-from shaftprint.simulation._equation_text import HEADER, EquationText, indented
+from shaftprint.simulation._equation_text import HEADER, EquationText
 from shaftprint.simulation._exact_grid import PRE
-from shaftprint.simulation._grid import NODES
 
-SHARES = {"1": "0.5 * h[k]", "2": "0.5 * h[k]", "3": "h[k]"}
+# Step ``k`` goes from node ``k``; the list of late signals has ``PRE`` nodes more, ahead of the start.
+KERNEL = f"""
+PRE = {PRE}
+PARTS = (0.5, 0.5, 1.0)
+SHARES = (1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0)
+# where in a step each stage stands: start, middle or end
+TIMES = (0, 1, 1, 2)
+
+
+@OUTER
+def advance(h, u, rise, c, start, before, first, weight, change, y):
+    v = np.zeros(SIZE)
+    x, total = np.zeros(STATES), np.zeros(STATES)
+    for j in range(STATES):
+        v[j] = x[j] = total[j] = start[j]
+    for j in range(c.size):
+        v[CONSTANT_0 + j] = c[j]
+    history = np.zeros((h.size + PRE + 1) * LATES)
+    for m in range(PRE):
+        for j in range(LATES):
+            history[m * LATES + j] = before[m, j]
+    for k in range(h.size):
+        for stage in range(4):
+            time = TIMES[stage]
+            for j in range(INPUTS):
+                v[INPUT_0 + j] = u[k, time, j]
+                v[INPUT_RATE_0 + j] = rise[k, j]
+            for j in range(LATES):
+                late = moving = 0.0
+                for m in range(4):
+                    value = history[(first[k, j, time] + m) * LATES + j]
+                    late += weight[k, j, time, m] * value
+                    moving += change[k, j, time, m] * value
+                v[PAST_0 + j] = late
+                v[PAST_RATE_0 + j] = moving
+            if stage == 0:
+                lates(v)
+                for j in range(LATES):
+                    history[(k + PRE) * LATES + j] = v[RESULT_0 + j]
+                outputs(v)
+                for j in range(OUTPUTS):
+                    y[k, j] = v[RESULT_0 + j]
+            rates(v)
+            for j in range(STATES):
+                total[j] += SHARES[stage] * h[k] * v[RESULT_0 + j]
+                if stage < 3:
+                    v[j] = x[j] + PARTS[stage] * h[k] * v[RESULT_0 + j]
+        for j in range(STATES):
+            v[j] = x[j] = total[j]
+"""
 
 
 class ExactText(EquationText):
@@ -16,41 +64,4 @@ class ExactText(EquationText):
 
     def text(self) -> str:
         """Return the whole module."""
-        return "\n\n".join([HEADER, *self.functions(slopes=False), self._kernel()])
-
-    def _kernel(self) -> str:
-        """Return the kernel: step ``k`` goes from node ``k``; the list of late signals has ``PRE`` nodes more."""
-        lates = max(self.lates, 1)
-        body = [*self.unpacked(), *(f"x{i} = start[{i}]" for i in range(self.states))]
-        body += [f"history = np.empty((h.size + {PRE + 1}) * {lates})"]
-        if self.lates:
-            body += [f"for m in range({PRE}):", f"    for j in range({lates}):"]
-            body += [f"        history[m * {lates} + j] = before[m, j]"]
-        body += ["for k in range(h.size):"]
-        step = [f"u{i}{time} = u[k, {number}, {i}]" for i in range(self.inputs) for number, time in enumerate("amb")]
-        step += [f"r{i} = rise[k, {i}]" for i in range(self.inputs)]
-        step += self._past_values()
-        if self.lates:
-            step += [*self.assigned("h", "lates", "0a"), f"place = (k + {PRE}) * {lates}"]
-            step += [f"history[place + {i}] = h{i}" for i in range(self.lates)]
-        step += [*self.assigned("y", "outputs", "0a"), *(f"y[k, {i}] = y{i}" for i in range(self.outputs))]
-        for stage, stand in (("1", "0a"), ("2", "1m"), ("3", "2m"), ("4", "3b")):
-            step += self.assigned(f"k{stage}_", "rates", stand)
-            if stage in SHARES:
-                step += [f"s{stage}_{i} = x{i} + {SHARES[stage]} * k{stage}_{i}" for i in range(self.states)]
-        total = "h[k] / 6.0 * (k1_{0} + 2.0 * k2_{0} + 2.0 * k3_{0} + k4_{0})"
-        step += [f"x{i} = x{i} + {total.format(i)}" for i in range(self.states)]
-        body += [f"    {line}" for line in step]
-        head = "def advance(h, u, rise, c, start, before, first, weight, change, y):"
-        return f"@njit(cache=True, nogil=True, fastmath={{'contract'}})\n{head}\n{indented(body)}"
-
-    def _past_values(self) -> list[str]:
-        lines: list[str] = []
-        for i in range(self.lates):
-            for number, time in enumerate("amb"):
-                nodes = [f"history[(first[k, {i}, {number}] + {m}) * {self.lates} + {i}]" for m in range(NODES)]
-                for letter, weights in (("p", "weight"), ("q", "change")):
-                    if letter == "p" or self.uses_change:
-                        terms = (f"{weights}[k, {i}, {number}, {m}] * {node}" for m, node in enumerate(nodes))
-                        lines.append(f"{letter}{i}{time} = {' + '.join(terms)}")
-        return lines
+        return "\n\n".join([HEADER, self.constants(), *self.functions(slopes=False), KERNEL])

@@ -20,6 +20,8 @@ class Stencils:
     """Weights of their values, shape (delays, 2, 4)."""
     change: FloatArray
     """Weights of their values in how fast the signal changes [1/s], shape (delays, 2, 4)."""
+    bend: FloatArray
+    """Weights of their values in how fast that changes [1/s^2], shape (delays, 2, 4)."""
     mask: int
     """Size of the ring of nodes less one; the size is a power of two."""
 
@@ -39,24 +41,30 @@ def stencils(delay_s: FloatArray, step_s: float, *, varies: bool = False) -> Ste
     """
     place = np.array([0.5, 1.0])[None, :] - delay_s[:, None] / step_s
     first = np.minimum(np.floor(place.real).astype(np.int64) - 1, 1 - NODES)
-    weight, change = cubic_weights(place - first)
-    change = change / step_s
+    weight, change, bend = cubic_weights(place - first)
     # a delay that varies may grow to eight times what it is at rest
     longest = (int(-first.min(initial=0)) + 2) * (8 if varies else 1)
-    return Stencils(first=first, weight=weight, change=change, mask=(1 << longest.bit_length()) - 1)
+    return Stencils(
+        first=first,
+        weight=weight,
+        change=change / step_s,
+        bend=bend / step_s**2,
+        mask=(1 << longest.bit_length()) - 1,
+    )
 
 
-def cubic_weights(place: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return Lagrange's weights of nodes 0, 1, 2 and 3 at places between or beside them, and their slopes."""
+def cubic_weights(place: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return Lagrange's weights of nodes 0, 1, 2 and 3 at places between or beside them, their slopes and bends."""
     weight = np.empty((*place.shape, NODES), dtype=place.dtype)
-    slope = np.empty_like(weight)
+    slope, bend = np.empty_like(weight), np.empty_like(weight)
     for node in range(NODES):
         others = [other for other in range(NODES) if other != node]
         scale = 1.0 / np.prod([node - other for other in others])
         a, b, c = (place - other for other in others)
         weight[..., node] = scale * a * b * c
         slope[..., node] = scale * (a * b + a * c + b * c)
-    return weight, slope
+        bend[..., node] = scale * 2.0 * (a + b + c)
+    return weight, slope, bend
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -2,16 +2,171 @@
 
 Classical Runge-Kutta steps of fourth order. What a delay asks for is interpolated between nodes by a cubic, never
 rounded to a step; nodes and weights are found once, because the grid is uniform, or at every step where the delay
-varies. Derivatives are those of this very recursion: each state carries its derivatives to ``LANES`` parameters, a
-block that the compiler can treat as one vector.
+varies. Derivatives are those of this very recursion.
+
+The late signals of as many nodes as are needed stand in a ring, ``history``; that of node ``k`` starts at ``(k & mask)
+LATES``.
 """
 
-from shaftprint.simulation._equation_text import HEADER, EquationText, indented
-from shaftprint.simulation._grid import NODES
+from shaftprint.simulation._equation_text import HEADER, EquationText
 
-LANES = 8
-SHARES = {"1": "0.5 * h", "2": "0.5 * h", "3": "h"}
-WEIGHTS = {"1": "h / 6.0", "2": "h / 3.0", "3": "h / 3.0", "4": "h / 6.0"}
+# Lines that end so belong to the kernel with derivatives only.
+ALONG = "  # along"
+
+PREAMBLE = '''
+PARTS = (0.5, 0.5, 1.0)
+SHARES = (1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0)
+
+
+@INNER
+def weigh(x, h, weight, change, bend):
+    """Fill in Lagrange's weights of nodes 0, 1, 2, 3 at a place: of the value, its change and the change of that."""
+    a, b, c, d = x, x - 1.0, x - 2.0, x - 3.0
+    weight[0], weight[1], weight[2], weight[3] = -b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0
+    change[0] = -(c * d + b * d + b * c) / (6.0 * h)
+    change[1] = (c * d + a * d + a * c) / (2.0 * h)
+    change[2] = -(b * d + a * d + a * b) / (2.0 * h)
+    change[3] = (b * c + a * c + a * b) / (6.0 * h)
+    bend[0], bend[1] = -(b + c + d) / (3.0 * h * h), (a + c + d) / (h * h)
+    bend[2], bend[3] = -(a + b + d) / (h * h), (a + b + c) / (3.0 * h * h)
+'''
+
+# The arguments are those of ``March``; ``y`` and ``y_slopes`` are filled.
+KERNEL = """@OUTER
+def NAME(h, per, every, held, u, start, first, weight, change, bend, mask, tick, varying, yARGUMENTS):
+    last = (u.shape[0] - 1) * per
+    v = np.zeros(SIZE, dtype=start.dtype)
+    for j in range(INPUT_0):
+        v[j] = start[j]
+    for j in range(STATES):
+        v[NODE_0 + j] = v[TOTAL_0 + j] = v[j]
+    base, rise = np.zeros(INPUTS), np.zeros(INPUTS)
+    history = np.zeros((mask + 1) * LATES, dtype=start.dtype)
+    for k in range(mask + 1):
+        for j in range(LATES):
+            history[(-k & mask) * LATES + j] = start[INPUT_0 + j] - k * h * v[PAST_RATE_0 + j]
+    w = np.zeros(SIZE * LANES)  # along
+    for j in range(INPUT_0 * LANES):  # along
+        w[j] = slopes[j]  # along
+    for j in range(STATES * LANES):  # along
+        w[NODE_0 * LANES + j] = w[TOTAL_0 * LANES + j] = w[j]  # along
+    w_history = np.zeros((mask + 1) * LATES * LANES)  # along
+    for j in range(LATES * LANES):  # along
+        w[DELAY_0 * LANES + j] = w[(DELAY_0 + LATES) * LANES + j] = slopes[(INPUT_0 + LATES) * LANES + j]  # along
+        for k in range(mask + 1):  # along
+            drift = w[PAST_RATE_0 * LANES + j]  # along
+            w_history[(-k & mask) * LATES * LANES + j] = slopes[INPUT_0 * LANES + j] - k * h * drift  # along
+    record = 0
+    for k in range(last + 1):
+        i, sub = k // per, k % per
+        if sub == 0:
+            for j in range(INPUTS):
+                base[j] = u[i, j]
+                if k < last:
+                    rise[j] = 0.0 if held else (u[i + 1, j] - u[i, j]) / per
+                    v[INPUT_RATE_0 + j] = rise[j] / h
+        for j in range(INPUTS):
+            v[INPUT_0 + j] = base[j] + sub * rise[j]
+        if SAMPLES:
+            # a computer takes all its values before it changes any
+            values(v)
+            for j in range(SAMPLES):
+                if k % tick[j] == 0:
+                    v[SAMPLE_0 + j] = v[RESULT_0 + j]
+                    for lane in range(LANES):  # along
+                        w[(SAMPLE_0 + j) * LANES + lane] = w[(RESULT_0 + j) * LANES + lane]  # along
+        if LATES:
+            lates(v)
+            place = (k & mask) * LATES
+            for j in range(LATES):
+                history[place + j] = v[RESULT_0 + j]
+            for j in range(LATES * LANES):  # along
+                w_history[place * LANES + j] = w[RESULT_0 * LANES + j]  # along
+        if every == 1 or sub == 0:
+            outputs(v)
+            for j in range(OUTPUTS):
+                y[record, j] = v[RESULT_0 + j]
+                for lane in range(LANES):  # along
+                    y_slopes[record, j, lane] = w[(RESULT_0 + j) * LANES + lane]  # along
+            record += 1
+        if k == last:
+            break
+        if VARYING:
+            # the delay goes straight on from the last node and this one
+            delays(v)
+            for n in range(VARYING):
+                j, now = varying[n], v[RESULT_0 + n]
+                if k == 0:
+                    v[BEFORE_0 + n] = now
+                for t in range(2):
+                    ahead = 0.5 * (t + 1)
+                    at = ahead - (now + ahead * (now - v[BEFORE_0 + n])) / h
+                    node = max(min(int(np.floor(at.real)) - 1, -3), 1 - mask)
+                    first[j, t] = node
+                    weigh(at - node, h, weight[j, t], change[j, t], bend[j, t])
+                v[BEFORE_0 + n] = now
+                for lane in range(LANES):  # along
+                    w_now = w[(RESULT_0 + n) * LANES + lane]  # along
+                    if k == 0:  # along
+                        w[(BEFORE_0 + n) * LANES + lane] = w_now  # along
+                    grown = w_now - w[(BEFORE_0 + n) * LANES + lane]  # along
+                    w[(DELAY_0 + j) * LANES + lane] = w_now + 0.5 * grown  # along
+                    w[(DELAY_0 + LATES + j) * LANES + lane] = w_now + grown  # along
+                    w[(BEFORE_0 + n) * LANES + lane] = w_now  # along
+        for j in range(LATES):
+            for t in range(2):
+                own = t * LATES + j
+                i_0 = ((k + first[j, t]) & mask) * LATES + j
+                i_1 = ((k + first[j, t] + 1) & mask) * LATES + j
+                i_2 = ((k + first[j, t] + 2) & mask) * LATES + j
+                i_3 = ((k + first[j, t] + 3) & mask) * LATES + j
+                h_0, h_1, h_2, h_3 = history[i_0], history[i_1], history[i_2], history[i_3]
+                g_0, g_1, g_2, g_3 = weight[j, t, 0], weight[j, t, 1], weight[j, t, 2], weight[j, t, 3]
+                c_0, c_1, c_2, c_3 = change[j, t, 0], change[j, t, 1], change[j, t, 2], change[j, t, 3]
+                moving = c_0 * h_0 + c_1 * h_1 + c_2 * h_2 + c_3 * h_3
+                v[LATE_0 + own] = g_0 * h_0 + g_1 * h_1 + g_2 * h_2 + g_3 * h_3
+                v[LATE_RATE_0 + own] = moving
+                for lane in range(LANES):  # along
+                    s_0, s_1 = w_history[i_0 * LANES + lane], w_history[i_1 * LANES + lane]  # along
+                    s_2, s_3 = w_history[i_2 * LANES + lane], w_history[i_3 * LANES + lane]  # along
+                    later = w[(DELAY_0 + own) * LANES + lane]  # along
+                    kept = g_0 * s_0 + g_1 * s_1 + g_2 * s_2 + g_3 * s_3  # along
+                    w[(LATE_0 + own) * LANES + lane] = kept - moving * later  # along
+                if CHANGES:  # along
+                    b_0, b_1, b_2, b_3 = bend[j, t, 0], bend[j, t, 1], bend[j, t, 2], bend[j, t, 3]  # along
+                    bending = b_0 * h_0 + b_1 * h_1 + b_2 * h_2 + b_3 * h_3  # along
+                    for lane in range(LANES):  # along
+                        s_0, s_1 = w_history[i_0 * LANES + lane], w_history[i_1 * LANES + lane]  # along
+                        s_2, s_3 = w_history[i_2 * LANES + lane], w_history[i_3 * LANES + lane]  # along
+                        later = w[(DELAY_0 + own) * LANES + lane]  # along
+                        kept = c_0 * s_0 + c_1 * s_1 + c_2 * s_2 + c_3 * s_3  # along
+                        w[(LATE_RATE_0 + own) * LANES + lane] = kept - bending * later  # along
+        for stage in range(4):
+            rates(v)
+            for j in range(STATES):
+                v[TOTAL_0 + j] += SHARES[stage] * h * v[RESULT_0 + j]
+            for j in range(STATES * LANES):  # along
+                w[TOTAL_0 * LANES + j] += SHARES[stage] * h * w[RESULT_0 * LANES + j]  # along
+            if stage < 3:
+                for j in range(STATES):
+                    v[j] = v[NODE_0 + j] + PARTS[stage] * h * v[RESULT_0 + j]
+                for j in range(STATES * LANES):  # along
+                    w[j] = w[NODE_0 * LANES + j] + PARTS[stage] * h * w[RESULT_0 * LANES + j]  # along
+            if stage == 0 or stage == 2:
+                t = stage // 2
+                for j in range(INPUTS):
+                    v[INPUT_0 + j] = base[j] + (sub + 0.5 * (t + 1)) * rise[j]
+                for j in range(LATES):
+                    v[PAST_0 + j] = v[LATE_0 + t * LATES + j]
+                    v[PAST_RATE_0 + j] = v[LATE_RATE_0 + t * LATES + j]
+                for j in range(LATES * LANES):  # along
+                    w[PAST_0 * LANES + j] = w[(LATE_0 + t * LATES) * LANES + j]  # along
+                    w[PAST_RATE_0 * LANES + j] = w[(LATE_RATE_0 + t * LATES) * LANES + j]  # along
+        for j in range(STATES):
+            v[j] = v[NODE_0 + j] = v[TOTAL_0 + j]
+        for j in range(STATES * LANES):  # along
+            w[j] = w[NODE_0 * LANES + j] = w[TOTAL_0 * LANES + j]  # along
+"""
 
 
 class KernelText(EquationText):
@@ -19,243 +174,17 @@ class KernelText(EquationText):
 
     def text(self) -> str:
         """Return the whole module."""
-        parts = [HEADER, *self.functions(slopes=True), self._kernel(sensitive=False), self._kernel(sensitive=True)]
-        return "\n\n".join(parts)
-
-    def row(self, kind: str, place: int = 0) -> int:
-        """Return where a row of derivatives starts in the working array."""
-        order = [
-            ("x", self.states),
-            ("s", self.states),
-            ("a", self.states),
-            ("z", self.samples),
-            *((f"p{time}", self.lates) for time in "amb"),
-            *((f"q{time}", self.lates) for time in "amb"),
-            # of each delay at the middle and the end of the step, and at the last node
-            *((f"d{time}", self.lates) for time in "mbl"),
-            ("c", len(self.equations.constants)),
-        ]
-        start = 0
-        for name, count in order:
-            if name == kind:
-                return LANES * (start + place)
-            start += count
-        return LANES * start
-
-    def _lane(self, group: str, formula: int, state: str, time: str) -> str:
-        """Return the derivative of a formula along a lane."""
-        kind = {"state": state, "past": f"p{time}", "past rate": f"q{time}", "sample": "z", "constant": "c"}
-        terms = [
-            f"d{number} * w[{self.row(kind[leaf.operation], leaf.place)} + l]"
-            for number, (owner, leaf) in enumerate(self.slopes[group].entries)
-            if owner == formula
-        ]
-        return " + ".join(terms) or "0.0"
-
-    def _slopes_call(self, group: str, stage: str) -> list[str]:
-        entries = self.slopes[group].entries
-        if not entries:
-            return []
-        names = ", ".join(f"d{i}" for i in range(len(entries)))
-        return [f"({names},) = {group}_slopes({self.arguments(stage)})"]
-
-    def _kernel(self, *, sensitive: bool) -> str:
-        name = "advance_with_derivatives" if sensitive else "advance"
-        extra = ", slopes, y_slopes" if sensitive else ""
-        head = f"def {name}(h, per, every, held, u, c, start, first, weight, change, mask, tick, y{extra}):"
-        body = self._start()
-        if sensitive:
-            body += self._start_derivatives()
-        body += ["k = 0", "record = 0", "part = 1.0 / per"]
-        body += [f"rise{i} = 0.0" for i in range(self.inputs)]
-        body += ["for i in range(u.shape[0] - 1):"]
-        for i in range(self.inputs):
-            body += [f"    base{i} = u[i, {i}]", f"    rise{i} = 0.0 if held else part * (u[i + 1, {i}] - base{i})"]
-            body += [f"    r{i} = rise{i} / h"]
-        body += ["    for sub in range(per):"]
-        step = [*self._stage_inputs(), *self._computed(sensitive=sensitive), *self._kept(sensitive=sensitive)]
-        step += ["if every == 1 or sub == 0:", *_more([*self._record(sensitive=sensitive), "record += 1"])]
-        step += self._delays(sensitive=sensitive)
-        step += self._past_values(sensitive=sensitive)
-        step += self._runge_kutta(sensitive=sensitive)
-        step += self._carry(sensitive=sensitive)
-        body += [f"        {line}" for line in step]
-        body += [f"u{i}a = u[u.shape[0] - 1, {i}]" for i in range(self.inputs)]
-        body += self._record(sensitive=sensitive)
-        return f"@njit(cache=True, nogil=True, fastmath={{'contract'}})\n{head}\n{indented(body)}"
-
-    def _start(self) -> list[str]:
-        """Return how the states and the ring of late signals are filled; ``start`` has a value each in order."""
-        n, lates, samples = self.states, self.lates, self.samples
-        lines = [*self.unpacked(), *(f"x{i} = start[{i}]" for i in range(n))]
-        for i in (i for i in range(lates) if i not in self.equations.varying):
-            for number, time in enumerate("mb"):
-                lines.append(f"first{i}{time} = first[{i}, {number}]")
-                lines += [f"weight{i}{time}{m} = weight[{i}, {number}, {m}]" for m in range(NODES)]
-                lines += [f"change{i}{time}{m} = change[{i}, {number}, {m}]" for m in range(NODES)]
-        lines += [f"p{i}a = start[{n + i}]" for i in range(lates)]
-        lines += [f"z{i} = start[{n + lates + i}]" for i in range(samples)]
-        lines += [f"before{i} = start[{n + lates + samples + i}]" for i in range(lates)]
-        lines += [f"drift{i} = start[{n + 2 * lates + samples + i}]" for i in range(lates)]
-        lines += [f"q{i}a = drift{i}" for i in range(lates) if self.uses_change]
-        lines += [f"r{i} = 0.0" for i in range(self.inputs)]
-        if lates:
-            lines += [f"history = np.empty((mask + 1) * {lates}, dtype=start.dtype)", "for k in range(mask + 1):"]
-            lines += [f"    history[(-k & mask) * {lates} + {i}] = before{i} - k * h * drift{i}" for i in range(lates)]
-        return lines
-
-    def _start_derivatives(self) -> list[str]:
-        """Return how the working array and the ring of derivatives are filled; ``slopes`` has a row each in order."""
-        n, lates, samples = self.states, self.lates, self.samples
-        row = n + 2 * lates + samples + lates
-        lines = [f"w = np.zeros({self.row('end')})", f"for l in range({LANES}):"]
-        lines += [f"    w[{self.row('x', i)} + l] = slopes[{i}, l]" for i in range(n)]
-        lines += [f"    w[{self.row('pa', i)} + l] = slopes[{n + i}, l]" for i in range(lates)]
-        lines += [f"    w[{self.row('z', i)} + l] = slopes[{n + lates + i}, l]" for i in range(samples)]
-        for time in "mbl":
-            lines += [f"    w[{self.row(f'd{time}', i)} + l] = slopes[{row + i}, l]" for i in range(lates)]
-        lines += [f"    for j in range({len(self.equations.constants)}):"]
-        lines += [f"        w[{self.row('c')} + {LANES} * j + l] = slopes[{row + lates} + j, l]"]
-        if lates:
-            before, drift = n + lates + samples, n + 2 * lates + samples
-            lines += [f"past_slopes = np.empty((mask + 1) * {lates * LANES})", "for k in range(mask + 1):"]
-            lines += [f"    for l in range({LANES}):"]
-            for i in range(lates):
-                place = f"((-k & mask) * {lates} + {i}) * {LANES} + l"
-                lines.append(f"        past_slopes[{place}] = slopes[{before + i}, l] - k * h * slopes[{drift + i}, l]")
-        return lines
-
-    def _stage_inputs(self) -> list[str]:
-        """Return the inputs at the start, middle and end of a step."""
-        lines: list[str] = []
-        for i in range(self.inputs):
-            for time, share in (("a", "sub"), ("m", "(sub + 0.5)"), ("b", "(sub + 1.0)")):
-                lines.append(f"u{i}{time} = base{i} + {share} * rise{i}")
-        return lines
-
-    def _computed(self, *, sensitive: bool) -> list[str]:
-        """Return how a computer takes its values at a node: all before any is changed."""
-        if not self.samples:
-            return []
-        lines = self.assigned("v", "values", "0a")
-        if sensitive:
-            lines += [*self._slopes_call("values", "0a"), f"for l in range({LANES}):"]
-            lines += [f"    n{i} = {self._lane('values', i, 'x', 'a')}" for i in range(self.samples)]
-            for i in range(self.samples):
-                lines += [f"    if k % tick[{i}] == 0:", f"        w[{self.row('z', i)} + l] = n{i}"]
-        for i in range(self.samples):
-            lines += [f"if k % tick[{i}] == 0:", f"    z{i} = v{i}"]
-        return lines
-
-    def _kept(self, *, sensitive: bool) -> list[str]:
-        """Return how signals that are asked for later are kept at a node."""
-        if not self.lates:
-            return []
-        lines = [*self.assigned("h", "lates", "0a"), f"place = (k & mask) * {self.lates}"]
-        lines += [f"history[place + {i}] = h{i}" for i in range(self.lates)]
-        if sensitive:
-            lines += [*self._slopes_call("lates", "0a"), f"for l in range({LANES}):"]
-            lanes = (self._lane("lates", i, "x", "a") for i in range(self.lates))
-            lines += [f"    past_slopes[(place + {i}) * {LANES} + l] = {lane}" for i, lane in enumerate(lanes)]
-        return lines
-
-    def _record(self, *, sensitive: bool) -> list[str]:
-        lines = self.assigned("y", "outputs", "0a")
-        lines += [f"y[record, {i}] = y{i}" for i in range(self.outputs)]
-        if sensitive:
-            lines += [*self._slopes_call("outputs", "0a"), f"for l in range({LANES}):"]
-            lanes = (self._lane("outputs", i, "x", "a") for i in range(self.outputs))
-            lines += [f"    y_slopes[record, {i}, l] = {lane}" for i, lane in enumerate(lanes)]
-        return lines
-
-    def _delays(self, *, sensitive: bool) -> list[str]:
-        """Return varying delays at the middle and end of the step, straight on from the last node and this one."""
-        varying = self.equations.varying
-        if not varying:
-            return []
-        lines = self.assigned("e", "delays", "0a")
-        if sensitive:
-            lines += self._slopes_call("delays", "0a")
-        for number, i in enumerate(varying):
-            lines += ["if k == 0:", f"    f{number} = e{number}"]
-            lines += [f"late{i}m = 1.5 * e{number} - 0.5 * f{number}", f"late{i}b = 2.0 * e{number} - f{number}"]
-            lines.append(f"f{number} = e{number}")
-            if sensitive:
-                lines += [f"for l in range({LANES}):", f"    now = {self._lane('delays', number, 'x', 'a')}"]
-                last = f"w[{self.row('dl', i)} + l]"
-                lines += ["    if k == 0:", f"        {last} = now"]
-                lines += [f"    w[{self.row('dm', i)} + l] = 1.5 * now - 0.5 * {last}"]
-                lines += [f"    w[{self.row('db', i)} + l] = 2.0 * now - {last}", f"    {last} = now"]
-        return lines
-
-    def _past_values(self, *, sensitive: bool) -> list[str]:
-        """Return the pasts at the middle and the end of the step, and their derivatives along the lanes."""
-        lines: list[str] = []
-        for i in range(self.lates):
-            for time in "mb":
-                weights = [f"weight{i}{time}{m}" for m in range(NODES)]
-                changes = [f"change{i}{time}{m}" for m in range(NODES)]
-                node = f"k + first{i}{time}"
-                if i in self.equations.varying:
-                    share = "0.5" if time == "m" else "1.0"
-                    lines += [f"at = {share} - late{i}{time} / h", "node = min(int(np.floor(at.real)) - 1, -3)"]
-                    lines += ["node = max(node, 2 - mask)", "(w0, w1, w2, w3, q0, q1, q2, q3) = cubic(at - node)"]
-                    weights = [f"w{m}" for m in range(NODES)]
-                    changes = [f"q{m} / h" for m in range(NODES)]
-                    node = "k + node"
-                lines += [f"i{m} = (({node} + {m}) & mask) * {self.lates} + {i}" for m in range(NODES)]
-                lines.append(f"p{i}{time} = {_cubic(weights, 'history[i{}]')}")
-                if self.uses_change or sensitive:
-                    lines.append(f"q{i}{time} = {_cubic(changes, 'history[i{}]')}")
-                if sensitive:
-                    slope = f"past_slopes[i{{}} * {LANES} + l]"
-                    own = f"q{i}{time} * w[{self.row(f'd{time}', i)} + l]"
-                    lines.append(f"for l in range({LANES}):")
-                    lines.append(f"    w[{self.row(f'p{time}', i)} + l] = {_cubic(weights, slope)} - {own}")
-                    if self.uses_change:
-                        lines.append(f"    w[{self.row(f'q{time}', i)} + l] = {_cubic(changes, slope)}")
-        return lines
-
-    def _runge_kutta(self, *, sensitive: bool) -> list[str]:
-        lines: list[str] = []
-        for stage, stand in (("1", "0a"), ("2", "1m"), ("3", "2m"), ("4", "3b")):
-            lines += self.assigned(f"k{stage}_", "rates", stand)
-            if sensitive:
-                lines += self._stage_derivatives(stage, stand)
-            if stage in SHARES:
-                lines += [f"s{stage}_{i} = x{i} + {SHARES[stage]} * k{stage}_{i}" for i in range(self.states)]
-        total = "h / 6.0 * (k1_{0} + 2.0 * k2_{0} + 2.0 * k3_{0} + k4_{0})"
-        return [*lines, *(f"x{i} = x{i} + {total.format(i)}" for i in range(self.states))]
-
-    def _stage_derivatives(self, stage: str, stand: str) -> list[str]:
-        state = "x" if stage == "1" else "s"
-        if not self.states:
-            return []
-        lines = [*self._slopes_call("rates", stand), f"for l in range({LANES}):"]
-        lines += [f"    g{i} = {self._lane('rates', i, state, stand[1])}" for i in range(self.states)]
-        for i in range(self.states):
-            before = self.row("x" if stage == "1" else "a", i)
-            lines.append(f"    w[{self.row('a', i)} + l] = w[{before} + l] + {WEIGHTS[stage]} * g{i}")
-            if stage in SHARES:
-                lines.append(f"    w[{self.row('s', i)} + l] = w[{self.row('x', i)} + l] + {SHARES[stage]} * g{i}")
-        return lines
-
-    def _carry(self, *, sensitive: bool) -> list[str]:
-        lines = [f"p{i}a = p{i}b" for i in range(self.lates)]
-        lines += [f"q{i}a = q{i}b" for i in range(self.lates) if self.uses_change]
-        pairs = [(self.row("x", i), self.row("a", i)) for i in range(self.states)]
-        pairs += [(self.row("pa", i), self.row("pb", i)) for i in range(self.lates)]
-        pairs += [(self.row("qa", i), self.row("qb", i)) for i in range(self.lates) if self.uses_change]
-        if sensitive and pairs:
-            lines.append(f"for l in range({LANES}):")
-            lines += [f"    w[{new} + l] = w[{old} + l]" for new, old in pairs]
-        return [*lines, "k += 1"]
+        kernels = (_kernel(with_derivatives=False), _kernel(with_derivatives=True))
+        return "\n\n".join([HEADER, self.constants() + PREAMBLE, *self.functions(slopes=True), *kernels])
 
 
-def _cubic(weights: list[str], value: str) -> str:
-    """Return the sum of four nodes with their weights."""
-    return " + ".join(f"{weight} * {value.format(m)}" for m, weight in enumerate(weights))
-
-
-def _more(lines: list[str]) -> list[str]:
-    return [f"    {line}" for line in lines]
+def _kernel(*, with_derivatives: bool) -> str:
+    """Return the text of the kernel with the lines that derivatives need, or without."""
+    if not with_derivatives:
+        lines = (line for line in KERNEL.splitlines() if not line.endswith(ALONG))
+        return "\n".join(lines).replace("NAME", "advance").replace("ARGUMENTS", "")
+    text = KERNEL.replace(ALONG, "").replace("NAME", "advance_with_derivatives")
+    text = text.replace("ARGUMENTS", ", slopes, y_slopes")
+    for group in ("values", "lates", "outputs", "delays", "rates"):
+        text = text.replace(f" {group}(v)", f" {group}_along(v, w)")
+    return text

@@ -1,5 +1,6 @@
 """One simulation: its step, where it starts, its run through the compiled kernel."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -8,11 +9,11 @@ import numpy as np
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.errors import StructureError
 from shaftprint.simulation._built import Built
-from shaftprint.simulation._grid import Shift, Stencils, stencils
-from shaftprint.simulation._kernel_text import LANES
+from shaftprint.simulation._equation_text import LANES
+from shaftprint.simulation._grid import Shift, stencils
 from shaftprint.simulation._steady import Steady
 
-# A computer's period must be a whole number of steps; the step is shortened up to this many times for it.
+# The step is shortened up to this many times for signals that are fast, and as often for a computer's period.
 MOST_PARTS = 64
 
 
@@ -39,30 +40,48 @@ class March:
     ticks: IntArray
     """Steps in each computer's period."""
 
+    start: Steady
+    """Where the run starts."""
+    given: bool
+    """Whether the states at the start were given, so that they do not depend on parameters."""
+
     @classmethod
-    def planned(cls, built: Built, values: FloatArray, interval_s: float, longest_step_s: float, *, hold: bool) -> Self:
+    def planned(
+        cls,
+        built: Built,
+        values: FloatArray,
+        inputs: FloatArray,
+        interval_s: float,
+        longest_step_s: float,
+        *,
+        hold: bool,
+        initial: FloatArray | None,
+    ) -> Self:
         """Choose the step and find what stays the same during the run.
+
+        Parameters
+        ----------
+        inputs
+            Inputs at the start, shape (inputs,).
+        interval_s
+            Time between two samples [s].
+        initial
+            States at the start, shape (states,); steady running if not given.
 
         Raises
         ------
         StructureError
-            If a delay is negative, or a computer's period is no whole number of steps.
+            If a delay is negative, the states do not fit, there is no steady running, a time constant is too short,
+            or a computer's period is no whole number of steps.
         """
         _, delay_s, shift_s, period_s = built.constants(values, interval_s)
-        name = built.program.name
         if np.any(delay_s.real < 0.0):
             raise StructureError(
-                f"simulation of {name}: expected delays of at least 0 s, found {delay_s.real.min():g} s."
+                f"simulation of {built.program.name}: expected delays of at least 0 s, found {delay_s.real.min():g} s."
             )
-        least = int(np.ceil(interval_s / longest_step_s - 1e-9))
-        parts = least
-        while not _divides(interval_s / parts, period_s.real):
-            parts += 1
-            if parts > least * MOST_PARTS:
-                raise StructureError(
-                    f"simulation of {name}: expected a computer's period in a whole number of time steps, found "
-                    f"{period_s.real.min():g} s with samples every {interval_s:g} s; choose times that fit it."
-                )
+        start = starting(built, values, inputs, initial)
+        longest = built.steady.longest_step(values.real, inputs, start, delay_s.real)
+        parts = steps_between(built.program.name, interval_s, longest_step_s, longest, period_s.real)
         step_s = interval_s / parts
         return cls(
             built=built,
@@ -74,29 +93,17 @@ class March:
             delay_s=delay_s,
             shift_s=shift_s,
             ticks=np.maximum(np.rint(period_s.real / step_s), 1.0).astype(np.int64),
+            start=start,
+            given=initial is not None,
         )
 
-    def start(self, inputs: FloatArray, initial: FloatArray | None) -> Steady:
-        """Return where the run starts: steady running at the inputs, or the given states."""
-        count = len(self.built.program.states)
-        if initial is not None and initial.shape != (count,):
-            raise StructureError(
-                f"simulation of {self.built.program.name}: expected {count} states at the start "
-                f"({', '.join(self.built.program.states)}), found shape {initial.shape}."
-            )
-        return self.built.steady.solve(self.values.real, inputs, initial)
-
-    def run(
-        self, inputs: FloatArray, start: Steady, wanted: tuple[str, ...], *, given: bool
-    ) -> tuple[FloatArray, FloatArray]:
+    def run(self, inputs: FloatArray, wanted: tuple[str, ...]) -> tuple[FloatArray, FloatArray]:
         """Return the outputs, shape (samples, outputs), and their derivatives, shape (samples, outputs, wanted).
 
         Parameters
         ----------
         inputs
             Inputs at the samples, shape (samples, inputs).
-        given
-            Whether the states at the start were given, so that they do not depend on parameters.
         """
         moved = self.built.shifts_depend_on(wanted) or bool(np.any(self.shift_s != 0.0))
         every = 1 if moved else self.parts
@@ -106,28 +113,33 @@ class March:
         samples = inputs.shape[0]
         y = np.empty((nodes, count), dtype=np.result_type(self.constants, self.delay_s, float))
         if not wanted:
-            self.built.kernels.advance(*self._arguments(table, start, every), y)
+            self.built.kernels.advance(*self._arguments(table, every), y)
         slopes = np.empty((samples, count, len(wanted)))
         for first in range(0, len(wanted), LANES):
-            names = wanted[first : first + LANES]
+            lanes = [self._lane(name, inputs[0]) for name in wanted[first : first + LANES]]
             y_slopes = np.empty((nodes, count, LANES))
-            lanes = [self._lane(name, inputs[0], start, given=given) for name in names]
             rows = np.zeros((lanes[0].kernel.size, LANES))
-            rows[:, : len(names)] = np.stack([lane.kernel for lane in lanes], axis=1)
-            self.built.kernels.advance_with_derivatives(*self._arguments(table, start, every), y, rows, y_slopes)
-            for i in range(count):
-                own = y_slopes[:, i, : len(names)]
-                if moved:
-                    shift = self._shift(i, samples)
-                    own = shift.value(own, np.array([lane.outputs[i] for lane in lanes]))
-                    moves = np.array([lane.shifts[i] for lane in lanes]) / self.step_s
-                    if np.any(moves):
-                        own = own - shift.change(y[:, i], np.asarray(start.outputs[i]))[:, None] * moves
-                slopes[:, i, first : first + len(names)] = own
+            rows[:, : len(lanes)] = np.stack([lane.kernel for lane in lanes], axis=1)
+            arguments = self._arguments(table, every)
+            self.built.kernels.advance_with_derivatives(*arguments, y, rows.ravel(), y_slopes)
+            own = y_slopes[:, :, : len(lanes)]
+            slopes[:, :, first : first + len(lanes)] = self._shifted_slopes(y, own, lanes, samples) if moved else own
         if not moved:
             return y, slopes
-        values = [self._shift(i, samples).value(y[:, i], np.asarray(start.outputs[i])) for i in range(count)]
+        values = [self._shift(i, samples).value(y[:, i], np.asarray(self.start.outputs[i])) for i in range(count)]
         return np.stack(values, axis=1), slopes
+
+    def _shifted_slopes(self, y: FloatArray, slopes: FloatArray, lanes: "Sequence[Lane]", samples: int) -> FloatArray:
+        """Return the derivatives of shifted outputs, shape (samples, outputs, lanes), from those at all nodes."""
+        found = np.empty((samples, *slopes.shape[1:]))
+        for i in range(slopes.shape[1]):
+            shift = self._shift(i, samples)
+            own = shift.value(slopes[:, i], np.array([lane.outputs[i] for lane in lanes]))
+            moves = np.array([lane.shifts[i] for lane in lanes]) / self.step_s
+            if np.any(moves):
+                own = own - shift.change(y[:, i], np.asarray(self.start.outputs[i]))[:, None] * moves
+            found[:, i] = own
+        return found
 
     @property
     def _after(self) -> int:
@@ -135,9 +147,10 @@ class March:
         early = max(0.0, -float(self.shift_s.real.min(initial=0.0))) / (self.step_s * self.parts)
         return int(np.ceil(early)) + 1 if early > 0.0 else 0
 
-    def _arguments(self, table: FloatArray, start: Steady, every: int) -> tuple[object, ...]:
-        stencil = self._stencil
-        first = (start.states, start.pasts, start.samples, start.lates, start.drifts)
+    def _arguments(self, table: FloatArray, every: int) -> tuple[object, ...]:
+        stencil = stencils(self.delay_s, self.step_s, varies=bool(self.built.hoisted.varying))
+        start = self.start
+        first = (start.states, start.pasts, start.drifts, start.samples, self.constants, start.lates)
         kind = np.result_type(self.constants, self.delay_s, float)
         return (
             self.step_s,
@@ -145,30 +158,27 @@ class March:
             every,
             self.held,
             table,
-            self.constants.astype(kind),
             np.concatenate(first).astype(kind),
             stencil.first,
             stencil.weight.astype(kind),
             stencil.change.astype(kind),
+            stencil.bend.astype(kind),
             stencil.mask,
             self.ticks,
+            np.array(self.built.hoisted.varying, dtype=np.int64),
         )
-
-    @property
-    def _stencil(self) -> Stencils:
-        return stencils(self.delay_s, self.step_s, varies=bool(self.built.hoisted.varying))
 
     def _shift(self, output: int, samples: int) -> Shift:
         """Return the samples of an output."""
         return Shift(self.shift_s[output] / self.step_s, samples, self.parts)
 
-    def _lane(self, name: str, inputs: FloatArray, start: Steady, *, given: bool) -> "Lane":
+    def _lane(self, name: str, inputs: FloatArray) -> "Lane":
         """Return the derivatives to one parameter of all that the run starts from."""
         values = np.asarray(self.values.real, dtype=np.float64)
         constants, delays, shifts, _ = self.built.constant_slopes(values, self.step_s, name)
         place = self.built.program.parameters.index(name)
-        steady = self.built.steady.slopes(start, values, inputs, place, held=given)
-        parts = (steady.states, steady.pasts, steady.samples, steady.lates, steady.drifts, delays, constants)
+        steady = self.built.steady.slopes(self.start, values, inputs, place, held=self.given)
+        parts = (steady.states, steady.pasts, steady.drifts, steady.samples, constants, steady.lates, delays)
         return Lane(kernel=np.concatenate(parts), shifts=shifts, outputs=steady.outputs)
 
 
@@ -177,11 +187,58 @@ class Lane:
     """Derivatives to one parameter of all that a run starts from."""
 
     kernel: FloatArray
-    """Of states, pasts, samples, signals, drifts, delays and constants, one after the other."""
+    """Of states, pasts, drifts, samples, constants, signals and delays, one after the other."""
     shifts: FloatArray
     """Of the shifts of the outputs [s]."""
     outputs: FloatArray
     """Of the outputs before the start."""
+
+
+def starting(built: Built, values: FloatArray, inputs: FloatArray, initial: FloatArray | None) -> Steady:
+    """Return where a run starts: steady running at the inputs, or the given states."""
+    count = len(built.program.states)
+    if initial is not None and initial.shape != (count,):
+        raise StructureError(
+            f"simulation of {built.program.name}: expected {count} states at the start "
+            f"({', '.join(built.program.states)}), found shape {initial.shape}."
+        )
+    return built.steady.solve(values.real, inputs, initial)
+
+
+def steps_between(name: str, interval_s: float, longest_step_s: float, followed_s: float, periods_s: FloatArray) -> int:
+    """Return how many steps go between two samples.
+
+    Parameters
+    ----------
+    longest_step_s, followed_s
+        Upper bound of the step [s]: as asked for, and that which small signals can follow; for the latter the steps
+        are halved, so that a fit seldom meets a change of the step.
+    periods_s
+        Periods of computers [s]; 0 for every step.
+
+    Raises
+    ------
+    StructureError
+        If that takes more than ``MOST_PARTS`` times as many steps as asked for.
+    """
+    least = parts = int(np.ceil(interval_s / longest_step_s - 1e-9))
+    while interval_s / parts > followed_s:
+        parts *= 2
+        if parts > least * MOST_PARTS:
+            raise StructureError(
+                f"simulation of {name}: expected signals that steps of {longest_step_s / MOST_PARTS:.2g} s can follow, "
+                f"found some that need {followed_s:.2g} s; hold a time constant that short at zero, or ask for a "
+                "shorter longest_step_s."
+            )
+    most = parts * MOST_PARTS
+    while not _divides(interval_s / parts, periods_s):
+        parts += 1
+        if parts > most:
+            raise StructureError(
+                f"simulation of {name}: expected a computer's period in a whole number of time steps, found "
+                f"{periods_s.min():g} s with samples every {interval_s:g} s; choose times that fit it."
+            )
+    return parts
 
 
 def _divides(step_s: float, periods_s: FloatArray) -> bool:

@@ -1,10 +1,11 @@
 """Formulas as plain functions of a few numbers, for what is found once a simulation."""
 
+import math
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
 from shaftprint.models import Quantity
-from shaftprint.simulation._compile import module_of
+from shaftprint.simulation._compile import plain_module_of
 from shaftprint.simulation._text import statements
 
 Numbers: TypeAlias = Sequence[float]
@@ -62,9 +63,19 @@ def table(a, places, values):
 
 
 def plain_function(formulas: Sequence[Quantity]) -> Plain:
-    """Return a function of parameters, states, pasts, samples, inputs and step that gives the formulas."""
+    """Return a function of parameters, states, pasts, samples, inputs and step that gives the formulas.
+
+    All are not numbers where one divides by zero.
+    """
     lines, found = statements(formulas, LEAVES)
     body = "".join(f"    {line}\n" for line in lines)
     text = f"{HEADER}\n\ndef formulas(p, x, q, z, u, step):\n{body}    return [{', '.join(found)}]\n"
-    made: Plain = module_of(text).formulas
-    return made
+    made: Plain = plain_module_of(text).formulas
+
+    def guarded(p: Numbers, x: Numbers, q: Numbers, z: Numbers, u: Numbers, step: float) -> list[float]:
+        try:
+            return made(p, x, q, z, u, step)
+        except (ZeroDivisionError, OverflowError):
+            return [math.nan] * len(found)
+
+    return guarded

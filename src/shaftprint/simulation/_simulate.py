@@ -55,15 +55,16 @@ def simulate(
     hold
         Whether inputs keep each value until the next time, as those of a computer do, instead of being straight.
     longest_step_s
-        Upper bound of the time step [s]; the step divides the interval of the times.
+        Upper bound of the time step [s]; the step divides the interval of the times, and is shorter where the structure
+        has faster small signals than that can follow.
     initial
         States at the start, shape (states,), see ``equilibrium``; steady running at the first inputs if not given.
 
     Raises
     ------
     StructureError
-        If times are not uniform, inputs are missing or of another length, a delay is negative, or there is no steady
-        running to start from.
+        If times are not uniform, inputs are missing or of another length, values or a formula of them are not finite,
+        a delay is negative, a time constant is too short to be followed, or there is no steady running to start from.
     """
     vector = np.asarray(values)
     expect_values(structure, vector, wanted)
@@ -72,9 +73,9 @@ def simulate(
     table = input_table(structure, inputs, time.size)
     real = np.asarray(vector.real, dtype=np.float64)
     built = build(structure, held_zeros(structure, real, tuple(wanted)))
-    march = March.planned(built, vector, interval, longest_step_s, hold=hold)
-    start = march.start(table[0], None if initial is None else np.asarray(initial, dtype=np.float64))
-    outputs, slopes = march.run(table, start, tuple(wanted), given=initial is not None)
+    states = None if initial is None else np.asarray(initial, dtype=np.float64)
+    march = March.planned(built, vector, table[0], interval, longest_step_s, hold=hold, initial=states)
+    outputs, slopes = march.run(table, tuple(wanted))
     names = built.program.outputs
     return Trace(
         time_s=frozen_float(time),
@@ -90,6 +91,9 @@ def expect_values(structure: Structure, values: FloatArray, wanted: Sequence[str
             f"structure {structure.name}: expected {len(structure.parameters)} parameter values "
             f"({', '.join(structure.names)}), found an array of shape {values.shape}."
         )
+    if not np.all(np.isfinite(values)):
+        wrong = [name for name, value in zip(structure.names, values, strict=True) if not np.isfinite(value)]
+        raise StructureError(f"structure {structure.name}: expected finite values, found none of {', '.join(wrong)}.")
     unknown = [name for name in wanted if name not in structure.names]
     if unknown:
         raise StructureError(

@@ -72,6 +72,8 @@ def _run(
     built: Built, values: FloatArray, time: FloatArray, table: FloatArray, *, hold: bool, longest_step_s: float
 ) -> FloatArray:
     constants, delay_s, shift_s, _ = built.constants(values, longest_step_s)
+    start = built.steady.solve(values, table[0], None)
+    longest_step_s = min(longest_step_s, built.steady.longest_step(values, table[0], start, delay_s))
     wanted = time[:, None] - shift_s[None, :]
     # one step more, so that the last sample is the start of a step too
     stop = max(float(time[-1]), float(wanted.max())) + longest_step_s
@@ -82,7 +84,6 @@ def _run(
     shortest = min(longest_step_s, float(positive.min()) / PARTS) if positive.size else longest_step_s
     grid = ExactGrid.between(keys, _nearest(keys, jumps), shortest)
     first, weight, change = grid.stencils(delay_s)
-    start = built.steady.solve(values, table[0], None)
     u, rise = _stage_inputs(grid, time, table, hold=hold)
     spacing = max(float(delay_s.max(initial=0.0)), 1e-3) * np.arange(-PRE, 0.0)
     before = start.lates[None, :] + spacing[:, None] * start.drifts[None, :]

@@ -13,6 +13,12 @@ LARGEST_STEPS = 80
 HALVINGS = 30
 # In how many steps inputs are led from rest to where they are, until one number is enough.
 LEADING_STEPS = (8, 64)
+# How far small signals may move in a step: those that swing by this angle [rad], any by this times their rate.
+MOST_ANGLE = 0.3
+MOST_DECAY = 1.0
+MOST_EXTRAPOLATED = 0.1
+# Small signals that are slower need no shorter step [1/s].
+SLOWEST = 1e-6
 # How far from still the largest rate may be left, beside the sizes of what it is made of.
 TOLERANCE = 1e-11
 
@@ -53,6 +59,8 @@ class SteadyEquations:
         self._formulas = formulas
         self._left = plain_function(formulas)
         self._matrix = plain_function([slope for leaf in self._unknown for slope in derivatives(formulas, leaf)])
+        states = [Quantity("state", place=place) for place in range(len(program.states))]
+        self._own = plain_function([slope for leaf in states for slope in derivatives(program.rates, leaf)])
         lates = [late.signal for late in program.pasts]
         self._shown = [*lates, *(late.drift for late in program.pasts), *program.signals]
         self._show = plain_function(self._shown)
@@ -150,7 +158,34 @@ class SteadyEquations:
     ) -> FloatArray:
         with np.errstate(all="ignore"):
             found = function(values.tolist(), states.tolist(), pasts.tolist(), samples.tolist(), inputs.tolist(), 1.0)
-        return np.array(found, dtype=np.float64)
+        return np.asarray(found, dtype=np.float64)
+
+    def longest_step(self, values: FloatArray, inputs: FloatArray, steady: Steady, delay_s: FloatArray) -> float:
+        """Return the longest step that still follows small signals about steady running [s].
+
+        The fastest of them must not move by more than ``MOST_DECAY``, and the fastest that swings not by more than
+        ``MOST_ANGLE``: with late signals that stand still, as for short times they do, and with late signals that are
+        prompt, as for long times they are. Runge and Kutta's rule is stable up to 2.8. Where a delay is shorter than
+        the step, late signals are extrapolated, which loops bear up to about ``MOST_EXTRAPOLATED`` only.
+
+        Parameters
+        ----------
+        delay_s
+            Delays [s], shape (pasts,).
+        """
+        given = (values, inputs, steady.states, steady.pasts, steady.samples)
+        count, still, states = len(self._unknown), len(self._still), len(self.program.states)
+        matrix = self._call(self._matrix, *given).reshape(count, count).T
+        own = self._call(self._own, *given).reshape(states, states)
+        if not still or not (np.all(np.isfinite(matrix)) and np.all(np.isfinite(own))):
+            return np.inf
+        through = np.linalg.lstsq(matrix[still:, still:], matrix[still:, :still], rcond=None)[0]
+        prompt = np.linalg.eigvals(matrix[:still, :still] - matrix[:still, still:] @ through)
+        rates = np.concatenate([np.linalg.eigvals(own), prompt])
+        step = 1.0 / max(np.abs(rates).max() / MOST_DECAY, np.abs(rates.imag).max() / MOST_ANGLE, SLOWEST)
+        shortest = float(delay_s.min(initial=np.inf))
+        extrapolated = MOST_EXTRAPOLATED / max(np.abs(prompt).max(), SLOWEST)
+        return min(step, max(shortest, extrapolated))
 
     def _at(
         self, function: Plain, values: FloatArray, inputs: FloatArray, at: FloatArray, whole: FloatArray
