@@ -6,7 +6,17 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import StructureError
-from shaftprint.models import Delay, Gain, Integrator, Parameter, Sensitivity, Structure, limited, structure
+from shaftprint.models import (
+    Delay,
+    FirstOrderLag,
+    Gain,
+    Integrator,
+    Parameter,
+    Sensitivity,
+    Structure,
+    limited,
+    structure,
+)
 from shaftprint.simulation import simulate, simulate_exactly
 
 K = Parameter("k", "1/s", 0.0, 5.0, 1.0, "gain")
@@ -88,3 +98,52 @@ def test_computers_are_refused():
     ship = limited("rate")
     with pytest.raises(StructureError, match="constant delays and no computer's period"):
         simulate_exactly(ship, ship.vector({}), TIME, {"n_set": np.zeros_like(TIME)})
+
+
+def test_jumps_that_arrive_by_two_ways_at_once_are_one():
+    early, later, both = (
+        Parameter(name, "s", 0.0, 3.0, value, "delay") for name, value in (("a", 0.1), ("b", 0.2), ("c", 0.3))
+    )
+    # 0.1 + 0.2 and 0.3 differ by rounding
+    twice = Gain(ONE) * Delay(early) * Delay(later)
+    lagging = FirstOrderLag(Parameter("T", "s", 0.0, 3.0, 0.2, "lag"))
+    model = Structure(
+        name="two ways",
+        title="two ways",
+        input="u",
+        outputs={"y": twice - Gain(ONE) * Delay(both) + lagging * Delay(early) * Delay(later)},
+    )
+    for start in (0.0, 1e5):
+        found = simulate_exactly(
+            model, model.vector({}), TIME + start, {"u": np.where(TIME >= 1.0, 1.0, 0.0)}, hold=True
+        )
+        late = np.maximum(TIME - 1.3, 0.0)
+        np.testing.assert_allclose(found.outputs["y"], 1.0 - np.exp(-late / 0.2), atol=1e-8)
+
+
+@pytest.mark.parametrize("late_s", [-0.0237, 0.0237])
+def test_outputs_that_are_early_or_late_are_those_of_the_lag(late_s):
+    late = Parameter("t", "s", -1.0, 1.0, late_s, "error of a latency")
+    lag = FirstOrderLag(Parameter("T", "s", 0.0, 3.0, 0.2, "lag"))
+    model = Structure(name="lag", title="lag", input="u", outputs={"y": lag * Delay(late)})
+    found = simulate_exactly(model, model.vector({}), TIME, {"u": np.where(TIME >= 1.0, 3.0, 2.0)}, hold=True)
+    since = np.maximum(TIME - late_s - 1.0, 0.0)
+    np.testing.assert_allclose(found.outputs["y"], 3.0 - np.exp(-since / 0.2), atol=1e-8)
+
+
+def test_a_long_wave_of_corners_through_unequal_delays():
+    model = structure("GAUGE-CLOSED").held_at(T_average=0.0507, t_pickup=0.0531, T_hold=0.0113, T_filter=0.02)
+    values = model.vector({"t_d": 0.1037, "t_sp": 0.0518, "t_gauge": 0.004})
+    time = np.arange(0.0, 20.0, 0.01)
+    inputs = {"n_set": 0.1 * np.sin(3.0 * time)}
+    slow, fast = simulate_exactly(model, values, time, inputs), simulate(model, values, time, inputs)
+    for output in ("n", "M_s"):
+        assert np.abs(slow.outputs[output] - fast.outputs[output]).max() < 2e-5
+
+
+def test_corners_without_end_are_refused():
+    model = delayed_feedback()
+    time = np.arange(0.0, 1500.0, 0.01)
+    values = model.vector({"k": 1.0, "d_in": 0.1234567, "d_out": 0.0234567})
+    with pytest.raises(StructureError, match="shorten the record, or use simulate"):
+        simulate_exactly(model, values, time, {"u": np.sin(time)})

@@ -30,7 +30,10 @@ LAG = Structure(name="lag", title="lag", input="u", outputs={"y": FirstOrderLag(
 
 def after_a_rise(t, time_constant):
     """Return a lag's answer to the straight rise from 0 to 1 within the sample before 0.5 s."""
-    ramp = lambda t: np.where(t > 0.0, t - time_constant * (1.0 - np.exp(-np.maximum(t, 0.0) / time_constant)), 0.0)
+
+    def ramp(t):
+        return np.where(t > 0.0, t - time_constant * (1.0 - np.exp(-np.maximum(t, 0.0) / time_constant)), 0.0)
+
     return (ramp(t - 0.49) - ramp(t - 0.5)) / 0.01
 
 
@@ -51,7 +54,7 @@ def test_a_lag_of_nothing_is_left_out_while_it_is_held():
 
 @pytest.mark.parametrize("wanted", [(), ("T",)])
 def test_a_lag_that_becomes_nothing_in_a_fit_is_refused(wanted):
-    with pytest.raises(StructureError, match="division by zero .* at zero are T"):
+    with pytest.raises(StructureError, match=r"division by zero .* at zero are T"):
         simulate(LAG, [0.0], TIME, {"u": STEP}, wanted=wanted)
 
 

@@ -1,18 +1,20 @@
 """A grid of nodes with two of them at every time at which something jumps."""
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Self
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray, IntArray
+from shaftprint.errors import StructureError
 from shaftprint.simulation._grid import NODES
 
 # Nodes before the start, on the straight line that late signals were on.
 PRE = 4
 # Delays one after the other behind which a jump is followed: each passes a state that takes an order off it.
 PASSAGES = 5
+# So many fit into the memory of a small computer, at a few hundred bytes each.
+MOST_JUMPS = 1_000_000
 # Jumps closer than this share of the shortest step are one.
 CLOSE = 1e-9
 
@@ -37,69 +39,60 @@ class ExactGrid:
         jumps_s
             Those among them at which something jumps.
         """
-        least = NODES - 1
-        edges = np.concatenate([keys_s[:1], jumps_s[(jumps_s > keys_s[0]) & (jumps_s < keys_s[-1])], keys_s[-1:]])
-        times, numbers = [], []
-        for number, (begin, end) in enumerate(pairwise(edges)):
-            inner = keys_s[(keys_s > begin) & (keys_s < end)]
-            points = np.concatenate([[begin], inner, [end]])
-            # enough nodes for a cubic in every stretch, however short
-            longest = min(longest_step_s, (end - begin) / least)
-            counts = np.ceil(np.diff(points) / longest - 1e-9).astype(int)
-            parts = [a + (b - a) * np.arange(n) / n for a, b, n in zip(points[:-1], points[1:], counts, strict=True)]
-            times.append(np.concatenate([*parts, [end]]))
-            numbers.append(np.full(times[-1].size, number))
-        return cls(time_s=np.concatenate(times), stretch=np.concatenate(numbers))
+        inside = jumps_s[(jumps_s > keys_s[0]) & (jumps_s < keys_s[-1])]
+        edges = np.concatenate([keys_s[:1], inside, keys_s[-1:]])
+        stretch = np.searchsorted(inside, keys_s[:-1], side="right")
+        gaps = np.diff(keys_s)
+        # enough nodes for a cubic in every stretch, however short
+        longest = np.minimum(longest_step_s, np.diff(edges)[stretch] / (NODES - 1))
+        counts = np.ceil(gaps / longest - 1e-9).astype(np.int64)
+        number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+        times = np.repeat(keys_s[:-1], counts) + np.repeat(gaps / counts, counts) * number
+        stretches = np.repeat(stretch, counts)
+        # each stretch ends with a node of its own, at the time at which the next begins
+        last = np.searchsorted(stretches, np.arange(edges.size - 1), side="right")
+        return cls(
+            time_s=np.insert(times, last, edges[1:]),
+            stretch=np.insert(stretches, last, np.arange(edges.size - 1)),
+        )
 
     @property
     def step_s(self) -> FloatArray:
         """Length of each step [s], zero between the two nodes of a jump, shape (nodes - 1,)."""
         return np.diff(self.time_s)
 
-    def stencils(self, delay_s: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
-        """Return the nodes that give each late signal at start, middle and end of each step, and their weights.
+    def with_past(self, delay_s: FloatArray) -> FloatArray:
+        """Return the times of the nodes behind ``PRE`` more ahead of the start, the longest delay apart [s]."""
+        spacing = max(float(delay_s.max(initial=0.0)), 1e-3)
+        return np.concatenate([self.time_s[0] + spacing * np.arange(-PRE, 0.0), self.time_s])
 
-        Four nodes of one stretch, none later than the node of the step. ``PRE`` nodes stand before the start, at equal
-        distances of the longest delay. At a jump the start of a step takes what is after it, its end what was before.
+    def first_nodes(self, delay_s: FloatArray) -> IntArray:
+        """Return the first of four nodes that give each late signal at start, middle and end of each step.
+
+        All of one stretch, none later than the node of the step. At a jump the start of a step takes what is after it,
+        its end what was before.
 
         Returns
         -------
-            First node, counted from the first of those before the start, shape (steps, delays, 3); weights of the
-            values and of how fast they change [1/s], shape (steps, delays, 3, 4).
+            Node, counted from the first of ``with_past``, shape (steps, delays, 3).
         """
-        step = self.step_s
-        steps = step.size
-        spacing = max(float(delay_s.max(initial=0.0)), 1e-3)
-        early = self.time_s[0] + spacing * np.arange(-PRE, 0.0)
-        times = np.concatenate([early, self.time_s])
+        step, times = self.step_s, self.with_past(delay_s)
         stretch = np.concatenate([np.full(PRE, -1), self.stretch])
-        begins = np.searchsorted(stretch, np.arange(-1, self.stretch[-1] + 1))
-        ends = np.searchsorted(stretch, np.arange(-1, self.stretch[-1] + 1), side="right") - 1
-        now = np.arange(steps) + PRE
-        place = self.time_s[:-1, None, None] + step[:, None, None] * np.array([0.0, 0.5, 1.0]) - delay_s[None, :, None]
-        tolerance = CLOSE * max(float(step[step > 0.0].min()), 1e-12)
-        left, right = place - tolerance, place + tolerance
-        # an empty step stands on the left of its jump; every other starts on the right and ends on the left
-        after = np.array([True, True, False])[None, None, :] & (step > 0.0)[:, None, None]
-        node = np.where(after, np.searchsorted(times, right) - 1, np.searchsorted(times, left) - 1)
-        node = np.clip(node, 0, None)
-        part = stretch[node] + 1
-        last = np.minimum(ends[part], now[:, None, None])
-        first = np.clip(node - 1, begins[part], np.maximum(last - NODES + 1, begins[part]))
-        weight, change = _weights(times[first[..., None] + np.arange(NODES)], place)
-        return first, weight, change
-
-
-def _weights(nodes: FloatArray, place: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return Lagrange's weights of four nodes, shape (..., 4), at a place, and their slopes."""
-    weight, slope = np.empty_like(nodes), np.empty_like(nodes)
-    for m in range(NODES):
-        others = [other for other in range(NODES) if other != m]
-        scale = np.prod([nodes[..., m] - nodes[..., other] for other in others], axis=0)
-        a, b, c = (place - nodes[..., other] for other in others)
-        weight[..., m] = a * b * c / scale
-        slope[..., m] = (a * b + a * c + b * c) / scale
-    return weight, slope
+        numbers = np.arange(-1, self.stretch[-1] + 1)
+        begins, ends = np.searchsorted(stretch, numbers), np.searchsorted(stretch, numbers, side="right") - 1
+        now = np.arange(step.size) + PRE
+        tolerance = max(CLOSE * float(step[step > 0.0].min()), 4.0 * np.spacing(np.abs(times).max()))
+        found = np.empty((step.size, delay_s.size, 3), dtype=np.int64)
+        for j, delay in enumerate(delay_s):
+            for m, share in enumerate((0.0, 0.5, 1.0)):
+                place = self.time_s[:-1] + share * step - delay
+                # an empty step stands on the left of its jump; every other starts on the right and ends on the left
+                after = (step > 0.0) & (share < 1.0)
+                node = np.clip(np.searchsorted(times, place + np.where(after, tolerance, -tolerance)) - 1, 0, None)
+                part = stretch[node] + 1
+                last = np.minimum(ends[part], now)
+                found[:, j, m] = np.clip(node - 1, begins[part], np.maximum(last - NODES + 1, begins[part]))
+        return found
 
 
 def jump_times(jumps_s: FloatArray, delay_s: FloatArray, stop_s: float) -> FloatArray:
@@ -111,11 +104,21 @@ def jump_times(jumps_s: FloatArray, delay_s: FloatArray, stop_s: float) -> Float
         Times at which an input jumps or turns a corner [s].
     delay_s
         Delays [s]; one after the other in any order.
+
+    Raises
+    ------
+    StructureError
+        If there are more than can be followed.
     """
     found = [jumps_s]
     for _ in range(PASSAGES):
         late = (found[-1][:, None] + delay_s[delay_s > 0.0][None, :]).ravel()
         found.append(np.unique(late[late < stop_s]))
+        if sum(times.size for times in found) > MOST_JUMPS:
+            raise StructureError(
+                f"exact steps: expected inputs whose jumps and corners arrive at up to {MOST_JUMPS} times, found more; "
+                "shorten the record, or use simulate."
+            )
     times = np.unique(np.concatenate(found))
     # what arrives by two ways at one time differs by rounding
     distinct = np.concatenate([[True], np.diff(times) > CLOSE * max(1.0, abs(stop_s))])

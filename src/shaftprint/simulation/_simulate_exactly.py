@@ -83,12 +83,11 @@ def _run(
     positive = delay_s[delay_s > 0.0]
     shortest = min(longest_step_s, float(positive.min()) / PARTS) if positive.size else longest_step_s
     grid = ExactGrid.between(keys, _nearest(keys, jumps), shortest)
-    first, weight, change = grid.stencils(delay_s)
+    times = grid.with_past(delay_s)
     u, rise = _stage_inputs(grid, time, table, hold=hold)
-    spacing = max(float(delay_s.max(initial=0.0)), 1e-3) * np.arange(-PRE, 0.0)
-    before = start.lates[None, :] + spacing[:, None] * start.drifts[None, :]
+    before = start.lates[None, :] + (times[:PRE, None] - times[PRE]) * start.drifts[None, :]
     y = np.empty((grid.step_s.size, len(built.program.signals)))
-    built.exact_kernels.advance(grid.step_s, u, rise, constants, start.states, before, first, weight, change, y)
+    built.exact_kernels.advance(times, u, rise, constants, start.states, before, delay_s, grid.first_nodes(delay_s), y)
     # the last node that stands at a time is the one after its jump
     node = np.searchsorted(grid.time_s, wanted + 1e-12 * max(1.0, abs(stop)), side="right") - 1
     found = np.take_along_axis(y, np.clip(node, 0, y.shape[0] - 1), axis=0)

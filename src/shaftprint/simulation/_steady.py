@@ -185,7 +185,7 @@ class SteadyEquations:
         step = 1.0 / max(np.abs(rates).max() / MOST_DECAY, np.abs(rates.imag).max() / MOST_ANGLE, SLOWEST)
         shortest = float(delay_s.min(initial=np.inf))
         extrapolated = MOST_EXTRAPOLATED / max(np.abs(prompt).max(), SLOWEST)
-        return min(step, max(shortest, extrapolated))
+        return float(min(step, max(shortest, extrapolated)))
 
     def _at(
         self, function: Plain, values: FloatArray, inputs: FloatArray, at: FloatArray, whole: FloatArray

@@ -1,0 +1,89 @@
+"""Kernels on disk: made once, by whoever comes first, wherever there is room."""
+
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+
+from shaftprint.errors import StructureError
+from shaftprint.models import Delay, FirstOrderLag, Parameter, Structure
+from shaftprint.simulation import _compile as compiling
+from shaftprint.simulation import simulate
+
+TIME = np.arange(0.0, 2.0, 0.01)
+SCRIPT = """
+import numpy as np
+from shaftprint.models import FirstOrderLag, Parameter, Structure
+from shaftprint.simulation import simulate
+lag = FirstOrderLag(Parameter("T", "s", 0.1, 1.0, 0.4, "lag"))
+model = Structure(name="lag", title="lag", input="u", outputs={"y": lag})
+time = np.arange(0.0, 1.0, 0.01)
+print(simulate(model, [0.4], time, {"u": time}).outputs["y"][-1])
+"""
+
+
+def a_lag(name):
+    """Return a structure whose equations no other test has."""
+    expression = FirstOrderLag(Parameter("T", "s", 0.1, 5.0, 0.8, "lag")) * Delay(
+        Parameter("d", "s", 0, 1, 0.1, "late")
+    )
+    return Structure(name=name, title="lag", input="u", outputs={"y": expression * float(1 + len(name))})
+
+
+def test_two_processes_may_begin_at_once_in_an_empty_folder(tmp_path):
+    environment = {**os.environ, "SHAFTPRINT_CACHE": str(tmp_path / "new")}
+    both = [
+        subprocess.Popen([sys.executable, "-c", SCRIPT], env=environment, stdout=subprocess.PIPE, text=True)
+        for _ in range(2)
+    ]
+    answers = [process.communicate()[0] for process in both]
+    # a ramp behind a lag: t - T (1 - exp(-t / T)) at 0.99 s
+    for process, answer in zip(both, answers, strict=True):
+        assert process.returncode == 0
+        assert float(answer) == pytest.approx(0.99 - 0.4 * (1.0 - np.exp(-0.99 / 0.4)), abs=1e-8)
+    assert not list((tmp_path / "new").glob("*.part"))
+    assert list((tmp_path / "new").glob("__pycache__/*.nbi"))
+
+
+def test_threads_may_begin_at_once():
+    model = a_lag("threads")
+    with ThreadPoolExecutor(4) as pool:
+        traces = list(pool.map(lambda _: simulate(model, [0.8, 0.1], TIME, {"u": TIME}, wanted=("T",)), range(4)))
+    for trace in traces[1:]:
+        np.testing.assert_array_equal(trace.outputs["y"], traces[0].outputs["y"])
+        np.testing.assert_array_equal(trace.derivatives["y"], traces[0].derivatives["y"])
+
+
+def test_a_folder_that_cannot_be_written_to_is_left_for_another(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("no folder")
+    monkeypatch.setenv("SHAFTPRINT_CACHE", str(tmp_path / "file" / "kernels"))
+    monkeypatch.setattr(compiling.tempfile, "gettempdir", lambda: str(tmp_path / "instead"))
+    found = simulate(a_lag("elsewhere"), [0.8, 0.1], TIME, {"u": np.ones_like(TIME)})
+    np.testing.assert_allclose(found.outputs["y"], 10.0, atol=1e-12)
+    assert list((tmp_path / "instead" / "shaftprint").glob("*.py"))
+
+
+def test_no_folder_at_all_is_said(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("no folder")
+    monkeypatch.setenv("SHAFTPRINT_CACHE", str(tmp_path / "file" / "kernels"))
+    monkeypatch.setattr(compiling.tempfile, "gettempdir", lambda: str(tmp_path / "file"))
+    with pytest.raises(StructureError, match="set SHAFTPRINT_CACHE to one"):
+        simulate(a_lag("nowhere at all"), [0.8, 0.1], TIME, {"u": TIME})
+
+
+@pytest.mark.parametrize(
+    ("platform", "variable", "end"),
+    [
+        ("linux", "XDG_CACHE_HOME", "shaftprint"),
+        ("win32", "LOCALAPPDATA", "shaftprint"),
+        ("darwin", "HOME", "Library/Caches/shaftprint"),
+    ],
+)
+def test_the_folder_is_where_the_system_keeps_such_things(tmp_path, monkeypatch, platform, variable, end):
+    monkeypatch.delenv("SHAFTPRINT_CACHE", raising=False)
+    monkeypatch.setenv(variable, str(tmp_path))
+    monkeypatch.setattr(compiling.sys, "platform", platform)
+    assert compiling.cache_folder() == tmp_path / end
