@@ -14,8 +14,12 @@ from shaftprint.models import (
     PIGovernor,
     Structure,
     TorqueBalance,
+    choose,
     feedback,
+    maximum,
+    minimum,
     structure,
+    table,
 )
 from shaftprint.simulation import simulate
 
@@ -114,6 +118,34 @@ def test_derivatives_are_those_of_a_complex_step(name):
             exact = np.imag(stepped.outputs[output]) / 1e-30
             worst = np.abs(found.derivatives[output][place] - exact).max()
             assert worst <= 1e-9 * max(np.abs(exact).max(), 1e-3)
+
+
+def test_derivatives_of_every_function_hold_also_where_the_start_moves():
+    def equations(flow, u, p):
+        x = flow.state("x")
+        k = p.k_1
+        curve = table(k * u, ((-1.0, 0.0), (0.0, 1.0), (2.0, 0.0)))
+        flow.rate(x, curve + np.sin(k * u) + np.cos(k * x) + np.tanh(k * u) - np.sqrt(1.0 + k * x * x) - x**3 / k - x)
+        picked = choose(u, k * x, k * x, np.exp(k * u)) + abs(k * x) + maximum(k * x, u) - minimum(k * u, x)
+        return {"y": picked + np.log(2.0 + k * x * x) + (1.0 + k * u * u) ** 1.5}
+
+    model = of(Diagram("functions", "u", ("y",), equations, (K_1,)).port("y"))
+    found = simulate(model, [0.7], TIME, {"u": PULSE}, wanted=("k_1",))
+    above, below = (simulate(model, [value], TIME, {"u": PULSE}).outputs["y"] for value in (0.7001, 0.6999))
+    # corners of the functions are met one step earlier or later
+    wrong = np.abs(found.derivatives["y"][0] - (above - below) / 2e-4) > 1e-5
+    assert np.abs(found.derivatives["y"][0]).max() > 1.0
+    assert wrong.mean() < 0.01
+
+
+def test_a_varying_delay_beyond_what_is_kept_stays_at_the_oldest_node():
+    def equations(flow, u, p):
+        return {"y": flow.delayed(u, p.d_1 * (1.0 + 99.0 * u))}
+
+    model = of(Diagram("late", "u", ("y",), equations, (D_1,)).port("y"))
+    found = simulate(model, [0.02], TIME, {"u": np.clip(TIME - 1.0, 0.0, 1.0)})
+    assert np.all(np.isfinite(found.outputs["y"]))
+    assert np.abs(found.outputs["y"]).max() < 1.1
 
 
 def test_a_second_change_of_the_input_is_refused():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import StructureError
-from shaftprint.models import limited, structure
+from shaftprint.models import Diagram, Parameter, Structure, choose, limited, maximum, minimum, structure, table
 from shaftprint.simulation import equilibrium, linearise
 
 TRUTH = {
@@ -77,3 +77,73 @@ def test_missing_input_is_named():
     ship = limited()
     with pytest.raises(StructureError, match=r"expected the inputs n_set, found speed"):
         equilibrium(ship, ship.vector(TRUTH), {"speed": 0.1})
+
+
+def test_steady_running_below_the_smoke_limit_is_found_by_leading_the_speed_down():
+    ship = limited("torque", "smoke")
+    found = equilibrium(ship, ship.vector({}), {"n_set": -0.5})
+    assert found.outputs["n"] == pytest.approx(-0.5, abs=1e-10)
+    assert found.outputs["M_s"] == pytest.approx(-0.75, abs=1e-10)
+
+
+def test_no_steady_running_is_said():
+    # an integral of the error has no rest while the error has none
+    open_loop = structure("OL3")
+    with pytest.raises(StructureError, match="no steady running was found"):
+        equilibrium(open_loop, open_loop.vector({}), {"e": 0.1})
+
+
+def test_slopes_of_every_function_at_another_point_by_hand():
+    gain = Parameter("k", "-", 0.1, 5.0, 2.0, "gain")
+    corners = ((-1.0, 0.0), (0.0, 1.0), (2.0, 0.0))
+    slopes = {
+        "table": (lambda u, k: table(u, corners), -0.5),
+        "beyond": (lambda u, k: table(u + 5.0, corners), 0.0),
+        "minimum": (lambda u, k: minimum(u, k * u), 1.0),
+        "maximum": (lambda u, k: maximum(u, k * u), 2.0),
+        "choose": (lambda u, k: choose(u, 0.0, u, k * u * u), 1.2),
+        "absolute": (lambda u, k: abs(-u), 1.0),
+        "power": (lambda u, k: u**3, 0.27),
+        "nothing": (lambda u, k: k * u**0 + 0.0 * u, 0.0),
+        "sqrt": (lambda u, k: np.sqrt(k * u), 1.0 / np.sqrt(0.6)),
+        "exp": (lambda u, k: np.exp(k * u), 2.0 * np.exp(0.6)),
+        "log": (lambda u, k: np.log(k * u), 1.0 / 0.3),
+        "sin": (lambda u, k: np.sin(k * u), 2.0 * np.cos(0.6)),
+        "cos": (lambda u, k: np.cos(k * u), -2.0 * np.sin(0.6)),
+        "tanh": (lambda u, k: np.tanh(k * u), 2.0 / np.cosh(0.6) ** 2),
+        "products": (lambda u, k: table(u, corners) * abs(u) * choose(u, k, u, k), 0.51 - 0.045),
+        "quotient": (lambda u, k: +u / (1.0 + k * u), 1.0 / 1.6**2),
+    }
+
+    def equations(flow, u, p):
+        return {name: function(u, p.k) for name, (function, _) in slopes.items()}
+
+    diagram = Diagram("functions", "u", tuple(slopes), equations, (gain,))
+    model = Structure(name="functions", title="functions", input="u", outputs=dict(diagram.ports()))
+    found = linearise(model, [2.0], {"u": 0.3}).response([0.7j])[:, 0]
+    np.testing.assert_allclose(found, [slope for _, slope in slopes.values()], atol=1e-12)
+
+
+def test_gradients_of_the_limited_loop_are_those_of_the_linear_one():
+    ship, linear = limited("torque", "rate"), structure("GAUGE-CLOSED")
+    names = ("tau_up", "tau_dn", "K_p", "K_i", "t_d", "omega_n", "zeta", "t_sp", "k_q", "g", "v")
+    found, slopes = ship.gradient(ship.vector(TRUTH), 1j * OMEGA, names)
+    expected, expected_slopes = linear.gradient(linear.vector(TRUTH), 1j * OMEGA, names)
+    np.testing.assert_allclose(found, expected, rtol=1e-10)
+    np.testing.assert_allclose(slopes, expected_slopes, rtol=1e-8, atol=1e-10)
+
+
+def test_a_computer_holds_for_its_period_also_in_the_gradient():
+    period = Parameter("T", "s", 0.01, 1.0, 0.2, "period of a computer")
+    diagram = Diagram("held", "u", ("y",), lambda flow, u, p: {"y": flow.sampled(u, p.T)}, (period,))
+    model = Structure(name="held", title="held", input="u", outputs={"y": diagram.port("y")})
+    found, slopes = model.gradient([0.2], [1.3j], ("T",))
+    x = 0.26j
+    assert found[0, 0] == pytest.approx((1.0 - np.exp(-x)) / x, abs=1e-13)
+    assert slopes[0, 0, 0] == pytest.approx(1.3j * (np.exp(-x) * (1.0 + x) - 1.0) / x**2, abs=1e-12)
+
+
+def test_a_diagram_without_that_output_says_which_it_has():
+    diagram = Diagram("held", "u", ("y",), lambda flow, u, p: {"y": u}, ())
+    with pytest.raises(StructureError, match="diagram held has no output z; it has y"):
+        diagram.port("z")

@@ -113,10 +113,9 @@ def test_jumps_that_arrive_by_two_ways_at_once_are_one():
         input="u",
         outputs={"y": twice - Gain(ONE) * Delay(both) + lagging * Delay(early) * Delay(later)},
     )
+    step = {"u": np.where(TIME >= 1.0, 1.0, 0.0)}
     for start in (0.0, 1e5):
-        found = simulate_exactly(
-            model, model.vector({}), TIME + start, {"u": np.where(TIME >= 1.0, 1.0, 0.0)}, hold=True
-        )
+        found = simulate_exactly(model, model.vector({}), TIME + start, step, hold=True)
         late = np.maximum(TIME - 1.3, 0.0)
         np.testing.assert_allclose(found.outputs["y"], 1.0 - np.exp(-late / 0.2), atol=1e-8)
 

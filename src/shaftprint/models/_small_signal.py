@@ -143,6 +143,11 @@ class SmallSignal:
         rates, pasts = len(self.program.rates), len(self.program.pasts)
         for i in range(pasts):
             change[..., rates + i] = -s * slopes[i] * late[..., rates + i]
+        for i in range(pasts, pasts + len(self.program.samples)):
+            x = s * times[i]
+            whole = np.where(x == 0.0, 1.0, x)
+            falling = np.where(x == 0.0, -0.5, (np.exp(-x) - late[..., rates + i]) / whole)
+            change[..., rates + i] = s * slopes[i] * falling
         return change
 
     @staticmethod

@@ -42,7 +42,7 @@ def stencils(delay_s: FloatArray, step_s: float, *, varies: bool = False) -> Ste
     place = np.array([0.5, 1.0])[None, :] - delay_s[:, None] / step_s
     first = np.minimum(np.floor(place.real).astype(np.int64) - 1, 1 - NODES)
     weight, change, bend = cubic_weights(place - first)
-    # a delay that varies may grow to eight times what it is at rest
+    # a delay that varies may grow to eight times what it is at rest; beyond, the oldest signal is taken
     longest = (int(-first.min(initial=0)) + 2) * (8 if varies else 1)
     return Stencils(
         first=first,

@@ -103,7 +103,9 @@ def NAME(h, per, every, held, u, start, first, weight, change, bend, mask, tick,
                     at = ahead - (now + ahead * (now - v[BEFORE_0 + n])) / h
                     node = max(min(int(np.floor(at.real)) - 1, -3), 1 - mask)
                     first[j, t] = node
-                    weigh(at - node, h, weight[j, t], change[j, t], bend[j, t])
+                    # what is older than all that is kept stays as the oldest
+                    far = at - node if at.real > node else 0.0 * at
+                    weigh(far, h, weight[j, t], change[j, t], bend[j, t])
                 v[BEFORE_0 + n] = now
                 for lane in range(LANES):  # along
                     w_now = w[(RESULT_0 + n) * LANES + lane]  # along
