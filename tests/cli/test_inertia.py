@@ -43,9 +43,7 @@ def test_beside_a_fingerprint(run, demo):
 def test_fingerprint_of_another_ship(run, demo):
     result = run("inertia", "stan-tug-1205-ecu", "--fingerprint", demo[0] / "fingerprint.json")
     assert result.exit_code == 0
-    assert (
-        "Mind: the fingerprint is of Stan Tug 1205, port, the vessel file of" in result.output
-    )
+    assert "Mind: the fingerprint is of Stan Tug 1205, port, the vessel file of" in result.output
 
 
 @pytest.mark.parametrize(("name", "start"), [("m.svg", b"<?xml"), ("m.png", b"\x89PNG"), ("m.pdf", b"%PDF")])
