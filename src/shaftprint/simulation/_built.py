@@ -84,7 +84,11 @@ class Built:
                 f"number that is none; at zero are {', '.join(zero) or 'no parameters'}: bound a time constant away "
                 "from zero, or hold it there with held_at and leave it out of what is wanted."
             )
-        return tuple(np.split(found, np.cumsum(counts)[:-1]))
+        parts, begin = [], 0
+        for count in counts:
+            parts.append(found[begin : begin + count])
+            begin += count
+        return tuple(parts)
 
     def shifts_depend_on(self, names: Sequence[str]) -> bool:
         """Return whether a parameter shifts an output."""

@@ -7,10 +7,14 @@ import importlib.util
 import os
 import sys
 import tempfile
+import threading
 from pathlib import Path
 from types import ModuleType
 
 from shaftprint.errors import StructureError
+
+
+_MAKING = threading.Lock()
 
 
 class _Written(importlib.abc.InspectLoader):
@@ -63,8 +67,12 @@ def module_of(text: str) -> ModuleType:
         If no folder can be written to.
     """
     name = f"shaftprint_equations_{hashlib.sha256(text.encode()).hexdigest()[:16]}"
-    if name in sys.modules:
-        return sys.modules[name]
+    # of several threads that want the same kernels the first makes them, so that they are compiled once
+    with _MAKING:
+        return sys.modules[name] if name in sys.modules else _made(text, name)
+
+
+def _made(text: str, name: str) -> ModuleType:
     path = _written(text, name)
     loader = _Written(text, path)
     spec = importlib.machinery.ModuleSpec(name, loader, origin=str(path))

@@ -1,6 +1,8 @@
 """Where delayed signals are found on a uniform grid of nodes."""
 
+import math
 from dataclasses import dataclass
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 
@@ -8,6 +10,9 @@ from shaftprint.arrays import FloatArray, IntArray
 
 # Nodes that a cubic needs.
 NODES = 4
+
+Place = TypeVar("Place", FloatArray, complex)
+Four: TypeAlias = tuple[Place, Place, Place, Place]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -41,7 +46,7 @@ def stencils(delay_s: FloatArray, step_s: float, *, varies: bool = False) -> Ste
     """
     place = np.array([0.5, 1.0])[None, :] - delay_s[:, None] / step_s
     first = np.minimum(np.floor(place.real).astype(np.int64) - 1, 1 - NODES)
-    weight, change, bend = cubic_weights(place - first)
+    weight, change, bend = (np.stack(four, axis=-1) for four in cubic_weights(place - first))
     # a delay that varies may grow to eight times what it is at rest; beyond, the oldest signal is taken
     longest = (int(-first.min(initial=0)) + 2) * (8 if varies else 1)
     return Stencils(
@@ -53,18 +58,17 @@ def stencils(delay_s: FloatArray, step_s: float, *, varies: bool = False) -> Ste
     )
 
 
-def cubic_weights(place: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def cubic_weights(x: Place) -> tuple[Four[Place], Four[Place], Four[Place]]:
     """Return Lagrange's weights of nodes 0, 1, 2 and 3 at places between or beside them, their slopes and bends."""
-    weight = np.empty((*place.shape, NODES), dtype=place.dtype)
-    slope, bend = np.empty_like(weight), np.empty_like(weight)
-    for node in range(NODES):
-        others = [other for other in range(NODES) if other != node]
-        scale = 1.0 / np.prod([node - other for other in others])
-        a, b, c = (place - other for other in others)
-        weight[..., node] = scale * a * b * c
-        slope[..., node] = scale * (a * b + a * c + b * c)
-        bend[..., node] = scale * 2.0 * (a + b + c)
-    return weight, slope, bend
+    a, b, c, d = x, x - 1.0, x - 2.0, x - 3.0
+    weight = (-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0)
+    slope = (
+        -(c * d + b * d + b * c) / 6.0,
+        (c * d + a * d + a * c) / 2.0,
+        -(b * d + a * d + a * b) / 2.0,
+        (b * c + a * c + a * b) / 6.0,
+    )
+    return weight, slope, (-(b + c + d) / 3.0, a + c + d, -(a + b + d), (a + b + c) / 3.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,8 +100,8 @@ class Shift:
 
     def _sum(self, y: FloatArray, before: FloatArray, kind: int) -> FloatArray:
         place = -self.steps
-        first = int(np.floor(np.real(place))) - 1
-        weights = cubic_weights(np.asarray(place - first))[kind]
+        first = math.floor(place.real) - 1
+        weights = cubic_weights(place - first)[kind]
         ahead = max(0, -first)
         last = (self.samples - 1) * self.every + first + NODES
         behind = max(0, last - y.shape[0])

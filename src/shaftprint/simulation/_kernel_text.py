@@ -46,16 +46,19 @@ def NAME(h, per, every, held, u, start, first, weight, change, bend, mask, tick,
         for j in range(LATES):
             history[(-k & mask) * LATES + j] = start[INPUT_0 + j] - k * h * v[PAST_RATE_0 + j]
     w = np.zeros(SIZE * LANES)  # along
+    rows = w.reshape((SIZE, LANES))  # along
     for j in range(INPUT_0 * LANES):  # along
         w[j] = slopes[j]  # along
     for j in range(STATES * LANES):  # along
         w[NODE_0 * LANES + j] = w[TOTAL_0 * LANES + j] = w[j]  # along
-    w_history = np.zeros((mask + 1) * LATES * LANES)  # along
-    for j in range(LATES * LANES):  # along
-        w[DELAY_0 * LANES + j] = w[(DELAY_0 + LATES) * LANES + j] = slopes[(INPUT_0 + LATES) * LANES + j]  # along
-        for k in range(mask + 1):  # along
-            drift = w[PAST_RATE_0 * LANES + j]  # along
-            w_history[(-k & mask) * LATES * LANES + j] = slopes[INPUT_0 * LANES + j] - k * h * drift  # along
+    w_history = np.zeros(((mask + 1) * LATES, LANES))  # along
+    for j in range(LATES):  # along
+        for lane in range(LANES):  # along
+            later = slopes[(INPUT_0 + LATES + j) * LANES + lane]  # along
+            rows[DELAY_0 + j, lane] = rows[DELAY_0 + LATES + j, lane] = later  # along
+            signal, drift = slopes[(INPUT_0 + j) * LANES + lane], rows[PAST_RATE_0 + j, lane]  # along
+            for k in range(mask + 1):  # along
+                w_history[(-k & mask) * LATES + j, lane] = signal - k * h * drift  # along
     record = 0
     for k in range(last + 1):
         i, sub = k // per, k % per
@@ -74,20 +77,20 @@ def NAME(h, per, every, held, u, start, first, weight, change, bend, mask, tick,
                 if k % tick[j] == 0:
                     v[SAMPLE_0 + j] = v[RESULT_0 + j]
                     for lane in range(LANES):  # along
-                        w[(SAMPLE_0 + j) * LANES + lane] = w[(RESULT_0 + j) * LANES + lane]  # along
+                        rows[SAMPLE_0 + j, lane] = rows[RESULT_0 + j, lane]  # along
         if LATES:
             lates(v)
             place = (k & mask) * LATES
             for j in range(LATES):
                 history[place + j] = v[RESULT_0 + j]
-            for j in range(LATES * LANES):  # along
-                w_history[place * LANES + j] = w[RESULT_0 * LANES + j]  # along
+                for lane in range(LANES):  # along
+                    w_history[place + j, lane] = rows[RESULT_0 + j, lane]  # along
         if every == 1 or sub == 0:
             outputs(v)
             for j in range(OUTPUTS):
                 y[record, j] = v[RESULT_0 + j]
                 for lane in range(LANES):  # along
-                    y_slopes[record, j, lane] = w[(RESULT_0 + j) * LANES + lane]  # along
+                    y_slopes[record, j, lane] = rows[RESULT_0 + j, lane]  # along
             record += 1
         if k == last:
             break
@@ -108,13 +111,13 @@ def NAME(h, per, every, held, u, start, first, weight, change, bend, mask, tick,
                     weigh(far, h, weight[j, t], change[j, t], bend[j, t])
                 v[BEFORE_0 + n] = now
                 for lane in range(LANES):  # along
-                    w_now = w[(RESULT_0 + n) * LANES + lane]  # along
+                    w_now = rows[RESULT_0 + n, lane]  # along
                     if k == 0:  # along
-                        w[(BEFORE_0 + n) * LANES + lane] = w_now  # along
-                    grown = w_now - w[(BEFORE_0 + n) * LANES + lane]  # along
-                    w[(DELAY_0 + j) * LANES + lane] = w_now + 0.5 * grown  # along
-                    w[(DELAY_0 + LATES + j) * LANES + lane] = w_now + grown  # along
-                    w[(BEFORE_0 + n) * LANES + lane] = w_now  # along
+                        rows[BEFORE_0 + n, lane] = w_now  # along
+                    grown = w_now - rows[BEFORE_0 + n, lane]  # along
+                    rows[DELAY_0 + j, lane] = w_now + 0.5 * grown  # along
+                    rows[DELAY_0 + LATES + j, lane] = w_now + grown  # along
+                    rows[BEFORE_0 + n, lane] = w_now  # along
         for j in range(LATES):
             for t in range(2):
                 own = t * LATES + j
@@ -129,20 +132,20 @@ def NAME(h, per, every, held, u, start, first, weight, change, bend, mask, tick,
                 v[LATE_0 + own] = g_0 * h_0 + g_1 * h_1 + g_2 * h_2 + g_3 * h_3
                 v[LATE_RATE_0 + own] = moving
                 for lane in range(LANES):  # along
-                    s_0, s_1 = w_history[i_0 * LANES + lane], w_history[i_1 * LANES + lane]  # along
-                    s_2, s_3 = w_history[i_2 * LANES + lane], w_history[i_3 * LANES + lane]  # along
-                    later = w[(DELAY_0 + own) * LANES + lane]  # along
+                    s_0, s_1 = w_history[i_0, lane], w_history[i_1, lane]  # along
+                    s_2, s_3 = w_history[i_2, lane], w_history[i_3, lane]  # along
+                    later = rows[DELAY_0 + own, lane]  # along
                     kept = g_0 * s_0 + g_1 * s_1 + g_2 * s_2 + g_3 * s_3  # along
-                    w[(LATE_0 + own) * LANES + lane] = kept - moving * later  # along
+                    rows[LATE_0 + own, lane] = kept - moving * later  # along
                 if CHANGES:  # along
                     b_0, b_1, b_2, b_3 = bend[j, t, 0], bend[j, t, 1], bend[j, t, 2], bend[j, t, 3]  # along
                     bending = b_0 * h_0 + b_1 * h_1 + b_2 * h_2 + b_3 * h_3  # along
                     for lane in range(LANES):  # along
-                        s_0, s_1 = w_history[i_0 * LANES + lane], w_history[i_1 * LANES + lane]  # along
-                        s_2, s_3 = w_history[i_2 * LANES + lane], w_history[i_3 * LANES + lane]  # along
-                        later = w[(DELAY_0 + own) * LANES + lane]  # along
+                        s_0, s_1 = w_history[i_0, lane], w_history[i_1, lane]  # along
+                        s_2, s_3 = w_history[i_2, lane], w_history[i_3, lane]  # along
+                        later = rows[DELAY_0 + own, lane]  # along
                         kept = c_0 * s_0 + c_1 * s_1 + c_2 * s_2 + c_3 * s_3  # along
-                        w[(LATE_RATE_0 + own) * LANES + lane] = kept - bending * later  # along
+                        rows[LATE_RATE_0 + own, lane] = kept - bending * later  # along
         for stage in range(4):
             rates(v)
             for j in range(STATES):

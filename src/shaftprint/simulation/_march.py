@@ -170,7 +170,7 @@ class March:
 
     def _shift(self, output: int, samples: int) -> Shift:
         """Return the samples of an output."""
-        return Shift(self.shift_s[output] / self.step_s, samples, self.parts)
+        return Shift(self.shift_s[output].item() / self.step_s, samples, self.parts)
 
     def _lane(self, name: str, inputs: FloatArray) -> "Lane":
         """Return the derivatives to one parameter of all that the run starts from."""
