@@ -13,7 +13,6 @@ from types import ModuleType
 
 from shaftprint.errors import StructureError
 
-
 _MAKING = threading.Lock()
 
 
