@@ -79,9 +79,17 @@ def limits_campaign(*, staircases: int = STAIRCASES, chirp_s: float = CHIRP_S) -
     )
 
 
+def with_wide_gauge(vessel: Vessel) -> Vessel:
+    """Return a vessel whose torque telemetry has twice the range: at the torque limit the orders reach its end."""
+    gauge = vessel.sensors.shaft_torque
+    wide = {"full_scale_nm": 2.0 * gauge.full_scale_nm, "scale_nm_per_unit": 2.0 * gauge.scale_nm_per_unit}
+    sensors = vessel.sensors.model_copy(update={"shaft_torque": gauge.model_copy(update=wide)})
+    return vessel.model_copy(update={"sensors": sensors})
+
+
 def run(repetitions: int) -> None:
     """Sail, fit and print."""
-    vessel, campaign = load_vessel("stan-tug-1205"), limits_campaign()
+    vessel, campaign = with_wide_gauge(load_vessel("stan-tug-1205")), limits_campaign()
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "limits.nc"
         truth = sail(vessel, campaign, path, tug=Tug(rack_rate_limit_per_s=RACK_RATE_PER_S), seed=SEED)
@@ -128,7 +136,7 @@ def _print(fit: NonlinearFit, rack: float, wall: Spread, cpu: Spread) -> None:
         (
             ("wall time [s]", "at most 60 on 2 cores", wall.text(digits=1)),
             ("CPU time of all threads [s]", "", cpu.text(digits=1)),
-            ("starts at the winning optimum", "", f"{fit.reached} of {fit.starts}"),
+            ("starts that went on, of these at the winning optimum", "", f"{fit.reached[1]}, {fit.reached[0]}"),
         ),
     )
     true = {"share": 1.0, "r_x": RACK_RATE_PER_S / rack}

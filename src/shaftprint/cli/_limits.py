@@ -24,6 +24,10 @@ from shaftprint.time_domain import (
 )
 
 AUTOMATIC = "auto"
+DEADBAND = (
+    "A deadband comes out too narrow where disturbances of the speed are as large as it, for they carry the error out of "
+    "it: the width that inspect finds on the measured speed does not have this error."
+)
 
 
 @click.command("limits")
@@ -133,8 +137,11 @@ def _print_records(found: Identification) -> None:
 def _sentences(fit: NonlinearFit) -> Sequence[str]:
     lines = f"Small signals: {', '.join(fit.lines)}." if fit.lines else "No sine is free of the limits."
     left_out = [f"Not in the model: {', '.join(fit.left_out)}."] if fit.left_out else []
+    narrow = [DEADBAND] if any(number.name == "d_e" for number in fit.limits) else []
     return (
         f"{lines} In time: {', '.join(fit.records)}.",
-        f"{fit.reached} of {fit.starts} starts reached the optimum that led to this one.",
+        f"Of {fit.starts} starts the best {fit.reached[1]} went on, and {fit.reached[0]} of these reached the optimum "
+        "that led to this one.",
         *left_out,
+        *narrow,
     )

@@ -48,8 +48,8 @@ class NonlinearFit:
     """Tests that were fitted in time."""
     starts: int
     """Number of starts."""
-    reached: int
-    """How many of them reached the optimum of the coarse records that led to the one that won."""
+    reached: tuple[int, int]
+    """How many of those that went on reached the optimum that led to the one that won, and how many went on."""
     left_out: tuple[str, ...]
     """Findings that the structure has no place for."""
 
@@ -102,7 +102,7 @@ def identify_nonlinear(
     known = {name: prior for name, prior in (known if priors is None else priors).items() if _is_free(model, name)}
     response = estimate_response(signals, campaign)
     quiet = without_orders(signals, vessel)
-    first = linear or _linear(response, known, rng)
+    first = linear or _linear(_small(model.structure), response, known, rng)
     start = {p.name: p.value for p in first.parameters} | dict(model.start)
     task = _Task(quiet, campaign, model.structure, response, known, how, names, rng)
     sines = task.touched(start)
@@ -145,12 +145,13 @@ class _Task:
 
     def solved(
         self, start: Mapping[str, float], sines: Sequence[str], drawn: Sequence[str]
-    ) -> tuple[Identification, int]:
-        """Return the fit, and how many starts of the first pass reached what led to it."""
+    ) -> tuple[Identification, tuple[int, int]]:
+        """Return the fit, and how many of the starts that went on reached what led to it, and how many these were."""
         how = self.how
         common = {"rng": self.rng, "settings": how, "priors": self.priors}
         coarse = self._renewed(self._parts(sines, how.coarse_rate_hz, how.coarse_drive_hz), start)
-        many = first_pass(coarse, start, drawn, **common)  # type: ignore[arg-type]
+        first = first_pass(coarse, start, drawn, **common)  # type: ignore[arg-type]
+        many = from_these(coarse, best_ends(first, how.better), **common)  # type: ignore[arg-type]
         ends = best_ends(many, how.kept)
         parts = self._parts(sines, how.rate_hz, how.drive_hz)
         best = {p.name: p.value for p in many.parameters}
@@ -160,7 +161,7 @@ class _Task:
             few = from_these(parts, starts, **common)  # type: ignore[arg-type]
             best = {p.name: p.value for p in few.parameters}
             ends[0] = np.array(list(free_values(parts, best).values()))
-        return few, many.reached
+        return few, (many.reached, many.settings.starts)
 
     def _parts(self, sines: Sequence[str], rate_hz: float, drive_hz: float) -> list[Part]:
         untouched = np.array([line not in sines for line in self.response.lines])
@@ -168,9 +169,7 @@ class _Task:
         parts: list[Part] = [output_error(self.structure, record) for record in records]
         if np.any(self.response.used & untouched):
             # small signals of the limited structure are those of the linear one, whose formulas are at hand
-            gauge = structure(LINEAR)
-            held = {p.name: p.value for p in self.structure.parameters if p.held and p.name in gauge.names}
-            parts.append((gauge.held_at(**held), replace(self.response, used=self.response.used & untouched)))
+            parts.append((_small(self.structure), replace(self.response, used=self.response.used & untouched)))
         return parts
 
     def _records(self, names: Sequence[str], rate_hz: float, drive_hz: float) -> list[Record]:
@@ -189,11 +188,18 @@ class _Task:
         ]
 
 
-def _linear(response: FrequencyResponse, priors: Mapping[str, Prior], rng: np.random.Generator) -> Identification:
-    gauge = structure(LINEAR)
+def _linear(
+    gauge: Structure, response: FrequencyResponse, priors: Mapping[str, Prior], rng: np.random.Generator
+) -> Identification:
     names = {p.name for p in gauge.free}
     known = {name: prior for name, prior in priors.items() if name in names}
     return identify(gauge, response, rng=rng, settings=Settings(priors=known))
+
+
+def _small(limited: Structure) -> Structure:
+    """Return the linear structure with the parameters held that are held in the limited one."""
+    gauge = structure(LINEAR)
+    return gauge.held_at(**{p.name: p.value for p in limited.parameters if p.held and p.name in gauge.names})
 
 
 def _large_tests(campaign: Campaign) -> list[str]:

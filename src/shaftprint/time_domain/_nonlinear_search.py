@@ -66,11 +66,13 @@ def first_pass(
     settings: NonlinearSettings,
     priors: Mapping[str, Prior],
 ) -> Identification:
-    """Return the fit from all starts, on coarse records."""
+    """Return the fit from all starts after a few steps, on coarse records."""
     values = free_values(parts, start)
     places = tuple(list(values).index(name) for name in drawn)
     draw = SomeDrawn(np.array(list(values.values())), places)
-    return identify_jointly(parts, rng=rng, settings=_settings(settings, priors, draw, settings.starts))
+    return identify_jointly(
+        parts, rng=rng, settings=_settings(settings, priors, draw, (settings.starts, settings.first_iterations))
+    )
 
 
 def from_these(
@@ -82,7 +84,9 @@ def from_these(
     priors: Mapping[str, Prior],
 ) -> Identification:
     """Return the fit from given starts, shape (starts, free)."""
-    return identify_jointly(parts, rng=rng, settings=_settings(settings, priors, Given(starts), starts.shape[0]))
+    return identify_jointly(
+        parts, rng=rng, settings=_settings(settings, priors, Given(starts), (starts.shape[0], settings.max_iterations))
+    )
 
 
 def best_ends(found: Identification, count: int) -> FloatArray:
@@ -92,5 +96,6 @@ def best_ends(found: Identification, count: int) -> FloatArray:
     return np.array(ends[:count])
 
 
-def _settings(how: NonlinearSettings, priors: Mapping[str, Prior], draw: Draw, starts: int) -> Settings:
-    return Settings(priors=priors, starts=starts, draw=draw, max_iterations=how.max_iterations, tolerance=how.tolerance)
+def _settings(how: NonlinearSettings, priors: Mapping[str, Prior], draw: Draw, counts: tuple[int, int]) -> Settings:
+    starts, iterations = counts
+    return Settings(priors=priors, starts=starts, draw=draw, max_iterations=iterations, tolerance=how.tolerance)

@@ -9,28 +9,33 @@ from shaftprint.time_domain._records_of import RATE_HZ
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class NonlinearSettings:
-    """Two passes: all starts on coarse records, the best of them on fine ones.
+    """Three passes: all starts for a few steps, the better ones further, on coarse records; the best on fine ones.
 
-    A coarse record has half the samples of a fine one and a quarter of the steps of its simulation. It moves
-    optima a little, but does not add or lose one: that depends on levels of limits, not on milliseconds.
+    A coarse record has half the samples of a fine one and a quarter of the steps of its simulation. It moves optima a
+    little, but does not add or lose one: that depends on levels of limits, not on milliseconds. After a few steps the
+    starts that will not win are far behind.
     """
 
     starts: int = 50
-    """Number of starts of the first pass; the first is what is known beforehand."""
-    kept: int = 3
-    """Number of different optima of the first pass that go on."""
+    """Number of starts; the first is what is known beforehand."""
+    first_iterations: int = 4
+    """Limit of iterations of each of them."""
+    better: int = 12
+    """Number of different ends of the first pass that go on."""
+    kept: int = 2
+    """Number of different optima of the second pass that go on to fine records."""
+    max_iterations: int = 12
+    """Limit of iterations of each in the second and third pass: kinks of limits end the fast convergence before it."""
     coarse_rate_hz: float = 10.0
-    """Samples of a record a second in the first pass [Hz]."""
-    coarse_drive_hz: float = 100.0
+    """Samples of a coarse record a second [Hz]."""
+    coarse_drive_hz: float = 50.0
     """Samples of its drive a second [Hz]."""
     rate_hz: float = RATE_HZ
-    """Samples of a record a second in the second pass [Hz]."""
+    """Samples of a fine record a second [Hz]."""
     drive_hz: float = DRIVE_RATE_HZ
     """Samples of its drive a second [Hz]."""
     rounds: int = 2
-    """How many times the noise is estimated anew in the second pass."""
-    max_iterations: int = 12
-    """Limit of iterations of each start in either pass: kinks of limits end the fast convergence before that."""
+    """How many times the noise is estimated anew on fine records."""
     tolerance: float = 1e-5
     """Share of the cost below which a further gain is not worth a step."""
 
@@ -42,7 +47,7 @@ class NonlinearSettings:
         IdentificationError
             If one is not positive.
         """
-        numbers = (self.starts, self.kept, self.rounds, self.max_iterations)
+        counts = (self.starts, self.better, self.kept, self.rounds, self.first_iterations, self.max_iterations)
         rates = (self.coarse_rate_hz, self.coarse_drive_hz, self.rate_hz, self.drive_hz, self.tolerance)
-        if min(numbers) < 1 or not min(rates) > 0.0:
+        if min(counts) < 1 or not min(rates) > 0.0:
             raise IdentificationError(f"nonlinear fit: expected positive numbers, found {self}.")
