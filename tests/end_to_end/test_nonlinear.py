@@ -145,7 +145,7 @@ def test_what_was_fitted_and_how_is_said(limited_fit):
 
 
 def test_a_deadband_is_found_and_its_sines_are_records(sailed):
-    """Measured with noisy sensors in calm water: disturbances carry the error out of the band, see docs/nonlinear.md."""
+    """Noisy sensors, but calm water: disturbances carry the error out of the band, see docs/nonlinear.md."""
     calm = Noise().without(process=True)
     trip = sailed("deadband", 2, limits_campaign(40.0, 1), governor_deadband_rpm=8.0, noise=calm)
     fit = trip.fit("torque", "deadband")

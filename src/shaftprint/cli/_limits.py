@@ -25,8 +25,8 @@ from shaftprint.time_domain import (
 
 AUTOMATIC = "auto"
 DEADBAND = (
-    "A deadband comes out too narrow where disturbances of the speed are as large as it, for they carry the error out of "
-    "it: the width that inspect finds on the measured speed does not have this error."
+    "A deadband comes out too narrow where disturbances of the speed are as large as it, for they carry the error out "
+    "of it: the width that inspect finds on the measured speed does not have this error."
 )
 
 
