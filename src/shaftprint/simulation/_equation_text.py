@@ -101,9 +101,9 @@ class EquationText:
             "input": inputs,
             "input rate": inputs,
             "result": max(len(group) for group in self.groups.values()),
-            # what a kernel keeps: states at the start and the end of a step; late signals, how fast they change, and
+            # what a kernel keeps: states at a stage and the sum up to it; late signals, how fast they change, and
             # delays, each at its middle and its end; delays at the last node
-            "node": states,
+            "stage": states,
             "total": states,
             "late": 2 * lates,
             "late rate": 2 * lates,
@@ -133,11 +133,12 @@ class EquationText:
         }
         return "".join(f"{name} = {value}\n" for name, value in (counts | places).items())
 
-    def functions(self, *, slopes: bool) -> list[str]:
+    def functions(self, names: Iterable[str], *, slopes: bool) -> list[str]:
         """Return a function for each group of formulas, and one that finds their derivatives too where wanted."""
-        found = [self._function(name, group) for name, group in self.groups.items()]
+        groups = {name: self.groups[name] for name in names}
+        found = [self._function(name, group) for name, group in groups.items()]
         if slopes:
-            found += [self._with_slopes(f"{name}_along", group) for name, group in self.groups.items()]
+            found += [self._with_slopes(f"{name}_along", group) for name, group in groups.items()]
         return found
 
     @property

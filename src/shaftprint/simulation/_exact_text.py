@@ -76,4 +76,4 @@ class ExactText(EquationText):
 
     def text(self) -> str:
         """Return the whole module."""
-        return "\n\n".join([HEADER, self.constants(), *self.functions(slopes=False), KERNEL])
+        return "\n\n".join([HEADER, self.constants(), *self.functions(self.groups, slopes=False), KERNEL])

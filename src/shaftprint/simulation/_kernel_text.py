@@ -8,16 +8,15 @@ The late signals of as many nodes as are needed stand in a ring, ``history``; th
 LATES``.
 """
 
-from shaftprint.simulation._equation_text import HEADER, EquationText
+from collections.abc import Sequence
+
+from shaftprint.simulation._equation_text import HEADER, EquationText, indented
+from shaftprint.simulation._stage_text import StageText
 
 # Lines that end so belong to the kernel with derivatives only.
 ALONG = "  # along"
 
 PREAMBLE = '''
-PARTS = (0.5, 0.5, 1.0)
-SHARES = (1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0)
-
-
 @INNER
 def weigh(x, h, weight, change, bend):
     """Fill in Lagrange's weights of nodes 0, 1, 2, 3 at a place: of the value, its change and the change of that."""
@@ -31,16 +30,16 @@ def weigh(x, h, weight, change, bend):
     bend[2], bend[3] = -(a + b + d) / (h * h), (a + b + c) / (3.0 * h * h)
 '''
 
-# The arguments are those of ``March``; ``y`` and ``y_slopes`` are filled.
+# The arguments are those of ``March``; ``y`` and ``y_slopes`` are filled. ``_stage_text`` says what goes in at CONSTANTS
+# and at STAGES.
 KERNEL = """@OUTER
 def NAME(h, per, every, held, u, start, first, weight, change, bend, mask, tick, varying, yARGUMENTS):
     last = (u.shape[0] - 1) * per
     v = np.zeros(SIZE, dtype=start.dtype)
     for j in range(INPUT_0):
         v[j] = start[j]
-    for j in range(STATES):
-        v[NODE_0 + j] = v[TOTAL_0 + j] = v[j]
     base, rise = np.zeros(INPUTS), np.zeros(INPUTS)
+    CONSTANTS
     history = np.zeros((mask + 1) * LATES, dtype=start.dtype)
     for k in range(mask + 1):
         for j in range(LATES):
@@ -49,8 +48,6 @@ def NAME(h, per, every, held, u, start, first, weight, change, bend, mask, tick,
     rows = w.reshape((SIZE, LANES))  # along
     for j in range(INPUT_0 * LANES):  # along
         w[j] = slopes[j]  # along
-    for j in range(STATES * LANES):  # along
-        w[NODE_0 * LANES + j] = w[TOTAL_0 * LANES + j] = w[j]  # along
     w_history = np.zeros(((mask + 1) * LATES, LANES))  # along
     for j in range(LATES):  # along
         for lane in range(LANES):  # along
@@ -146,31 +143,7 @@ def NAME(h, per, every, held, u, start, first, weight, change, bend, mask, tick,
                         later = rows[DELAY_0 + own, lane]  # along
                         kept = c_0 * s_0 + c_1 * s_1 + c_2 * s_2 + c_3 * s_3  # along
                         rows[LATE_RATE_0 + own, lane] = kept - bending * later  # along
-        for stage in range(4):
-            rates(v)
-            for j in range(STATES):
-                v[TOTAL_0 + j] += SHARES[stage] * h * v[RESULT_0 + j]
-            for j in range(STATES * LANES):  # along
-                w[TOTAL_0 * LANES + j] += SHARES[stage] * h * w[RESULT_0 * LANES + j]  # along
-            if stage < 3:
-                for j in range(STATES):
-                    v[j] = v[NODE_0 + j] + PARTS[stage] * h * v[RESULT_0 + j]
-                for j in range(STATES * LANES):  # along
-                    w[j] = w[NODE_0 * LANES + j] + PARTS[stage] * h * w[RESULT_0 * LANES + j]  # along
-            if stage == 0 or stage == 2:
-                t = stage // 2
-                for j in range(INPUTS):
-                    v[INPUT_0 + j] = base[j] + (sub + 0.5 * (t + 1)) * rise[j]
-                for j in range(LATES):
-                    v[PAST_0 + j] = v[LATE_0 + t * LATES + j]
-                    v[PAST_RATE_0 + j] = v[LATE_RATE_0 + t * LATES + j]
-                for j in range(LATES * LANES):  # along
-                    w[PAST_0 * LANES + j] = w[(LATE_0 + t * LATES) * LANES + j]  # along
-                    w[PAST_RATE_0 * LANES + j] = w[(LATE_RATE_0 + t * LATES) * LANES + j]  # along
-        for j in range(STATES):
-            v[j] = v[NODE_0 + j] = v[TOTAL_0 + j]
-        for j in range(STATES * LANES):  # along
-            w[j] = w[NODE_0 * LANES + j] = w[TOTAL_0 * LANES + j]  # along
+        STAGES
 """
 
 
@@ -179,17 +152,24 @@ class KernelText(EquationText):
 
     def text(self) -> str:
         """Return the whole module."""
-        kernels = (_kernel(with_derivatives=False), _kernel(with_derivatives=True))
-        return "\n\n".join([HEADER, self.constants() + PREAMBLE, *self.functions(slopes=True), *kernels])
+        groups = ("values", "lates", "outputs", "delays")
+        stages = StageText(self)
+        parts = [HEADER, self.constants() + PREAMBLE, *self.functions(groups, slopes=True), *stages.functions()]
+        return "\n\n".join([*parts, _kernel(stages, groups, along=False), _kernel(stages, groups, along=True)])
 
 
-def _kernel(*, with_derivatives: bool) -> str:
+def _kernel(stages: StageText, groups: Sequence[str], *, along: bool) -> str:
     """Return the text of the kernel with the lines that derivatives need, or without."""
-    if not with_derivatives:
-        lines = (line for line in KERNEL.splitlines() if not line.endswith(ALONG))
-        return "\n".join(lines).replace("NAME", "advance").replace("ARGUMENTS", "")
-    text = KERNEL.replace(ALONG, "").replace("NAME", "advance_with_derivatives")
-    text = text.replace("ARGUMENTS", ", slopes, y_slopes")
-    for group in ("values", "lates", "outputs", "delays", "rates"):
-        text = text.replace(f" {group}(v)", f" {group}_along(v, w)")
+    lines = [line.removesuffix(ALONG) for line in KERNEL.splitlines() if along or not line.endswith(ALONG)]
+    text = "\n".join(lines)
+    if along:
+        for group in groups:
+            text = text.replace(f" {group}(v)", f" {group}_along(v, w)")
+    for word, meant in (
+        ("NAME", "advance_with_derivatives" if along else "advance"),
+        ("ARGUMENTS", ", slopes, y_slopes" if along else ""),
+        ("    CONSTANTS", indented(stages.constants())),
+        ("        STAGES", indented(indented(stages.lines(along=along)).splitlines())),
+    ):
+        text = text.replace(word, meant)
     return text

@@ -1,0 +1,149 @@
+"""Source text of the four stages of a Runge-Kutta step.
+
+The equations are asked four times a step, so that here is nearly all the time of a simulation. What they are made of
+has names of its own instead of places in a list: it can stay in registers. The derivatives of all states go forward in
+one loop over the lanes of a stage, which the compiler makes vectors of; written as loops over states it does not, and
+takes twice the time.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from shaftprint.simulation._equation_text import LANES, LEAVES, EquationText, indented
+from shaftprint.simulation._hoisted import Slopes
+from shaftprint.simulation._text import statements
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Stage:
+    """One of the four stages of the classical Runge-Kutta step."""
+
+    number: int
+    """First, second, third or fourth."""
+    time: str
+    """Where in the step it stands: ``a`` at the start, ``m`` in the middle, ``b`` at the end."""
+    share: str
+    """What its rates add to the states at the end of the step."""
+    ahead: str
+    """How far its rates take the states to the next stage; none after the last."""
+
+
+STAGES = (
+    Stage(number=1, time="a", share="h / 6.0", ahead="0.5 * h"),
+    Stage(number=2, time="m", share="h / 3.0", ahead="0.5 * h"),
+    Stage(number=3, time="m", share="h / 3.0", ahead="h"),
+    Stage(number=4, time="b", share="h / 6.0", ahead=""),
+)
+
+
+class StageText:
+    """The stages of one program: states ``x`` at the node and ``s`` at a stage, rates ``k``, derivatives ``d``."""
+
+    def __init__(self, equations: EquationText) -> None:
+        self.starts = equations.starts
+        self.counts = equations.counts
+        self.rates = equations.groups["rates"]
+        self.slopes = Slopes(self.rates)
+
+    def functions(self) -> list[str]:
+        """Return the functions of numbers that give the rates, without and with their derivatives."""
+        return [self._function("rates", along=False), self._function("rates_along", along=True)] if self.rates else []
+
+    def constants(self) -> list[str]:
+        """Return the lines that give constants their names, once a simulation."""
+        return self._loaded("constant")
+
+    def lines(self, *, along: bool) -> list[str]:
+        """Return one step, from the states, inputs and late signals in the list ``v`` to the states at its end."""
+        lines = [line for kind in ("state", "sample", "input rate") for line in self._loaded(kind)]
+        for i in range(self.counts["input"]):
+            lines.append(f"u{i}a = v[{self.starts['input'] + i}]")
+            lines += [f"u{i}{time} = base[{i}] + (sub + {part}) * rise[{i}]" for time, part in (("m", 0.5), ("b", 1.0))]
+        for letter, kind in (("p", "past"), ("q", "past rate")):
+            for i in range(self.counts[kind]):
+                lines += [f"{letter}{i}{time} = v[{self._late(kind, time) + i}]" for time in "amb"]
+        for stage in STAGES if self.rates else ():
+            lines += self._stage(stage, along=along)
+        for i in range(len(self.rates)):
+            lines.append(f"v[{i}] = x{i} + ({' + '.join(f'{stage.share} * k{stage.number}_{i}' for stage in STAGES)})")
+        return [*lines, *self._carried(along=along)]
+
+    def _stage(self, stage: Stage, *, along: bool) -> list[str]:
+        """Return how fast states change at a stage, and the states of the next."""
+        states = range(len(self.rates))
+        names = {
+            "state": "x{}" if stage.number == 1 else "s{}",
+            **{kind: f"{LEAVES[kind]}{stage.time}" for kind in ("input", "past", "past rate")},
+        }
+        found = [f"k{stage.number}_{i}" for i in states]
+        if along:
+            found += [f"d{i}" for i in range(len(self.slopes.entries))]
+        function = "rates_along" if along else "rates"
+        lines = [f"({', '.join(found)},) = {function}({', '.join(self._names(names))})"]
+        if along:
+            lines += self._stage_along(stage)
+        if stage.ahead:
+            lines += [f"s{i} = x{i} + {stage.ahead} * k{stage.number}_{i}" for i in states]
+        return lines
+
+    def _stage_along(self, stage: Stage) -> list[str]:
+        """Return the same for derivatives: in rows of the list ``w`` for node, stage and the sum up to here."""
+        lines = [f"g{i} = {self._rate_along(i, stage)}" for i in range(len(self.rates))]
+        for i in range(len(self.rates)):
+            node, at_stage, total = (_lane(self.starts[kind] + i) for kind in ("state", "stage", "total"))
+            before = node if stage.number == 1 else total
+            lines.append(f"{total if stage.ahead else node} = {before} + {stage.share} * g{i}")
+            if stage.ahead:
+                lines.append(f"{at_stage} = {node} + {stage.ahead} * g{i}")
+        return _over_lanes(lines)
+
+    def _rate_along(self, state: int, stage: Stage) -> str:
+        """Return the derivative along a lane of how fast a state changes."""
+        starts = self.starts | {kind: self._late(kind, stage.time) for kind in ("past", "past rate")}
+        if stage.number > 1:
+            starts["state"] = self.starts["stage"]
+        terms = [
+            f"d{number} * {_lane(starts[leaf.operation] + leaf.place)}"
+            for number, (owner, leaf) in enumerate(self.slopes.entries)
+            if owner == state
+        ]
+        return " + ".join(terms) or "0.0"
+
+    def _carried(self, *, along: bool) -> list[str]:
+        """Return how late signals at the end of a step become those at the start of the next."""
+        places = [
+            (self.starts[kind] + i, self._late(kind, "b") + i)
+            for kind in ("past", "past rate")
+            for i in range(self.counts[kind])
+        ]
+        lines = [f"v[{new}] = v[{old}]" for new, old in places]
+        return lines + (_over_lanes([f"{_lane(new)} = {_lane(old)}" for new, old in places]) if along else [])
+
+    def _late(self, kind: str, time: str) -> int:
+        """Return where late signals stand at a time of the step."""
+        if time == "a":
+            return self.starts[kind]
+        start = self.starts["late" if kind == "past" else "late rate"]
+        return start if time == "m" else start + self.counts[kind]
+
+    def _loaded(self, kind: str) -> list[str]:
+        start = self.starts[kind]
+        return [f"{LEAVES[kind].format(i)} = v[{start + i}]" for i in range(self.counts[kind])]
+
+    def _names(self, names: Mapping[str, str]) -> list[str]:
+        """Return what the functions of numbers take, in their order."""
+        every = LEAVES | dict(names)
+        return [every[kind].format(place) for kind in LEAVES for place in range(self.counts[kind])]
+
+    def _function(self, name: str, *, along: bool) -> str:
+        lines, found = statements([*self.rates, *(self.slopes.formulas if along else [])], LEAVES)
+        body = [*lines, f"return ({', '.join(found)},)"]
+        return f"@INNER\ndef {name}({', '.join(self._names({}))}):\n{indented(body)}"
+
+
+def _lane(row: int) -> str:
+    return f"w[{LANES * row} + lane]"
+
+
+def _over_lanes(lines: list[str]) -> list[str]:
+    return [f"for lane in range({LANES}):", *(f"    {line}" for line in lines)] if lines else []
