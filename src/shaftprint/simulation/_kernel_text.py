@@ -30,8 +30,8 @@ def weigh(x, h, weight, change, bend):
     bend[2], bend[3] = -(a + b + d) / (h * h), (a + b + c) / (3.0 * h * h)
 '''
 
-# The arguments are those of ``March``; ``y`` and ``y_slopes`` are filled. ``_stage_text`` says what goes in at CONSTANTS
-# and at STAGES.
+# The arguments are those of ``March``; ``y`` and ``y_slopes`` are filled. What goes in at CONSTANTS and at STAGES
+# is in ``_stage_text``.
 KERNEL = """@OUTER
 def NAME(h, per, every, held, u, start, first, weight, change, bend, mask, tick, varying, yARGUMENTS):
     last = (u.shape[0] - 1) * per
