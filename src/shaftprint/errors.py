@@ -6,12 +6,15 @@
     ├── SettingsError         a vessel or campaign file that cannot be used
     ├── RecordingError        a logger file that cannot be read
     ├── SignalError           a channel that does not give a usable signal
+    ├── ClockError            two recordings whose clocks cannot be brought together
     ├── ResponseError         a test line or response that cannot be estimated
     ├── PropellerError        a propeller or speed for which no curve was measured
     ├── StructureError        a model structure or parameter that makes no sense
     ├── IdentificationError   a fit that cannot be set up or has no acceptable result
     ├── ValidationError       a model that cannot be held against a record
-    └── FingerprintError      a fingerprint file that cannot be read or compared
+    ├── FingerprintError      a fingerprint file that cannot be read or compared
+    ├── ReportError           a report that cannot be written
+    └── ExportError           a model that cannot be written for another program
 
 Every message says which file, channel, second or field, what was expected, what was found and what to do.
 """
@@ -31,6 +34,10 @@ class RecordingError(ShaftprintError):
 
 class SignalError(ShaftprintError):
     """A channel does not give a usable signal."""
+
+
+class ClockError(ShaftprintError):
+    """The clocks of two recordings cannot be brought together."""
 
 
 class ResponseError(ShaftprintError):
@@ -55,3 +62,11 @@ class ValidationError(ShaftprintError):
 
 class FingerprintError(ShaftprintError):
     """A fingerprint file cannot be read or compared."""
+
+
+class ReportError(ShaftprintError):
+    """A report cannot be written."""
+
+
+class ExportError(ShaftprintError):
+    """A model cannot be written for another program."""

@@ -1,0 +1,22 @@
+"""The identified model in the user's tool.
+
+=================== ======= =============================================================================
+quantity            unit    meaning and sign
+=================== ======= =============================================================================
+engine speed        rpm     working-point speed times one plus the deviation ``n``; its set point alike
+shaft torque        N m     at the gauge, working-point torque times one plus ``M_s``; positive when driving
+others              -       deviations, as in ``shaftprint.models``
+=================== ======= =============================================================================
+"""
+
+from shaftprint.export._fmu import WrittenFmu, write_fmu
+from shaftprint.export._fmu_build import PLATFORMS
+from shaftprint.export._model import ExportedModel, exported_model
+
+__all__ = [
+    "PLATFORMS",
+    "ExportedModel",
+    "WrittenFmu",
+    "exported_model",
+    "write_fmu",
+]

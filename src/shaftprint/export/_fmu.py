@@ -1,0 +1,209 @@
+"""An FMU of a model: sources, binaries, description, in one file that is written whole or not at all."""
+
+import tempfile
+import uuid
+import zipfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Final, Literal
+
+import numpy as np
+
+from shaftprint.errors import ExportError
+from shaftprint.export._c_text import identifier
+from shaftprint.export._fmu_build import PLATFORMS, build_binary, can_build
+from shaftprint.export._fmu_description import (
+    FmuDescription,
+    build_description,
+    description_of_fmi_2,
+    description_of_fmi_3,
+)
+from shaftprint.export._fmu_equations import FmuEquations
+from shaftprint.export._fmu_program import FmuProgram, fmu_program, largest_pole
+from shaftprint.export._fmu_samples import posterior_deviations
+from shaftprint.export._fmu_signals import fmu_signal
+from shaftprint.export._fmu_variables import Variable, variables
+from shaftprint.export._model import ExportedModel
+from shaftprint.files import written_whole
+from shaftprint.models import evaluate
+
+CORE: Final = ("core.c", "history.c", "snapshot.c", "steady.c", "values.c")
+HEADERS: Final = ("core.h",)
+LONGEST_STEP_S: Final = 1e-3
+SHORTEST_STEP_S: Final = 1e-6
+MOST_MOVED: Final = 0.3
+# The same for all files in an archive, so that equal models give equal files.
+DATE: Final = (1980, 1, 1, 0, 0, 0)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class WrittenFmu:
+    """What was written."""
+
+    path: Path
+    """The file."""
+    version: Literal[2, 3]
+    """Version of the interface."""
+    platforms: tuple[str, ...]
+    """Systems with a binary."""
+    internal_step_s: float
+    """Internal step of co-simulation [s]."""
+    largest_pole_rad_s: float
+    """Fastest pole over estimate and samples [rad/s]; the step times this stays below 0.3, stable is up to 2.7."""
+    model_exchange: bool
+    """Whether a solver from outside can be used too."""
+    late_outputs: tuple[str, ...]
+    """Outputs that come later than their time stamps in the recording."""
+
+
+def write_fmu(
+    model: ExportedModel,
+    path: str | Path,
+    *,
+    version: Literal[2, 3] = 2,
+    platforms: Sequence[str] | None = None,
+    samples: int = 0,
+    rng: np.random.Generator | None = None,
+    overwrite: bool = False,
+) -> WrittenFmu:
+    """Write a model as an FMU for co-simulation and model exchange, with its sources.
+
+    Parameters
+    ----------
+    path
+        File to write; its name without the end is the name of the model in C.
+    version
+        Version of the Functional Mock-up Interface.
+    platforms
+        Systems to compile for, of ``PLATFORMS``; all that can be built here if not given, none for sources only.
+    samples
+        How many samples of the parameters it holds beside the estimate.
+    rng
+        Where these are drawn from; needed for samples.
+    overwrite
+        Whether an earlier file is replaced.
+
+    Raises
+    ------
+    ExportError
+        If a number is not finite, a time constant is too short, there is no compiler, or no source of samples.
+    StructureError
+        If a block of the structure has no equations in time.
+    FileExistsError
+        If the file exists and is not to be replaced.
+    """
+    if samples and rng is None:
+        raise ExportError("FMU of posterior samples: expected rng, a source of random numbers, found none.")
+    place, wanted = Path(path), can_build() if platforms is None else tuple(dict.fromkeys(platforms))
+    ready = fmu_program(model.structure, model.values)
+    draws = posterior_deviations(model, samples, rng if rng is not None else np.random.default_rng(0))
+    pole = largest_pole(ready, model.values + draws)
+    equations = FmuEquations(
+        ready=ready,
+        inputs=tuple(fmu_signal(name) for name in ready.program.inputs),
+        outputs=tuple(fmu_signal(name) for name in ready.program.outputs),
+        start=model.values,
+        settings=(model.engine_speed_rpm, model.shaft_torque_nm, _internal_step(model, pole)),
+        draws=draws,
+    )
+    description, texts = _described(model, equations, identifier(place.stem), version)
+    with written_whole(place, overwrite=overwrite) as part, tempfile.TemporaryDirectory() as folder:
+        _pack(part, Path(folder), description, texts, version, wanted)
+    return WrittenFmu(
+        path=place,
+        version=version,
+        platforms=wanted,
+        internal_step_s=equations.settings[2],
+        largest_pole_rad_s=pole,
+        model_exchange=description.model_exchange,
+        late_outputs=_late_outputs(ready, model),
+    )
+
+
+def _internal_step(model: ExportedModel, pole: float) -> float:
+    """Return an internal step in which the fastest signal of all samples does not move by more than ``MOST_MOVED``."""
+    if not pole * SHORTEST_STEP_S <= MOST_MOVED:
+        raise ExportError(
+            f"FMU of {model.structure.name}: expected time constants that steps of {SHORTEST_STEP_S:g} s can follow, "
+            f"found a pole at {pole:g} rad/s; hold a time constant that short at zero."
+        )
+    step = LONGEST_STEP_S
+    while step * pole > MOST_MOVED:
+        step /= 2.0
+    return step
+
+
+def _described(
+    model: ExportedModel, equations: FmuEquations, name: str, version: Literal[2, 3]
+) -> tuple[FmuDescription, dict[str, str]]:
+    """Return the description of a model, and its sources by name."""
+    structure = model.structure
+    title = f"{model.title}, {structure.name}"
+    interface = f"fmi{version}.c"
+    texts = {name: _template(name) for name in (*CORE, *HEADERS, interface)}
+    texts["model.c"] = equations.source(title)
+    content = "\n".join([title, name, *(texts[key] for key in sorted(texts)), equations.header("")])
+    token = "{" + str(uuid.uuid5(uuid.NAMESPACE_URL, content)) + "}"
+    texts["model.h"] = equations.header(token)
+    description = FmuDescription(
+        title=title,
+        words=f"{structure.title}; identified by shaftprint about {model.engine_speed_rpm:.1f} rpm and "
+        f"{model.shaft_torque_nm:.0f} N m",
+        identifier=name,
+        token=token,
+        variables=variables(model, equations),
+        indicators=_indicators(equations),
+        model_exchange=not equations.ready.asks_input_rates,
+        sources=tuple(sorted(key for key in texts if key.endswith(".c"))),
+    )
+    return description, texts
+
+
+def _indicators(equations: FmuEquations) -> tuple[Variable, ...]:
+    return tuple(
+        Variable(
+            name=f"event_indicator_{i + 1}",
+            reference=equations.references["INDICATOR"] + i,
+            causality="local",
+            variability="continuous",
+            meaning="changes its sign where a limit begins or ends to act",
+        )
+        for i in range(equations.sizes["INDICATORS"])
+    )
+
+
+def _pack(
+    part: Path, folder: Path, d: FmuDescription, texts: dict[str, str], version: Literal[2, 3], platforms: Sequence[str]
+) -> None:
+    """Compile in a folder and write the archive."""
+    members: dict[str, bytes] = {
+        "modelDescription.xml": description_of_fmi_2(d) if version == 2 else description_of_fmi_3(d)
+    }
+    for name, text in sorted(texts.items()):
+        members[f"sources/{name}"] = text.encode()
+        (folder / name).write_bytes(text.encode())
+    if version == 3:
+        members["sources/buildDescription.xml"] = build_description(d)
+    for name in platforms:
+        if name not in PLATFORMS:
+            raise ExportError(f"FMU: there is no system {name!r}; there are {', '.join(PLATFORMS)}.")
+        chosen = PLATFORMS[name]
+        binary = folder / f"{name}{chosen.suffix}"
+        build_binary(folder, d.sources, name, binary)
+        members[f"{chosen.folder(version)}/{d.identifier}{chosen.suffix}"] = binary.read_bytes()
+    with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in members.items():
+            archive.writestr(zipfile.ZipInfo(name, DATE), content, zipfile.ZIP_DEFLATED)
+
+
+def _template(name: str) -> str:
+    return files("shaftprint.export").joinpath("templates", name).read_text(encoding="utf-8")
+
+
+def _late_outputs(ready: FmuProgram, model: ExportedModel) -> tuple[str, ...]:
+    """Return the outputs whose time stamps lie ahead of what can be known, by name."""
+    leaves = {("parameter", i): value for i, value in enumerate(model.values)}
+    found = evaluate(ready.lateness, leaves)
+    return tuple(name for name, late in zip(ready.program.outputs, found, strict=True) if float(late) > 0.0)

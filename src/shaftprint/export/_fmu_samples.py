@@ -1,0 +1,60 @@
+"""Samples of the parameters from their covariance, for an FMU that holds many of them."""
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import ExportError
+from shaftprint.export._model import ExportedModel
+
+MOST_TRIES = 1000
+
+
+def posterior_deviations(model: ExportedModel, samples: int, rng: np.random.Generator) -> FloatArray:
+    """Return what samples of the parameters differ by from the estimate, the estimate first: zeros.
+
+    Parameters
+    ----------
+    samples
+        How many.
+    rng
+        Where they are drawn from: a normal distribution, cut off at the bounds of the parameters.
+
+    Returns
+    -------
+        Shape (1 + samples, parameters).
+
+    Raises
+    ------
+    ExportError
+        If the covariance is not known, or hardly a sample keeps to the bounds.
+    """
+    found = np.zeros((1 + samples, len(model.structure.parameters)))
+    if not samples:
+        return frozen_float(found)
+    if not model.uncertain:
+        raise ExportError("FMU of posterior samples: expected parameters with a covariance, found none.")
+    places = [model.structure.names.index(name) for name in model.uncertain]
+    chosen = [model.structure.parameters[place] for place in places]
+    estimate = model.values[places]
+    lower = np.minimum([p.lower for p in chosen], estimate)
+    upper = np.maximum([p.upper for p in chosen], estimate)
+    root = _root(model.covariance_matrix)
+    row = 0
+    for _ in range(MOST_TRIES * samples):
+        step = root @ rng.standard_normal(len(places))
+        if np.all((estimate + step >= lower) & (estimate + step <= upper)):
+            row += 1
+            found[row, places] = step
+            if row == samples:
+                return frozen_float(found)
+    raise ExportError(
+        f"FMU of posterior samples: expected {samples} samples within the bounds of {', '.join(model.uncertain)}, "
+        f"found {row} in {MOST_TRIES * samples}: the parameters are too uncertain for samples."
+    )
+
+
+def _root(covariance: FloatArray) -> FloatArray:
+    """Return a matrix whose product with its transpose is the covariance, which may be singular."""
+    scale = np.sqrt(np.diag(covariance))
+    values, vectors = np.linalg.eigh(covariance / np.outer(scale, scale))
+    return np.asarray(scale[:, None] * vectors * np.sqrt(np.maximum(values, 0.0)))

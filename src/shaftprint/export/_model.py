@@ -1,0 +1,107 @@
+"""What is exported: a structure with its values, where it holds and how well it is known."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import ExportError
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.models import Structure, structure
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ExportedModel:
+    """A structure with values, its working point, and the covariance of what was identified."""
+
+    title: str
+    """Name of the vessel and its shaft line, or whatever the model is of."""
+    structure: Structure
+    """The structure."""
+    values: FloatArray
+    """All its parameters, shape (parameters,)."""
+    engine_speed_rpm: float
+    """Engine speed of the working point [rpm]."""
+    shaft_torque_nm: float
+    """Shaft torque at the gauge of the working point [N m]."""
+    uncertain: tuple[str, ...] = ()
+    """Parameters whose uncertainty is known."""
+    covariance: FloatArray | None = None
+    """Their covariance, shape (uncertain, uncertain); None where there are none."""
+    not_known: tuple[str, ...] = ()
+    """Parameters of which the test said nothing."""
+
+    def __post_init__(self) -> None:
+        """Check that every number may stand in a file that others compute with.
+
+        Raises
+        ------
+        ExportError
+            If a number is not finite, the working point is zero, or shapes do not fit.
+        """
+        if self.values.shape != (len(self.structure.parameters),):
+            raise ExportError(
+                f"export of {self.structure.name}: expected {len(self.structure.parameters)} values, found an array "
+                f"of shape {self.values.shape}."
+            )
+        wrong = [n for n, value in zip(self.structure.names, self.values, strict=True) if not np.isfinite(value)]
+        if wrong:
+            raise ExportError(
+                f"export of {self.structure.name}: expected finite values, found none of {', '.join(wrong)}; give "
+                "them values."
+            )
+        for name, value in (("engine speed", self.engine_speed_rpm), ("shaft torque", self.shaft_torque_nm)):
+            if not np.isfinite(value) or value == 0.0:
+                raise ExportError(f"export: expected a working point with an {name} that is not zero, found {value}.")
+        size = len(self.uncertain)
+        covariance = self.covariance_matrix
+        if covariance.shape != (size, size) or not np.all(np.isfinite(covariance)):
+            raise ExportError(f"export: expected a finite covariance of {size} parameters, found {covariance.shape}.")
+
+    @property
+    def covariance_matrix(self) -> FloatArray:
+        """The covariance, shape (uncertain, uncertain)."""
+        return frozen_float(np.zeros((0, 0))) if self.covariance is None else self.covariance
+
+    @property
+    def std(self) -> dict[str, float]:
+        """Standard deviation of each uncertain parameter by name."""
+        return dict(zip(self.uncertain, np.sqrt(np.diag(self.covariance_matrix)).tolist(), strict=True))
+
+
+def exported_model(fingerprint: Fingerprint, *, of: Structure | None = None) -> ExportedModel:
+    """Return the model of a fingerprint, with the covariance of its parameters.
+
+    Parameters
+    ----------
+    of
+        The structure that was identified; the shipped one of its name if not given.
+
+    Raises
+    ------
+    StructureError
+        If there is no shipped structure of that name.
+    ExportError
+        If the structure has other parameters than the fingerprint.
+    """
+    chosen = structure(fingerprint.structure) if of is None else of
+    found = {quantity.name: quantity for quantity in fingerprint.parameters}
+    known = {name: quantity.value for name, quantity in found.items()} | fingerprint.held
+    other = sorted(set(chosen.names) ^ set(known))
+    if other:
+        raise ExportError(
+            f"fingerprint of {fingerprint.structure}: expected the parameters of structure {chosen.name}, found a "
+            f"difference in {', '.join(other)}; give the structure that it was identified with."
+        )
+    uncertain = tuple(name for name, quantity in found.items() if np.isfinite(quantity.std) and quantity.std > 0.0)
+    places = [list(found).index(name) for name in uncertain]
+    return ExportedModel(
+        title=fingerprint.conditions.vessel,
+        structure=chosen.held_at(**fingerprint.held),
+        values=frozen_float([known[name] for name in chosen.names]),
+        engine_speed_rpm=fingerprint.conditions.engine_speed.value,
+        shaft_torque_nm=fingerprint.conditions.shaft_torque.value,
+        uncertain=uncertain,
+        covariance=frozen_float(np.array(fingerprint.covariance).reshape(len(found), -1)[np.ix_(places, places)]),
+        not_known=tuple(name for name, quantity in found.items() if not np.isfinite(quantity.std)),
+    )

@@ -1,0 +1,331 @@
+/* Steps, events and values of the model. */
+#include "core.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define JUMP 1e-9
+#define SAME_INPUT 1e-12
+#define STEPS_AFTER_BREAK 3
+#define SHORTEST_STEP_S 1e-6
+/* How closely a limit's time is found, as a share of a step. */
+#define RESOLVED 1e-6
+#define MOST_ROUNDS 30
+
+static int failed(Model *m, const char *problem) {
+    m->problem = problem;
+    return 0;
+}
+
+static int all_finite(const double *values, int count) {
+    for (int i = 0; i < count; i++)
+        if (!isfinite(values[i])) return 0;
+    return 1;
+}
+
+/* What a deviation is multiplied by. */
+double core_scale(const Fixed *f, int setting) { return setting < 0 ? 1.0 : f->settings[setting]; }
+
+static void remember_inputs(Fixed *f) {
+    memcpy(f->fed, f->v.u, sizeof f->fed);
+    memcpy(f->fed_rates, f->v.u_rate, sizeof f->fed_rates);
+}
+
+/* Give the equations their inputs as they are at a time. */
+void core_inputs(Model *m, double time) {
+    Fixed *f = &m->f;
+    for (int i = 0; i < INPUTS; i++) {
+        const double scale = core_scale(f, model_input_scale[i]);
+        const double now = f->inputs[i] + f->input_rates[i] * (time - f->input_time);
+        f->v.u[i] = now / scale - model_input_offset[i];
+        f->v.u_rate[i] = f->input_rates[i] / scale;
+    }
+}
+
+static void at(Model *m, double time, int outputs_too) {
+    m->f.v.time = time;
+    core_inputs(m, time);
+    history_look(m, time, outputs_too);
+}
+
+/* Let inputs and pasts be those of a time. */
+void core_evaluate(Model *m, double time) { at(m, time, 1); }
+
+static void use_parameters(Model *m) {
+    Fixed *f = &m->f;
+    for (int i = 0; i < PARAMETERS; i++) f->v.p[i] = f->given[i] + model_draws[f->posterior_sample][i];
+    model_delays(&f->v, f->delay);
+    model_periods(&f->v, f->period);
+    for (int j = 0; j < LATES; j++)
+        if (!model_feeds[j] && f->delay[j] < 0.0) f->delay[j] = 0.0;
+}
+
+static int use_step(Model *m) {
+    Fixed *f = &m->f;
+    const double longest = steady_longest_step(m);
+    f->step = f->settings[INTERNAL_STEP] < longest ? f->settings[INTERNAL_STEP] : longest;
+    if (!(f->step >= SHORTEST_STEP_S)) return failed(m, "a time constant is too short to be followed in time");
+    return 1;
+}
+
+void core_reset(Model *m) {
+    Fixed *f = &m->f;
+    memset(f, 0, sizeof *f);
+    memcpy(f->given, model_start, sizeof f->given);
+    memcpy(f->settings, model_settings, sizeof f->settings);
+    for (int i = 0; i < INPUTS; i++) f->inputs[i] = model_input_offset[i] * core_scale(f, model_input_scale[i]);
+    f->stale = 1;
+}
+
+/* Start in steady running at the inputs. */
+int core_start(Model *m) {
+    Fixed *f = &m->f;
+    double rates[STATES + 1], lates[LATES + 1];
+    f->time = f->v.time = f->sampled = f->input_time = f->start_time;
+    core_inputs(m, f->time);
+    use_parameters(m);
+    if (!steady_find(m)) return failed(m, "there is no steady running at these inputs and parameters");
+    use_parameters(m);
+    if (!all_finite(f->delay, LATES) || !all_finite(f->period, SAMPLES))
+        return failed(m, "a delay or a period is no finite number");
+    for (int j = 0; j < LATES; j++)
+        if (f->delay[j] < 0.0) return failed(m, "a delay is negative");
+    core_inputs(m, f->time);
+    model_rates(&f->v, rates);
+    model_lates(&f->v, lates);
+    if (!all_finite(rates, STATES) || !all_finite(lates, LATES))
+        return failed(m, "the equations are not finite at these parameters: a time constant may be zero");
+    if (!use_step(m)) return 0;
+    for (int k = 0; k < SAMPLES; k++) f->ticks[k] = 0.0;
+    remember_inputs(f);
+    if (!history_begin(m)) return failed(m, "there is no memory left");
+    f->stale = f->changed = 0;
+    return 1;
+}
+
+int core_ready(Model *m) { return m->f.stale && m->f.mode <= INITIALISING ? core_start(m) : 1; }
+
+static double due(const Fixed *f, int sample) { return f->start_time + (f->ticks[sample] + 1.0) * f->period[sample]; }
+
+/* Take the values of computers whose period is over; of those without a period at every step. */
+static int take_samples(Model *m, int every_step) {
+    Fixed *f = &m->f;
+    double taken[SAMPLES + 1];
+    int found = 0;
+    if (!SAMPLES) return 0;
+    f->v.step = f->v.time - f->sampled;
+    model_values(&f->v, taken);
+    for (int k = 0; k < SAMPLES; k++) {
+        if ((f->period[k] <= 0.0) != every_step) continue;
+        if (!every_step && due(f, k) > f->v.time + tiny(f->v.time)) continue;
+        f->v.z[k] = taken[k];
+        if (!every_step) f->ticks[k] += 1.0;
+        found = 1;
+    }
+    if (every_step) f->sampled = f->v.time;
+    return found;
+}
+
+/* Begin a segment of the history, where signals or their changes of that order are not continuous. */
+static int begin_segment(Model *m, int order) {
+    Fixed *f = &m->f;
+    double lates[LATES + 1];
+    model_lates(&f->v, lates);
+    for (int j = 0; j < LATES; j++)
+        if (fabs(lates[j] - m->node[f->nodes - 1].late[j]) > JUMP * (1.0 + fabs(lates[j]))) order = 0;
+    if (order > HIGHEST_ORDER) return 1;
+    history_forget(m);
+    if (!history_add(m, order)) return failed(m, "there is no memory left");
+    history_settle(m);
+    return 1;
+}
+
+static int arrive(Model *m) {
+    const int order = history_arriving_order(m);
+    if (order > HIGHEST_ORDER) return 1;
+    history_settle(m);
+    at(m, m->f.v.time, 0);
+    return begin_segment(m, order + 1);
+}
+
+static int inputs_moved(const Fixed *f) {
+    for (int i = 0; i < INPUTS; i++) {
+        if (fabs(f->v.u[i] - f->fed[i]) > SAME_INPUT * (1.0 + fabs(f->v.u[i]))) return 1;
+        if (fabs(f->v.u_rate[i] - f->fed_rates[i]) > SAME_INPUT * (1.0 + fabs(f->v.u_rate[i]))) return 1;
+    }
+    return 0;
+}
+
+/* Take notice of inputs, parameters and computers that changed at the start of a step. */
+static int changes(Model *m) {
+    Fixed *f = &m->f;
+    const int changed = f->changed;
+    if (changed) {
+        use_parameters(m);
+        history_settle(m);
+        f->changed = 0;
+    }
+    at(m, f->time, 0);
+    if (changed && !use_step(m)) return 0;
+    const int moved = inputs_moved(f);
+    const int taken = take_samples(m, 0);
+    return changed || moved || taken ? begin_segment(m, 1) : 1;
+}
+
+static void add(double *x, const double *from, double h, const double *rate) {
+    for (int i = 0; i < STATES; i++) x[i] = from[i] + h * rate[i];
+}
+
+/* One step of fourth order (Runge and Kutta). */
+static void step(Model *m, double time, double h) {
+    Values *v = &m->f.v;
+    double from[STATES + 1], k1[STATES + 1], k2[STATES + 1], k3[STATES + 1], k4[STATES + 1];
+    memcpy(from, v->x, sizeof from);
+    at(m, time, 0);
+    model_rates(v, k1);
+    add(v->x, from, 0.5 * h, k1);
+    at(m, time + 0.5 * h, 0);
+    model_rates(v, k2);
+    add(v->x, from, 0.5 * h, k2);
+    model_rates(v, k3);
+    add(v->x, from, h, k3);
+    at(m, time + h, 0);
+    model_rates(v, k4);
+    for (int i = 0; i < STATES; i++) v->x[i] = from[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+}
+
+static int begins_now(const Model *m) {
+    return m->segment[m->f.segments - 1].time >= m->f.time - tiny(m->f.time);
+}
+
+/* Share of the last step at which the first limit began or ended to act, 1 where none did; 0 stays out of it. */
+static double crossing(const double *before, const double *after) {
+    double found = 1.0;
+    for (int i = 0; i < INDICATORS; i++) {
+        if (!(before[i] * after[i] < 0.0)) continue;
+        const double share = before[i] / (before[i] - after[i]);
+        if (share < found) found = share;
+    }
+    return found;
+}
+
+/* One step that ends where a limit begins or ends to act, should that be in it; the time at its end is returned. */
+static double step_to_limit(Model *m, double time, double end) {
+    double from[STATES + 1], before[INDICATORS + 1], after[INDICATORS + 1];
+    double low = time, high = end;
+    memcpy(from, m->f.v.x, sizeof from);
+    if (INDICATORS) {
+        at(m, time, 0);
+        model_indicators(&m->f.v, before);
+    }
+    step(m, time, end - time);
+    at(m, end, 0);
+    if (!INDICATORS) return end;
+    model_indicators(&m->f.v, after);
+    for (int round = 0; round < MOST_ROUNDS && high - low > RESOLVED * (end - time); round++) {
+        const double share = crossing(before, after);
+        if (share >= 1.0) break;
+        /* a little beyond, so that the next step begins on the other side */
+        double tried = low + share * (high - low) + 0.25 * RESOLVED * (end - time);
+        if (!(tried < high)) break;
+        memcpy(m->f.v.x, from, sizeof from);
+        step(m, time, tried - time);
+        at(m, tried, 0);
+        double found[INDICATORS + 1];
+        model_indicators(&m->f.v, found);
+        if (crossing(before, found) < 1.0) {
+            high = tried;
+            memcpy(after, found, sizeof after);
+        } else {
+            low = tried;
+            memcpy(before, found, sizeof before);
+        }
+    }
+    memcpy(m->f.v.x, from, sizeof from);
+    step(m, time, high - time);
+    at(m, high, 0);
+    return high;
+}
+
+/* Go on to a time before which nothing jumps. */
+static int advance(Model *m, double next) {
+    Fixed *f = &m->f;
+    while (f->time < next - tiny(next)) {
+        const double length = next - f->time;
+        double count = ceil(length / f->step - 1e-9);
+        if (count < 1.0) count = 1.0;
+        if (begins_now(m) && count < STEPS_AFTER_BREAK) count = STEPS_AFTER_BREAK;
+        const double end = count > 1.0 ? f->time + length / count : next;
+        const double reached = step_to_limit(m, f->time, end);
+        if (!all_finite(f->v.x, STATES)) return failed(m, "the states grew beyond all numbers: the loop is unstable");
+        f->time = reached;
+        take_samples(m, 1);
+        history_forget(m);
+        if (!history_add(m, -1)) return failed(m, "there is no memory left");
+        if (reached < end && !begin_segment(m, 1)) return 0;
+    }
+    f->time = next;
+    return 1;
+}
+
+/* Advance by a duration; inputs go straight on from now with the rates that were given. */
+int core_do_step(Model *m, double duration) {
+    Fixed *f = &m->f;
+    const double end = f->time + duration;
+    if (!changes(m)) return 0;
+    while (f->time < end - tiny(end)) {
+        double next = end;
+        const double arrival = history_next_arrival(m);
+        if (arrival < next - tiny(end)) next = arrival;
+        for (int k = 0; k < SAMPLES; k++)
+            if (f->period[k] > 0.0 && due(f, k) < next - tiny(end)) next = due(f, k);
+        if (!advance(m, next)) return 0;
+        remember_inputs(f);
+        if (!arrive(m)) return 0;
+        if (next < end && !changes(m)) return 0;
+    }
+    f->time = end;
+    for (int i = 0; i < INPUTS; i++) f->inputs[i] += f->input_rates[i] * (end - f->input_time);
+    f->input_time = end;
+    return 1;
+}
+
+/* Keep what a solver found at the end of its step. */
+int core_completed_step(Model *m) {
+    at(m, m->f.time, 0);
+    take_samples(m, 1);
+    history_forget(m);
+    return history_add(m, -1) ? 1 : failed(m, "there is no memory left");
+}
+
+/* Keep what was before an event. */
+int core_enter_event(Model *m) {
+    if (m->node[m->f.nodes - 1].time >= m->f.time - tiny(m->f.time)) return 1;
+    return core_completed_step(m);
+}
+
+/* Take notice of an event; 0 if that failed. The time of the next is infinite if none is known. */
+int core_event(Model *m, double *next_time) {
+    Fixed *f = &m->f;
+    at(m, f->time, 0);
+    const int expected = history_arriving_order(m) <= HIGHEST_ORDER;
+    if (!arrive(m) || !changes(m)) return 0;
+    /* an event that nothing else explains is a limit that begins or ends to act */
+    if (!begin_segment(m, expected || begins_now(m) ? HIGHEST_ORDER + 1 : 1)) return 0;
+    remember_inputs(f);
+    *next_time = history_next_arrival(m);
+    for (int k = 0; k < SAMPLES; k++)
+        if (f->period[k] > 0.0 && due(f, k) < *next_time) *next_time = due(f, k);
+    return 1;
+}
+
+void core_derivatives(Model *m, double *rates) {
+    at(m, m->f.time, 0);
+    model_rates(&m->f.v, rates);
+}
+
+void core_indicators(Model *m, double *indicators) {
+    at(m, m->f.time, 0);
+    model_indicators(&m->f.v, indicators);
+}

@@ -1,0 +1,110 @@
+/* The model in time: history of late signals, steady running, steps, events. The equations are in model.c. */
+#ifndef CORE_H
+#define CORE_H
+
+#include <stddef.h>
+
+#include "model.h"
+
+/* A break of a higher derivative than this does no harm to steps and interpolation of fourth order. */
+#define HIGHEST_ORDER 2
+
+typedef enum { INSTANTIATED, INITIALISING, EVENTS, CONTINUOUS, STEPPING, TERMINATED } Mode;
+
+/* Late signals at one time. */
+typedef struct {
+    double time;
+    double late[LATES + 1];
+} Node;
+
+/* Nodes between two breaks, in which signals are smooth; order 0 begins with a jump, 1 with a corner. */
+typedef struct {
+    double time;
+    long long first;
+    int order;
+} Segment;
+
+/* All that a state of the model is, but for its history. */
+typedef struct {
+    Mode mode;
+    int stale;                       /* steady running is to be found anew */
+    int changed;                     /* a parameter was changed during the run */
+    int posterior_sample;
+    double time;
+    double start_time;
+    double settings[SETTINGS];       /* see model.h */
+    double given[PARAMETERS + 1];    /* parameters as they were set */
+    double inputs[INPUTS + 1];       /* in their own units, at input_time */
+    double input_rates[INPUTS + 1];  /* in their own units per second */
+    double input_time;
+    double fed[INPUTS + 1];          /* inputs of the equations at the end of the last step */
+    double fed_rates[INPUTS + 1];
+    double step;                     /* longest step [s] */
+    double delay[LATES + 1];         /* at rest where they vary [s] */
+    double drift[LATES + 1];         /* how fast late signals changed before the start */
+    double period[SAMPLES + 1];
+    double ticks[SAMPLES + 1];       /* periods that have passed */
+    double sampled;                  /* when the values of every step were taken */
+    long long segment[LATES + 1];    /* where each past stands; -1 before the start */
+    Values v;
+    long long dropped_nodes, dropped_segments;
+    int nodes, segments;
+} Fixed;
+
+typedef struct {
+    Fixed f;
+    Node *node;
+    Segment *segment;
+    int node_room, segment_room;
+    const char *problem;             /* what went wrong last, in words */
+} Model;
+
+/* A copy of everything, and the way back. */
+typedef struct {
+    Fixed f;
+    Node *node;
+    Segment *segment;
+} Snapshot;
+
+/* history.c */
+double tiny(double time);
+int history_begin(Model *m);
+int history_add(Model *m, int order);
+void history_settle(Model *m);
+int history_arriving_order(const Model *m);
+double history_next_arrival(const Model *m);
+void history_look(Model *m, double time, int outputs_too);
+void history_forget(Model *m);
+
+/* steady.c */
+int steady_find(Model *m);
+double steady_longest_step(Model *m);
+
+/* core.c */
+void core_reset(Model *m);
+int core_start(Model *m);
+int core_ready(Model *m);
+int core_do_step(Model *m, double duration);
+int core_completed_step(Model *m);
+int core_event(Model *m, double *next_time);
+double core_scale(const Fixed *f, int setting);
+int core_enter_event(Model *m);
+void core_inputs(Model *m, double time);
+void core_evaluate(Model *m, double time);
+void core_derivatives(Model *m, double *rates);
+void core_indicators(Model *m, double *indicators);
+
+/* values.c */
+int core_set(Model *m, unsigned int reference, double value);
+int core_set_rate(Model *m, unsigned int reference, double value);
+int core_get(Model *m, unsigned int reference, double *value);
+
+/* snapshot.c */
+Snapshot *snapshot_take(const Model *m, Snapshot *into);
+int snapshot_restore(Model *m, const Snapshot *s);
+void snapshot_free(Snapshot *s);
+size_t snapshot_size(const Snapshot *s);
+void snapshot_write(const Snapshot *s, char *bytes);
+Snapshot *snapshot_read(const char *bytes, size_t size);
+
+#endif
