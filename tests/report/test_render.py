@@ -10,6 +10,7 @@ import pytest
 from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.models import structure
 from shaftprint.report import ThesisMode, render_report
+from shaftprint.report import _page as page_module
 from shaftprint.report import _render as render_module
 from shaftprint.report._measurement_sections import time_section
 
@@ -122,15 +123,32 @@ def test_every_picture_is_there_parses_and_has_words(report, page):
 
 def test_the_page_asks_for_nothing_outside(report, page):
     text = report.read_text(encoding="utf-8")
-    assert not page.all("script")
     assert not page.all("link")
+    scripts = [script["src"] for script in page.all("script")]
+    assert [script for script in scripts if not re.fullmatch(r"plots/[a-z0-9.-]+\.js", script)] == []
+    assert {(report.parent / script).is_file() for script in scripts} == {True}
     assert "http://" not in text
     assert "https://" not in text
     for attributes in page.all("a"):
         assert attributes["href"].startswith("#")
     policy = next(m["content"] for m in page.all("meta") if m.get("http-equiv") == "Content-Security-Policy")
     assert "default-src 'none'" in policy
+    assert "script-src 'self' file:;" in policy
+    # attributes of what is drawn, never a sheet or a script
+    assert policy.replace("style-src-attr 'unsafe-inline'", "").count("unsafe") == 0
+
+
+def test_without_interactive_figures_the_page_runs_no_script(tmp_path, nouns, monkeypatch):
+    monkeypatch.setattr(render_module, "_sections", lambda inputs: [render_module.fit_section(inputs)])
+    report = render_report(tmp_path / "static", **nouns, interactive=False)
+    page = Page(report.read_text(encoding="utf-8"))
+    assert not page.all("script")
+    assert len(page.all("img")) == 3
+    assert not any("plot" in (tag.get("class") or "") for tag in page.all("div"))
+    policy = next(m["content"] for m in page.all("meta") if m.get("http-equiv") == "Content-Security-Policy")
+    assert "script-src" not in policy
     assert "unsafe" not in policy
+    assert sorted(file.name for file in report.parent.iterdir()) == ["figures", "index.html"]
 
 
 def test_pictures_refer_to_nothing_outside(report):
@@ -240,7 +258,7 @@ def test_names_of_users_are_escaped(tmp_path, nouns, monkeypatch):
     )
     text = render_report(tmp_path / "evil", **(nouns | {"fingerprint": renamed})).read_text(encoding="utf-8")
     assert "<b>" not in text
-    assert "<script" not in text
+    assert "<script>alert" not in text
     assert "&lt;b&gt;Tug &amp; Co" in text
     assert "<i>k</i><sub>q</sub> is &lt;script&gt;" in text
 
@@ -254,7 +272,7 @@ def test_an_earlier_report_is_kept_unless_overwriting_is_asked_for(tmp_path, nou
         render_report(tmp_path, **nouns)
     assert (tmp_path / "index.html").read_bytes() == first
     render_report(tmp_path, **nouns, overwrite=True)
-    assert sorted(file.name for file in tmp_path.iterdir()) == ["figures", "index.html", "recording.nc"]
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["figures", "index.html", "plots", "recording.nc"]
     assert not list((tmp_path / "figures").iterdir())
 
 
@@ -262,7 +280,7 @@ def test_a_report_that_fails_leaves_nothing(tmp_path, nouns, monkeypatch):
     def fail(*_):
         raise OSError("disk full")
 
-    monkeypatch.setattr(render_module, "_drawn", fail)
+    monkeypatch.setattr(page_module, "_drawn", fail)
     with pytest.raises(OSError, match="disk full"):
         render_report(tmp_path / "report", **nouns)
     assert not list(tmp_path.iterdir())
@@ -270,7 +288,7 @@ def test_a_report_that_fails_leaves_nothing(tmp_path, nouns, monkeypatch):
 
 def test_a_large_picture_becomes_png(tmp_path, nouns, monkeypatch):
     sections = [render_module.fit_section]
-    monkeypatch.setattr(render_module, "LARGEST_SVG_BYTES", 10)
+    monkeypatch.setattr(page_module, "LARGEST_SVG_BYTES", 10)
     monkeypatch.setattr(render_module, "_sections", lambda inputs: [make(inputs) for make in sections])
     page = render_report(tmp_path / "report", **nouns)
     images = Page(page.read_text(encoding="utf-8")).all("img")

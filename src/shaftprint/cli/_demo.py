@@ -19,6 +19,7 @@ from shaftprint.cli._progress import Steps, no_progress_option, progress
 from shaftprint.cli._results import where, write_results
 from shaftprint.cli._signal_tables import print_lines
 from shaftprint.cli._thesis_way import thesis_way, weighted_fits
+from shaftprint.cli._validations import validations_of
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.identify import Identification
 from shaftprint.report import ThesisMode
@@ -62,6 +63,7 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
             comparisons=comparisons,
             thesis=found.thesis,
             truth=true,
+            validations=validations_of(found.fits[0], found.measurement, trial, seed=seed, steps=steps),
         )
     _print(found, true)
     for comparison in comparisons:

@@ -16,6 +16,7 @@ from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._results import where, write_results
+from shaftprint.cli._validations import validations_of
 
 
 @click.command("identify")
@@ -60,7 +61,18 @@ def command(
         steps.begin("Finding the intervals")
         fingerprint = fingerprint_of(fits[0], measurement, trial)
         comparisons = comparisons_of(fits, seed=options.seed, steps=steps)
-        write_results(folder, recording, trial, measurement, fits, fingerprint, steps=steps, comparisons=comparisons)
+        validations = validations_of(fits[0], measurement, trial, seed=options.seed, steps=steps)
+        write_results(
+            folder,
+            recording,
+            trial,
+            measurement,
+            fits,
+            fingerprint,
+            steps=steps,
+            comparisons=comparisons,
+            validations=validations,
+        )
     print_fingerprint(fingerprint)
     if len(fits) > 1:
         print_fits("All structures", fits)

@@ -11,6 +11,7 @@ from shaftprint.identify import Comparison, Identification
 from shaftprint.recording import read_recording
 from shaftprint.report import ThesisMode, render_report
 from shaftprint.spectra import ExactBin, FrequencyResponse, HighestPeak, estimate_response
+from shaftprint.validation import Validation
 
 FINGERPRINT = "fingerprint.json"
 REPORT = "index.html"
@@ -28,6 +29,7 @@ def write_results(
     comparisons: Sequence[Comparison] = (),
     thesis: ThesisMode | None = None,
     truth: Mapping[str, float] | None = None,
+    validations: Sequence[Validation] = (),
 ) -> None:
     """Write fingerprint, figures and report into a folder.
 
@@ -49,6 +51,8 @@ def write_results(
         The same recording done the thesis' way, to compare.
     truth
         True values by name, where they are known.
+    validations
+        The first structure held against records that it has not seen.
     """
     write_fingerprint(fingerprint, folder / FINGERPRINT)
     steps.begin("Drawing the figures of the report", total=1.0)
@@ -68,6 +72,7 @@ def write_results(
             truth=truth,
             line_selection=_line_selection(trial, measurement),
             sensitivity=(fits[0].structure,),
+            validations=validations,
             progress=steps.reach,
         )
 

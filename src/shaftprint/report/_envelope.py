@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from shaftprint.recording import Channel
 
 STRETCHES = 1200
+# Samples that are kept for each period of the highest frequency of a signal without anything faster.
+SAMPLES_A_PERIOD = 10.0
 _CHUNK = 1 << 20
 
 
@@ -41,6 +43,14 @@ def envelope(time_s: FloatArray, values: FloatArray, *, stretches: int = STRETCH
         pair = (first + np.argmin(piece), first + np.argmax(piece))
         places[2 * stretch : 2 * stretch + 2] = sorted(pair)
     return time_s[places], values[places]
+
+
+def worthwhile(time_s: FloatArray, highest_hz: float) -> slice:
+    """Return which samples of an evenly sampled signal without anything faster than a frequency are worth drawing."""
+    if time_s.size < 2:
+        return slice(None)
+    rate_hz = (time_s.size - 1) / float(time_s[-1] - time_s[0])
+    return slice(None, None, max(1, int(rate_hz // (SAMPLES_A_PERIOD * highest_hz))))
 
 
 def channel_envelope(channel: "Channel", *, stretches: int = STRETCHES) -> tuple[FloatArray, FloatArray]:

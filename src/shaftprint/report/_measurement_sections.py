@@ -1,4 +1,4 @@
-"""The sections of a report on what was measured: campaign, calibration, quality, responses, time signals."""
+"""The sections of a report on what was measured: campaign, calibration, responses, time signals."""
 
 from functools import partial
 from itertools import groupby
@@ -12,20 +12,12 @@ from shaftprint.report._response_figures import (
     plot_line_selection,
     plot_open_loop_responses,
 )
-from shaftprint.report._sections import Inputs, Picture, Section
-from shaftprint.report._signal_tables import (
-    calibration_table,
-    local_ratio_table,
-    overall_ratio_table,
-    repair_table,
-    step_table,
-    strip_table,
-    window_table,
-)
-from shaftprint.report._signal_to_noise_figure import plot_signal_to_noise
+from shaftprint.report._sections import Inputs, Picture, Section, picture_name
+from shaftprint.report._signal_tables import calibration_table, step_table, strip_table
 from shaftprint.report._step_figure import plot_step_delays
 from shaftprint.report._strip_figure import plot_strip_angles
 from shaftprint.report._time_series import plot_excitation, plot_staircase
+from shaftprint.report.plots import bode_plot, excitation_plot
 from shaftprint.spectra import open_loop
 
 if TYPE_CHECKING:
@@ -34,9 +26,9 @@ if TYPE_CHECKING:
 
 
 def signal_section(inputs: Inputs) -> Section:
-    """Return how the raw channels became signals: repairs, calibration, strips, delays."""
+    """Return how the raw channels became signals: calibration, strips, delays."""
     signals = inputs.signals
-    tables = [repair_table(signals), calibration_table(signals), strip_table(signals), step_table(signals)]
+    tables = [calibration_table(signals), strip_table(signals), step_table(signals)]
     pictures = [
         *_raw_pictures(inputs),
         Picture(
@@ -95,24 +87,6 @@ def _raw_pictures(inputs: Inputs) -> list[Picture]:
     ]
 
 
-def quality_section(inputs: Inputs) -> Section:
-    """Return windows and signal-to-noise ratios."""
-    spectra = inputs.spectra
-    return Section(
-        key="quality",
-        title="Test lines and their quality",
-        tables=(window_table(spectra), overall_ratio_table(spectra), local_ratio_table(spectra)),
-        pictures=(
-            Picture(
-                name="signal_to_noise",
-                caption="Local signal-to-noise ratio of each line and channel; lines that are not used are hollow.",
-                alt="Signal-to-noise ratio over frequency, one line a channel; it falls towards high frequencies.",
-                draw=partial(plot_signal_to_noise, spectra, aliasing_limit_hz=inputs.aliasing_limit_hz),
-            ),
-        ),
-    )
-
-
 def response_section(inputs: Inputs) -> Section:
     """Return the measured responses in closed and open loop."""
     response, limit = inputs.spectra.response, inputs.aliasing_limit_hz
@@ -123,6 +97,7 @@ def response_section(inputs: Inputs) -> Section:
             caption="Measured closed-loop response of speed and torque with 95 % intervals (as figure 3.7).",
             alt="Bode diagram of measured engine speed and shaft torque over set point.",
             draw=partial(plot_closed_loop_response, response, aliasing_limit_hz=limit),
+            plot=partial(bode_plot, data={"data": response}, aliasing_limit_hz=limit),
         ),
         Picture(
             name="open_loop",
@@ -138,6 +113,7 @@ def response_section(inputs: Inputs) -> Section:
                 caption="The same lines measured in several ways, points side by side (as figure 3.5).",
                 alt="Bode diagram with one set of points for each way to measure a sine.",
                 draw=partial(plot_line_selection, inputs.line_selection, aliasing_limit_hz=limit),
+                plot=partial(bode_plot, data=inputs.line_selection, aliasing_limit_hz=limit),
             )
         )
     return Section(key="responses", title="Measured responses", pictures=pictures)
@@ -152,10 +128,11 @@ def time_section(inputs: Inputs) -> list[Section]:
         listed = ", ".join(chirp.name for chirp in chirps)
         pictures.append(
             Picture(
-                name=f"chirp_{name.lower()}",
+                name=picture_name("chirp", name),
                 caption=f"Chirp {listed}: smallest and largest sample of each stretch (as figures 3.9 and 3.10).",
                 alt=f"Engine speed and shaft torque over time with the set point, chirp {listed}.",
                 draw=partial(plot_excitation, inputs.signals, chirps),
+                plot=partial(excitation_plot, inputs.signals, chirps),
             )
         )
     staircases = [stairs for stairs in inputs.campaign.staircases if _is_recorded(stairs, inputs.signals)]
@@ -167,6 +144,7 @@ def time_section(inputs: Inputs) -> list[Section]:
                 caption=f"Staircase {last}: smallest and largest sample of each stretch (as figure 3.11).",
                 alt=f"Engine speed and shaft torque over time with the set point, staircase {last}.",
                 draw=partial(plot_staircase, inputs.signals, inputs.campaign, name=last),
+                plot=partial(excitation_plot, inputs.signals, staircases[-1:]),
             )
         )
     return [Section(key="time", title="Time signals", pictures=pictures)] if pictures else []

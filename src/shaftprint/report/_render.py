@@ -1,30 +1,26 @@
-"""The report: one page with its figures in a folder, readable without a network."""
+"""The report of one fingerprint: one page with its figures in a folder, readable without a network."""
 
-import base64
-import hashlib
 from collections.abc import Callable, Mapping, Sequence
-from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from jinja2 import DictLoader, Environment, StrictUndefined
-from markupsafe import Markup
-
-from shaftprint.report._folder import FIGURES, PAGE, report_written_whole
 from shaftprint.report._inertia_sections import inertia_section
-from shaftprint.report._measurement_sections import quality_section, response_section, signal_section, time_section
+from shaftprint.report._measurement_sections import response_section, signal_section, time_section
 from shaftprint.report._model_sections import (
     explanation_section,
     sensitivity_section,
     structure_section,
     thesis_section,
 )
+from shaftprint.report._page import Page, write_page
+from shaftprint.report._quality_sections import quality_section
 from shaftprint.report._result_sections import fit_section, parameter_section, stability_section, summary_section
 from shaftprint.report._search_sections import comparison_section, search_section
-from shaftprint.report._sections import Inputs, Picture, Section
-from shaftprint.report._style import save_figure
-from shaftprint.report._table import sentence_html
+from shaftprint.report._sections import Inputs, Section
+from shaftprint.report._superintendent import cover_of
+from shaftprint.report._table import Table
 from shaftprint.report._uncertainty_sections import uncertainty_section
+from shaftprint.report._validation_sections import validation_section
 from shaftprint.report._verdict_sections import verdict_section
 
 if TYPE_CHECKING:
@@ -36,11 +32,8 @@ if TYPE_CHECKING:
     from shaftprint.report._thesis_mode import ThesisMode
     from shaftprint.signals import Signals
     from shaftprint.spectra import FrequencyResponse, Spectra
+    from shaftprint.validation import Validation
     from shaftprint.vessel import Vessel
-
-LARGEST_SVG_BYTES = 500_000
-TEMPLATE = "report.html.j2"
-STYLE = "report.css"
 
 
 def render_report(
@@ -59,12 +52,16 @@ def render_report(
     line_selection: "Mapping[str, FrequencyResponse] | None" = None,
     comparisons: "Sequence[Comparison]" = (),
     sensitivity: "Sequence[Structure]" = (),
+    validations: "Sequence[Validation]" = (),
+    clocks: Sequence[Table] = (),
+    interactive: bool = True,
     overwrite: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> Path:
-    """Write a report, ``index.html`` and a folder ``figures``, whole or not at all; return the path of the page.
+    """Write a report, ``index.html`` with its figures and plots, whole or not at all; return the path of the page.
 
-    The page asks for nothing outside its folder and runs no script.
+    The page opens from a disk and asks for nothing outside its folder. In print, and where scripts are off, it shows
+    static figures.
 
     Parameters
     ----------
@@ -86,6 +83,12 @@ def render_report(
         Which of several structures the data want.
     sensitivity
         Structures whose Bode families are shown.
+    validations
+        The identified model, and others beside it, held against records that they have not seen.
+    clocks
+        What is known of the clocks of several loggers, a table each.
+    interactive
+        Whether figures can be zoomed; without it the page runs no script.
     overwrite
         Whether an earlier report there may be replaced.
     progress
@@ -95,6 +98,8 @@ def render_report(
     ------
     FileExistsError
         If there is a report already and ``overwrite`` is false.
+    ReportError
+        If figures are to be interactive and plotly is not installed.
     """
     inputs = Inputs(
         fingerprint=fingerprint,
@@ -110,18 +115,11 @@ def render_report(
         line_selection=line_selection or {},
         comparisons=comparisons,
         sensitivity=sensitivity,
+        validations=validations,
+        clocks=clocks,
     )
-    sections = _sections(inputs)
-    place = Path(directory)
-    with report_written_whole(place, overwrite=overwrite) as part:
-        pictures = [picture for section in sections for picture in section.pictures]
-        sources = {}
-        for number, picture in enumerate(pictures, start=1):
-            sources[picture.name] = _drawn(picture, part)
-            if progress is not None:
-                progress(number / len(pictures))
-        (part / PAGE).write_text(_page(inputs, sections, sources), encoding="utf-8")
-    return place / PAGE
+    page = _page(inputs, _sections(inputs))
+    return write_page(directory, page, interactive=interactive, overwrite=overwrite, progress=progress)
 
 
 def _sections(inputs: Inputs) -> list[Section]:
@@ -133,6 +131,7 @@ def _sections(inputs: Inputs) -> list[Section]:
         *inertia_section(inputs),
         fit_section(inputs),
         *stability_section(inputs),
+        *validation_section(inputs),
         search_section(inputs),
         *comparison_section(inputs),
         quality_section(inputs),
@@ -146,35 +145,26 @@ def _sections(inputs: Inputs) -> list[Section]:
     ]
 
 
-def _drawn(picture: Picture, part: Path) -> str:
-    """Draw and save a picture, as PNG where an SVG would be large; return its address on the page."""
-    figure = picture.draw()
-    path = part / FIGURES / f"{picture.name}.svg"
-    save_figure(figure, path)
-    if path.stat().st_size > LARGEST_SVG_BYTES:
-        path.unlink()
-        path = path.with_suffix(".png")
-        save_figure(figure, path)
-    return f"{FIGURES}/{path.name}"
-
-
-def _page(inputs: Inputs, sections: Sequence[Section], sources: Mapping[str, str]) -> str:
-    folder = files(__package__) / "templates"
-    style = (folder / STYLE).read_text(encoding="utf-8")
-    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
-    environment = Environment(
-        loader=DictLoader({TEMPLATE: (folder / TEMPLATE).read_text(encoding="utf-8")}),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
+def _page(inputs: Inputs, sections: Sequence[Section]) -> Page:
+    fingerprint = inputs.fingerprint
+    conditions = fingerprint.conditions
+    files = Table(
+        caption="Files that went into this report",
+        header=("file", "what it is", "SHA-256"),
+        rows=tuple((source.name, source.role, source.sha256) for source in fingerprint.sources),
     )
-    environment.filters["symbols"] = sentence_html
-    return environment.get_template(TEMPLATE).render(
-        fingerprint=inputs.fingerprint,
+    ending = (
+        f"shaftprint {fingerprint.shaftprint_version}, fingerprint schema {fingerprint.schema_version}, signals "
+        f"prepared in {conditions.mode} mode, speed channel {conditions.speed_channel}. ± is one standard deviation "
+        "throughout; bands, intervals and error bars hold 95 %."
+    )
+    return Page(
+        title=f"Fingerprint of {conditions.vessel}",
+        subtitle=f"Test “{conditions.campaign}”, structure {fingerprint.structure}",
+        created=fingerprint.created,
+        version=fingerprint.shaftprint_version,
+        cover=cover_of(fingerprint, inputs.validations),
         sections=sections,
-        sources=sources,
-        # The style sheet is ours and holds nothing of the user's.
-        style=Markup(style),  # noqa: S704
-        style_digest=digest,
+        files=files,
+        ending=ending,
     )

@@ -22,6 +22,7 @@ from shaftprint.report._residual_figure import plot_residuals
 from shaftprint.report._sections import Inputs, Picture, Section
 from shaftprint.report._step_band_figure import plot_step_band
 from shaftprint.report._symbols import unit_text
+from shaftprint.report.plots import bode_plot, nyquist_plot, residual_plot, step_plot
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quantity
@@ -161,12 +162,16 @@ def fit_section(inputs: Inputs) -> Section:
                 draw=lambda: plot_bode(
                     [curve], data=inputs.identification.response, aliasing_limit_hz=inputs.aliasing_limit_hz
                 ),
+                plot=lambda: bode_plot(
+                    [curve], data={"data": inputs.identification.response}, aliasing_limit_hz=inputs.aliasing_limit_hz
+                ),
             ),
             Picture(
                 name="residuals",
                 caption="What the model leaves, over its standard deviation, and chi-square of each line.",
                 alt="Two panels: normalised residuals and chi-square of each test line.",
                 draw=lambda: plot_residuals(inputs.identification),
+                plot=lambda: residual_plot(inputs.identification),
             ),
             Picture(
                 name="step",
@@ -176,6 +181,7 @@ def fit_section(inputs: Inputs) -> Section:
                 ),
                 alt="Response of every output to a step of the input, with a band around it.",
                 draw=lambda: plot_step_band(inputs.identification),
+                plot=lambda: step_plot(inputs.identification),
             ),
         ),
     )
@@ -188,9 +194,13 @@ def stability_section(inputs: Inputs) -> list[Section]:
     curve = Curve.of(inputs.identification)
     picture = Picture(
         name="nyquist",
-        caption="Nyquist plot of the loop gain with exact delays. Dots are labelled with their frequency in rad/s.",
+        caption=(
+            "Nyquist plot of the loop gain with exact delays. Dots are labelled with their frequency in rad/s. The "
+            "dashed circle about the critical point −1 touches the curve: the wider, the further from hunting."
+        ),
         alt="Curve of the loop gain in the complex plane with gain margin, phase margin and critical point marked.",
         draw=lambda: plot_nyquist(curve),
+        plot=lambda: nyquist_plot(curve),
     )
     return [
         Section(

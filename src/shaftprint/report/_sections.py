@@ -1,5 +1,6 @@
 """What a report is made of: sections with words, tables and pictures."""
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -15,8 +16,10 @@ if TYPE_CHECKING:
     from shaftprint.models import Structure
     from shaftprint.recording import Recording
     from shaftprint.report._thesis_mode import ThesisMode
+    from shaftprint.report.plots import Plot
     from shaftprint.signals import Signals
     from shaftprint.spectra import FrequencyResponse, Spectra
+    from shaftprint.validation import Validation
     from shaftprint.vessel import Vessel
 
 
@@ -37,6 +40,8 @@ class Inputs:
     line_selection: Mapping[str, "FrequencyResponse"]
     comparisons: Sequence["Comparison"]
     sensitivity: Sequence["Structure"]
+    validations: Sequence["Validation"] = ()
+    clocks: Sequence[Table] = ()
 
     @property
     def aliasing_limit_hz(self) -> float:
@@ -55,7 +60,9 @@ class Picture:
     alt: str
     """What the figure shows, for those who cannot see it."""
     draw: "Callable[[], Figure]"
-    """Draws it."""
+    """Draws it, for print and for browsers without scripts."""
+    plot: "Callable[[], Plot] | None" = None
+    """Describes the interactive figure that a browser shows instead; None where there is none."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -74,3 +81,8 @@ class Section:
     """Tables."""
     pictures: Sequence[Picture] = ()
     """Figures."""
+
+
+def picture_name(*words: str) -> str:
+    """Return words, some of them a user's, as the name of a picture: what an address could not hold is a hyphen."""
+    return "_".join(re.sub(r"[^a-z0-9-]+", "-", word.lower()).strip("-") for word in words)

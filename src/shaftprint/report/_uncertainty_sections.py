@@ -8,6 +8,7 @@ from shaftprint.report._profile_figure import plot_profiles
 from shaftprint.report._sections import Inputs, Picture, Section
 from shaftprint.report._symbols import unit_text
 from shaftprint.report._table import Cell, Table, symbol_html
+from shaftprint.report.plots import budget_plot, profile_plot
 
 if TYPE_CHECKING:
     from shaftprint.identify import Budget
@@ -36,6 +37,7 @@ def uncertainty_section(inputs: Inputs) -> list[Section]:
             caption="Share of each source in the variance of every number.",
             alt="One horizontal bar for each number, divided by the share of each source in its variance.",
             draw=lambda: plot_budget(stated),
+            plot=lambda: budget_plot(stated),
         )
     ]
     if inputs.identification.is_likelihood:
@@ -49,6 +51,7 @@ def uncertainty_section(inputs: Inputs) -> list[Section]:
                 ),
                 alt="One small panel for each parameter with the profile of the cost and the parabola beside it.",
                 draw=lambda: plot_profiles(inputs.identification),
+                plot=lambda: profile_plot(inputs.identification),
             )
         )
     return [

@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.normal import deviations
-from shaftprint.report._envelope import envelope
+from shaftprint.report._envelope import envelope, worthwhile
 from shaftprint.report._style import (
     REFERENCE,
     house_style,
@@ -69,7 +69,7 @@ def plot_validation(
         figure = new_figure(12.0)
         panels = figure.subplots(2, 1, sharex=True)
         for place, (axes, (output, _)) in enumerate(zip(panels, WHAT, strict=True)):
-            _draw_data(axes, shown[0], place, set_point=set_point and place == 0)
+            _draw_data(axes, validations[0], shown[0], place, set_point=set_point and place == 0)
             for number, (validation, parts) in enumerate(zip(validations, shown, strict=True)):
                 _draw_model(axes, validation, parts, place, number)
             axes.set_ylabel(f"{mathtext(output)}, deviation over\nworking point [-]")
@@ -92,11 +92,14 @@ def _found(validation: "Validation", record: str, titles: Sequence[str]) -> "lis
         raise ValueError(f"validation figure: expected an excerpt {missing.args[0]}, found none.") from None
 
 
-def _draw_data(axes: "Axes", parts: "list[Comparison]", place: int, *, set_point: bool) -> None:
+def _draw_data(
+    axes: "Axes", validation: "Validation", parts: "list[Comparison]", place: int, *, set_point: bool
+) -> None:
     for part in parts:
         traces = part.traces
+        few = worthwhile(traces.time_s, validation.settings.highest_hz)
         axes.plot(
-            *envelope(traces.time_s, traces.measured[place]),
+            *envelope(traces.time_s[few], traces.measured[place, few]),
             color=MEASURED,
             linewidth=2.6,
             label="measured",
@@ -104,7 +107,7 @@ def _draw_data(axes: "Axes", parts: "list[Comparison]", place: int, *, set_point
         )
         if set_point:
             axes.plot(
-                *envelope(traces.time_s, traces.set_point),
+                *envelope(traces.time_s[few], traces.set_point[few]),
                 color=REFERENCE,
                 linewidth=0.8,
                 label=f"set point {mathtext('n_set')}",
@@ -117,11 +120,12 @@ def _draw_model(axes: "Axes", validation: "Validation", parts: "list[Comparison]
     wide = deviations(validation.settings.coverage)
     for part in parts:
         traces = part.traces
-        middle: FloatArray = traces.model[place]
-        half = wide * traces.model_std[place]
+        few = worthwhile(traces.time_s, validation.settings.highest_hz)
+        time, middle = traces.time_s[few], np.asarray(traces.model[place, few])
+        half: FloatArray = wide * traces.model_std[place, few]
         if np.any(half > 0.0):
             axes.fill_between(
-                traces.time_s,
+                time,
                 middle - half,
                 middle + half,
                 color=style.colour,
@@ -130,7 +134,7 @@ def _draw_model(axes: "Axes", validation: "Validation", parts: "list[Comparison]
                 label=f"{PERCENT * validation.settings.coverage:g} % band of {validation.model.name}",
             )
         axes.plot(
-            *envelope(traces.time_s, middle),
+            *envelope(time, middle),
             color=style.colour,
             linestyle=style.dashes,
             linewidth=1.0,

@@ -1,0 +1,79 @@
+"""The first screen of a report: is it fine, in words that need no control engineering."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from shaftprint.report._table import Table
+
+State: TypeAlias = Literal["fine", "look", "bad", "open"]
+
+WORDS: dict[State, tuple[str, str]] = {
+    "fine": ("✓", "Fine"),
+    "look": ("!", "Look at this"),
+    "bad": ("✕", "Not fine"),
+    "open": ("?", "Not known"),
+}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Card:
+    """One question of the first screen with its answer."""
+
+    question: str
+    """What a superintendent asks."""
+    state: State
+    """The answer in one word."""
+    sentence: str
+    """The answer with its number."""
+
+    @property
+    def mark(self) -> str:
+        """Sign of the state, so that nobody has to tell colours apart."""
+        return WORDS[self.state][0]
+
+    @property
+    def word(self) -> str:
+        """State in words."""
+        return WORDS[self.state][1]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Cover:
+    """The first screen: headline, conditions, questions with answers, and the numbers."""
+
+    headline: str
+    """Verdict in one line."""
+    state: State
+    """State of the whole."""
+    opening: str
+    """Under which conditions it holds."""
+    cards: Sequence[Card]
+    """Questions with answers."""
+    tables: Sequence[Table] = ()
+    """The numbers that matter."""
+
+
+def overall(cards: Sequence[Card], *, usable: bool) -> tuple[State, str]:
+    """Return the state of the whole and the headline that says it.
+
+    Parameters
+    ----------
+    cards
+        Questions with answers.
+    usable
+        Whether the numbers may be used at all.
+    """
+    if not usable:
+        return "bad", "The test cannot be used: its numbers are not trustworthy"
+    wrong = sum(card.state == "bad" for card in cards)
+    if wrong:
+        return "bad", f"The test can be used; {_points(wrong)} not fine"
+    doubtful = sum(card.state == "look" for card in cards)
+    if doubtful:
+        return "look", f"The test can be used; {_points(doubtful)} worth a look"
+    return "fine", "The test can be used, and all that it can tell is fine"
+
+
+def _points(count: int) -> str:
+    return "one point is" if count == 1 else f"{count} points are"

@@ -1,0 +1,126 @@
+"""Tables of the raw channels: what levels they reach, and by which clocks they run."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.report._numbers import plain, rounded
+from shaftprint.report._table import Cell, Table
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel, Recording
+
+PERCENT = 100.0
+_CHUNK = 1 << 20
+# A channel that spends more than this share of its time at its highest or lowest value may be cut off there.
+CUT_OFF = 0.01
+# Pulses are at their ends most of the time: a channel with both ends that often is one of pulses.
+PULSES = 0.8
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Levels:
+    """Levels of one raw channel in its unit."""
+
+    lowest: float
+    """Smallest value [unit]; not a number where there is none."""
+    mean: float
+    """Mean [unit]; not a number where there is none."""
+    highest: float
+    """Largest value [unit]; not a number where there is none."""
+    at_lowest: float
+    """Share of the samples at the smallest value."""
+    at_highest: float
+    """Share of the samples at the largest value."""
+    missing: int
+    """Number of samples that are no number."""
+
+
+def channel_levels(channel: "Channel") -> Levels:
+    """Return the levels of a channel, read once in pieces.
+
+    Raises
+    ------
+    RecordingError
+        If the file cannot be read.
+    """
+    lowest, highest, total, count, low, high = np.inf, -np.inf, 0.0, 0, 0, 0
+    for first in range(0, channel.count, _CHUNK):
+        values = channel.values(first, min(first + _CHUNK, channel.count))
+        values = values[np.isfinite(values)]
+        if not values.size:
+            continue
+        smallest, largest = float(values.min()), float(values.max())
+        low = (low if smallest >= lowest else 0) + int(np.count_nonzero(values == min(smallest, lowest)))
+        high = (high if largest <= highest else 0) + int(np.count_nonzero(values == max(largest, highest)))
+        lowest, highest = min(lowest, smallest), max(highest, largest)
+        total, count = total + float(values.sum()), count + values.size
+    known = count > 0
+    return Levels(
+        lowest=lowest if known else np.nan,
+        mean=total / count if known else np.nan,
+        highest=highest if known else np.nan,
+        at_lowest=low / count if known else 0.0,
+        at_highest=high / count if known else 0.0,
+        missing=channel.count - count,
+    )
+
+
+def level_table(recording: "Recording") -> Table:
+    """Return lowest, mean and highest value of every raw channel, and what share of its time it spends at the ends."""
+    rows: list[tuple[Cell, ...]] = []
+    for channel in recording.channels.values():
+        found = channel_levels(channel)
+        rows.append(
+            (
+                channel.name,
+                channel.unit or "–",
+                *(rounded(value) for value in (found.lowest, found.mean, found.highest)),
+                f"{plain(PERCENT * found.at_lowest, 2)} %",
+                f"{plain(PERCENT * found.at_highest, 2)} %",
+                str(found.missing),
+                _remark(found),
+            )
+        )
+    return Table(
+        caption="Levels of the raw channels",
+        header=("channel", "unit", "lowest", "mean", "highest", "at lowest", "at highest", "no number", "remark"),
+        rows=tuple(rows),
+        note="A channel that stays at its highest or lowest value is cut off there, by the sensor or by the logger.",
+    )
+
+
+def _remark(found: Levels) -> str:
+    if found.lowest == found.highest:
+        return "never changes: dead, or not connected"
+    if found.at_lowest + found.at_highest > PULSES:
+        return "pulses"
+    ends = [name for name, share in (("lowest", found.at_lowest), ("highest", found.at_highest)) if share > CUT_OFF]
+    if ends:
+        return f"stays at its {' and its '.join(ends)} value: cut off?"
+    return "some samples are no number" if found.missing else ""
+
+
+def clock_table(recording: "Recording") -> Table:
+    """Return by which clock each raw channel runs: first sample, rate and length; channels alike share a row."""
+    groups: dict[tuple[float, float, int], list[str]] = {}
+    for channel in recording.channels.values():
+        groups.setdefault((channel.start_s, channel.rate_hz, channel.count), []).append(channel.name)
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
+        (
+            ", ".join(names),
+            rounded(rate, 7),
+            f"{plain(start, 3)}",
+            f"{plain(start + count / rate, 3)}",
+            f"{count:,}".replace(",", "\u202f"),
+        )
+        for (start, rate, count), names in groups.items()
+    )
+    return Table(
+        caption="Clocks of the raw channels",
+        header=("channels", "rate [Hz]", "first sample [s]", "end [s]", "samples"),
+        rows=rows,
+        note="Channels of one file share the clock of its logger. Clocks of several loggers are compared below where "
+        "there are several.",
+    )

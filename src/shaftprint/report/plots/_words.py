@@ -1,0 +1,19 @@
+"""Words on interactive figures: names with slanted letters and lowered indices, all else as it is written."""
+
+from shaftprint.report._symbols import unit_text
+from shaftprint.report._table import symbol_html
+
+
+def name_text(formula: str) -> str:
+    """Return a parameter name or formula for a label; what a user named cannot become a link or a tag."""
+    return str(symbol_html(formula))
+
+
+def axis_text(label: str, unit: str = "") -> str:
+    """Return an axis label with its unit in brackets, ``[-]`` for a number without unit."""
+    return f"{name_text(label)} [{unit_text(unit) or '-'}]"
+
+
+def over_text(output: str, cause: str) -> str:
+    """Return the label of a response, output over input."""
+    return f"{name_text(output)} / {name_text(cause)}"

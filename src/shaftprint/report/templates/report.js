@@ -1,0 +1,220 @@
+"use strict";
+// Draws the interactive figures of the page when they come near the screen, and switches between light and dark.
+// Without scripts the page shows the static figures; in print it always does.
+(() => {
+  const NEAR = "500px 0px";
+  const PAN = 0.15;
+  const ZOOM = 0.6;
+  const CONFIG = {
+    responsive: true,
+    displaylogo: false,
+    doubleClick: "reset",
+    scrollZoom: false,
+    // Nothing may leave the machine: no upload, no server, no link to one.
+    showSendToCloud: false,
+    showEditInChartStudio: false,
+    showLink: false,
+    sendData: false,
+    plotlyServerURL: "",
+    modeBarButtonsToRemove: ["sendChartToCloud", "select2d", "lasso2d"],
+  };
+  const COLOURS = {
+    light: {
+      "@0": "#003f6b", "@1": "#b03a00", "@2": "#007a5a", "@3": "#b0508c", "@4": "#2f86bd", "@5": "#a86f00",
+      "@data": "#000000", "@ink": "#1a1a1a", "@grid": "#dde1e4", "@reference": "#6a6f74", "@soft": "#b9b9b9",
+      "@paper": "#ffffff",
+    },
+    dark: {
+      "@0": "#6db3e2", "@1": "#f2925a", "@2": "#4cc3a0", "@3": "#e593c4", "@4": "#a8d4f2", "@5": "#f0c04a",
+      "@data": "#ffffff", "@ink": "#e6e8ea", "@grid": "#343c42", "@reference": "#9aa3aa", "@soft": "#6d757b",
+      "@paper": "#15191c",
+    },
+  };
+  const root = document.documentElement;
+  const figures = new Map();
+
+  const darkScreen = window.matchMedia("(prefers-color-scheme: dark)");
+  const look = () => root.dataset.look || (darkScreen.matches ? "dark" : "light");
+
+  function coloured(value, colours) {
+    if (typeof value === "string" && value.startsWith("@")) {
+      const plain = colours[value.replace("~", "")] || value;
+      return value.endsWith("~") ? plain + "47" : plain;
+    }
+    if (Array.isArray(value)) {
+      // Long lists of numbers hold no colours.
+      return typeof value[0] === "number" ? value : value.map((part) => coloured(part, colours));
+    }
+    if (value !== null && typeof value === "object") {
+      return Object.fromEntries(Object.entries(value).map(([key, part]) => [key, coloured(part, colours)]));
+    }
+    return value;
+  }
+
+  const isAxis = (key) => /^[xy]axis\d*$/.test(key);
+
+  function layoutOf(figure, colours) {
+    const layout = coloured(figure.layout, colours);
+    layout.paper_bgcolor = "rgba(0,0,0,0)";
+    layout.plot_bgcolor = "rgba(0,0,0,0)";
+    layout.font.color = colours["@ink"];
+    layout.hoverlabel = { bgcolor: colours["@paper"], bordercolor: colours["@reference"],
+                          font: { color: colours["@ink"] } };
+    layout.modebar = { bgcolor: "rgba(0,0,0,0)", color: colours["@reference"], activecolor: colours["@ink"] };
+    layout.uirevision = "kept";
+    for (const key of Object.keys(layout).filter(isAxis)) {
+      layout[key].gridcolor = colours["@grid"];
+      layout[key].linecolor = colours["@reference"];
+      layout[key].tickcolor = colours["@reference"];
+    }
+    return layout;
+  }
+
+  function draw(name) {
+    const { place, figure } = figures.get(name);
+    const colours = COLOURS[look()];
+    const config = { ...CONFIG, toImageButtonOptions: { format: "svg", filename: name } };
+    return window.Plotly.react(place, coloured(figure.data, colours), layoutOf(figure, colours), config).then(() => {
+      if (place.dataset.state !== "drawn") {
+        place.dataset.state = "drawn";
+        performance.mark("plot drawn");
+      }
+    });
+  }
+
+  function fetchData(name, place) {
+    if (figures.has(name)) return;
+    figures.set(name, { place, figure: null });
+    const script = document.createElement("script");
+    script.src = place.dataset.source;
+    // Where the data cannot be read the static figure comes back.
+    script.addEventListener("error", () => place.closest("figure").classList.remove("has-plot"));
+    document.head.append(script);
+  }
+
+  // Each file of data calls this with its figure.
+  window.shaftprintPlot = (name, figure) => {
+    figures.get(name).figure = figure;
+    draw(name);
+  };
+
+  function shifted(axis, share, factor) {
+    const [low, high] = axis.range;
+    const width = high - low;
+    const middle = (low + high) / 2 + share * width;
+    return [middle - (factor * width) / 2, middle + (factor * width) / 2];
+  }
+
+  function moved(place, direction, share, factor) {
+    const full = place._fullLayout;
+    if (!full) return;
+    const change = {};
+    for (const key of Object.keys(full).filter(isAxis)) {
+      const axis = full[key];
+      if (direction.includes(key[0]) && axis.type !== "category" && !axis.matches) {
+        change[`${key}.range`] = shifted(axis, share, factor);
+      }
+    }
+    window.Plotly.relayout(place, change);
+  }
+
+  function showAll(place, name) {
+    const { figure } = figures.get(name);
+    const change = {};
+    for (const key of Object.keys(figure.layout).filter(isAxis)) {
+      const range = figure.layout[key].range;
+      change[range ? `${key}.range` : `${key}.autorange`] = range ? [...range] : figure.layout[key].autorange || true;
+    }
+    window.Plotly.relayout(place, change);
+  }
+
+  function zoomed(place, factor) {
+    const square = place._fullLayout && place._fullLayout.yaxis && place._fullLayout.yaxis.scaleanchor;
+    moved(place, square ? "xy" : "x", 0, factor);
+  }
+
+  function actions(place, name) {
+    return {
+      ArrowLeft: () => moved(place, "x", -PAN, 1),
+      ArrowRight: () => moved(place, "x", PAN, 1),
+      ArrowUp: () => moved(place, "y", PAN, 1),
+      ArrowDown: () => moved(place, "y", -PAN, 1),
+      "+": () => zoomed(place, ZOOM),
+      "=": () => zoomed(place, ZOOM),
+      "-": () => zoomed(place, 1 / ZOOM),
+      0: () => showAll(place, name),
+    };
+  }
+
+  function button(words, label, act) {
+    const made = document.createElement("button");
+    made.type = "button";
+    made.textContent = words;
+    made.setAttribute("aria-label", label);
+    made.addEventListener("click", act);
+    return made;
+  }
+
+  function prepare(place) {
+    const name = place.dataset.plot;
+    const keys = actions(place, name);
+    place.hidden = false;
+    place.style.height = `${place.dataset.height}px`;
+    place.addEventListener("keydown", (event) => {
+      const act = keys[event.key];
+      if (!act || event.target !== place || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      act();
+    });
+    const bar = document.createElement("div");
+    bar.className = "bar";
+    bar.append(
+      button("+", "Zoom in", keys["+"]),
+      button("−", "Zoom out", keys["-"]),
+      button("◀", "Move left", keys.ArrowLeft),
+      button("▶", "Move right", keys.ArrowRight),
+      button("Show all", "Show all again", keys[0]),
+    );
+    place.before(bar);
+    place.closest("figure").classList.add("has-plot");
+  }
+
+  function prepareLook() {
+    const chosen = document.getElementById("look");
+    const say = () => {
+      chosen.setAttribute("aria-pressed", String(look() === "dark"));
+      for (const [name, entry] of figures) if (entry.figure) draw(name);
+    };
+    chosen.hidden = false;
+    chosen.addEventListener("click", () => {
+      root.dataset.look = look() === "dark" ? "light" : "dark";
+      try {
+        localStorage.setItem("shaftprint-look", root.dataset.look);
+      } catch {
+        // A browser may keep nothing for pages from a disk; the choice then holds for this page.
+      }
+      say();
+    });
+    darkScreen.addEventListener("change", say);
+    say();
+  }
+
+  try {
+    const kept = localStorage.getItem("shaftprint-look");
+    if (kept === "light" || kept === "dark") root.dataset.look = kept;
+  } catch {
+    // As above.
+  }
+  prepareLook();
+  if (!window.Plotly) return;
+  const places = document.querySelectorAll(".plot");
+  places.forEach(prepare);
+  const watcher = new IntersectionObserver((entries) => {
+    for (const entry of entries.filter((found) => found.isIntersecting)) {
+      watcher.unobserve(entry.target);
+      fetchData(entry.target.dataset.plot, entry.target);
+    }
+  }, { rootMargin: NEAR });
+  places.forEach((place) => watcher.observe(place));
+  if (places.length) fetchData(places[0].dataset.plot, places[0]);
+})();
