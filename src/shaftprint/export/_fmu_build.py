@@ -15,7 +15,7 @@ from shaftprint.errors import ExportError
 
 EXTRA: Final = 'pip install "shaftprint[fmu]"'
 LONGEST_BUILD_S: Final = 600.0
-FLAGS: Final = ("-shared", "-O2", "-std=c99", "-fvisibility=hidden", "-ffp-contract=off")
+FLAGS: Final = ("-shared", "-O2", "-g0", "-std=c99", "-fvisibility=hidden", "-ffp-contract=off")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -94,7 +94,7 @@ def build_binary(folder: Path, sources: Sequence[str], name: str, binary: Path) 
         If there is no compiler for that system, or it fails.
     """
     command = [*_compiler(name), *FLAGS, "-o", str(binary), *sources]
-    if "win" not in name or name.startswith("darwin"):
+    if PLATFORMS[name].suffix != ".dll":
         command += ["-fPIC", "-lm"]
     try:
         # a list of our own words and file names, no shell

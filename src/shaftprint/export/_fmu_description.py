@@ -41,9 +41,9 @@ def description_of_fmi_2(d: FmuDescription) -> bytes:
     root.set("numberOfEventIndicators", str(len(d.indicators)))
     can = {"canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true", "canNotUseMemoryManagementFunctions": "true"}
     steps = {"canHandleVariableCommunicationStepSize": "true", "canInterpolateInputs": "true"}
-    for kind, more in (("ModelExchange", {}), ("CoSimulation", steps)):
+    for kind, more in (("ModelExchange", dict[str, str]()), ("CoSimulation", steps)):
         if kind == "CoSimulation" or d.model_exchange:
-            interface = SubElement(root, kind, modelIdentifier=d.identifier, **more, **can)
+            interface = SubElement(root, kind, {"modelIdentifier": d.identifier, **more, **can})
             files = SubElement(interface, "SourceFiles")
             for name in d.sources:
                 SubElement(files, "File", name=name)
@@ -70,9 +70,9 @@ def description_of_fmi_3(d: FmuDescription) -> bytes:
     can = {"canGetAndSetFMUState": "true", "canSerializeFMUState": "true"}
     if d.model_exchange:
         needs = {"needsCompletedIntegratorStep": "true"}
-        SubElement(root, "ModelExchange", modelIdentifier=d.identifier, **needs, **can)
+        SubElement(root, "ModelExchange", {"modelIdentifier": d.identifier, **needs, **can})
     steps = {"canHandleVariableCommunicationStepSize": "true"}
-    SubElement(root, "CoSimulation", modelIdentifier=d.identifier, **steps, **can)
+    SubElement(root, "CoSimulation", {"modelIdentifier": d.identifier, **steps, **can})
     _common(root, d, own)
     listed = SubElement(root, "ModelVariables")
     for variable in own:
@@ -189,4 +189,5 @@ def _value(variable: Variable) -> dict[str, str]:
 
 def _text(root: Element) -> bytes:
     indent(root)
-    return tostring(root, encoding="utf-8", xml_declaration=True) + b"\n"
+    found: bytes = tostring(root, encoding="utf-8", xml_declaration=True)
+    return found + b"\n"
