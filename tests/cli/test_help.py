@@ -26,6 +26,7 @@ def test_commands_are_those_that_were_asked_for():
         "sensitivity",
         "inertia",
         "explain",
+        "export",
         "show",
         "limits",
         "simulate",

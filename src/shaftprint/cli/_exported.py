@@ -1,0 +1,73 @@
+"""The model that ``export`` writes: of a fingerprint, its own structure or one that has limits too."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._known_values import named_value
+from shaftprint.cli._own_structure import OWN_FILE_HELP
+from shaftprint.cli._simulated_model import LIMITED_HELP, fingerprint_at, simulated_model
+from shaftprint.errors import FingerprintError
+from shaftprint.export import ExportedModel
+from shaftprint.files import plain_name
+
+fingerprint_argument = click.argument("fingerprint", type=click.Path(path_type=Path))
+structure_option = click.option(
+    "--structure",
+    metavar="NAME",
+    help=f"Model structure, the fingerprint's by default: {OWN_FILE_HELP}; {LIMITED_HELP}.",
+)
+set_option = click.option(
+    "--set",
+    "given",
+    metavar="NAME=VALUE",
+    type=named_value,
+    multiple=True,
+    help="Value of a parameter instead of the fingerprint's; may be repeated.",
+)
+force_option = click.option("--force", is_flag=True, help="Replace an earlier file.")
+
+
+def model_to_export(fingerprint: Path, structure: str | None, given: Mapping[str, float]) -> ExportedModel:
+    """Return the model of a fingerprint file, or of the folder with it.
+
+    Raises
+    ------
+    FingerprintError
+        If there is none, or it has a parameter that the structure lacks.
+    StructureError
+        If there is no such structure or parameter, or a value is missing.
+    """
+    found = fingerprint_at(fingerprint)
+    if found is None:
+        raise FingerprintError(f"{fingerprint}: expected a fingerprint, found none.")
+    model = simulated_model(structure, found, given)
+    return ExportedModel(
+        title=found.conditions.vessel,
+        structure=model.structure,
+        values=model.values,
+        engine_speed_rpm=found.conditions.engine_speed.value,
+        shaft_torque_nm=found.conditions.shaft_torque.value,
+        uncertain=model.uncertain,
+        covariance=model.covariance,
+        not_known=model.not_known,
+    )
+
+
+def file_to_write(output: Path | None, model: ExportedModel, suffix: str, *, force: bool) -> Path:
+    """Return the file to write: the given one, or one in this folder that is named after vessel and structure.
+
+    Raises
+    ------
+    click.ClickException
+        If it is a folder, its folder does not exist, or it exists and is not to be replaced.
+    """
+    path = output or Path(plain_name(f"{model.title}-{model.structure.name}{suffix}"))
+    if path.is_dir():
+        raise click.ClickException(f"{path}: expected a file to write, found a folder; add a file name.")
+    if not path.resolve().parent.is_dir():
+        raise click.ClickException(f"{path}: expected an existing folder, found none; make it first.")
+    if path.exists() and not force:
+        raise click.ClickException(f"{path} exists already; choose another name or replace it with --force.")
+    return path
