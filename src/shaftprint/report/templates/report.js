@@ -78,8 +78,14 @@
       if (place.dataset.state !== "drawn") {
         place.dataset.state = "drawn";
         performance.mark("plot drawn");
+        fetchPictures();
       }
     });
+  }
+
+  // Static figures wait for the first plot, and are there when the page is printed.
+  function fetchPictures() {
+    for (const picture of document.querySelectorAll('img[loading="lazy"]')) picture.loading = "eager";
   }
 
   function fetchData(name, place) {
@@ -206,7 +212,11 @@
     // As above.
   }
   prepareLook();
-  if (!window.Plotly) return;
+  window.addEventListener("beforeprint", fetchPictures);
+  if (!window.Plotly) {
+    fetchPictures();
+    return;
+  }
   const places = document.querySelectorAll(".plot");
   places.forEach(prepare);
   const watcher = new IntersectionObserver((entries) => {

@@ -1,0 +1,78 @@
+"""A real browser for the report: Debian's chromium, driven by Playwright, with no way out to a network."""
+
+import contextlib
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+CHROMIUM = Path("/usr/bin/chromium")
+QUIET = (
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--no-first-run",
+)
+WAIT_MS = 15_000
+
+
+@dataclass
+class Visit:
+    """An opened page with what it said and asked for."""
+
+    page: Any
+    messages: list[str] = field(default_factory=list)
+    requests: list[str] = field(default_factory=list)
+
+    def wait_for(self, expression):
+        """Wait until an expression is true; ``wait_for_function`` would need a policy that allows ``eval``."""
+        for _ in range(WAIT_MS // 50):
+            if self.page.evaluate(expression):
+                return
+            self.page.wait_for_timeout(50)
+        raise AssertionError(f"never true: {expression}; messages: {self.messages}")
+
+    def show(self, name):
+        """Scroll to a plot and wait until it is drawn; return a handle of it."""
+        place = self.page.locator(f"#plot-{name}")
+        place.scroll_into_view_if_needed()
+        self.wait_for(f"document.getElementById('plot-{name}').dataset.state === 'drawn'")
+        return place
+
+    def axis(self, name, axis="xaxis"):
+        """Return the ends of an axis as they are shown."""
+        return self.page.evaluate(f"document.getElementById('plot-{name}')._fullLayout.{axis}.range.map(Number)")
+
+
+@pytest.fixture(scope="session")
+def browser():
+    if not CHROMIUM.exists():
+        pytest.skip(f"{CHROMIUM} is the browser; apt-get install chromium")
+    driver = pytest.importorskip("playwright.sync_api", reason="playwright drives the browser")
+    with driver.sync_playwright() as running:
+        started = running.chromium.launch(executable_path=str(CHROMIUM), args=list(QUIET))
+        yield started
+        started.close()
+
+
+@pytest.fixture(scope="session")
+def visit(browser):
+    """Give what opens a page of the disk in a fresh context."""
+    return lambda path, **context: _visit(browser, path, **context)
+
+
+@contextlib.contextmanager
+def _visit(browser, path, **context):
+    opened = browser.new_context(**({"viewport": {"width": 1280, "height": 900}} | context))
+    try:
+        found = Visit(page=opened.new_page())
+        opened.on("request", lambda request: found.requests.append(request.url))
+        found.page.on("console", lambda message: found.messages.append(f"{message.type}: {message.text}"))
+        found.page.on("pageerror", lambda error: found.messages.append(f"error: {error}"))
+        found.page.goto(path.as_uri())
+        yield found
+    finally:
+        opened.close()
