@@ -21,6 +21,7 @@ from shaftprint.report._calibration_figure import plot_calibration
 from shaftprint.report._campaign_figure import plot_campaign
 from shaftprint.report._correlation_figure import plot_correlation
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
+from shaftprint.report._differences import Difference, differences
 from shaftprint.report._explanation import Explanation, explain_thesis
 from shaftprint.report._explanation_figure import plot_missing_damping
 from shaftprint.report._explanation_words import damping_table, explanation_sentences, gain_table, inertia_table
@@ -66,6 +67,7 @@ from shaftprint.report._validation_summary_figure import plot_validation_summary
 
 __all__ = [
     "Curve",
+    "Difference",
     "Explanation",
     "Family",
     "SimulatedSignal",
@@ -73,6 +75,7 @@ __all__ = [
     "ThesisMode",
     "closed_loop_curve",
     "damping_table",
+    "differences",
     "expected_inertia_table",
     "explain_thesis",
     "explanation_sentences",

@@ -1,0 +1,139 @@
+"""What differs between two fingerprints, and whether it is more than chance.
+
+The interval of a difference comes from the intervals of both numbers, the sides that face each other (G. Y. Zou and
+A. Donner, "Construction of confidence limits about effect measures: a general approach", Statistics in Medicine 27,
+2008, equations 6 and 7):
+
+    lower = b - a - sqrt((b - l_b)^2 + (u_a - a)^2),    upper = b - a + sqrt((u_b - b)^2 + (a - l_a)^2)
+
+What both fits were told alike errs in both alike. Where both used the same vessel file, byte by byte, the error of its
+inertias, of the gauge's scale and of what else it states counts in the difference only as far as it moves the two
+numbers unequally: ``(s_a - s_b)^2`` in place of ``s_a^2 + s_b^2`` for each such source. A gauge that was calibrated
+anew has another vessel file, and counts in full.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Literal, TypeAlias
+
+from shaftprint.normal import NORMAL_95
+from shaftprint.report._fingerprint_tables import limits
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint, Quantity
+
+Outcome: TypeAlias = Literal["differs", "perhaps", "no difference seen", "cannot be compared"]
+
+# A difference that chance makes in fewer than this share of pairs counts.
+UNLIKELY = 0.05
+# Sources that a vessel file states once for all tests; what else a budget has is of one test.
+TOLD = ("TVC", "gauge scale", "telemetry latency")
+TOLD_PRIOR = "prior of "
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Difference:
+    """One number of two fingerprints beside each other."""
+
+    first: "Quantity"
+    """The number in the fingerprint that others are compared with."""
+    other: "Quantity"
+    """The number in the other fingerprint."""
+    interval_95: tuple[float, float] | None
+    """95 % interval of the difference in the number's unit; None where it cannot be compared."""
+    p_value: float | None
+    """Probability that chance alone makes a difference that large or larger; None where it cannot be compared."""
+    outcome: Outcome
+    """Whether they differ: surely, all numbers of the comparison considered; perhaps; or not to be seen."""
+
+    @property
+    def value(self) -> float:
+        """Other minus first."""
+        return self.other.value - self.first.value
+
+
+def differences(first: "Fingerprint", other: "Fingerprint") -> tuple[Difference, ...]:
+    """Return all numbers that two fingerprints share, physical ones first, with the significance of their difference.
+
+    Many numbers make it likely that chance alone moves one of them: a number differs where it does so after Holm's
+    correction (S. Holm, "A simple sequentially rejective multiple test procedure", Scandinavian Journal of Statistics
+    6, 1979), and perhaps differs where only its own p-value is below 5 %.
+
+    Parameters
+    ----------
+    first
+        The fingerprint that the other is compared with.
+    other
+        The other fingerprint, of the same or another ship.
+    """
+    told_alike = _vessel_file(first) is not None and _vessel_file(first) == _vessel_file(other)
+    there = {quantity.name: quantity for quantity in _numbers(other)}
+    found = [
+        _difference(quantity, there[quantity.name], first, other, told_alike=told_alike)
+        for quantity in _numbers(first)
+        if quantity.name in there and there[quantity.name].unit == quantity.unit
+    ]
+    return tuple(_judged(found))
+
+
+def _numbers(fingerprint: "Fingerprint") -> "tuple[Quantity, ...]":
+    return (*fingerprint.physical, *fingerprint.margins, *fingerprint.combinations, *fingerprint.parameters)
+
+
+def _vessel_file(fingerprint: "Fingerprint") -> str | None:
+    return next((source.sha256 for source in fingerprint.sources if source.role == "vessel"), None)
+
+
+def _difference(
+    a: "Quantity", b: "Quantity", first: "Fingerprint", other: "Fingerprint", *, told_alike: bool
+) -> Difference:
+    (low_a, high_a), (low_b, high_b) = limits(a), limits(b)
+    apart = b.value - a.value
+    rising = apart >= 0.0
+    facing_open = (a.interval_open[1], b.interval_open[0]) if rising else (a.interval_open[0], b.interval_open[1])
+    if any(facing_open) or not all(math.isfinite(end) for end in (low_a, high_a, low_b, high_b)):
+        return Difference(first=a, other=b, interval_95=None, p_value=None, outcome="cannot be compared")
+    told_a, told_b = (_told(f, a.name) if told_alike else {} for f in (first, other))
+    left = sum((told_a.get(k, 0.0) - told_b.get(k, 0.0)) ** 2 for k in {*told_a, *told_b}) * NORMAL_95**2
+    own_a, own_b = _own_share(first, a.name, told_a), _own_share(other, b.name, told_b)
+    below = math.sqrt(own_b * (b.value - low_b) ** 2 + own_a * (high_a - a.value) ** 2 + left)
+    above = math.sqrt(own_b * (high_b - b.value) ** 2 + own_a * (a.value - low_a) ** 2 + left)
+    facing = below if rising else above
+    p_value = math.erfc(abs(apart) / (facing / NORMAL_95) / math.sqrt(2.0)) if facing > 0.0 else float(apart == 0.0)
+    return Difference(
+        first=a, other=b, interval_95=(apart - below, apart + above), p_value=p_value, outcome="no difference seen"
+    )
+
+
+def _told(fingerprint: "Fingerprint", name: str) -> dict[str, float]:
+    """Return the standard deviation by each source that a vessel file states, of one number."""
+    variances = _variances(fingerprint, name)
+    return {
+        source: math.sqrt(max(variance, 0.0))
+        for source, variance in variances.items()
+        if source in TOLD or source.startswith(TOLD_PRIOR)
+    }
+
+
+def _own_share(fingerprint: "Fingerprint", name: str, told: dict[str, float]) -> float:
+    """Return the share of the variance that is of the test itself."""
+    total = sum(_variances(fingerprint, name).values())
+    if not told or total <= 0.0:
+        return 1.0
+    return max(1.0 - sum(std**2 for std in told.values()) / total, 0.0)
+
+
+def _variances(fingerprint: "Fingerprint", name: str) -> dict[str, float]:
+    return next((dict(row.variances) for row in fingerprint.budget.rows if row.name == name), {})
+
+
+def _judged(found: Sequence[Difference]) -> list[Difference]:
+    """Return the differences with their outcome after Holm's correction for their number."""
+    known = sorted((d.p_value, place) for place, d in enumerate(found) if d.p_value is not None)
+    outcomes: dict[int, Outcome] = {}
+    surely = True
+    for rank, (p_value, place) in enumerate(known):
+        surely = surely and p_value <= UNLIKELY / (len(known) - rank)
+        outcomes[place] = "differs" if surely else "perhaps" if p_value <= UNLIKELY else "no difference seen"
+    return [replace(d, outcome=outcomes.get(place, d.outcome)) for place, d in enumerate(found)]

@@ -1,0 +1,124 @@
+"""Differences of two fingerprints against numbers worked out by hand and against simulated pairs."""
+
+import math
+
+import numpy as np
+import pytest
+
+from shaftprint.fingerprint import SourceFile
+from shaftprint.identify import Budget, BudgetRow
+from shaftprint.report import differences
+
+
+def quantity(fingerprint, **changes):
+    return fingerprint.physical[0].model_copy(
+        update={"name": "I_dn", "unit": "kg m2", "interval_95": None, "interval_open": (False, False)} | changes
+    )
+
+
+def with_quantities(fingerprint, *quantities, variances=None, vessel="ab"):
+    """A fingerprint with nothing but the given physical values."""
+    rows = tuple(
+        BudgetRow(
+            name=q.name, unit=q.unit, value=q.value, variances=(variances or {}).get(q.name, {"noise of n": q.std**2})
+        )
+        for q in quantities
+    )
+    sources = (SourceFile(role="vessel", name="tug.toml", sha256=vessel * 32),)
+    return fingerprint.model_copy(
+        update={
+            "physical": quantities,
+            "parameters": (),
+            "combinations": (),
+            "margins": (),
+            "budget": Budget(sources=("noise of n", "gauge scale"), rows=rows),
+            "sources": sources,
+        }
+    )
+
+
+def test_noise_of_two_tests_adds_up(fingerprint):
+    """13 +/- 1 against 10 +/- 1: 3 +/- 1.414, two-sided p = erfc(3 / 1.414 / 1.414) = 0.0339."""
+    first = with_quantities(fingerprint, quantity(fingerprint, value=10.0, std=1.0))
+    other = with_quantities(fingerprint, quantity(fingerprint, value=13.0, std=1.0))
+    (found,) = differences(first, other)
+    assert found.value == pytest.approx(3.0)
+    assert found.interval_95 == pytest.approx((3.0 - 2.7718, 3.0 + 2.7718), abs=1e-3)
+    assert found.p_value == pytest.approx(0.033895, abs=1e-5)
+    assert found.outcome == "differs"
+
+
+def test_what_both_were_told_alike_cannot_make_a_difference(fingerprint):
+    """Of a standard deviation of 1.005, 1 is the gauge's scale: alike in both, it leaves 0.1 times root two."""
+    variances = {"I_dn": {"noise of n": 0.01, "gauge scale": 1.0}}
+    values = [quantity(fingerprint, value=value, std=math.sqrt(1.01)) for value in (10.0, 10.5)]
+    same = [with_quantities(fingerprint, q, variances=variances) for q in values]
+    (found,) = differences(*same)
+    assert (found.interval_95[1] - found.interval_95[0]) / 2.0 / 1.96 == pytest.approx(0.1 * math.sqrt(2.0), rel=1e-3)
+    assert found.outcome == "differs"
+    recalibrated = with_quantities(fingerprint, values[1], variances=variances, vessel="cd")
+    (found,) = differences(same[0], recalibrated)
+    assert (found.interval_95[1] - found.interval_95[0]) / 2.0 / 1.96 == pytest.approx(math.sqrt(2.02), rel=1e-3)
+    assert found.outcome == "no difference seen"
+
+
+def test_the_sides_that_face_each_other_count(fingerprint):
+    """Zou and Donner: of 10 (9 to 14) and 13 (12.5 to 20), the lower end is 3 - sqrt(0.5^2 + 4^2), the upper
+    3 + sqrt(7^2 + 1^2)."""
+    first = with_quantities(fingerprint, quantity(fingerprint, value=10.0, std=1.0, interval_95=(9.0, 14.0)))
+    other = with_quantities(fingerprint, quantity(fingerprint, value=13.0, std=1.0, interval_95=(12.5, 20.0)))
+    (found,) = differences(first, other)
+    assert found.interval_95 == pytest.approx((3.0 - math.sqrt(16.25), 3.0 + math.sqrt(50.0)))
+    assert found.outcome == "no difference seen"
+
+
+def test_an_open_end_that_faces_the_other_forbids_a_comparison(fingerprint):
+    first = with_quantities(
+        fingerprint,
+        quantity(fingerprint, value=10.0, std=1.0, interval_95=(9.0, 10.5), interval_open=(False, True)),
+    )
+    other = with_quantities(fingerprint, quantity(fingerprint, value=30.0, std=1.0))
+    (found,) = differences(first, other)
+    assert found.outcome == "cannot be compared"
+    assert found.p_value is None
+    (turned,) = differences(other, first)
+    assert turned.outcome == "cannot be compared"
+
+
+def test_many_numbers_make_chance_more_likely(fingerprint):
+    """Holm: of p = 0.010, 0.030 and 0.040 the smallest is asked to be below 0.05 / 3, the next below 0.05 / 2."""
+    normal = {0.010: 2.5758, 0.030: 2.1701, 0.040: 2.0537}
+    names = ("I_dn", "I_up", "K_Q")
+    first = with_quantities(fingerprint, *(quantity(fingerprint, name=n, value=1.0, std=1e-9) for n in names))
+    other = with_quantities(
+        fingerprint,
+        *(quantity(fingerprint, name=n, value=1.0 + z, std=1.0) for n, z in zip(names, normal.values(), strict=True)),
+    )
+    found = differences(first, other)
+    assert [round(d.p_value, 3) for d in found] == [0.010, 0.030, 0.040]
+    assert [d.outcome for d in found] == ["differs", "perhaps", "perhaps"]
+
+
+def test_equal_lines_differ_by_chance_in_one_of_twenty_tests(fingerprint):
+    """2,000 pairs of tests of one line: one common error of the gauge, one error of noise each."""
+    rng = np.random.default_rng(5)
+    variances = {"I_dn": {"noise of n": 0.04, "gauge scale": 0.25}}
+    rejected = 0
+    for _ in range(2000):
+        common = 0.5 * rng.standard_normal()
+        pair = [
+            with_quantities(
+                fingerprint,
+                quantity(fingerprint, value=17.0 + common + 0.2 * rng.standard_normal(), std=math.sqrt(0.29)),
+                variances=variances,
+            )
+            for _ in range(2)
+        ]
+        rejected += differences(*pair)[0].p_value < 0.05
+    assert 0.035 < rejected / 2000 < 0.065
+
+
+def test_only_what_both_have_in_one_unit_is_compared(fingerprint):
+    first = with_quantities(fingerprint, quantity(fingerprint, value=1.0, std=1.0), quantity(fingerprint, name="I_up"))
+    other = with_quantities(fingerprint, quantity(fingerprint, value=1.0, std=1.0, unit="t m2"))
+    assert differences(first, other) == ()
