@@ -32,6 +32,39 @@ class Found:
     fit: Identification
 
 
+@dataclass(frozen=True, kw_only=True)
+class SecondLogger:
+    """A logger whose clock is behind and slow, and which was started later."""
+
+    offset_s: float = 0.4
+    drift: float = 30e-6
+    began_s: float = 5.0
+
+    def true_time_s(self, own_s):
+        """Return the first logger's time of a time of this one."""
+        return own_s + self.offset_s + self.drift * own_s
+
+    def of(self, channel):
+        """Return what it makes of the voltage of a channel, in 16 bits of +/-10 V."""
+        count = int((channel.duration_s - self.true_time_s(self.began_s)) * channel.rate_hz) - 4000
+
+        def source(start, stop):
+            if start == stop:
+                return np.empty(0, dtype=np.int16)
+            own_s = self.began_s + np.arange(start, stop) / channel.rate_hz
+            places = (self.true_time_s(own_s) - channel.start_s) * channel.rate_hz
+            first = int(places[0])
+            values = channel.values(first, int(places[-1]) + 2)
+            return np.rint(np.interp(places, first + np.arange(values.size), values) * 3276.8).astype(np.int16)
+
+        return replace(channel, start_s=self.began_s, count=count, scale=1.0 / 3276.8, offset=0.0, source=source)
+
+
+@pytest.fixture(scope="session")
+def second_logger():
+    return SecondLogger()
+
+
 @pytest.fixture(scope="session")
 def vessel():
     return load_vessel("stan-tug-1205")

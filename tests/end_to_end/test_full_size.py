@@ -14,11 +14,12 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import load_campaign
+from shaftprint.clocks import align
 from shaftprint.fingerprint import Fingerprint, SourceFile, read_fingerprint, take_fingerprint, write_fingerprint
 from shaftprint.identify import Settings, Uniform, Unweighted, identify, profile_intervals
 from shaftprint.models import structure
 from shaftprint.recording import read_recording
-from shaftprint.signals import Signals, prepare_signals
+from shaftprint.signals import Signals, content_of, prepare_signals
 from shaftprint.spectra import ExactBin, FrequencyResponse, estimate_response, open_loop
 from shaftprint.tug import sail
 
@@ -204,6 +205,17 @@ def test_fingerprint_comes_back_equal_from_its_file(fingerprint, trip, tmp_path)
     write_fingerprint(fingerprint, tmp_path / "tug.json")
     assert read_fingerprint(tmp_path / "tug.json") == fingerprint
     assert fingerprint.sources[0].sha256 == trip[2]
+
+
+def test_clocks_of_two_loggers_are_brought_together(second_logger, vessel, trip):
+    """0.4 s apart and 30 ppm adrift: three hours later 0.34 s more."""
+    engine, _, propeller = vessel.sensors.speed
+    with read_recording(trip[0]) as recording:
+        reference = content_of(recording.channel(engine.channel), engine, rate_hz=50.0)
+        other = content_of(second_logger.of(recording.channel(propeller.channel)), propeller, rate_hz=50.0)
+    clock = align(other, reference).map
+    assert np.abs(clock.reference_s(other.time_s) - second_logger.true_time_s(other.time_s)).max() < 2e-3
+    assert clock.drift == pytest.approx(30e-6, abs=4.0 * np.sqrt(clock.covariance[1, 1]))
 
 
 def test_thesis_finds_the_wrong_inertia(thesis):

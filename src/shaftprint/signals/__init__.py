@@ -15,6 +15,7 @@ deviation             1        ``(x - x_0) / x_0`` from the working point
 ===================== ======== ====================================================================
 """
 
+from shaftprint.signals._content import Content, content_of
 from shaftprint.signals._inspect import ChannelReport, PulseReport, inspect_channels
 from shaftprint.signals._prepare import prepare_signals
 from shaftprint.signals._signals import (
@@ -33,6 +34,7 @@ from shaftprint.signals._working_point import deviation
 
 __all__ = [
     "ChannelReport",
+    "Content",
     "Mode",
     "PulseReport",
     "RackSignal",
@@ -44,6 +46,7 @@ __all__ = [
     "StepDelay",
     "StripAngles",
     "WorkingPoint",
+    "content_of",
     "deviation",
     "inspect_channels",
     "prepare_signals",

@@ -1,0 +1,28 @@
+"""``shaftprint join``: files that one logger wrote one after the other, in one file."""
+
+from contextlib import ExitStack
+from pathlib import Path
+
+import click
+
+from shaftprint.clocks import joined
+from shaftprint.recording import read_recording, write_recording
+
+
+@click.command("join")
+@click.argument("parts", type=click.Path(path_type=Path), nargs=-1, required=True)
+@click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="Recording to write.")
+@click.option("--follow-on", is_flag=True, help="Each part begins where the one before ends, whatever its clock says.")
+@click.option("--force", is_flag=True, help="Replace an earlier recording.")
+def command(parts: tuple[Path, ...], output: Path, *, follow_on: bool, force: bool) -> None:
+    """Join files that one logger wrote one after the other, in the order given.
+
+    Every part must begin where the one before it ends.
+    """
+    with ExitStack() as stack:
+        opened = [stack.enter_context(read_recording(part)) for part in parts]
+        whole = joined(opened, follow_on=follow_on)
+        write_recording(output, whole.channels.values(), overwrite=force)
+        for channel in whole.channels.values():
+            click.echo(f"{channel.name}: {channel.count} samples, {channel.duration_s:.1f} s")
+    click.echo(output)

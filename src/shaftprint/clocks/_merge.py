@@ -1,0 +1,127 @@
+"""Several recordings as one: of loggers that ran side by side, or of parts that follow one another."""
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shaftprint.clocks._clock_map import ClockMap
+from shaftprint.errors import ClockError
+from shaftprint.recording import Channel, Recording
+
+# A part may begin this share of a sample beside the grid of the part before it.
+BESIDE = 0.51
+# Clocks of parts that one logger wrote are the same to this.
+SAME_RATE = 1e-6
+
+
+def merged(reference: Recording, others: Sequence[tuple[Recording, ClockMap]]) -> Recording:
+    """Return one recording with the channels of several loggers, all on the clock of the first.
+
+    Samples are neither moved nor copied: channels get another start and rate. A channel whose name is taken already
+    gets the name of its file behind its own, as in ``U_setpoint (engine)``. Closing it closes them all.
+
+    Parameters
+    ----------
+    reference
+        The recording that has the clock.
+    others
+        Further recordings with the maps of their clocks.
+
+    Raises
+    ------
+    ClockError
+        If two channels would have the same name.
+    """
+    channels = dict(reference.channels)
+    for other, clock in others:
+        for channel in other.channels.values():
+            name = channel.name if channel.name not in channels else f"{channel.name} ({other.path.stem})"
+            if name in channels:
+                raise ClockError(
+                    f'{other.path}: expected a name that is free for channel {channel.name}, found "{name}" taken; '
+                    "rename one of the files."
+                )
+            channels[name] = replace(clock.applied(channel), name=name)
+    return _one([reference, *(other for other, _ in others)], channels, "merged")
+
+
+def joined(parts: Sequence[Recording], *, follow_on: bool = False) -> Recording:
+    """Return one recording from parts that one logger wrote one after the other.
+
+    Closing it closes them all.
+
+    Parameters
+    ----------
+    parts
+        The parts in the order of their time, with the same channels.
+    follow_on
+        Whether each part begins with the sample after the last of the part before, whatever its clock says: for
+        loggers that begin each file at zero.
+
+    Raises
+    ------
+    ClockError
+        If channels differ, or a part does not begin where the part before it ends.
+    """
+    first = parts[0]
+    for part in parts[1:]:
+        if set(part.channels) != set(first.channels):
+            other = sorted(set(part.channels) ^ set(first.channels))
+            raise ClockError(
+                f"{part.path}: expected the channels of {first.path}, found a difference in {', '.join(other)}; "
+                "leave those channels out, or join other files."
+            )
+    channels = {name: _chain([(part, part.channels[name]) for part in parts], follow_on) for name in first.channels}
+    return _one(parts, channels, "joined")
+
+
+def _chain(parts: Sequence[tuple[Recording, Channel]], follow_on: bool) -> Channel:
+    """Return one channel from its parts."""
+    first = parts[0][1]
+    counts = [first.count]
+    for recording, channel in parts[1:]:
+        _expect_same(recording, channel, first)
+        ends_s = first.start_s + sum(counts) / first.rate_hz
+        if not follow_on and abs(channel.start_s - ends_s) * first.rate_hz > BESIDE:
+            raise ClockError(
+                f"{recording.path}, channel {channel.name}: expected it to begin at {ends_s:.4f} s, where the part "
+                f"before it ends, found {channel.start_s:.4f} s; analyse parts with a gap one by one, or say that they "
+                "follow on where each file begins at zero."
+            )
+        counts.append(channel.count)
+    edges = np.cumsum([0, *counts])
+
+    def source(start: int, stop: int) -> NDArray[Any]:
+        pieces = [
+            channel.read(max(start - begin, 0), min(stop - begin, channel.count))
+            for begin, (_, channel) in zip(edges, parts, strict=False)
+            if begin < stop and begin + channel.count > start
+        ]
+        return np.concatenate(pieces) if pieces else first.read(0, 0)
+
+    return replace(first, count=int(edges[-1]), source=source)
+
+
+def _expect_same(recording: Recording, channel: Channel, first: Channel) -> None:
+    own = (channel.unit, channel.scale, channel.offset, channel.read(0, 0).dtype)
+    theirs = (first.unit, first.scale, first.offset, first.read(0, 0).dtype)
+    if own != theirs or abs(channel.rate_hz / first.rate_hz - 1.0) > SAME_RATE:
+        raise ClockError(
+            f"{recording.path}, channel {channel.name}: expected {first.rate_hz:g} Hz, unit, scale and offset "
+            f"{theirs[:3]} as in the part before it, found {channel.rate_hz:g} Hz and {own[:3]}; these parts were not "
+            "logged alike."
+        )
+
+
+def _one(parts: Sequence[Recording], channels: Mapping[str, Channel], kind: str) -> Recording:
+    digest = hashlib.sha256("".join(part.sha256 for part in parts).encode()).hexdigest()
+
+    def release() -> None:
+        for part in parts:
+            part.close()
+
+    return Recording(path=parts[0].path, sha256=digest, format=kind, channels=channels, release=release)

@@ -1,0 +1,78 @@
+"""What a channel shows, on a grid of its own clock: for comparing two recordings before they share a clock."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import SignalError
+from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, blocks
+from shaftprint.signals._condition import conditioned
+from shaftprint.signals._decimate import Grid
+from shaftprint.signals._outliers import fault_limits
+from shaftprint.signals._pick_up import read_pick_up
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel
+    from shaftprint.vessel import SpeedSensor
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Content:
+    """What a channel shows."""
+
+    name: str
+    """Name of the channel."""
+    start_s: float
+    """Time of the first value on the channel's clock [s]."""
+    rate_hz: float
+    """Values a second of that clock [Hz]."""
+    values: FloatArray
+    """Speed in rev/s of a pulse channel, else the channel's own unit, shape (samples,)."""
+
+    @property
+    def time_s(self) -> FloatArray:
+        """Times of the values on the channel's clock [s], shape (samples,)."""
+        return self.start_s + np.arange(self.values.size) / self.rate_hz
+
+
+def content_of(channel: "Channel", sensor: "SpeedSensor | None" = None, *, rate_hz: float) -> Content:
+    """Return what a channel shows, free of faults and of what is faster than the grid.
+
+    Parameters
+    ----------
+    channel
+        The channel.
+    sensor
+        What the vessel file says about it where it holds pulses: then the speed of that shaft is shown.
+    rate_hz
+        Rate of the grid [Hz]; that of the channel where it is slower and holds no pulses.
+
+    Raises
+    ------
+    SignalError
+        If the channel has no samples, a value is not a number, or pulses cannot be told.
+    """
+    if channel.count == 0:
+        raise SignalError(f"channel {channel.name}: expected samples, found none.")
+    if sensor is None and channel.rate_hz <= rate_hz:
+        counts = np.concatenate(list(blocks(channel, DEFAULT_BLOCK_SAMPLES))).astype(np.float64)
+        values, rate_hz = counts * channel.scale + channel.offset, channel.rate_hz
+    elif sensor is None:
+        step = channel.rate_hz / rate_hz
+        grid = Grid(first=0.0, step=step, count=int((channel.count - 1) / step) + 1)
+        limits = fault_limits(channel, holds=False)
+        values, _ = conditioned(channel, limits, grid, mode="shaftprint", block_samples=DEFAULT_BLOCK_SAMPLES)
+    else:
+        values = read_pick_up(
+            channel,
+            sensor,
+            gear_ratio=1.0,
+            mode="shaftprint",
+            start_s=channel.start_s,
+            rate_hz=rate_hz,
+            count=int(channel.duration_s * rate_hz),
+            block_samples=DEFAULT_BLOCK_SAMPLES,
+        ).speed.speed_rev_s
+    return Content(name=channel.name, start_s=channel.start_s, rate_hz=rate_hz, values=frozen_float(values))
