@@ -206,4 +206,5 @@ def _late_outputs(ready: FmuProgram, model: ExportedModel) -> tuple[str, ...]:
     """Return the outputs whose time stamps lie ahead of what can be known, by name."""
     leaves = {("parameter", i): value for i, value in enumerate(model.values)}
     found = evaluate(ready.lateness, leaves)
-    return tuple(name for name, late in zip(ready.program.outputs, found, strict=True) if float(late) > 0.0)
+    names = ready.program.outputs
+    return tuple(fmu_signal(name).name for name, late in zip(names, found, strict=True) if float(late) > 0.0)

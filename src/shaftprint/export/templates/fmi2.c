@@ -209,6 +209,7 @@ EXPORTED Status NAMED(fmi2SerializeFMUstate)(void *instance, void *state, char b
 EXPORTED Status NAMED(fmi2DeSerializeFMUstate)(void *instance, const char bytes[], size_t size, void **state) {
     Snapshot *found = snapshot_read(bytes, size);
     if (!found) return problem(instance, ERROR);
+    snapshot_free(*state);
     *state = found;
     return OK;
 }

@@ -232,6 +232,7 @@ EXPORTED Status NAMED(fmi3SerializeFMUState)(void *instance, void *state, uint8_
 EXPORTED Status NAMED(fmi3DeserializeFMUState)(void *instance, const uint8_t bytes[], size_t size, void **state) {
     Snapshot *found = snapshot_read((const char *)bytes, size);
     if (!found) return problem(instance, ERROR);
+    snapshot_free(*state);
     *state = found;
     return OK;
 }

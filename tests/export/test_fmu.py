@@ -1,0 +1,378 @@
+"""An FMU as other programs see it: its description, its functions, its state, its parameters, its binaries."""
+
+import ctypes
+import re
+import shutil
+import struct
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from shaftprint.errors import ExportError
+from shaftprint.export import PLATFORMS, write_fmu
+from shaftprint.models import Parameter, limited, structure
+from shaftprint.simulation import simulate
+
+SPEED_RPM, TORQUE_NM = 1183.8, 1740.0
+GAUGE = structure("GAUGE-CLOSED"), {"t_d": 0.0437, "t_sp": 0.1133}
+TORQUE = limited("torque"), {"t_d": 0.0437, "t_sp": 0.1133, "m_max": 1.1}
+TIME = np.arange(101) * 0.02
+SET_POINT = SPEED_RPM * (1.0 + np.where(TIME >= 0.1, 0.05, 0.0))
+
+
+def same(one, two):
+    return all(np.array_equal(one[name], two[name]) for name in one)
+
+
+def declared_functions(version):
+    """Names of all functions that the standard's own header declares."""
+    fmpy = pytest.importorskip("fmpy", reason="FMPy brings the headers of the standard")
+    text = (Path(fmpy.__file__).parent / "c-code" / f"fmi{version}Functions.h").read_text()
+    return set(re.findall(rf"FMI{version}_Export\s+\w+\s+(fmi{version}\w+)\s*;", text))
+
+
+# ---- description ----
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize(
+    "name", ["OL1", "OL5", "CL1", "CL4", "CL4-PADE5", "INITIAL", "GAUGE-CLOSED", "GAUGE-ECU", "GOVERNOR", "FREE-PITCH"]
+)
+def test_fmpy_finds_nothing_to_complain_about(exported, tmp_path, name, version):
+    validation = pytest.importorskip("fmpy.validation", reason="FMPy checks the description")
+    path = tmp_path / "model.fmu"
+    write_fmu(exported(structure(name)), path, version=version, platforms=[])
+    assert validation.validate_fmu(str(path)) == []
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_fmpy_finds_nothing_to_complain_about_in_limits(exported, tmp_path, version):
+    validation = pytest.importorskip("fmpy.validation", reason="FMPy checks the description")
+    path, limits = tmp_path / "model.fmu", limited("torque", "rate", "smoke", "deadband", period_s=0.01)
+    curve = limited("torque", curve=((-0.5, 0.6), (0.0, 1.0), (0.3, 0.9)), name="CURVE")
+    for chosen in (limits, curve):
+        write_fmu(exported(chosen), path, version=version, platforms=[], overwrite=True)
+        assert validation.validate_fmu(str(path)) == []
+
+
+def described(exported, path, chosen, version=2, **more):
+    fmpy = pytest.importorskip("fmpy", reason="FMPy reads the description")
+    write_fmu(exported(chosen), path, version=version, platforms=[], **more)
+    return fmpy.read_model_description(path)
+
+
+def test_variables_are_physical(exported, tmp_path):
+    found = described(exported, tmp_path / "tug.fmu", GAUGE[0])
+    named = {variable.name: variable for variable in found.modelVariables}
+    assert {n for n, v in named.items() if v.causality == "input"} == {"engine_speed_set_point"}
+    assert {n for n, v in named.items() if v.causality == "output"} == {"engine_speed", "shaft_torque"}
+    assert float(named["engine_speed_set_point"].start) == SPEED_RPM
+    assert (named["engine_speed"].unit, named["shaft_torque"].unit) == ("rpm", "N m")
+    (rpm,) = (unit for unit in found.unitDefinitions if unit.name == "rpm")
+    assert float(rpm.baseUnit.factor) == pytest.approx(2.0 * np.pi / 60.0, rel=1e-15)
+    (torque,) = (unit for unit in found.unitDefinitions if unit.name == "N m")
+    assert (torque.baseUnit.kg, torque.baseUnit.m, torque.baseUnit.s) == (1, 2, -2)
+    tunable = {n for n, v in named.items() if v.causality == "parameter" and v.variability == "tunable"}
+    # what is held at zero is no part of the equations
+    zero = {p.name for p in GAUGE[0].parameters if p.held and p.value == 0.0}
+    expected = set(GAUGE[0].names) - zero
+    assert tunable == expected | {"working_point.engine_speed", "working_point.shaft_torque"}
+
+
+@pytest.mark.parametrize(("name", "reached"), [("CL1", {"shaft_torque"}), ("CL4", set())])
+def test_outputs_say_which_inputs_they_show_at_once(exported, tmp_path, name, reached):
+    """A PI governor without delay gives torque at once; speed needs the inertia, and a delay lets nothing through."""
+    found = described(exported, tmp_path / "tug.fmu", structure(name))
+    inputs = {variable.name for variable in found.modelVariables if variable.causality == "input"}
+    shown = {u.variable.name for u in found.outputs if inputs & {v.name for v in u.dependencies}}
+    assert shown == reached
+
+
+def test_equal_models_give_equal_files(exported, tmp_path):
+    for name in ("one", "two"):
+        (tmp_path / name).mkdir()
+        write_fmu(exported(GAUGE[0]), tmp_path / name / "tug.fmu", platforms=[])
+    assert (tmp_path / "one" / "tug.fmu").read_bytes() == (tmp_path / "two" / "tug.fmu").read_bytes()
+
+
+# ---- functions and state ----
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_binary_has_every_function_of_the_standard(fmu, tmp_path, version):
+    with zipfile.ZipFile(fmu(*GAUGE, version=version)) as archive:
+        (name,) = (name for name in archive.namelist() if name.startswith("binaries/"))
+        library = ctypes.CDLL(archive.extract(name, tmp_path))
+    names = declared_functions(version)
+    assert len(names) > 40
+    assert [name for name in sorted(names) if not hasattr(library, name)] == []
+
+
+def test_versions_agree(fmu, slave, solved):
+    found = []
+    for version in (2, 3):
+        with slave(fmu(*TORQUE, version=version)) as own:
+            own.start()
+            found.append(own.run(TIME, SET_POINT))
+        with solved(fmu(*TORQUE, version=version)) as own:
+            own.start()
+            other = own.solve(TIME, lambda t, begin, end: SPEED_RPM * (1.05 if begin + end >= 0.2 else 1.0), [0.1])
+        assert np.abs(other["shaft_torque"] - found[-1]["shaft_torque"]).max() < 1e-5 * TORQUE_NM
+    assert same(*found)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_state_is_taken_and_restored(fmu, slave, version):
+    middle = 30
+    with slave(fmu(*TORQUE, version=version)) as own:
+        own.start()
+        own.run(TIME[: middle + 1], SET_POINT)
+        state = own.fmu.getFMUState()
+        data = own.fmu.serializeFMUstate(state) if version == 2 else own.fmu.serializeFMUState(state)
+        first = own.run(TIME[middle:], SET_POINT[middle:])
+        own.fmu.setFMUState(state)
+        assert same(own.run(TIME[middle:], SET_POINT[middle:]), first)
+        own.fmu.freeFMUState(state)
+    with slave(fmu(*TORQUE, version=version)) as own:
+        own.start()
+        read = own.fmu.deSerializeFMUstate if version == 2 else own.fmu.deserializeFMUState
+        own.fmu.setFMUState(read(data))
+        assert same(own.run(TIME[middle:], SET_POINT[middle:]), first)
+        with pytest.raises(Exception, match=r"[Ee]rror|failed"):
+            read(data[:-1])
+
+
+def test_reset_begins_anew(fmu, slave):
+    with slave(fmu(*TORQUE)) as own:
+        own.start(K_p=1.0)
+        other = own.run(TIME, SET_POINT)
+        own.fmu.reset()
+        own.start()
+        first = own.run(TIME, SET_POINT)
+        own.fmu.reset()
+        own.start()
+        assert same(own.run(TIME, SET_POINT), first)
+        assert not same(first, other)
+
+
+# ---- parameters ----
+
+
+def test_parameters_that_are_set_are_those_of_another_export(fmu, slave):
+    changed = {"K_p": 1.7, "t_d": 0.0291, "tau_dn": 0.3, "omega_n": 11.0}
+    chosen, values = GAUGE
+    with slave(fmu(chosen, values)) as own:
+        own.start(**changed)
+        found = own.run(TIME, SET_POINT)
+    with slave(fmu(chosen, {**values, **changed})) as own:
+        own.start()
+        assert same(own.run(TIME, SET_POINT), found)
+
+
+def test_parameters_are_tuned_during_the_run(fmu, slave):
+    """At the working point a governor's gains and a delay change nothing; the step that follows shows the new ones."""
+    chosen, values = GAUGE
+    changed = {"K_p": 1.7, "t_d": 0.0291}
+    late = TIME + 1.0
+    with slave(fmu(chosen, values)) as own:
+        own.start()
+        own.fmu.doStep(0.0, 0.5)
+        own.set(**changed)
+        own.fmu.doStep(0.5, 0.5)
+        assert own.get("engine_speed", "shaft_torque") == pytest.approx([SPEED_RPM, TORQUE_NM], rel=1e-12)
+        found = own.run(late, SET_POINT)
+    with slave(fmu(chosen, {**values, **changed})) as own:
+        own.start()
+        own.fmu.doStep(0.0, 1.0)
+        other = own.run(late, SET_POINT)
+    for name in found:
+        assert found[name] == pytest.approx(other[name], rel=1e-9)
+
+
+def test_working_point_scales_inputs_and_outputs(fmu, slave):
+    chosen, values = GAUGE
+    with slave(fmu(chosen, values)) as own:
+        own.start()
+        first = own.run(TIME, SET_POINT)
+    point = {"working_point.engine_speed": 2.0 * SPEED_RPM, "working_point.shaft_torque": 3.0 * TORQUE_NM}
+    with slave(fmu(chosen, values)) as own:
+        own.start(2.0 * SPEED_RPM, **point)
+        found = own.run(TIME, 2.0 * SET_POINT)
+    assert found["engine_speed"] == pytest.approx(2.0 * first["engine_speed"], rel=1e-12)
+    assert found["shaft_torque"] == pytest.approx(3.0 * first["shaft_torque"], rel=1e-12)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_no_limit_that_is_no_number(fmu, slave, exported, tmp_path, value):
+    with slave(fmu(*TORQUE)) as own:
+        for name in ("m_max", "engine_speed_set_point"):
+            with pytest.raises(Exception, match=r"[Ee]rror|failed"):
+                own.set(**{name: value})
+        own.start()
+        assert own.get("m_max", "engine_speed_set_point") == [TORQUE[1]["m_max"], SPEED_RPM]
+        assert np.isfinite(own.run(TIME, SET_POINT)["shaft_torque"]).all()
+    with pytest.raises(ExportError, match="none of m_max"):
+        exported(TORQUE[0], {"m_max": value})
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_step_is_refined_for_fast_parameters(fmu, slave):
+    """A lag of half a millisecond is out of reach of a step of 1 ms: 2.8 times the lag is the end of stability."""
+    chosen = structure("GAUGE-CLOSED").free_between(T_filter=(1e-4, 1.0))
+    values = {**GAUGE[1], "T_filter": 0.1}
+    with slave(fmu(chosen, values)) as own:
+        own.start(T_filter=3e-4)
+        own.fmu.doStep(0.0, 0.1)
+        (taken,) = own.get("internal_step_taken")
+        assert 1e-6 < taken < 3e-4
+        own.set(engine_speed_set_point=1.05 * SPEED_RPM)
+        own.fmu.doStep(0.1, 20.0)
+        assert own.get("engine_speed")[0] == pytest.approx(1.05 * SPEED_RPM, rel=1e-6)
+
+
+def test_time_constants_that_no_step_can_follow(exported, tmp_path):
+    chosen = structure("GAUGE-CLOSED").free_between(T_filter=(1e-12, 1.0))
+    with pytest.raises(ExportError, match="pole at"):
+        write_fmu(exported(chosen, {"T_filter": 1e-9}), tmp_path / "tug.fmu", platforms=[])
+    assert list(tmp_path.iterdir()) == []
+
+
+# ---- samples ----
+
+
+def test_samples_scatter_as_the_covariance_says(exported, fmu, slave, tmp_path):
+    """The standard deviation over samples is that of exact derivatives and the covariance."""
+    from shaftprint.export._fmu_build import host_platform
+
+    fmu(*GAUGE)  # skips where there is no compiler
+    chosen, values = GAUGE
+    uncertain, count = ("K_p", "K_i", "t_d"), 400
+    std = np.array([0.02, 0.03, 0.001])
+    correlation = np.array([[1.0, 0.6, 0.0], [0.6, 1.0, -0.3], [0.0, -0.3, 1.0]])
+    covariance = correlation * np.outer(std, std)
+    model = exported(chosen, values, uncertain=uncertain, covariance=covariance)
+    path = tmp_path / "samples.fmu"
+    rng = np.random.default_rng(11)
+    write_fmu(model, path, platforms=[host_platform()], samples=count, rng=rng)
+    at = 0.5
+    trace = simulate(
+        chosen,
+        model.values,
+        np.linspace(0.0, at, 501),
+        {"n_set": np.full(501, 0.05) * (np.arange(501) > 0)},
+        wanted=uncertain,
+    )
+    slopes = SPEED_RPM * trace.derivatives["n"][:, -1]
+    found = []
+    with slave(path) as own:
+        for number in range(count + 1):
+            own.choose(posterior_sample=number)
+            own.start()
+            own.set(engine_speed_set_point=1.05 * SPEED_RPM)
+            own.fmu.doStep(0.0, at)
+            found += own.get("engine_speed")
+            own.fmu.reset()
+        with pytest.raises(Exception, match=r"[Ee]rror|failed"):
+            own.choose(posterior_sample=count + 1)
+    with slave(fmu(*GAUGE)) as own:
+        own.start()
+        own.set(engine_speed_set_point=1.05 * SPEED_RPM)
+        own.fmu.doStep(0.0, at)
+        assert found[0] == pytest.approx(own.get("engine_speed")[0], rel=1e-12)
+    # the standard deviation of 400 samples is known to 3.5 %
+    assert np.std(found[1:]) == pytest.approx(np.sqrt(slopes @ covariance @ slopes), rel=0.12)
+
+
+def test_samples_need_a_covariance_and_a_source(exported, tmp_path):
+    with pytest.raises(ExportError, match="expected parameters with a covariance"):
+        write_fmu(exported(GAUGE[0]), tmp_path / "a.fmu", platforms=[], samples=2, rng=np.random.default_rng(0))
+    with pytest.raises(ExportError, match="expected rng"):
+        write_fmu(exported(GAUGE[0]), tmp_path / "a.fmu", platforms=[], samples=2)
+
+
+# ---- sources and binaries ----
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_sources_are_built_by_fmpy(fmu, exported, slave, tmp_path, version, capfd):
+    build = pytest.importorskip("fmpy.build", reason="FMPy builds the sources")
+    if shutil.which("cmake") is None or shutil.which("cc") is None:
+        pytest.skip("FMPy builds sources with cmake and a C compiler")
+    chosen, values = TORQUE
+    path, folder = tmp_path / "tug.fmu", tmp_path / "tug"
+    write_fmu(exported(chosen, values), path, version=version, platforms=[])
+    with zipfile.ZipFile(path) as archive:
+        assert not any(name.startswith("binaries") for name in archive.namelist())
+        archive.extractall(folder)
+    (tmp_path / "build").mkdir()
+    build.build_platform_binary(folder, tmp_path / "build")
+    capfd.readouterr()
+    built = tmp_path / "built.fmu"
+    with zipfile.ZipFile(built, "w") as archive:
+        for file in folder.rglob("*"):
+            archive.write(file, file.relative_to(folder).as_posix())
+    with slave(built) as own:
+        own.start()
+        found = own.run(TIME, SET_POINT)
+    with slave(fmu(chosen, values, version=version)) as own:
+        own.start()
+        other = own.run(TIME, SET_POINT)
+    for name in found:
+        assert found[name] == pytest.approx(other[name], rel=1e-9)
+
+
+def exported_names(library: bytes) -> set[str]:
+    """Names that a Windows library exports, from its own tables (Microsoft, PE Format, .edata section)."""
+    (header,) = struct.unpack_from("<I", library, 0x3C)
+    assert library[:2] == b"MZ"
+    assert library[header : header + 4] == b"PE\0\0"
+    machine, sections, _, _, _, optional, characteristics = struct.unpack_from("<HHIIIHH", library, header + 4)
+    assert machine == 0x8664
+    assert characteristics & 0x2000  # a library
+    start = header + 24
+    assert struct.unpack_from("<H", library, start) == (0x20B,)
+    (address,) = struct.unpack_from("<I", library, start + 112)
+    tables = [struct.unpack_from("<8sIIII", library, start + optional + 40 * i) for i in range(sections)]
+
+    def place(at):
+        (found,) = (at - first + raw for _, size, first, _, raw in tables if first <= at < first + size)
+        return found
+
+    count, _, names = struct.unpack_from("<III", library, place(address) + 24)
+    pointers = struct.unpack_from(f"<{count}I", library, place(names))
+    return {library[place(p) : library.index(b"\0", place(p))].decode() for p in pointers}
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_library_for_windows(exported, tmp_path, version):
+    pytest.importorskip("ziglang", reason="other systems need the extra fmu")
+    path = tmp_path / "tug.fmu"
+    write_fmu(exported(*TORQUE), path, version=version, platforms=["win64"])
+    with zipfile.ZipFile(path) as archive:
+        folder = {2: "win64", 3: "x86_64-windows"}[version]
+        library = archive.read(f"binaries/{folder}/tug.dll")
+    assert declared_functions(version) <= exported_names(library)
+
+
+def test_systems_that_are_none(exported, tmp_path):
+    with pytest.raises(ExportError, match="no system 'amiga'"):
+        write_fmu(exported(*TORQUE), tmp_path / "tug.fmu", platforms=["amiga"])
+    assert "win64" in PLATFORMS
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_parameters_with_names_that_c_does_not_take(exported, tmp_path):
+    fmpy = pytest.importorskip("fmpy", reason="FMPy reads the description")
+    from shaftprint.models import Gain, Integrator, Structure, feedback
+
+    odd = Parameter("gain of 'it'", "rad/s", 0.1, 10.0, 2.0, "a name with blanks & <signs>")
+    own = Structure(name="OWN", title="own", input="wanted", outputs={"got": feedback(Gain(odd) * Integrator())})
+    path = tmp_path / "own ship.fmu"
+    write_fmu(exported(own), path, platforms=[])
+    found = fmpy.read_model_description(path)
+    names = [variable.name for variable in found.modelVariables]
+    assert "'gain of it'" in names
+    assert {"wanted", "got"} <= set(names)
+    assert found.coSimulation.modelIdentifier == "own_ship"
