@@ -29,6 +29,8 @@ def test_commands_are_those_that_were_asked_for():
         "export",
         "show",
         "limits",
+        "merge",
+        "join",
         "simulate",
         "validate",
         "new",
