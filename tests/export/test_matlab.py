@@ -96,8 +96,8 @@ def test_classes_of_matlab_get_their_arguments(tug, tmp_path):
         tmp_path,
         "m = line()",
         "tau = m.sys.tau; delay = m.sys.OutputDelay; late = m.sys_lateness_s; D = m.sys.D; Ts = m.idfrd.Ts",
-        "name = m.idfrd.name; C = m.idfrd.C; w = m.frd.w; out = strjoin(m.sys.OutputName', ',')",
-        "save('-v6', 'out.mat', 'tau', 'delay', 'late', 'D', 'Ts', 'name', 'C', 'w', 'out')",
+        "name = m.idfrd.name; size_of_C = size(m.idfrd.C); w = m.frd.w; out = strjoin(m.sys.OutputName', ',')",
+        "save('-v6', 'out.mat', 'tau', 'delay', 'late', 'D', 'Ts', 'name', 'size_of_C', 'w', 'out')",
     )
     assert found["tau"] == pytest.approx(0.0731)
     np.testing.assert_allclose(found["delay"], [0.0417, 0.0307], rtol=1e-12)
@@ -105,7 +105,7 @@ def test_classes_of_matlab_get_their_arguments(tug, tmp_path):
     assert found["D"].shape == (3, 2)
     assert found["Ts"] == 0
     assert found["name"] == "CovarianceData"
-    assert found["C"].shape == (2, 1, 241, 2, 2)
+    assert found["size_of_C"].tolist() == [2, 1, 241, 2, 2]
     assert found["w"].shape == (241,)
     assert found["out"] == "n,M_s"
 
@@ -176,7 +176,7 @@ def test_equal_models_give_equal_files(tug, tmp_path):
 
 def test_an_earlier_file_is_kept(tug, tmp_path):
     (tmp_path / "line.m").write_text("mine")
-    with pytest.raises(FileExistsError, match="line.m exists already"):
+    with pytest.raises(FileExistsError, match=r"line\.m exists already"):
         write_matlab(tug, tmp_path / "line.mat")
     assert sorted(path.name for path in tmp_path.iterdir()) == ["line.m"]
 

@@ -11,12 +11,18 @@ others              -       deviations, as in ``shaftprint.models``
 
 from shaftprint.export._fmu import WrittenFmu, write_fmu
 from shaftprint.export._fmu_build import PLATFORMS
+from shaftprint.export._matlab import WrittenMatlab, write_matlab
 from shaftprint.export._model import ExportedModel, exported_model
+from shaftprint.export._modelica import WrittenModelica, write_modelica
 
 __all__ = [
     "PLATFORMS",
     "ExportedModel",
     "WrittenFmu",
+    "WrittenMatlab",
+    "WrittenModelica",
     "exported_model",
     "write_fmu",
+    "write_matlab",
+    "write_modelica",
 ]
