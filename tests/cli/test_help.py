@@ -21,6 +21,7 @@ def test_commands_are_those_that_were_asked_for():
         "inspect",
         "predict",
         "identify",
+        "compare",
         "compare-structures",
         "structures",
         "sensitivity",

@@ -122,3 +122,30 @@ def test_only_what_both_have_in_one_unit_is_compared(fingerprint):
     first = with_quantities(fingerprint, quantity(fingerprint, value=1.0, std=1.0), quantity(fingerprint, name="I_up"))
     other = with_quantities(fingerprint, quantity(fingerprint, value=1.0, std=1.0, unit="t m2"))
     assert differences(first, other) == ()
+
+
+def test_normalised_numbers_are_judged_by_themselves(fingerprint):
+    """A time that moves with the working point is far apart; the inertia behind it is not, and keeps its own count."""
+    inertia = [with_quantities(fingerprint, quantity(fingerprint, value=value, std=1.0)) for value in (17.0, 20.0)]
+    times = [quantity(fingerprint, name="tau_dn", unit="s", value=value, std=0.001) for value in (0.31, 0.33)]
+    pair = [f.model_copy(update={"parameters": (time,)}) for f, time in zip(inertia, times, strict=True)]
+    found = {one.first.name: one for one in differences(*pair)}
+    assert found["tau_dn"].normalised
+    assert found["tau_dn"].outcome == "differs"
+    assert not found["I_dn"].normalised
+    assert found["I_dn"].outcome == "differs"  # p = 0.034 of one number alone
+
+
+def test_a_physical_value_is_as_lopsided_as_its_parameter(fingerprint):
+    """K_p of 5 lies between 4.5 and 8, so an action of 10 lies between 9 and 16; 14 +/- 1 is no surprise then."""
+    gain = quantity(fingerprint, name="K_p", unit="-", value=5.0, std=0.2, interval_95=(4.5, 8.0))
+    actions = [
+        quantity(fingerprint, name="governor proportional action", value=value, std=std)
+        for value, std in ((10.0, 0.4), (14.0, 1.0))
+    ]
+    first, other = (with_quantities(fingerprint, action) for action in actions)
+    (found, *_) = differences(first.model_copy(update={"parameters": (gain,)}), other)
+    assert found.interval_95[0] == pytest.approx(4.0 - math.hypot(1.96, 6.0), abs=1e-3)
+    assert found.outcome == "no difference seen"
+    (surer,) = differences(first, other)
+    assert surer.outcome == "differs"

@@ -19,6 +19,7 @@ COMMANDS = {
     "merge": "Bring the recordings of two loggers onto the clock of the first.",
     "join": "Join files that one logger wrote one after the other, in the order given.",
     "identify": "Identify the fingerprint from a recording.",
+    "compare": "Say what differs between fingerprints, and whether it is more than chance.",
     "compare-structures": "Say which of several structures a recording wants, and why.",
     "validate": "Hold a model against chirps and steps that it was not identified from.",
     "limits": "Find which limits a line has, and their levels and rates with uncertainty.",

@@ -19,8 +19,11 @@ Every ``plot_*`` function returns a matplotlib ``Figure`` that belongs to nobody
 from shaftprint.report._bode import plot_bode
 from shaftprint.report._calibration_figure import plot_calibration
 from shaftprint.report._campaign_figure import plot_campaign
+from shaftprint.report._comparison import render_comparison
+from shaftprint.report._comparison_tables import difference_table
 from shaftprint.report._correlation_figure import plot_correlation
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
+from shaftprint.report._difference_figure import plot_differences
 from shaftprint.report._differences import Difference, differences
 from shaftprint.report._explanation import Explanation, explain_thesis
 from shaftprint.report._explanation_figure import plot_missing_damping
@@ -75,6 +78,7 @@ __all__ = [
     "ThesisMode",
     "closed_loop_curve",
     "damping_table",
+    "difference_table",
     "differences",
     "expected_inertia_table",
     "explain_thesis",
@@ -94,6 +98,7 @@ __all__ = [
     "plot_closed_loop_response",
     "plot_core_fit",
     "plot_correlation",
+    "plot_differences",
     "plot_excitation",
     "plot_governor_fits",
     "plot_line_selection",
@@ -114,6 +119,7 @@ __all__ = [
     "plot_strip_angles",
     "plot_validation",
     "plot_validation_summary",
+    "render_comparison",
     "render_report",
     "save_figure",
     "thesis_families",

@@ -30,6 +30,14 @@ UNLIKELY = 0.05
 # Sources that a vessel file states once for all tests; what else a budget has is of one test.
 TOLD = ("TVC", "gauge scale", "telemetry latency")
 TOLD_PRIOR = "prior of "
+# Physical values that are a parameter times what is known better: where the parameter has a lopsided interval from its
+# profile, theirs is as lopsided, which their standard deviation to first order does not know.
+FOLLOWS_FROM = {
+    "I_dn": "tau_dn",
+    "I_up": "tau_up",
+    "governor proportional action": "K_p",
+    "governor integral action": "K_i",
+}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -46,6 +54,8 @@ class Difference:
     """Probability that chance alone makes a difference that large or larger; None where it cannot be compared."""
     outcome: Outcome
     """Whether they differ: surely, all numbers of the comparison considered; perhaps; or not to be seen."""
+    normalised: bool = False
+    """Whether it moves with the working point, so that it may differ without a change of the ship."""
 
     @property
     def value(self) -> float:
@@ -58,7 +68,9 @@ def differences(first: "Fingerprint", other: "Fingerprint") -> tuple[Difference,
 
     Many numbers make it likely that chance alone moves one of them: a number differs where it does so after Holm's
     correction (S. Holm, "A simple sequentially rejective multiple test procedure", Scandinavian Journal of Statistics
-    6, 1979), and perhaps differs where only its own p-value is below 5 %.
+    6, 1979), and perhaps differs where only its own p-value is below 5 %. Parameters and their combinations are
+    normalised with the speed and torque of their own test, which no test repeats to a tenth of a percent: they are
+    judged by themselves, and tell of a change of the ship only where a physical value does too.
 
     Parameters
     ----------
@@ -67,18 +79,21 @@ def differences(first: "Fingerprint", other: "Fingerprint") -> tuple[Difference,
     other
         The other fingerprint, of the same or another ship.
     """
+    kept = _shared(first, other, ("physical", "margins"))
+    moving = _shared(first, other, ("combinations", "parameters"))
+    return (*_judged(kept), *(replace(found, normalised=True) for found in _judged(moving)))
+
+
+def _shared(first: "Fingerprint", other: "Fingerprint", groups: Sequence[str]) -> list[Difference]:
+    """Return the differences of all numbers of some groups that both have in the same unit."""
     told_alike = _vessel_file(first) is not None and _vessel_file(first) == _vessel_file(other)
-    there = {quantity.name: quantity for quantity in _numbers(other)}
-    found = [
+    there = {quantity.name: quantity for group in groups for quantity in getattr(other, group)}
+    return [
         _difference(quantity, there[quantity.name], first, other, told_alike=told_alike)
-        for quantity in _numbers(first)
+        for group in groups
+        for quantity in getattr(first, group)
         if quantity.name in there and there[quantity.name].unit == quantity.unit
     ]
-    return tuple(_judged(found))
-
-
-def _numbers(fingerprint: "Fingerprint") -> "tuple[Quantity, ...]":
-    return (*fingerprint.physical, *fingerprint.margins, *fingerprint.combinations, *fingerprint.parameters)
 
 
 def _vessel_file(fingerprint: "Fingerprint") -> str | None:
@@ -88,7 +103,7 @@ def _vessel_file(fingerprint: "Fingerprint") -> str | None:
 def _difference(
     a: "Quantity", b: "Quantity", first: "Fingerprint", other: "Fingerprint", *, told_alike: bool
 ) -> Difference:
-    (low_a, high_a), (low_b, high_b) = limits(a), limits(b)
+    (low_a, high_a), (low_b, high_b) = _interval(a, first), _interval(b, other)
     apart = b.value - a.value
     rising = apart >= 0.0
     facing_open = (a.interval_open[1], b.interval_open[0]) if rising else (a.interval_open[0], b.interval_open[1])
@@ -104,6 +119,19 @@ def _difference(
     return Difference(
         first=a, other=b, interval_95=(apart - below, apart + above), p_value=p_value, outcome="no difference seen"
     )
+
+
+def _interval(quantity: "Quantity", fingerprint: "Fingerprint") -> tuple[float, float]:
+    """Return the 95 % interval of a number, as lopsided as that of the parameter that it follows from."""
+    low, high = limits(quantity)
+    if quantity.interval_95 is not None or quantity.name not in FOLLOWS_FROM:
+        return low, high
+    for parameter in fingerprint.parameters:
+        if parameter.name == FOLLOWS_FROM[quantity.name] and parameter.value != 0.0:
+            scale = quantity.value / parameter.value
+            ends = sorted(scale * end for end in limits(parameter))
+            return min(low, ends[0]), max(high, ends[1])
+    return low, high
 
 
 def _told(fingerprint: "Fingerprint", name: str) -> dict[str, float]:

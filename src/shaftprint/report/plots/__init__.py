@@ -15,6 +15,7 @@ those of its light or dark look.
 """
 
 from shaftprint.report.plots._bode import bode_plot
+from shaftprint.report.plots._differences import difference_plot
 from shaftprint.report.plots._judged import budget_plot, profile_plot, residual_plot, signal_to_noise_plot
 from shaftprint.report.plots._nyquist import nyquist_plot
 from shaftprint.report.plots._plot import Plot
@@ -25,6 +26,7 @@ __all__ = [
     "Plot",
     "bode_plot",
     "budget_plot",
+    "difference_plot",
     "excitation_plot",
     "nyquist_plot",
     "plotly_script",

@@ -3,6 +3,7 @@
 // Without scripts the page shows the static figures; in print it always does.
 (() => {
   const NEAR = "500px 0px";
+  const NARROW = 600;
   const PAN = 0.15;
   const ZOOM = 0.6;
   const CONFIG = {
@@ -38,8 +39,9 @@
 
   function coloured(value, colours) {
     if (typeof value === "string" && value.startsWith("@")) {
-      const plain = colours[value.replace("~", "")] || value;
-      return value.endsWith("~") ? plain + "47" : plain;
+      const plain = colours[value.replace(/~$/, "")];
+      // A band is thin paint; a name that begins with the sign stays as it is.
+      return plain === undefined ? value : value.endsWith("~") ? `${plain}47` : plain;
     }
     if (Array.isArray(value)) {
       // Long lists of numbers hold no colours.
@@ -53,7 +55,7 @@
 
   const isAxis = (key) => /^[xy]axis\d*$/.test(key);
 
-  function layoutOf(figure, colours) {
+  function layoutOf(figure, colours, narrow) {
     const layout = coloured(figure.layout, colours);
     layout.paper_bgcolor = "rgba(0,0,0,0)";
     layout.plot_bgcolor = "rgba(0,0,0,0)";
@@ -66,6 +68,8 @@
       layout[key].gridcolor = colours["@grid"];
       layout[key].linecolor = colours["@reference"];
       layout[key].tickcolor = colours["@reference"];
+      // Numbers at 2 and 5 of each decade would overlap.
+      if (narrow && layout[key].type === "log") layout[key].dtick = 1;
     }
     return layout;
   }
@@ -74,7 +78,7 @@
     const { place, figure } = figures.get(name);
     const colours = COLOURS[look()];
     const config = { ...CONFIG, toImageButtonOptions: { format: "svg", filename: name } };
-    return window.Plotly.react(place, coloured(figure.data, colours), layoutOf(figure, colours), config).then(() => {
+    return window.Plotly.react(place, coloured(figure.data, colours), layoutOf(figure, colours, place.clientWidth < NARROW), config).then(() => {
       if (place.dataset.state !== "drawn") {
         place.dataset.state = "drawn";
         performance.mark("plot drawn");

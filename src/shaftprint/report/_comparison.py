@@ -1,0 +1,176 @@
+"""The report on two or more fingerprints: what differs by more than chance, and their responses over each other."""
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from shaftprint.errors import ReportError
+from shaftprint.models import STRUCTURES, structure
+from shaftprint.report._bode import plot_bode
+from shaftprint.report._comparison_cover import comparison_cover, not_alike
+from shaftprint.report._comparison_tables import beside_table, condition_table, difference_table
+from shaftprint.report._difference_figure import plot_differences, shown_names
+from shaftprint.report._differences import Difference, differences
+from shaftprint.report._fingerprint_curve import fingerprint_curve
+from shaftprint.report._page import Page, write_page
+from shaftprint.report._sections import Picture, Section
+from shaftprint.report._table import Table
+from shaftprint.report.plots import bode_plot, difference_plot
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.models import Structure
+    from shaftprint.report._curve import Curve
+
+FEWEST = 2
+
+
+def render_comparison(
+    directory: str | Path,
+    fingerprints: "Mapping[str, Fingerprint]",
+    *,
+    structures: "Mapping[str, Structure] | None" = None,
+    interactive: bool = True,
+    overwrite: bool = False,
+) -> Path:
+    """Write a report on two or more fingerprints, ``index.html`` with its figures; return the path of the page.
+
+    Parameters
+    ----------
+    directory
+        Where the report goes; made if it does not exist. Other files there are left alone.
+    fingerprints
+        Fingerprints by the name that the report gives them; the first is the one that others are compared with.
+    structures
+        Structures of one's own by name; those that are shipped are known.
+    interactive
+        Whether figures can be zoomed; without it the page runs no script.
+    overwrite
+        Whether an earlier report there may be replaced.
+
+    Raises
+    ------
+    FileExistsError
+        If there is a report already and ``overwrite`` is false.
+    ReportError
+        If there are fewer than two fingerprints, or figures are to be interactive and plotly is not installed.
+    """
+    if len(fingerprints) < FEWEST:
+        raise ReportError(
+            f"comparison: expected two or more fingerprints, found {len(fingerprints)}; name another one."
+        )
+    (first_name, first), *others = fingerprints.items()
+    found = {name: differences(first, other) for name, other in others}
+    page = Page(
+        title="Fingerprints compared",
+        subtitle=f"{', '.join(name for name, _ in others)} compared with {first_name}",
+        created=max(fingerprint.created for fingerprint in fingerprints.values()),
+        version=first.shaftprint_version,
+        cover=comparison_cover(fingerprints, found),
+        sections=_sections(fingerprints, found, structures or {}),
+        files=_files(fingerprints),
+        ending="± is one standard deviation throughout; bands, intervals and error bars hold 95 %.",
+    )
+    return write_page(directory, page, interactive=interactive, overwrite=overwrite, progress=None)
+
+
+def _sections(
+    fingerprints: "Mapping[str, Fingerprint]",
+    found: Mapping[str, Sequence[Difference]],
+    structures: "Mapping[str, Structure]",
+) -> list[Section]:
+    first = next(iter(fingerprints))
+    changed = Section(
+        key="differences",
+        title="Differences",
+        paragraphs=(
+            "A number differs where the difference is more than chance makes in one of twenty comparisons, all numbers "
+            "of the comparison considered; perhaps, where that holds for the number alone. What both were told alike "
+            "by the same vessel file counts only as far as it moves the two unequally.",
+        ),
+        tables=_difference_tables(first, found, normalised=False),
+        pictures=_difference_pictures(found),
+    )
+    moving = Section(
+        key="normalised",
+        title="Differences of normalised numbers",
+        paragraphs=(
+            "These are normalised with the speed and torque of their own test: they move with the working point, and "
+            "tell of a change of the ship only where a physical value does too.",
+        ),
+        tables=_difference_tables(first, found, normalised=True),
+    )
+    beside = Section(
+        key="numbers",
+        title="Numbers beside each other",
+        paragraphs=_warnings(fingerprints),
+        tables=beside_table(fingerprints),
+    )
+    conditions = Section(key="conditions", title="Under which conditions", tables=(condition_table(fingerprints),))
+    return [changed, *_responses(fingerprints, structures), moving, beside, conditions]
+
+
+def _difference_tables(first: str, found: Mapping[str, Sequence[Difference]], *, normalised: bool) -> list[Table]:
+    chosen = {name: [one for one in rows if one.normalised == normalised] for name, rows in found.items()}
+    return [difference_table(first, name, rows) for name, rows in chosen.items() if rows]
+
+
+def _difference_pictures(found: Mapping[str, Sequence[Difference]]) -> list[Picture]:
+    if not shown_names(found):
+        return []
+    return [
+        Picture(
+            name="differences",
+            caption="Difference of each number from the first fingerprint, in percent of it.",
+            alt="Points with intervals, a row for each number, about a vertical line at zero difference.",
+            draw=partial(plot_differences, found),
+            plot=partial(difference_plot, found),
+        )
+    ]
+
+
+def _warnings(fingerprints: "Mapping[str, Fingerprint]") -> tuple[str, ...]:
+    (_, first), *others = fingerprints.items()
+    return tuple(sentence for name, other in others for sentence in not_alike(first, name, other))
+
+
+def _responses(fingerprints: "Mapping[str, Fingerprint]", structures: "Mapping[str, Structure]") -> list[Section]:
+    """Return the responses of all models that describe what the first one does, over each other."""
+    curves: dict[str, Curve] = {}
+    unknown: list[str] = []
+    for name, fingerprint in fingerprints.items():
+        model = structures.get(fingerprint.structure)
+        if model is None and fingerprint.structure in STRUCTURES:
+            model = structure(fingerprint.structure)
+        if model is None:
+            unknown.append(name)
+            continue
+        curves[name] = fingerprint_curve(fingerprint, model, name)
+    if not curves:
+        return []
+    channels = next(iter(curves.values())).structure.channels
+    shown = [curve for curve in curves.values() if curve.structure.channels == channels]
+    unknown += [name for name, curve in curves.items() if curve.structure.channels != channels]
+    words = (f"Not drawn, since its structure is another or not known here: {', '.join(unknown)}.",) if unknown else ()
+    picture = Picture(
+        name="responses",
+        caption="Identified models with their 95 % bands. Normalised with the working point of each test.",
+        alt="Bode diagram of all identified models over each other, with bands.",
+        draw=partial(plot_bode, shown),
+        plot=partial(bode_plot, shown),
+    )
+    return [Section(key="responses", title="Responses", paragraphs=words, pictures=(picture,))]
+
+
+def _files(fingerprints: "Mapping[str, Fingerprint]") -> Table:
+    rows = tuple(
+        (name, source.name, source.role, source.sha256)
+        for name, fingerprint in fingerprints.items()
+        for source in fingerprint.sources
+    )
+    return Table(
+        caption="Files that went into the fingerprints",
+        header=("fingerprint", "file", "what it is", "SHA-256"),
+        rows=rows,
+    )

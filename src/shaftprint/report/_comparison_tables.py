@@ -1,0 +1,107 @@
+"""Tables of several fingerprints: numbers beside each other, differences, conditions."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from shaftprint.normal import NORMAL_95
+from shaftprint.report._fingerprint_tables import limits
+from shaftprint.report._numbers import decimals_of, interval, plain, rounded, with_deviation
+from shaftprint.report._symbols import unit_text
+from shaftprint.report._table import Cell, Table, symbol_html
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint, Quantity
+    from shaftprint.report._differences import Difference
+
+PERCENT = 100.0
+SMALLEST_P = 1e-4
+NOT_THERE = "–"
+
+
+def difference_table(first: str, other: str, found: "Sequence[Difference]") -> Table:
+    """Return every number that two fingerprints share with its difference, interval and significance.
+
+    Parameters
+    ----------
+    first, other
+        Names of the two.
+    found
+        Their differences.
+    """
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
+        (
+            symbol_html(one.first.name),
+            with_deviation(one.first.value, one.first.std),
+            with_deviation(one.other.value, one.other.std),
+            *_apart(one),
+            one.outcome,
+            unit_text(one.first.unit),
+            one.first.meaning,
+        )
+        for one in found
+    )
+    header = ("quantity", first, other, "difference", "95 % interval", "%", "p", "outcome", "unit", "meaning")
+    return Table(caption=f"{other} compared with {first}", header=header, rows=rows)
+
+
+def _apart(one: "Difference") -> tuple[str, str, str, str]:
+    """Return difference, interval, percent and p-value as they are printed."""
+    share = NOT_THERE if one.first.value == 0.0 else f"{plain(PERCENT * one.value / abs(one.first.value), 1)} %"
+    if one.interval_95 is None or one.p_value is None:
+        return rounded(one.value), NOT_THERE, share, NOT_THERE
+    low, high = one.interval_95
+    std = 0.5 * (high - low) / NORMAL_95
+    probability = f"< {SMALLEST_P:g}" if one.p_value < SMALLEST_P else plain(one.p_value, 4)
+    return plain(one.value, decimals_of(one.value, std)), interval(low, high, std), share, probability
+
+
+def beside_table(fingerprints: "Mapping[str, Fingerprint]") -> list[Table]:
+    """Return physical values, margins, combinations and parameters of all fingerprints, a table each."""
+    groups = (
+        ("Physical values", "physical"),
+        ("Stability margins", "margins"),
+        ("Combinations of parameters", "combinations"),
+        ("Parameters, normalised with the working point of each test", "parameters"),
+    )
+    tables = [_beside(caption, {n: getattr(f, group) for n, f in fingerprints.items()}) for caption, group in groups]
+    return [table for table in tables if table.rows]
+
+
+def _beside(caption: str, quantities: "Mapping[str, Sequence[Quantity]]") -> Table:
+    there = {name: {q.name: q for q in found} for name, found in quantities.items()}
+    names = list(dict.fromkeys(q for found in there.values() for q in found))
+    rows: list[tuple[Cell, ...]] = []
+    for name in names:
+        units = {found[name].unit for found in there.values() if name in found}
+        cells = [_cell(found.get(name)) for found in there.values()]
+        rows.append((symbol_html(name), *cells, " or ".join(sorted(unit_text(unit) for unit in units))))
+    note = "± is one standard deviation, in brackets the 95 % interval."
+    return Table(caption=caption, header=("quantity", *quantities, "unit"), rows=tuple(rows), note=note)
+
+
+def _cell(quantity: "Quantity | None") -> str:
+    if quantity is None:
+        return NOT_THERE
+    lower, upper = limits(quantity)
+    bound = ", at its bound" if quantity.at_bound else ""
+    return f"{with_deviation(quantity.value, quantity.std)} ({interval(lower, upper, quantity.std)}){bound}"
+
+
+def condition_table(fingerprints: "Mapping[str, Fingerprint]") -> Table:
+    """Return vessel, test, working point, structure, lines and verdict of all fingerprints."""
+    rows = (
+        ("vessel", *(f.conditions.vessel for f in fingerprints.values())),
+        ("test", *(f.conditions.campaign for f in fingerprints.values())),
+        ("made", *(f.created.strftime("%Y-%m-%d %H:%M %Z") for f in fingerprints.values())),
+        ("engine speed", *(_working(f.conditions.engine_speed) for f in fingerprints.values())),
+        ("shaft torque", *(_working(f.conditions.shaft_torque) for f in fingerprints.values())),
+        ("structure", *(f.structure for f in fingerprints.values())),
+        ("test lines used", *(", ".join(f.conditions.lines_used) for f in fingerprints.values())),
+        ("signals prepared in", *(f"{f.conditions.mode} mode" for f in fingerprints.values())),
+        ("verdict", *(f.verdict.reason for f in fingerprints.values())),
+    )
+    return Table(caption="Conditions of the tests", header=("what", *fingerprints), rows=rows)
+
+
+def _working(quantity: "Quantity") -> str:
+    return f"{with_deviation(quantity.value, quantity.std)} {unit_text(quantity.unit)}"

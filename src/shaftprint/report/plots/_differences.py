@@ -1,0 +1,56 @@
+"""Interactive plot of differences between fingerprints."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from shaftprint.report._difference_figure import shown_names, shown_percent
+from shaftprint.report.plots._panels import Grid
+from shaftprint.report.plots._plot import Plot, numbers
+from shaftprint.report.plots._traces import MARKERS, colour, points
+from shaftprint.report.plots._words import name_text
+
+if TYPE_CHECKING:
+    from shaftprint.report._differences import Difference
+
+ROW_PX, FRAME_PX = 30, 150
+
+
+def difference_plot(found: Mapping[str, Sequence["Difference"]]) -> Plot:
+    """Return differences in percent of the first fingerprint, each with its 95 % interval.
+
+    Parameters
+    ----------
+    found
+        Differences from the first fingerprint, by the name of the other.
+    """
+    grid = Grid(x_titles=["difference from the first fingerprint, with 95 % interval [%]"])
+    axes = grid.place(0, 0)
+    names = shown_names(found)
+    traces = []
+    for place, (label, differences) in enumerate(found.items()):
+        shown = [(d, percent) for d in differences if (percent := shown_percent(d)) is not None]
+        drawn = points(
+            [percent[0] for _, percent in shown],
+            [],
+            name_text(label),
+            axes,
+            shade=colour(place),
+            marker=MARKERS[place % len(MARKERS)],
+            words=[d.outcome for d, _ in shown],
+        )
+        drawn["y"] = [name_text(d.first.name) for d, _ in shown]
+        drawn["error_x"] = {
+            "type": "data",
+            "symmetric": False,
+            "array": numbers([high - value for _, (value, _, high) in shown]),
+            "arrayminus": numbers([value - low for _, (value, low, _) in shown]),
+            "color": colour(place),
+            "thickness": 1.4,
+            "width": 4,
+        }
+        traces.append(drawn)
+    layout = grid.layout()
+    layout["xaxis"]["zeroline"] = True
+    order = [name_text(name) for name in names]
+    layout["yaxis"] |= {"type": "category", "categoryorder": "array", "categoryarray": order, "autorange": "reversed"}
+    return Plot(traces=traces, layout=layout, height_px=FRAME_PX + ROW_PX * len(names))
