@@ -91,11 +91,11 @@ def test_column_vectors_and_row_vectors_are_the_same(save):
     ("variables", "hints", "expected"),
     [
         ({"M_s": TORQUE}, {}, "expected a clock, .* found none; pass sample_rate_hz="),
-        ({"fs": 500.0}, {}, "expected vectors of numbers as channels, found none"),
-        ({"t": TIME}, {}, "expected vectors of numbers as channels, found none"),
-        ({"t": TIME, "time": TIME, "M_s": TORQUE}, {}, "expected one of time or t, found both"),
-        ({"fs": 1.0, "sample_rate_hz": 1.0, "M_s": TORQUE}, {}, "expected one of sample_rate_hz or fs, found both"),
-        ({"t": TIME, "M_s": TORQUE[:-1]}, {}, "vectors of equal length, found .*M_s 999"),
+        ({"fs": 500.0}, {}, "expected channels with samples, found none"),
+        ({"t": TIME}, {}, "expected channels with samples, found none"),
+        ({"t": TIME, "time": TIME, "M_s": TORQUE}, {}, "expected one of .*, found both"),
+        ({"fs": 1.0, "sample_rate_hz": 1.0, "M_s": TORQUE}, {}, "expected one of .*, found both"),
+        ({"t": TIME, "M_s": TORQUE[:-1]}, {}, "M_s: expected a clock, that is a vector time or t of 999 seconds"),
         ({"t": TIME, "M_s": TORQUE}, {"sample_rate_hz": 200.0}, "one sample rate, found t 500 Hz, the hint .* 200 Hz"),
         ({"t": TIME, "fs": 501.0, "M_s": TORQUE}, {}, "one sample rate, found t 500 Hz, fs 501 Hz"),
         ({"t": np.delete(np.append(TIME, 9.0), 500), "M_s": TORQUE}, {}, "variable t: .* 0.004 s before row 501"),
@@ -103,7 +103,7 @@ def test_column_vectors_and_row_vectors_are_the_same(save):
         ({"fs": 1.0, "M_s": TORQUE}, {"sample_rate_hz": -1}, "the hint sample_rate_hz cannot be -1"),
         ({"fs": 1.0, "M_s": TORQUE}, {"sample_rate_hz": True}, "the hint sample_rate_hz cannot be True"),
         ({"fs": 1.0, "M_s": TORQUE}, {"decimal": ","}, "only the hints sample_rate_hz for this format"),
-        ({"fs": 1.0, "M_s": TORQUE + 1j}, {}, "variable M_s: expected real numbers, found complex ones"),
+        ({"fs": 1.0, "M_s": TORQUE + 1j}, {}, "M_s: expected real numbers, found complex ones"),
     ],
 )
 def test_a_file_that_cannot_be_used_is_explained(save, variables, hints, expected):

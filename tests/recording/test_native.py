@@ -249,11 +249,11 @@ def test_a_spoiled_recording_is_told(native, spoil, expected):
         read_recording(native)
 
 
-def test_other_hdf5_files_are_not_claimed(tmp_path):
+def test_other_hdf5_files_are_not_taken_for_native(tmp_path):
     path = tmp_path / "other.h5"
     with h5py.File(path, "w") as file:
         file["x"] = 1
-    with pytest.raises(RecordingError, match=r"other\.h5: expected one of the formats shaftprint recording"):
+    with pytest.raises(RecordingError, match=r"other\.h5: expected channels with samples, found none"):
         read_recording(path)
 
 

@@ -3,6 +3,7 @@
 import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from datetime import datetime
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self, TypeAlias
@@ -105,6 +106,10 @@ class Recording:
     """Name of the file format."""
     channels: Mapping[str, Channel]
     """Every channel by its name, in the order of the file."""
+    left_out: Mapping[str, str] = field(default_factory=dict)
+    """Why other channels of the file cannot be used, by their names."""
+    began: datetime | None = None
+    """Date and time of second 0 by the logger's own clock, where the file gives it."""
     release: Callable[[], None] = field(repr=False, default=lambda: None)
     """What ``close`` does."""
 
@@ -114,8 +119,10 @@ class Recording:
         Raises
         ------
         RecordingError
-            If there is none of that name; the message lists those that there are.
+            If there is none of that name; the message lists those that there are, or says why it was left out.
         """
+        if name in self.left_out:
+            raise RecordingError(f'{self.path}: channel "{name}" cannot be used: {self.left_out[name]}')
         if name not in self.channels:
             raise RecordingError(
                 f'{self.path}: expected a channel "{name}", found {", ".join(self.channels) or "none"}.'

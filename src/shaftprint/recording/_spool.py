@@ -29,8 +29,16 @@ class Spool:
         self._path = path
         self._folder = tempfile.TemporaryDirectory(prefix="shaftprint-", ignore_cleanup_errors=True)
         self._columns = [Path(self._folder.name) / str(number) for number in range(len(names))]
-        self._names = tuple(names)
+        self._names = list(names)
         self._files = [column.open("wb") for column in self._columns]
+
+    def add_column(self, name: str) -> int:
+        """Begin one more column and return its number."""
+        number = len(self._columns)
+        self._columns.append(Path(self._folder.name) / str(number))
+        self._names.append(name)
+        self._files.append(self._columns[number].open("wb"))
+        return number
 
     def append(self, block: FloatArray) -> None:
         """Add rows, shape (rows, columns)."""

@@ -1,7 +1,9 @@
 """What a caller may add where a file does not say it."""
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
+from typing import cast
 
 from shaftprint.errors import RecordingError
 
@@ -19,6 +21,23 @@ def expect_hints(path: Path, hints: Mapping[str, object], known: Mapping[str, ty
             raise RecordingError(f"{path}: expected {_listed(known)} for this format, found the hint {name}.")
         if not isinstance(value, known[name]) or isinstance(value, bool):
             raise RecordingError(f"{path}: the hint {name} cannot be {value!r}.")
+
+
+def rate_hint(path: Path, hints: Mapping[str, object]) -> float | None:
+    """Return the hint ``sample_rate_hz`` [Hz], if given; no other is known.
+
+    Raises
+    ------
+    RecordingError
+        If it is not a positive number, or another hint is given.
+    """
+    expect_hints(path, hints, {"sample_rate_hz": (int, float)})
+    if "sample_rate_hz" not in hints:
+        return None
+    rate = float(cast(float, hints["sample_rate_hz"]))
+    if not (math.isfinite(rate) and rate > 0.0):
+        raise RecordingError(f"{path}: the hint sample_rate_hz cannot be {rate:g}.")
+    return rate
 
 
 def _listed(known: Mapping[str, object]) -> str:

@@ -1,33 +1,40 @@
-"""MATLAB files up to version 7 (``save -v6``, ``save -v7``): vectors are channels."""
+"""MATLAB files up to version 7 (``save -v4``, ``-v6``, ``-v7``): vectors are channels, also those in structures."""
 
+import struct
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import scipy.io
-from numpy.typing import NDArray
 
-from shaftprint.errors import RecordingError
-from shaftprint.recording._recording import Recording, Source, sha256_of
+from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording._spool import Spool
-from shaftprint.recording.readers._mat_variables import MatVariables, mat_channels, rate_hint
+from shaftprint.recording.readers._damage import told_as_damage
+from shaftprint.recording.readers._epoch import from_second_zero
+from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._mat_variables import MatVariables, gather_variables, object_reason
+from shaftprint.recording.readers._vectors import Vector
 
-NAME = "MATLAB v5 to v7"
+NAME = "MATLAB v4 to v7"
 
 _SIGNATURE = b"MATLAB 5.0 MAT-file"
 _NUMBERS = (
     "double", "single", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64",
 )  # fmt: skip
+_OBJECTS = ("opaque", "object", "unknown", "function")
+_DEEPEST = 4
+_LONGEST_NAME = 64
 
 
 def is_mine(path: Path) -> bool:
-    """Return whether the file begins as a MATLAB file of these versions."""
+    """Return whether the file begins as a MATLAB file of these versions; version 4 has the file ending as well."""
     with path.open("rb") as file:
-        return file.read(len(_SIGNATURE)) == _SIGNATURE
+        begin = file.read(20)
+    return begin.startswith(_SIGNATURE) or (path.suffix.lower() == ".mat" and _is_v4(begin))
 
 
 def read(path: Path, **hints: object) -> Recording:
-    """Read a MATLAB file into temporary files, one vector after the other.
+    """Read a MATLAB file into temporary files, one variable after the other.
 
     Hint: ``sample_rate_hz`` where the file has no clock.
 
@@ -37,49 +44,76 @@ def read(path: Path, **hints: object) -> Recording:
         If the file is damaged, or has no channels or no clock.
     """
     rate = rate_hint(path, hints)
-    spool: Spool | None = None
-    try:
-        variables = _survey(path)
-        names = list(variables.vectors)
-        spool = Spool(path, names)
-        for number, name in enumerate(names):
-            spool.append_column(number, _load(path, name).ravel())
-        spool.finish()
-        sources = {name: spool.source(number) for number, name in enumerate(names)}
-
-        def source_of(name: str) -> Source:
-            return sources[name]
-
-        channels = mat_channels(path, variables, source_of, rate_hz=rate)
-        return Recording(path=path, sha256=sha256_of(path), format=NAME, channels=channels, release=spool.close)
-    except BaseException as error:
-        if spool is not None:
+    with told_as_damage(path, "MATLAB"):
+        spool = Spool(path, ())
+        try:
+            gathered = gather_variables(path, _survey(path, spool), rate_hz=rate)
+            spool.finish()
+            channels, began = from_second_zero(gathered.expect_some())
+            return Recording(
+                path=path,
+                sha256=sha256_of(path),
+                format=NAME,
+                channels=channels,
+                left_out=gathered.left_out,
+                began=began,
+                release=spool.close,
+            )
+        except BaseException:
             spool.close()
-        # SciPy raises errors of many kinds on damaged bytes
-        if isinstance(error, RecordingError) or not isinstance(error, Exception):
             raise
-        raise RecordingError(
-            f"{path}: expected a whole MATLAB file, found a damaged or truncated one ({error})."
-        ) from None
 
 
-def _survey(path: Path) -> MatVariables:
-    vectors: dict[str, int] = {}
-    scalars: dict[str, float] = {}
-    texts: dict[str, str] = {}
+def _is_v4(begin: bytes) -> bool:
+    """Return whether a header of version 4 makes sense: a type of digits MOPT, sizes, and a short name."""
+    if len(begin) < 20:
+        return False
+    for order in "<>":
+        kind, rows, columns, imaginary, length = struct.unpack(f"{order}5i", begin)
+        digits = (kind // 1000, kind // 100 % 10, kind // 10 % 10, kind % 10)
+        sensible = 0 <= digits[0] <= 4 and digits[1] == 0 and digits[2] <= 5 and digits[3] <= 2
+        if (
+            kind >= 0
+            and sensible
+            and rows >= 0
+            and columns >= 0
+            and imaginary in (0, 1)
+            and 1 < length <= _LONGEST_NAME
+        ):
+            return True
+    return False
+
+
+def _survey(path: Path, spool: Spool) -> MatVariables:
+    """Load one variable after the other and keep its numbers on disk."""
+    variables = MatVariables()
     for name, shape, kind in scipy.io.whosmat(path):
         size = int(np.prod(shape))
-        if kind == "char" and size:
-            texts[name] = str(_load(path, name).ravel()[0])
-        elif kind in _NUMBERS and size == 1:
-            scalars[name] = float(_load(path, name).real.ravel()[0])
-        elif kind in _NUMBERS and size == max(shape) and size > 1:
-            vectors[name] = size
-    return MatVariables(vectors=vectors, scalars=scalars, texts=texts)
+        if kind in _OBJECTS or name.startswith("__") or name == "None":
+            variables.left_out[name] = object_reason(name, "object")
+        elif kind in (*_NUMBERS, "char", "struct") and size:
+            value = scipy.io.loadmat(path, variable_names=[name], struct_as_record=False, squeeze_me=True)[name]
+            _keep(name, "", value, spool, variables)
+    return variables
 
 
-def _load(path: Path, name: str) -> NDArray[Any]:
-    values: NDArray[Any] = scipy.io.loadmat(path, variable_names=[name])[name]
-    if values.dtype.kind == "c":
-        raise RecordingError(f"{path}, variable {name}: expected real numbers, found complex ones.")
-    return values
+def _keep(name: str, group: str, value: Any, spool: Spool, variables: MatVariables) -> None:
+    """Sort one value into its kind; a structure gives its fields."""
+    fields = getattr(value, "_fieldnames", None)
+    inside = f"{group}/{name}" if group else name
+    if fields is not None and inside.count("/") < _DEEPEST:
+        for key in fields:
+            _keep(key, inside, getattr(value, key), spool, variables)
+        return
+    if isinstance(value, str):
+        variables.texts[group, name] = value
+        return
+    array = np.asarray(value)
+    if array.dtype.kind == "c":
+        variables.left_out[inside] = "expected real numbers, found complex ones."
+    elif array.dtype.kind in "fiu" and array.size == 1:
+        variables.scalars.setdefault(group, {})[name] = float(array.ravel()[0])
+    elif array.dtype.kind in "fiu" and array.ndim == 1 and array.size > 1:
+        number = spool.add_column(inside)
+        spool.append_column(number, array)
+        variables.vectors.append(Vector(name=name, group=group, count=array.size, source=spool.source(number)))

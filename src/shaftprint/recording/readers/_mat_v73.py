@@ -1,4 +1,4 @@
-"""MATLAB files of version 7.3 (``save -v7.3``), which are HDF5: vectors are channels."""
+"""MATLAB files of version 7.3 (``save -v7.3``), which are HDF5: vectors are channels, also those in structures."""
 
 from pathlib import Path
 from typing import Any
@@ -9,11 +9,21 @@ from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording._recording import Recording, Source, sha256_of
-from shaftprint.recording.readers._mat_variables import MatVariables, mat_channels, rate_hint
+from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
+from shaftprint.recording.readers._epoch import from_second_zero
+from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._mat_variables import MatVariables, gather_variables, object_reason
+from shaftprint.recording.readers._opened import Opened
+from shaftprint.recording.readers._vectors import Vector
 
 NAME = "MATLAB v7.3"
 
 _SIGNATURE = b"MATLAB 7.3 MAT-file"
+_PLAIN = (
+    b"double", b"single", b"int8", b"uint8", b"int16", b"uint16", b"int32", b"uint32", b"int64", b"uint64", b"",
+)  # fmt: skip
+_DEEPEST = 4
+_LONGEST_TEXT = 10_000
 
 
 def is_mine(path: Path) -> bool:
@@ -33,54 +43,78 @@ def read(path: Path, **hints: object) -> Recording:
         If the file is damaged, or has no channels or no clock.
     """
     rate = rate_hint(path, hints)
-    try:
+    with told_as_damage(path, "MATLAB"):
         file = h5py.File(path, "r")
-    except OSError as error:
-        raise RecordingError(
-            f"{path}: expected a whole MATLAB file, found a damaged or truncated one ({error})."
-        ) from None
-
-    def source_of(name: str) -> Source:
-        return _source(path, name, file[name])
-
+    opened = Opened(path, file.close)
     try:
-        channels = mat_channels(path, _survey(path, file), source_of, rate_hz=rate)
-        return Recording(path=path, sha256=sha256_of(path), format=NAME, channels=channels, release=file.close)
+        with told_as_damage(path, "MATLAB"):
+            variables = MatVariables()
+            _survey(path, file, "", opened, variables)
+            gathered = gather_variables(path, variables, rate_hz=rate)
+            channels, began = from_second_zero(gathered.expect_some())
+            return Recording(
+                path=path,
+                sha256=sha256_of(path),
+                format=NAME,
+                channels=channels,
+                left_out=gathered.left_out,
+                began=began,
+                release=opened.close,
+            )
     except BaseException:
-        file.close()
+        opened.close()
         raise
 
 
-def _survey(path: Path, file: Any) -> MatVariables:
-    vectors: dict[str, int] = {}
-    scalars: dict[str, float] = {}
-    texts: dict[str, str] = {}
-    for name, dataset in file.items():
-        if not isinstance(dataset, h5py.Dataset) or "MATLAB_empty" in dataset.attrs:
+def _survey(path: Path, group: Any, name: str, opened: Opened, variables: MatVariables) -> None:
+    for key, item in group.items():
+        inside = f"{name}/{key}" if name else key
+        kind = bytes(np.bytes_(item.attrs.get("MATLAB_class", b"")))
+        if key.startswith("#") or "MATLAB_empty" in item.attrs:
             continue
-        kind = dataset.attrs.get("MATLAB_class", b"")
-        if kind == b"char":
-            texts[name] = "".join(map(chr, dataset[()].ravel()))
-        elif dataset.dtype.names is not None and max(dataset.shape, default=1) > 1:
-            raise RecordingError(f"{path}, variable {name}: expected real numbers, found complex ones.")
-        elif dataset.dtype.kind in "fiu" and kind not in (b"cell", b"logical") and dataset.size == 1:
-            scalars[name] = float(dataset[()].ravel()[0])
-        elif dataset.dtype.kind in "fiu" and dataset.size == max(dataset.shape, default=0) and dataset.size > 1:
-            vectors[name] = int(dataset.size)
-    return MatVariables(vectors=vectors, scalars=scalars, texts=texts)
+        if "MATLAB_object_decode" in item.attrs or (isinstance(item, h5py.Dataset) and kind in _object_kinds()):
+            variables.left_out[inside] = object_reason(inside.replace("/", "."), kind.decode("utf-8", "replace"))
+        elif isinstance(item, h5py.Group):
+            if kind in (b"struct", b"") and inside.count("/") < _DEEPEST:
+                _survey(path, item, inside, opened, variables)
+        else:
+            _keep(path, item, key, name, kind, opened, variables)
 
 
-def _source(path: Path, name: str, dataset: Any) -> Source:
+def _object_kinds() -> tuple[bytes, ...]:
+    return (b"timetable", b"table", b"timeseries", b"datetime", b"duration", b"string", b"FileWrapper__")
+
+
+def _keep(path: Path, item: Any, key: str, group: str, kind: bytes, opened: Opened, variables: MatVariables) -> None:
+    """Sort one data set into its kind."""
+    length = max(item.shape or (1,), default=1)
+    inside = f"{group}/{key}" if group else key
+    if kind == b"char" and item.size <= _LONGEST_TEXT and item.dtype.kind == "u":
+        variables.texts[group, key] = "".join(map(chr, item[()].ravel()))
+    elif item.dtype.names is not None and length > 1:
+        variables.left_out[inside] = "expected real numbers, found complex ones."
+    elif kind not in _PLAIN or item.dtype.kind not in "fiu" or item.shape is None:
+        return
+    elif item.size == 1:
+        variables.scalars.setdefault(group, {})[key] = float(item[()].ravel()[0])
+    elif item.size == length:
+        stored = int(item.id.get_storage_size())
+        expect_plausible(path, inside, samples=item.size, sample_bytes=item.dtype.itemsize, stored_bytes=stored + 64)
+        variables.vectors.append(
+            Vector(name=key, group=group, count=int(item.size), source=_source(path, key, item, opened))
+        )
+
+
+def _source(path: Path, name: str, dataset: Any, opened: Opened) -> Source:
     along = int(np.argmax(dataset.shape))
 
     def read_samples(start: int, stop: int) -> NDArray[Any]:
-        if not dataset:
-            raise RecordingError(f"{path}, channel {name}: the recording has been closed already.")
+        opened.expect_open(name)
         where = tuple(slice(start, stop) if axis == along else 0 for axis in range(dataset.ndim))
         try:
             values: NDArray[Any] = dataset[where]
-        except OSError as error:
+        except (OSError, RuntimeError) as error:
             raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are damaged ({error}).") from None
-        return values if values.dtype == np.int16 else values.astype(np.float64)
+        return values.astype(np.int16) if values.dtype == np.int16 else values.astype(np.float64)
 
     return read_samples

@@ -1,0 +1,60 @@
+"""What is told of a file whose bytes are not what its format promises."""
+
+import contextlib
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+
+from shaftprint.errors import RecordingError
+
+# Deflate packs at most 1032 bytes into one; a file that promises more samples than that is damaged.
+_LARGEST_RATIO = 1100
+
+
+@contextlib.contextmanager
+def told_as_damage(path: Path, what: str) -> Iterator[None]:
+    """Turn whatever a library raises on damaged bytes into one sentence.
+
+    Parameters
+    ----------
+    path
+        The file.
+    what
+        The format, in words.
+
+    Raises
+    ------
+    RecordingError
+        If the block raises any error.
+    """
+    try:
+        with warnings.catch_warnings():
+            # libraries warn of odd bytes where the sentence below, or a channel that is left out, says it
+            warnings.simplefilter("ignore")
+            yield
+    except RecordingError:
+        raise
+    except Exception as error:
+        reason = " ".join(str(error).split())[:200] or type(error).__name__
+        raise RecordingError(
+            f"{path}: expected a whole {what} file, found a damaged or truncated one ({reason}); "
+            "copy it again from the logger."
+        ) from None
+
+
+def expect_plausible(
+    path: Path, name: str, *, samples: int, sample_bytes: int, stored_bytes: int, is_packed: bool = True
+) -> None:
+    """Refuse a channel that promises more samples than its bytes can hold, packed however well.
+
+    Raises
+    ------
+    RecordingError
+        If it does.
+    """
+    ratio = _LARGEST_RATIO if is_packed else 1
+    if samples < 0 or samples * sample_bytes > ratio * max(stored_bytes, 1):
+        raise RecordingError(
+            f"{path}, channel {name}: expected a whole file, found {samples} samples promised in {stored_bytes} bytes; "
+            "it is damaged, copy it again from the logger."
+        )

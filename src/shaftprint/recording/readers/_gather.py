@@ -1,0 +1,70 @@
+"""The channels of one file under names of their own, and why others are left out."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from shaftprint.errors import RecordingError
+from shaftprint.recording._recording import Channel
+
+_SHOWN = 5
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Gathered:
+    """Channels as they are found."""
+
+    path: Path
+    """The file."""
+    channels: dict[str, Channel] = field(default_factory=dict)
+    """What can be used, by name."""
+    left_out: dict[str, str] = field(default_factory=dict)
+    """Why the others cannot, by name."""
+
+    def add(self, name: str, make: Callable[[], Channel]) -> None:
+        """Keep a channel, or the reason why it cannot be made."""
+        try:
+            channel = make()
+        except RecordingError as error:
+            self.left_out[name] = str(error).removeprefix(f"{self.path}").lstrip(":, ")
+        else:
+            self.channels[name] = channel
+
+    def expect_some(self) -> Mapping[str, Channel]:
+        """Return the channels.
+
+        Raises
+        ------
+        RecordingError
+            If there is none; the message says why those that there are were left out.
+        """
+        if self.channels:
+            return self.channels
+        if not self.left_out:
+            raise RecordingError(f"{self.path}: expected channels with samples, found none.")
+        reasons = "; ".join(f"{name}: {reason.rstrip('.')}" for name, reason in list(self.left_out.items())[:_SHOWN])
+        more = f" and {len(self.left_out) - _SHOWN} more" if len(self.left_out) > _SHOWN else ""
+        raise RecordingError(
+            f"{self.path}: expected channels on a clock, found none that can be used: {reasons}{more}."
+        )
+
+
+def unique_names(named: "list[tuple[str, str]]") -> list[str]:
+    """Return one name a channel: its own where that is the only one, else that of its group in front.
+
+    Parameters
+    ----------
+    named
+        Group and name of every channel.
+    """
+    plain = [name.replace("/", "|") or "unnamed" for _, name in named]
+    found: list[str] = []
+    for (group, _), name in zip(named, plain, strict=True):
+        candidate = name if plain.count(name) == 1 else f"{group.replace('/', '|')}.{name}"
+        number = 2
+        unique = candidate
+        while unique in found:
+            unique = f"{candidate} ({number})"
+            number += 1
+        found.append(unique)
+    return found

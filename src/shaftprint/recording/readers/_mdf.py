@@ -1,0 +1,201 @@
+"""ASAM MDF 3 and 4 files: channel groups, each with a master channel of times."""
+
+import logging
+from datetime import datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import RecordingError
+from shaftprint.recording._recording import Channel, Recording, sha256_of
+from shaftprint.recording.readers._clock import Clock, uniform_clock
+from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
+from shaftprint.recording.readers._extra import library
+from shaftprint.recording.readers._gather import Gathered, unique_names
+from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._opened import Opened
+from shaftprint.recording.readers._units import plain_unit
+
+NAME = "MDF"
+
+_SIGNATURES = (b"MDF     ", b"UnFinMF ")
+# ASAM MDF 4.1, block CN: type of a channel and of what a master counts; block CC: type of a conversion.
+_MASTERS = (2, 3)
+_TIME = 1
+_LINEAR = 1
+_FIRST_TEXT_CONVERSION = 7
+
+
+def is_mine(path: Path) -> bool:
+    """Return whether the file begins as a measurement data file, finished or not."""
+    with path.open("rb") as file:
+        return file.read(8) in _SIGNATURES
+
+
+def read(path: Path, **hints: object) -> Recording:
+    """Open an MDF file; samples are read and converted as channels are asked for them.
+
+    Samples that the file marks as invalid become values that are not numbers. Hint: ``sample_rate_hz`` for groups
+    without times.
+
+    Raises
+    ------
+    RecordingError
+        If the file is damaged or no channel can be used.
+    """
+    rate = rate_hint(path, hints)
+    asammdf = library(path, "asammdf", NAME)
+    # what it has to say about odd bytes goes into our own sentences
+    logging.getLogger("asammdf").setLevel(logging.CRITICAL)
+    with told_as_damage(path, NAME):
+        file = asammdf.MDF(str(path), process_bus_logging=False)
+    opened = Opened(path, file.close)
+    try:
+        with told_as_damage(path, NAME):
+            gathered = _gather(path, file, opened, rate)
+            began = file.start_time
+            return Recording(
+                path=path,
+                sha256=sha256_of(path),
+                format=f"{NAME} {file.version}",
+                channels=gathered.expect_some(),
+                left_out=gathered.left_out,
+                began=began if isinstance(began, datetime) and began.year > 1970 else None,
+                release=opened.close,
+            )
+    except BaseException:
+        opened.close()
+        raise
+
+
+def _gather(path: Path, file: Any, opened: Opened, rate_hz: float | None) -> Gathered:
+    gathered = Gathered(path=path)
+    places = [
+        (group, index)
+        for group, found in enumerate(file.groups)
+        for index, channel in enumerate(found.channels)
+        if file.masters_db.get(group) != index and int(channel.channel_type) not in _MASTERS
+    ]
+    names = unique_names([(f"group {group}", file.groups[group].channels[index].name) for group, index in places])
+    clocks: dict[int, Clock | RecordingError] = {}
+    for (group, index), name in zip(places, names, strict=True):
+        if group not in clocks:
+            try:
+                clocks[group] = _clock(path, file, group, rate_hz)
+            except RecordingError as error:
+                clocks[group] = error
+
+        def make(group: int = group, index: int = index, name: str = name) -> Channel:
+            clock = clocks[group]
+            if isinstance(clock, RecordingError):
+                raise clock
+            return _channel(path, file, opened, group, index, name, clock)
+
+        gathered.add(name, make)
+    return gathered
+
+
+def _count(path: Path, file: Any, group: int) -> int:
+    described = file.groups[group].channel_group
+    count, width = int(described.cycles_nr), int(getattr(described, "samples_byte_nr", 1))
+    size = path.stat().st_size
+    expect_plausible(path, f"group {group}", samples=count, sample_bytes=max(width, 1), stored_bytes=size)
+    return count
+
+
+def _clock(path: Path, file: Any, group: int, rate_hz: float | None) -> Clock:
+    """Take the clock of the group's master, which must count seconds, else the hint."""
+    count = _count(path, file, group)
+    master = file.masters_db.get(group)
+    if master is None:
+        if rate_hz is None:
+            raise RecordingError(f"{path}: expected a master channel of times, found none; give the sample rate.")
+        return Clock(rate_hz=rate_hz, start_s=0.0)
+    channel = file.groups[group].channels[master]
+    if int(getattr(channel, "sync_type", _TIME)) != _TIME:
+        raise RecordingError(f"{path}: expected a master channel of times, found one of angles, distances or numbers.")
+
+    def read(start: int, stop: int) -> FloatArray:
+        times = file.get_master(group, record_offset=start, record_count=stop - start)
+        return np.asarray(times, dtype=np.float64)
+
+    with told_as_damage(path, NAME):
+        return uniform_clock(path, f"master {channel.name}", count, read)
+
+
+def _channel(path: Path, file: Any, opened: Opened, group: int, index: int, name: str, clock: Clock) -> Channel:
+    described = file.groups[group].channels[index]
+    count = _count(path, file, group)
+    conversion = described.conversion
+    kind = -1 if conversion is None else int(conversion.conversion_type)
+    scale, offset = 1.0, 0.0
+    first, invalid = _samples(file, group, index, 0, min(count, 2), raw=True)
+    if first.ndim != 1 or first.dtype.kind not in "fiu":
+        raise RecordingError(f"{path}, channel {name}: expected one real number a sample, found {_shape(first)}.")
+    is_counts = first.dtype == np.int16 and invalid is None and (conversion is None or kind == _LINEAR)
+    if is_counts and conversion is not None and _is_v4(file):
+        scale, offset = float(conversion.a), float(conversion.b)
+        is_counts = scale != 0.0 and bool(np.isfinite([scale, offset]).all())
+        scale, offset = (scale, offset) if is_counts else (1.0, 0.0)
+    elif conversion is not None:
+        is_counts = False
+    raw = is_counts or (_is_v4(file) and kind >= _FIRST_TEXT_CONVERSION)
+
+    def source(start: int, stop: int) -> NDArray[Any]:
+        opened.expect_open(name)
+        with told_as_damage(path, NAME):
+            values, invalid = _samples(file, group, index, start, stop, raw=raw)
+            if len(values) != stop - start:
+                raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are missing; is the file cut?")
+            if is_counts:
+                return np.ascontiguousarray(values, dtype=np.int16)
+            numbers = np.array(values, dtype=np.float64)
+            if invalid is not None:
+                numbers[np.asarray(invalid, dtype=bool)] = np.nan
+            return numbers
+
+    source(0, min(count, 2))
+    return Channel(
+        name=name,
+        unit=plain_unit(_unit(described)),
+        rate_hz=clock.rate_hz,
+        start_s=clock.start_s,
+        count=count,
+        source=source,
+        scale=scale,
+        offset=offset,
+        long_name=str(getattr(described, "comment", "") or "")[:200],
+    )
+
+
+def _samples(file: Any, group: int, index: int, start: int, stop: int, *, raw: bool) -> tuple[NDArray[Any], Any]:
+    if stop == start:
+        # the library takes no count for all of them
+        values, _ = _samples(file, group, index, start, start + 1, raw=raw)
+        return values[:0], None
+    found = file.get(
+        group=group,
+        index=index,
+        samples_only=True,
+        raw=raw,
+        ignore_invalidation_bits=True,
+        record_offset=start,
+        record_count=stop - start,
+    )
+    return np.asarray(found[0]), found[1]
+
+
+def _is_v4(file: Any) -> bool:
+    return str(file.version) >= "4"
+
+
+def _unit(described: Any) -> str:
+    unit = getattr(described, "unit", "") or getattr(described.conversion, "unit", "") or ""
+    return unit.decode("latin-1").strip(" \0") if isinstance(unit, bytes) else str(unit).strip()
+
+
+def _shape(values: NDArray[Any]) -> str:
+    return f"{values.dtype.kind if values.dtype.names is None else 'a structure'} of shape {values.shape[1:]} a sample"

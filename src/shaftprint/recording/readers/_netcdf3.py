@@ -1,0 +1,107 @@
+"""NetCDF files of the classic kind (versions 1 and 2): vectors of numbers are channels."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import scipy.io
+from numpy.typing import NDArray
+
+from shaftprint.recording._recording import Recording, Source, sha256_of
+from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
+from shaftprint.recording.readers._epoch import from_second_zero
+from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._opened import Opened
+from shaftprint.recording.readers._vectors import Vector, gather_vectors
+
+NAME = "NetCDF classic"
+
+_SIGNATURES = (b"CDF\x01", b"CDF\x02")
+
+
+def is_mine(path: Path) -> bool:
+    """Return whether the file begins as a classic NetCDF file."""
+    with path.open("rb") as file:
+        return file.read(4) in _SIGNATURES
+
+
+def read(path: Path, **hints: object) -> Recording:
+    """Open a classic NetCDF file; samples are taken from the file as channels are asked for them.
+
+    Hint: ``sample_rate_hz`` where the file has no clock.
+
+    Raises
+    ------
+    RecordingError
+        If the file is damaged or no channel can be used.
+    """
+    rate = rate_hint(path, hints)
+    with told_as_damage(path, NAME):
+        file = scipy.io.netcdf_file(path, "r", mmap=False)
+        opened = Opened(path, file.close)
+    try:
+        with told_as_damage(path, NAME):
+            vectors = [
+                _vector(path, name, variable, opened)
+                for name, variable in file.variables.items()
+                if len(variable.shape) == 1 and int(variable.shape[0]) > 1 and variable.typecode() in "hifdb"
+            ]
+            scalars = {"": _numbers(vars(file)["_attributes"])}
+            gathered = gather_vectors(path, vectors, scalars, rate_hz=rate)
+            channels, began = from_second_zero(gathered.expect_some())
+            return Recording(
+                path=path,
+                sha256=sha256_of(path),
+                format=NAME,
+                channels=channels,
+                left_out=gathered.left_out,
+                began=began,
+                release=opened.close,
+            )
+    except BaseException:
+        opened.close()
+        raise
+
+
+def _vector(path: Path, name: str, variable: Any, opened: Opened) -> Vector:
+    attributes = {key: _plain(value) for key, value in variable._attributes.items()}
+    count, size = int(variable.shape[0]), path.stat().st_size
+    expect_plausible(path, name, samples=count, sample_bytes=1, stored_bytes=size, is_packed=False)
+    axis = str(variable.dimensions[0])
+    return Vector(
+        name=name,
+        count=count,
+        source=_source(name, variable, opened),
+        axis=axis if axis != name else "",
+        attributes=attributes,
+        scale=float(np.asarray(variable._attributes.get("scale_factor", 1.0)).ravel()[0]),
+        offset=float(np.asarray(variable._attributes.get("add_offset", 0.0)).ravel()[0]),
+    )
+
+
+def _source(name: str, variable: Any, opened: Opened) -> Source:
+    fills = [variable._attributes[key] for key in ("_FillValue", "missing_value") if key in variable._attributes]
+
+    def read_samples(start: int, stop: int) -> NDArray[Any]:
+        opened.expect_open(name)
+        counts = np.array(variable.data[start:stop])
+        if counts.dtype.kind == "i" and counts.dtype.itemsize == 2 and not fills:
+            return counts.astype(np.int16)
+        values = counts.astype(np.float64)
+        for fill in fills:
+            values[counts == np.asarray(fill).ravel()[0]] = np.nan
+        return values
+
+    return read_samples
+
+
+def _numbers(attributes: Any) -> dict[str, float]:
+    plain = {name.lower(): _plain(value) for name, value in attributes.items()}
+    return {name: float(value) for name, value in plain.items() if isinstance(value, int | float)}
+
+
+def _plain(value: Any) -> object:
+    if isinstance(value, bytes):
+        return value.decode("utf-8", "replace")
+    array = np.asarray(value)
+    return float(array.ravel()[0]) if array.size == 1 and array.dtype.kind in "fiu" else str(value)

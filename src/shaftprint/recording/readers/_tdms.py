@@ -1,0 +1,178 @@
+"""NI TDMS files of LabVIEW and DAQmx: each channel with its waveform properties or a channel of times."""
+
+from collections.abc import Mapping
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import RecordingError
+from shaftprint.recording._recording import Channel, Recording, sha256_of
+from shaftprint.recording.readers._clock import Clock, uniform_clock
+from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
+from shaftprint.recording.readers._extra import library
+from shaftprint.recording.readers._gather import Gathered, unique_names
+from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._opened import Opened
+from shaftprint.recording.readers._units import plain_unit
+
+NAME = "TDMS"
+
+_SIGNATURE = b"TDSm"
+_NO_DATE = np.datetime64("1905-01-01")
+_TIME_NAMES = ("time", "t", "timestamp", "zeit")
+_UNITS = ("unit_string", "NI_UnitDescription", "unit", "units", "Unit")
+
+
+def is_mine(path: Path) -> bool:
+    """Return whether the file begins as a TDMS file."""
+    with path.open("rb") as file:
+        return file.read(len(_SIGNATURE)) == _SIGNATURE
+
+
+def read(path: Path, **hints: object) -> Recording:
+    """Open a TDMS file; samples are read, and scaled as the file says, as channels are asked for them.
+
+    Hint: ``sample_rate_hz`` for channels without a clock.
+
+    Raises
+    ------
+    RecordingError
+        If the file is damaged or no channel can be used.
+    """
+    rate = rate_hint(path, hints)
+    nptdms = library(path, "nptdms", NAME)
+    with told_as_damage(path, NAME):
+        file = nptdms.TdmsFile.open(path)
+    opened = Opened(path, file.close)
+    try:
+        with told_as_damage(path, NAME):
+            gathered = _gather(path, file, opened, rate)
+            return Recording(
+                path=path,
+                sha256=sha256_of(path),
+                format=NAME,
+                channels=gathered.expect_some(),
+                left_out=gathered.left_out,
+                began=_began(file),
+                release=opened.close,
+            )
+    except BaseException:
+        opened.close()
+        raise
+
+
+def _gather(path: Path, file: Any, opened: Opened, rate_hz: float | None) -> Gathered:
+    gathered = Gathered(path=path)
+    found = [channel for group in file.groups() for channel in group.channels()]
+    names = unique_names([(channel.group_name, channel.name) for channel in found])
+    began = _earliest(found)
+    clocks = {group.name: _time_channel(group) for group in file.groups()}
+    for channel, name in zip(found, names, strict=True):
+        if channel is clocks[channel.group_name]:
+            continue
+
+        def make(channel: Any = channel, name: str = name) -> Channel:
+            clock = _clock(path, channel, clocks[channel.group_name], rate_hz, began)
+            return _channel(path, name, channel, clock, opened)
+
+        gathered.add(name, make)
+    return gathered
+
+
+def _channel(path: Path, name: str, channel: Any, clock: Clock, opened: Opened) -> Channel:
+    kind = np.dtype(channel.dtype)
+    _expect_samples(path, name, channel)
+    is_counts = kind == np.dtype(np.int16)
+
+    def source(start: int, stop: int) -> NDArray[Any]:
+        opened.expect_open(name)
+        with told_as_damage(path, NAME):
+            values = channel.read_data(start, stop - start)
+            if len(values) != stop - start:
+                raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are missing; is the file cut?")
+            return np.ascontiguousarray(values, dtype=np.int16 if is_counts else np.float64)
+
+    return Channel(
+        name=name,
+        unit=plain_unit(_unit(channel.properties)),
+        rate_hz=clock.rate_hz,
+        start_s=clock.start_s,
+        count=len(channel),
+        source=source,
+        long_name=str(channel.properties.get("description", "")),
+    )
+
+
+def _expect_samples(path: Path, name: str, channel: Any) -> None:
+    kind = np.dtype(channel.dtype)
+    if kind.kind not in "fiu":
+        raise RecordingError(f"{path}, channel {name}: expected real numbers, found {kind}.")
+    if len(channel) == 0:
+        raise RecordingError(f"{path}, channel {name}: expected samples, found none.")
+    size = path.stat().st_size
+    expect_plausible(path, name, samples=len(channel), sample_bytes=1, stored_bytes=size, is_packed=False)
+
+
+def _clock(path: Path, channel: Any, time: Any, rate_hz: float | None, began: np.datetime64 | None) -> Clock:
+    """Take the clock of the waveform, else that of the group's channel of times, else the hint."""
+    increment = channel.properties.get("wf_increment")
+    if isinstance(increment, int | float) and np.isfinite(increment) and increment > 0.0:
+        start = float(channel.properties.get("wf_start_offset", 0.0))
+        own = channel.properties.get("wf_start_time")
+        if isinstance(own, np.datetime64) and began is not None and own > _NO_DATE:
+            start += float((own - began) / np.timedelta64(1, "us")) * 1e-6
+        return Clock(rate_hz=float(f"{1.0 / increment:.12g}"), start_s=start)
+    if time is not None and len(time) == len(channel):
+        clock = uniform_clock(path, f"channel {time.name}", len(time), lambda start, stop: _times(time, start, stop))
+        is_date = np.dtype(time.dtype).kind == "M"
+        return Clock(rate_hz=clock.rate_hz, start_s=0.0) if is_date else clock
+    if rate_hz is not None:
+        return Clock(rate_hz=rate_hz, start_s=0.0)
+    raise RecordingError(
+        f"{path}: expected wf_increment in the properties or a channel of times in the group, found neither; "
+        "give the sample rate."
+    )
+
+
+def _times(time: Any, start: int, stop: int) -> FloatArray:
+    values = np.asarray(time.read_data(start, stop - start))
+    if values.dtype.kind == "M":
+        first = np.asarray(time.read_data(0, 1))[0]
+        seconds: FloatArray = (values - first) / np.timedelta64(1, "us") * 1e-6
+        return seconds
+    return values.astype(np.float64)
+
+
+def _time_channel(group: Any) -> Any:
+    """Return the channel of times of a group: dates, or numbers in seconds under the name of a time."""
+    for channel in group.channels():
+        kind = np.dtype(channel.dtype).kind
+        if kind == "M":
+            return channel
+        named = channel.name.strip().lower() in _TIME_NAMES
+        if kind == "f" and named and "wf_increment" not in channel.properties:
+            return channel
+    return None
+
+
+def _unit(properties: Mapping[str, Any]) -> str:
+    return next((str(properties[key]) for key in _UNITS if properties.get(key)), "")
+
+
+def _earliest(channels: list[Any]) -> np.datetime64 | None:
+    starts = [channel.properties.get("wf_start_time") for channel in channels]
+    dates = [start for start in starts if isinstance(start, np.datetime64) and not np.isnat(start)]
+    # LabVIEW counts from 1904 and writes that where it knows no date
+    return min((date for date in dates if date > _NO_DATE), default=None)
+
+
+def _began(file: Any) -> datetime | None:
+    start = _earliest([channel for group in file.groups() for channel in group.channels()])
+    if start is None:
+        return None
+    found = start.astype("datetime64[us]").item()
+    return found.replace(tzinfo=UTC) if isinstance(found, datetime) else None

@@ -1,0 +1,207 @@
+"""Files that are named vectors in groups: which are channels, which are clocks, which units they have."""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from shaftprint.errors import RecordingError
+from shaftprint.recording._recording import Channel, Source
+from shaftprint.recording.readers._clock import Clock, uniform_clock
+from shaftprint.recording.readers._gather import Gathered, unique_names
+from shaftprint.recording.readers._units import plain_unit, seconds_in
+
+TIME_NAMES = ("time", "t", "timestamp", "timestamps", "time_s", "zeit", "tijd")
+_RATES = ("sample_rate_hz", "fs", "sample_rate", "sampling_rate", "sampling_frequency", "samplerate", "rate_hz")
+_STEPS = ("dt", "ts", "wf_increment", "sampling_interval", "sample_time")
+_STARTS = ("start_s", "t0", "wf_start_offset")
+_UNITS = ("units", "unit", "unit_string")
+_RATE_AGREEMENT = 1e-6
+_SINCE = re.compile(r"(\w+) since .*")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Vector:
+    """One vector of numbers."""
+
+    name: str
+    """Its name in its group."""
+    group: str = ""
+    """Its group, structure or folder; empty at the top."""
+    count: int
+    """Number of elements."""
+    source: Source
+    """Gives the elements [start, stop)."""
+    axis: str = ""
+    """Name of the vector along which it lies, where the file says so."""
+    attributes: Mapping[str, object] = field(default_factory=dict)
+    """What the file says of it."""
+    scale: float = 1.0
+    """Value of one count."""
+    offset: float = 0.0
+    """Value at count zero."""
+
+
+Scalars = Mapping[str, float]
+
+
+def gather_vectors(
+    path: Path,
+    vectors: Sequence[Vector],
+    scalars: Mapping[str, Scalars],
+    *,
+    rate_hz: float | None,
+    left_out: Mapping[str, str] | None = None,
+) -> Gathered:
+    """Make a channel of every vector that is no time, each on the clock of its own, its group or the whole file.
+
+    Parameters
+    ----------
+    path
+        The file, for messages.
+    vectors
+        What it holds.
+    scalars
+        Numbers by group and name.
+    rate_hz
+        Sample rate that the caller knows [Hz].
+    left_out
+        Why other variables cannot be used.
+
+    Raises
+    ------
+    RecordingError
+        If a group has two times or two rates that disagree.
+    """
+    gathered = Gathered(path=path, left_out=dict(left_out or {}))
+    axes = {vector.axis for vector in vectors if vector.axis}
+    found = [vector for vector in vectors if not _is_time(vector) and vector.name not in axes]
+    names = unique_names([(vector.group, vector.name) for vector in found])
+    clocks: dict[tuple[str, str], Clock] = {}
+
+    def make(vector: Vector, name: str) -> Channel:
+        clock = _clock(path, vector, vectors, scalars, rate_hz, clocks)
+        return Channel(
+            name=name,
+            unit=plain_unit(_text(vector.attributes, _UNITS)),
+            rate_hz=clock.rate_hz,
+            start_s=clock.start_s,
+            count=vector.count,
+            source=vector.source,
+            scale=vector.scale,
+            offset=vector.offset,
+            long_name=_text(vector.attributes, ("long_name", "description")),
+        )
+
+    for vector, name in zip(found, names, strict=True):
+        gathered.add(name, partial(make, vector, name))
+    return gathered
+
+
+def _is_time(vector: Vector) -> bool:
+    return vector.name.lower() in TIME_NAMES or vector.name.lower().endswith("_time")
+
+
+def _clock(
+    path: Path,
+    vector: Vector,
+    vectors: Sequence[Vector],
+    scalars: Mapping[str, Scalars],
+    hint_hz: float | None,
+    known: dict[tuple[str, str], Clock],
+) -> Clock:
+    """Take the clock from the nearest place that says one, and refuse places that disagree."""
+    rates: dict[str, float] = {}
+    starts: list[float] = []
+    time = _time_of(path, vector, vectors)
+    if time is not None:
+        place = (time.group, time.name)
+        if place not in known:
+            known[place] = _clock_of_times(path, time)
+        rates[time.name], starts = known[place].rate_hz, [known[place].start_s]
+    own = {key.lower(): value for key, value in vector.attributes.items() if isinstance(value, int | float)}
+    for source in (own, scalars.get(vector.group, {}), scalars.get("", {})):
+        said = _said(path, source)
+        if said and (not rates or set(rates) == {getattr(time, "name", "")}):
+            rates |= said
+            starts += [float(source[key]) for key in _STARTS if key in source]
+    if hint_hz is not None:
+        rates["the hint sample_rate_hz"] = hint_hz
+    if not rates:
+        raise RecordingError(
+            f"{path}: expected a clock, that is a vector time or t of {vector.count} seconds or a scalar "
+            "sample_rate_hz or fs, found none; pass sample_rate_hz=."
+        )
+    rate = next(iter(rates.values()))
+    if not all(abs(other - rate) <= _RATE_AGREEMENT * abs(rate) for other in rates.values()):
+        listed = ", ".join(f"{name} {value:g} Hz" for name, value in rates.items())
+        raise RecordingError(f"{path}: expected one sample rate, found {listed}.")
+    starts += [float(group[key]) for group in (scalars.get("", {}),) for key in _STARTS if key in group]
+    return Clock(rate_hz=rate, start_s=starts[0] if starts else 0.0)
+
+
+def _said(path: Path, source: Mapping[str, object]) -> dict[str, float]:
+    """Return what a group of numbers says of the rate, by the name under which it says it."""
+    rates = {key: float(value) for key, value in source.items() if key in _RATES and isinstance(value, int | float)}
+    if len(rates) > 1:
+        raise RecordingError(f"{path}: expected one of {' or '.join(rates)}, found both.")
+    if not rates:
+        steps = {key: value for key, value in source.items() if key in _STEPS and isinstance(value, int | float)}
+        rates = {key: float(f"{1.0 / value:.12g}") for key, value in steps.items() if value > 0.0}
+    return rates
+
+
+def _time_of(path: Path, vector: Vector, vectors: Sequence[Vector]) -> Vector | None:
+    """Return the times of a vector: its axis, else ``<name>_time``, else the time of its group, else of the file."""
+    if vector.axis:
+        for other in _nearest(vector, vectors, (vector.axis.lower(),)):
+            if other.count == vector.count and (_is_time(other) or _seconds(other) is not None):
+                return other
+        return None
+    for names in ((f"{vector.name}_time".lower(),), TIME_NAMES):
+        found = [other for other in _nearest(vector, vectors, names) if other.count == vector.count]
+        if len(found) > 1:
+            raise RecordingError(f"{path}: expected one of {' or '.join(other.name for other in found)}, found both.")
+        if found:
+            return found[0]
+    return None
+
+
+def _nearest(vector: Vector, vectors: Iterable[Vector], names: Sequence[str]) -> list[Vector]:
+    """Return the vectors of some names in the same group, else in those that hold it."""
+    named = [other for other in vectors if other.name.lower() in names]
+    parts = vector.group.split("/")
+    for length in range(len(parts), -1, -1):
+        found = [other for other in named if other.group == "/".join(parts[:length])]
+        if found:
+            return found
+    return []
+
+
+def _clock_of_times(path: Path, time: Vector) -> Clock:
+    factor = _seconds(time)
+    if factor is None:
+        unit = _text(time.attributes, _UNITS)
+        raise RecordingError(f'{path}, {time.name}: expected times in seconds, found the unit "{unit}".')
+    scale = factor * time.scale
+
+    def read(start: int, stop: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+        return time.source(start, stop).astype(np.float64) * scale + factor * time.offset
+
+    return uniform_clock(path, f"variable {time.name}", time.count, read)
+
+
+def _seconds(time: Vector) -> float | None:
+    """Return how many seconds one unit of a vector has; seconds where no unit is given."""
+    unit = _text(time.attributes, _UNITS)
+    since = _SINCE.fullmatch(unit)
+    word = since.group(1) if since else unit
+    words = {"days": 86_400.0, "hours": 3600.0, "minutes": 60.0, "milliseconds": 1e-3, "microseconds": 1e-6}
+    return 1.0 if word == "" else words.get(word.lower(), seconds_in(word))
+
+
+def _text(attributes: Mapping[str, object], keys: Sequence[str]) -> str:
+    return next((str(attributes[key]) for key in keys if attributes.get(key)), "")
