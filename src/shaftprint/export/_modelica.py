@@ -95,10 +95,11 @@ def modelica_text(model: ExportedModel, package: str) -> tuple[str, ModelicaEqua
         *equations.parameters,
     ]
     sizes = list(working_point)
-    relations = [f"u_{i + 1} = {_inwards(signal, sizes)};" for i, signal in enumerate(inputs)]
+    into, out = list(zip(equations.inputs, inputs, strict=True)), list(zip(equations.outputs, outputs, strict=True))
+    relations = [f"{name} = {_inwards(signal, sizes)};" for name, signal in into]
     relations += equations.equations
-    relations += [f"{modelica_name(s.name)} = {_outwards(s, i, sizes)};" for i, s in enumerate(outputs)]
-    inner = [*(f"Real u_{i + 1} {modelica_string(f'deviation, {s.meaning}')};" for i, s in enumerate(inputs))]
+    relations += [f"{modelica_name(signal.name)} = {_outwards(signal, name, sizes)};" for name, signal in out]
+    inner = [f"Real {name} {modelica_string(f'deviation, {signal.meaning}')};" for name, signal in into]
     block = _class("block", BLOCK, model, lines, [*inner, *equations.variables], relations)
     title = modelica_string(f"{model.title}, {model.structure.name}; written by shaftprint {__version__}")
     text = f"within;\npackage {package} {title}\n{CONNECTORS}\n{block}\n{_experiment(inputs, sizes)}end {package};\n"
@@ -164,9 +165,8 @@ def _inwards(signal: FmuSignal, sizes: list[str]) -> str:
     return f"{name} / {sizes[signal.setting]}{' - 1.0' if signal.is_whole else ''}"
 
 
-def _outwards(signal: FmuSignal, place: int, sizes: list[str]) -> str:
+def _outwards(signal: FmuSignal, deviation: str, sizes: list[str]) -> str:
     """Return an output from its deviation."""
-    deviation = f"y_{place + 1}"
     if signal.setting < ENGINE_SPEED:
         return deviation
     return f"{sizes[signal.setting]} * {f'(1.0 + {deviation})' if signal.is_whole else deviation}"

@@ -21,6 +21,10 @@ COMPUTER_STEP_S: Final = 1e-3
 class ModelicaEquations:
     """What stands in a block between its connectors and its end."""
 
+    inputs: tuple[str, ...]
+    """Names of the deviations of the inputs, which are declared and known elsewhere."""
+    outputs: tuple[str, ...]
+    """Names of the deviations of the outputs."""
     parameters: tuple[str, ...]
     """Declarations of further parameters."""
     variables: tuple[str, ...]
@@ -51,7 +55,7 @@ def modelica_equations(model: ExportedModel, names: Names, parameters: dict[str,
     Parameters
     ----------
     names
-        Names that are taken; ``u_1, u_2 ...`` and ``y_1, y_2 ...`` are added for the deviations.
+        Names that are taken; those of all variables inside are added.
     parameters
         Name of each parameter of the structure.
 
@@ -67,6 +71,8 @@ def modelica_equations(model: ExportedModel, names: Names, parameters: dict[str,
     leaves = {("parameter", i): value for i, value in enumerate(model.values)}
     lateness = evaluate(ready.lateness, leaves)
     return ModelicaEquations(
+        inputs=tuple(writer.inputs),
+        outputs=tuple(writer.outputs),
         parameters=tuple(writer.parameters),
         variables=tuple(writer.variables),
         equations=tuple(writer.equations),
@@ -78,12 +84,14 @@ class _Writer:
     """Writes declarations and equations in the order in which they are read."""
 
     def __init__(self, model: ExportedModel, program: Program, names: Names, parameters: dict[str, str]) -> None:
+        self.outputs: list[str] = []
         self.parameters: list[str] = []
         self.variables: list[str] = []
         self.equations: list[str] = []
         self._model, self._program, self._names = model, program, names
         self._leaves = {("parameter", i): parameters.get(name, "") for i, name in enumerate(program.parameters)}
         self._inner("input", "u", program.inputs)
+        self.inputs = [self._leaves["input", i] for i in range(len(program.inputs))]
         self._inner("state", "", program.states)
         self._inner("past", "late", ["signal"] * len(program.pasts))
         self._inner("sample", "held", ["value"] * len(program.samples))
@@ -169,5 +177,6 @@ class _Writer:
     def _outputs(self) -> None:
         for i, (output, signal) in enumerate(zip(self._program.outputs, self._program.signals, strict=True)):
             name = self._names(f"y_{i + 1}")
+            self.outputs.append(name)
             self.variables.append(f"Real {name} {modelica_string(f'deviation of {output}')};")
             self.equations.append(f"{name} = {self._text[signal]};")
