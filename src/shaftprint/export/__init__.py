@@ -14,6 +14,8 @@ from shaftprint.export._fmu_build import PLATFORMS
 from shaftprint.export._matlab import WrittenMatlab, write_matlab
 from shaftprint.export._model import ExportedModel, exported_model
 from shaftprint.export._modelica import WrittenModelica, write_modelica
+from shaftprint.export._osp import write_osp
+from shaftprint.export._ssp import write_ssv
 
 __all__ = [
     "PLATFORMS",
@@ -25,4 +27,6 @@ __all__ = [
     "write_fmu",
     "write_matlab",
     "write_modelica",
+    "write_osp",
+    "write_ssv",
 ]

@@ -1,0 +1,78 @@
+"""The parameters of a model as a parameter set of System Structure and Parameterization (SSP 1.0)."""
+
+from pathlib import Path
+from typing import Final
+from xml.etree.ElementTree import Element, SubElement, indent, register_namespace, tostring
+
+from shaftprint import __version__
+from shaftprint.export._fmu_units import BASE_UNITS, unit_name
+from shaftprint.export._fmu_variables import _structured as structured_name
+from shaftprint.export._model import ExportedModel
+from shaftprint.files import written_whole
+
+SSV: Final = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
+SSC: Final = "http://ssp-standard.org/SSP1/SystemStructureCommon"
+VERSION: Final = "1.0"
+
+
+def write_ssv(model: ExportedModel, path: str | Path, *, overwrite: bool = False) -> Path:
+    """Write the values of a model's parameters, named as in its FMU, with units; what is known of each in words.
+
+    Parameters
+    ----------
+    path
+        File to write, usually with the ending ``.ssv``.
+    overwrite
+        Whether an earlier file is replaced.
+
+    Returns
+    -------
+        The file that was written.
+
+    Raises
+    ------
+    FileExistsError
+        If the file exists and is not to be replaced.
+    """
+    place = Path(path)
+    with written_whole(place, overwrite=overwrite) as part:
+        part.write_bytes(parameter_set(model))
+    return place
+
+
+def parameter_set(model: ExportedModel) -> bytes:
+    """Return the parameter set as XML."""
+    register_namespace("ssv", SSV)
+    register_namespace("ssc", SSC)
+    name = f"{model.title}, {model.structure.name}"
+    root = Element(f"{{{SSV}}}ParameterSet", version=VERSION, name=name, generationTool=f"shaftprint {__version__}")
+    listed, units = SubElement(root, f"{{{SSV}}}Parameters"), dict[str, None]()
+    for parameter, unit, value, words in _entries(model):
+        entry = SubElement(listed, f"{{{SSV}}}Parameter", name=parameter, description=words)
+        known = {"unit": unit_name(unit)} if unit in BASE_UNITS else {}
+        units |= {unit: None} if known else {}
+        SubElement(entry, f"{{{SSV}}}Real", {"value": repr(value), **known})
+    if units:
+        defined = SubElement(root, f"{{{SSV}}}Units")
+        for unit in units:
+            powers = {key: repr(power) for key, power in BASE_UNITS[unit].items()}
+            SubElement(SubElement(defined, f"{{{SSC}}}Unit", name=unit_name(unit)), f"{{{SSC}}}BaseUnit", powers)
+    indent(root)
+    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root) + b"\n"
+
+
+def _entries(model: ExportedModel) -> list[tuple[str, str, float, str]]:
+    """Return name, unit, value and meaning of each parameter that the FMU has."""
+    found = [
+        ("working_point.engine_speed", "rpm", model.engine_speed_rpm, "engine speed of the working point"),
+        ("working_point.shaft_torque", "N m", model.shaft_torque_nm, "shaft torque at the gauge of the working point"),
+    ]
+    std = model.std
+    for parameter, value in zip(model.structure.parameters, model.values, strict=True):
+        # a parameter that is held at zero is no part of the equations, and none of the FMU
+        if parameter.held and value == 0.0:
+            continue
+        known = f"; standard deviation {std[parameter.name]:.3g}" if parameter.name in std else ""
+        known = "; not known from the test" if parameter.name in model.not_known else known
+        found.append((structured_name(parameter.name), parameter.unit, float(value), f"{parameter.meaning}{known}"))
+    return found
