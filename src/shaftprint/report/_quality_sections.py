@@ -3,7 +3,7 @@
 from functools import partial
 from typing import TYPE_CHECKING
 
-from shaftprint.report._levels import clock_table, level_table
+from shaftprint.report._levels import clock_map_table, clock_table, level_table
 from shaftprint.report._numbers import plain
 from shaftprint.report._sections import Inputs, Picture, Section
 from shaftprint.report._signal_tables import local_ratio_table, overall_ratio_table, repair_table, window_table
@@ -22,7 +22,7 @@ def quality_section(inputs: Inputs) -> Section:
     if inputs.recording is not None:
         tables += [level_table(inputs.recording), clock_table(inputs.recording)]
     tables += [
-        *inputs.clocks,
+        clock_map_table(inputs.clocks),
         window_table(spectra),
         overall_ratio_table(spectra),
         local_ratio_table(spectra),

@@ -25,6 +25,7 @@ from shaftprint.report._verdict_sections import verdict_section
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
+    from shaftprint.clocks import Alignment
     from shaftprint.fingerprint import Fingerprint
     from shaftprint.identify import Comparison, Identification
     from shaftprint.models import Structure
@@ -53,7 +54,7 @@ def render_report(
     comparisons: "Sequence[Comparison]" = (),
     sensitivity: "Sequence[Structure]" = (),
     validations: "Sequence[Validation]" = (),
-    clocks: Sequence[Table] = (),
+    clocks: "Mapping[str, Alignment] | None" = None,
     interactive: bool = True,
     overwrite: bool = False,
     progress: Callable[[float], None] | None = None,
@@ -86,7 +87,7 @@ def render_report(
     validations
         The identified model, and others beside it, held against records that they have not seen.
     clocks
-        What is known of the clocks of several loggers, a table each.
+        Clock maps of other loggers by their name, where the recording was merged from several.
     interactive
         Whether figures can be zoomed; without it the page runs no script.
     overwrite
@@ -116,7 +117,7 @@ def render_report(
         comparisons=comparisons,
         sensitivity=sensitivity,
         validations=validations,
-        clocks=clocks,
+        clocks=clocks or {},
     )
     page = _page(inputs, _sections(inputs))
     return write_page(directory, page, interactive=interactive, overwrite=overwrite, progress=progress)

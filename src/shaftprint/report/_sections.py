@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from shaftprint.report._table import Table
@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from shaftprint.campaign import Campaign
+    from shaftprint.clocks import Alignment
     from shaftprint.fingerprint import Fingerprint
     from shaftprint.identify import Comparison, Identification
     from shaftprint.models import Structure
@@ -41,7 +42,7 @@ class Inputs:
     comparisons: Sequence["Comparison"]
     sensitivity: Sequence["Structure"]
     validations: Sequence["Validation"] = ()
-    clocks: Sequence[Table] = ()
+    clocks: Mapping[str, "Alignment"] = field(default_factory=dict)
 
     @property
     def aliasing_limit_hz(self) -> float:

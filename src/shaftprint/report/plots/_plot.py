@@ -62,12 +62,14 @@ def _rounded(value: float, digits: int) -> float | None:
 def _plain(content: object) -> object:
     """Return content that JSON has: numbers of NumPy as Python's, none that is not finite, tuples as lists."""
     match content:
+        case np.generic():
+            return _plain(content.item())
         case Mapping():
             return {str(key): _plain(value) for key, value in content.items()}
         case str() | bool() | int() | None:
-            return content if not isinstance(content, np.generic) else content.item()
-        case float() | np.floating():
-            return float(content) if math.isfinite(content) else None
+            return content
+        case float():
+            return content if math.isfinite(content) else None
         case np.ndarray() | list() | tuple():
             return [_plain(value) for value in content]
         case _:

@@ -1,0 +1,93 @@
+"""The superintendent's questions: each answer against a fingerprint that calls for it."""
+
+from dataclasses import replace
+
+import pytest
+
+from shaftprint.report._superintendent import cover_of
+
+
+def answers(fingerprint, validations=()):
+    return {card.question: card for card in cover_of(fingerprint, validations).cards}
+
+
+def with_physical(fingerprint, name, **changes):
+    changed = [q.model_copy(update=changes) if q.name == name else q for q in fingerprint.physical]
+    return fingerprint.model_copy(update={"physical": tuple(changed)})
+
+
+def with_verdict(fingerprint, **changes):
+    return fingerprint.model_copy(update={"verdict": replace(fingerprint.verdict, **changes)})
+
+
+INERTIA = "Is the inertia of propeller and shaft as calculated?"
+GAUGE = "Is the torque gauge in order?"
+HUNTING = "Does the engine hold its speed without hunting?"
+FORETELLS = "Does the model foretell what it has not seen?"
+
+
+@pytest.mark.parametrize(
+    ("value", "state"), [(17.0, "fine"), (20.0, "fine"), (21.5, "look"), (25.0, "bad"), (11.0, "bad")]
+)
+def test_an_inertia_is_held_against_both_deviations(fingerprint, value, state):
+    """17 +/- 1.6 of the vessel file and 0.5 measured: 1.68 together, so that 20 is 1.8 and 21.5 is 2.7 away."""
+    found = with_physical(fingerprint, "I_dn", value=value, std=0.5, expected=17.0, expected_std=1.6)
+    assert answers(found)[INERTIA].state == state
+
+
+@pytest.mark.parametrize(
+    ("zero", "std", "state"), [(0.3, 0.2, "fine"), (-5.0, 0.5, "look"), (1.0, 3.0, "open"), (-1.9, 0.5, "open")]
+)
+def test_the_zero_of_the_gauge(fingerprint, zero, std, state):
+    found = with_physical(fingerprint, "gauge zero share", value=zero, std=std)
+    assert answers(found)[GAUGE].state == state
+
+
+@pytest.mark.parametrize(("loop", "state"), [("ample", "fine"), ("small", "look"), ("unstable", "bad")])
+def test_the_loop(fingerprint, loop, state):
+    found = answers(with_verdict(fingerprint, loop=loop, trustworthy=True))[HUNTING]
+    assert found.state == state
+    assert ("usual" in found.sentence) == (loop != "unstable")
+
+
+def test_a_structure_without_feedback_is_not_asked_about_hunting(fingerprint):
+    assert HUNTING not in answers(with_verdict(fingerprint, loop=None))
+
+
+def test_a_fit_that_is_not_trustworthy_answers_nothing_else(fingerprint):
+    found = with_verdict(fingerprint, trustworthy=False, reason="Too few lines are good.", loop="ample")
+    cover = cover_of(found)
+    assert cover.state == "bad"
+    assert cover.headline.startswith("The test cannot be used")
+    told = answers(found)
+    assert told["Can the result be used?"].sentence == "Too few lines are good."
+    assert {told[question].state for question in (HUNTING, INERTIA, GAUGE)} == {"open"}
+
+
+def test_without_records_nothing_is_foretold(fingerprint):
+    assert answers(fingerprint)[FORETELLS].state == "open"
+
+
+def test_many_lines_left_out_are_worth_a_look(fingerprint):
+    conditions = fingerprint.conditions.model_copy(
+        update={"lines_used": ("S1", "S2"), "lines_left_out": {"S3": "no signal", "S4": "aliased"}}
+    )
+    quality = fingerprint.quality.model_copy(update={"remarks": (), "repairs": {"M_s: outlier": 1}})
+    found = fingerprint.model_copy(update={"conditions": conditions, "quality": quality})
+    card = answers(found)["Were the measurements good?"]
+    assert card.state == "look"
+    assert card.sentence.startswith("2 of 4 test lines could be used, 1 place was repaired. Left out: S3: no signal")
+
+
+def test_the_headline_counts_what_is_worth_a_look(fingerprint):
+    good = with_verdict(fingerprint, loop="ample", trustworthy=True)
+    good = with_physical(good, "I_dn", value=17.0, std=0.5, expected=17.0, expected_std=1.6)
+    good = with_physical(good, "gauge zero share", value=0.0, std=0.1)
+    quality = good.quality.model_copy(update={"remarks": ()})
+    conditions = good.conditions.model_copy(update={"lines_left_out": {}})
+    good = good.model_copy(update={"quality": quality, "conditions": conditions})
+    assert cover_of(good).headline == "The test can be used, and all that it can tell is fine"
+    small = with_verdict(good, loop="small")
+    assert cover_of(small).headline == "The test can be used; one point is worth a look"
+    both = with_physical(small, "I_dn", value=30.0, std=0.5)
+    assert cover_of(both).headline == "The test can be used; one point is not fine"
