@@ -9,6 +9,7 @@ others              -       deviations, as in ``shaftprint.models``
 =================== ======= =============================================================================
 """
 
+from shaftprint.export._control import ControlModel, to_control
 from shaftprint.export._fmu import WrittenFmu, write_fmu
 from shaftprint.export._fmu_build import PLATFORMS
 from shaftprint.export._matlab import WrittenMatlab, write_matlab
@@ -16,14 +17,18 @@ from shaftprint.export._model import ExportedModel, exported_model
 from shaftprint.export._modelica import WrittenModelica, write_modelica
 from shaftprint.export._osp import write_osp
 from shaftprint.export._ssp import write_ssv
+from shaftprint.export._xarray import to_xarray
 
 __all__ = [
     "PLATFORMS",
+    "ControlModel",
     "ExportedModel",
     "WrittenFmu",
     "WrittenMatlab",
     "WrittenModelica",
     "exported_model",
+    "to_control",
+    "to_xarray",
     "write_fmu",
     "write_matlab",
     "write_modelica",
