@@ -33,7 +33,7 @@ LEVELS_V = (-5.0, -3.0, -5.0, -7.0, -5.0, -4.0, -6.0, -4.0)
 QUICK = NonlinearSettings(starts=6, first_iterations=3, better=2, kept=1, rounds=1, max_iterations=8, drive_hz=200.0)
 
 
-def limits_campaign(dwell_s=16.0, staircases=2):
+def limits_campaign(dwell_s=16.0, staircases=4):
     time_s, stairs, sines = 15.0, [], []
     for number in range(1, staircases + 1):
         stairs.append({"name": f"St{number}", "levels_v": LEVELS_V, "dwell_s": dwell_s, "start_s": time_s})
@@ -130,7 +130,7 @@ def test_intervals_hold_the_truth(limited_trip, limited_fit):
 
 def test_speed_on_the_staircase_is_explained_as_well_as_noise_allows(limited_fit):
     parts = [part for part in limited_fit.identification.parts if isinstance(part, RecordFit)]
-    assert [part.record.name for part in parts] == ["St1", "St2"]
+    assert [part.record.name for part in parts] == ["St1", "St2", "St3", "St4"]
     for part in parts:
         assert part.fit_percent["n"] > 0.97 * part.fit_ceiling["n"]
         assert part.fit_ceiling["n"] > 90.0
@@ -138,7 +138,7 @@ def test_speed_on_the_staircase_is_explained_as_well_as_noise_allows(limited_fit
 
 def test_what_was_fitted_and_how_is_said(limited_fit):
     assert limited_fit.lines == tuple(f"S{number}" for number in range(1, 10))
-    assert limited_fit.records == ("St1", "St2")
+    assert limited_fit.records == ("St1", "St2", "St3", "St4")
     assert limited_fit.starts == 6
     assert 1 <= limited_fit.reached[0] <= limited_fit.reached[1] <= 2
     assert limited_fit.left_out == ()

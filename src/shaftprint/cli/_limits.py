@@ -138,10 +138,16 @@ def _sentences(fit: NonlinearFit) -> Sequence[str]:
     lines = f"Small signals: {', '.join(fit.lines)}." if fit.lines else "No sine is free of the limits."
     left_out = [f"Not in the model: {', '.join(fit.left_out)}."] if fit.left_out else []
     narrow = [DEADBAND] if any(number.name == "d_e" for number in fit.limits) else []
+    fragile = [
+        f"Not fitted: {stretch.record} from {stretch.begin_s:.0f} to {stretch.end_s:.0f} s, where small disturbances "
+        "decide what a limited line does (jump resonance)."
+        for stretch in fit.fragile
+    ]
     return (
         f"{lines} In time: {', '.join(fit.records)}.",
         f"Of {fit.starts} starts the best {fit.reached[1]} went on, and {fit.reached[0]} of these reached the optimum "
         "that led to this one.",
         *left_out,
+        *fragile,
         *narrow,
     )

@@ -17,13 +17,15 @@ from shaftprint.time_domain._identify_in_time import TimeSettings, identify_in_t
 from shaftprint.time_domain._known_start import KnownStart
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise, white_noise
 from shaftprint.time_domain._nonlinear_fit import NonlinearFit, identify_nonlinear
+from shaftprint.time_domain._nonlinear_fragile import Fragile
 from shaftprint.time_domain._nonlinear_numbers import LimitNumber, limit_numbers
 from shaftprint.time_domain._nonlinear_orders import without_orders
 from shaftprint.time_domain._nonlinear_settings import NonlinearSettings
 from shaftprint.time_domain._nonlinear_structure import LimitedModel, structure_for
-from shaftprint.time_domain._output_error import OutputError, RecordRepeats
+from shaftprint.time_domain._output_error import OutputError
 from shaftprint.time_domain._record import Record, record_from_arrays
 from shaftprint.time_domain._record_fit import RecordFit
+from shaftprint.time_domain._record_repeats import RecordRepeats
 from shaftprint.time_domain._records_of import records_of
 from shaftprint.time_domain._simulator import ExactDelays, Simulator
 from shaftprint.time_domain._spectrum import Spectrum, spectrum_of
@@ -35,6 +37,7 @@ __all__ = [
     "Decimator",
     "ExactDelays",
     "FittedSpectrum",
+    "Fragile",
     "KnownStart",
     "LimitNumber",
     "LimitedModel",

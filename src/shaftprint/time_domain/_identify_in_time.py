@@ -117,8 +117,7 @@ def with_noise_at(term: OutputError, values: FloatArray, *, longest_memory_s: fl
     IdentificationError
         If the simulation runs away there, or nothing is left.
     """
-    measured = np.stack([term.record.outputs[name] for name in term.structure.outputs], axis=1)
-    left = noise_of(measured - term.model(values), term.record)
+    left = noise_of(term.left(values), term.record)
     order = round(longest_memory_s * term.record.rate_hz)
     return term.with_noise(Whitening(noise=estimate_noise(left, term.record.stretches, max_order=order)))
 

@@ -14,9 +14,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.identify import Identification
-from shaftprint.time_domain._nuisance import without
 from shaftprint.time_domain._output_error import OutputError
-from shaftprint.time_domain._simulator import on_record
 
 BLOCK_S = 4.0
 
@@ -37,7 +35,9 @@ def with_scatter_of_blocks(found: Identification) -> Identification:
             slopes = np.zeros((theta.size, sums.shape[1]))
             slopes[list(term.columns)] = sums
             variance = variance - own @ own.T + slopes @ slopes.T
-    inverse = np.linalg.pinv(rows @ rows.T, hermitian=True)
+    # parameters of one size, so that a well-known one does not make another look as if nothing were known of it
+    size = np.maximum(np.linalg.norm(rows, axis=1), np.finfo(np.float64).tiny)
+    inverse = np.linalg.pinv((rows @ rows.T) / np.outer(size, size), hermitian=True) / np.outer(size, size)
     scatter = np.sqrt(np.maximum(np.diag(inverse @ variance @ inverse), 0.0))
     std = np.sqrt(np.diag(found.covariance))
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -47,14 +47,8 @@ def with_scatter_of_blocks(found: Identification) -> Identification:
 
 def _block_slopes(term: OutputError, theta: FloatArray) -> FloatArray:
     """Return the slope of the likelihood along the free parameters of a record, block by block, (free, blocks)."""
-    own = term.complete(theta)
-    wanted = [term.structure.names[place] for place in term.free]
-    simulated = on_record(term.simulator, term.structure, own, term.record, wanted)
-    if simulated is None:
+    rows = term.rows(term.complete(theta))
+    if rows is None:
         return np.zeros((theta.size, 1))
-    white = term.whitening.whitened(simulated, term.record.stretches)
-    rows = white.reshape(white.shape[0], -1)
-    rows[0] -= term.measured
-    rows = without(rows, term.drifts)
-    length = white.shape[2] * max(round(BLOCK_S * term.record.rate_hz), 1)
+    length = len(term.structure.outputs) * max(round(BLOCK_S * term.record.rate_hz), 1)
     return np.asarray(np.add.reduceat(rows[1:] * rows[0], np.arange(0, rows.shape[1], length), axis=1))

@@ -18,6 +18,7 @@ from shaftprint.spectra import FrequencyResponse, estimate_response
 from shaftprint.time_domain._identify_in_time import output_error, with_noise_at
 from shaftprint.time_domain._nonlinear_covariance import with_scatter_of_blocks
 from shaftprint.time_domain._nonlinear_drive import sharpened
+from shaftprint.time_domain._nonlinear_fragile import Fragile, fragile_stretches, without_fragile
 from shaftprint.time_domain._nonlinear_numbers import LimitNumber, limit_numbers
 from shaftprint.time_domain._nonlinear_orders import without_orders
 from shaftprint.time_domain._nonlinear_search import Part, best_ends, first_pass, free_values, from_these
@@ -52,6 +53,8 @@ class NonlinearFit:
     """How many of those that went on reached the optimum that led to the one that won, and how many went on."""
     left_out: tuple[str, ...]
     """Findings that the structure has no place for."""
+    fragile: tuple[Fragile, ...] = ()
+    """Stretches of records that were not fitted, because noise decides in them what the line does."""
 
 
 def identify_nonlinear(
@@ -122,6 +125,7 @@ def identify_nonlinear(
         starts=how.starts,
         reached=reached,
         left_out=model.left_out,
+        fragile=task.fragile(found),
     )
 
 
@@ -163,10 +167,21 @@ class _Task:
             ends[0] = np.array(list(free_values(parts, best).values()))
         return few, (many.reached, many.settings.starts)
 
+    def fragile(self, found: Identification) -> tuple[Fragile, ...]:
+        """Return the stretches of staircases and chirps that a fit did not use though they were measured."""
+        whole = {record.name: record for record in self._records(self.names, self.how.rate_hz, self.how.drive_hz)}
+        fitted = [term.record for term in found.objective.terms if isinstance(term, OutputError)]
+        return tuple(
+            stretch
+            for record in fitted
+            if record.name in whole
+            for stretch in fragile_stretches(record.name, record.time_s, whole[record.name].used & ~record.used)
+        )
+
     def _parts(self, sines: Sequence[str], rate_hz: float, drive_hz: float) -> list[Part]:
         untouched = np.array([line not in sines for line in self.response.lines])
         records = self._records([*sines, *self.names], rate_hz, drive_hz)
-        parts: list[Part] = [output_error(self.structure, record) for record in records]
+        parts: list[Part] = [replace(output_error(self.structure, record), moving_load=True) for record in records]
         if np.any(self.response.used & untouched):
             # small signals of the limited structure are those of the linear one, whose formulas are at hand
             parts.append((_small(self.structure), replace(self.response, used=self.response.used & untouched)))
@@ -177,15 +192,17 @@ class _Task:
         return [sharpened(record, self.campaign, rate_hz=drive_hz) for record in found]
 
     def _renewed(self, parts: Sequence[Part], values: Mapping[str, float]) -> list[Part]:
-        """Return the parts, records with the noise that is left at some values."""
-        return [
-            with_noise_at(
-                part, part.structure.vector({p.name: values.get(p.name, p.value) for p in part.structure.free})
-            )
-            if isinstance(part, OutputError)
-            else part
-            for part in parts
-        ]
+        """Return the parts, records with the noise that is left at some values, and without what noise decides."""
+        found: list[Part] = []
+        for part in parts:
+            if isinstance(part, OutputError):
+                own = part.structure.vector({p.name: values.get(p.name, p.value) for p in part.structure.free})
+                known = with_noise_at(part, own)
+                steady = without_fragile(known, own, self.rng.spawn(1)[0])
+                found.append(known if steady is known else with_noise_at(steady, own))
+            else:
+                found.append(part)
+        return found
 
 
 def _linear(

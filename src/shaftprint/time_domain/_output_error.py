@@ -11,15 +11,17 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray, IntArray, frozen_float
+from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import LineTest, Repeats, Term, TermTest, fit_ceiling, fit_percent
 from shaftprint.models import Structure
 from shaftprint.time_domain._at_once import at_once
 from shaftprint.time_domain._input_response import excited, explained_part
+from shaftprint.time_domain._moving_load import load_columns, with_square, without_square
 from shaftprint.time_domain._nuisance import drift_columns, orthonormal, without
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._record_fit import RecordFit
+from shaftprint.time_domain._record_repeats import RecordRepeats
 from shaftprint.time_domain._simulator import Simulator, on_record
 from shaftprint.time_domain._whitening import Whitening
 
@@ -27,24 +29,6 @@ from shaftprint.time_domain._whitening import Whitening
 AWAY = 1e12
 # Steps towards initial states; one is exact where the outputs depend on them linearly.
 STATE_STEPS = 2
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class RecordRepeats(Repeats):
-    """Simulated repeats of a record: the noise of each is made anew whenever it is needed."""
-
-    model: FloatArray
-    """Whitened outputs without noise, shape (used samples * outputs,)."""
-    seeds: IntArray
-    """Seed of the noise of each repeat, shape (repeats,)."""
-
-    def chosen(self, repeats: IntArray | slice) -> "RecordRepeats":
-        """Return some of the repeats."""
-        return replace(self, seeds=self.seeds[repeats])
-
-    def data(self, repeat: int) -> FloatArray:
-        """Return the whitened outputs of a repeat, shape (used samples * outputs,)."""
-        return self.model + np.random.default_rng(int(self.seeds[repeat])).standard_normal(self.model.size)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -65,6 +49,9 @@ class OutputError(Term):
     """A gap longer than this [s] begins offset and drift anew."""
     initial_states: bool
     """Whether the states at the start are estimated; else the record begins in steady running."""
+    moving_load: bool = False
+    """Whether the propeller's load may move, for structures with speed ``n`` and torque ``M_s`` of a propeller that
+    takes the square of the speed: the torque is compared without that square."""
     held: FloatArray
     """Values of the structure's parameters; the free ones are replaced, shape (structure's parameters,)."""
     free: tuple[int, ...]
@@ -80,11 +67,10 @@ class OutputError(Term):
 
     def __post_init__(self) -> None:
         """Whiten what does not depend on parameters."""
-        object.__setattr__(self, "measured", frozen_float(self._white(self._outputs()[None])[0]))
-        columns = drift_columns(
-            self.record, len(self.structure.outputs), self.drift_degree, anew_after_s=self.anew_after_s
-        )
-        object.__setattr__(self, "drifts", frozen_float(orthonormal(self._white(columns))))
+        measured = self._outputs()[None]
+        compared = without_square(measured, self._names, self.record.load) if self.moving_load else measured
+        object.__setattr__(self, "measured", frozen_float(self._white(compared)[0]))
+        object.__setattr__(self, "drifts", frozen_float(orthonormal(self._white(self._columns()))))
 
     @property
     def name(self) -> str:
@@ -224,14 +210,44 @@ class OutputError(Term):
         simulated = self._simulated(own, wanted=())
         if simulated is None:
             raise IdentificationError(f"{self.name}: the simulation of {self.structure.name} runs away.")
-        columns = drift_columns(
-            self.record, len(self.structure.outputs), self.drift_degree, anew_after_s=self.anew_after_s
-        )
-        if not columns.size:
-            return np.asarray(simulated[0])
-        gap = self.measured - self._white(simulated)[0]
-        shares, *_ = np.linalg.lstsq(self._white(columns).T, gap, rcond=None)
-        return np.asarray(simulated[0] + np.tensordot(shares, columns, axes=1))
+        columns = self._columns()
+        found = simulated[0]
+        if columns.size:
+            gap = self.measured - self._white(simulated)[0]
+            shares, *_ = np.linalg.lstsq(self._white(columns).T, gap, rcond=None)
+            found = found + np.tensordot(shares, columns, axes=1)
+        return with_square(found, self._names, self.record.load) if self.moving_load else np.asarray(found)
+
+    def left(self, own: FloatArray) -> FloatArray:
+        """Return what the model leaves of the outputs as they are compared, shape (samples, outputs).
+
+        Parameters
+        ----------
+        own
+            All parameters of the structure, shape (parameters,).
+
+        Raises
+        ------
+        IdentificationError
+            If the simulation runs away.
+        """
+        pair = np.stack([self._outputs(), self.model(own)])
+        if self.moving_load:
+            pair = np.concatenate([without_square(one[None], self._names, self.record.load) for one in pair])
+        return np.asarray(pair[0] - pair[1])
+
+    def rows(self, own: FloatArray) -> FloatArray | None:
+        """Return whitened residuals and their derivatives, shape (1 + free, used samples * outputs).
+
+        None where the simulation runs away.
+
+        Parameters
+        ----------
+        own
+            All parameters of the structure, shape (parameters,).
+        """
+        found = self._rows(own, self.measured)
+        return None if found is None else found[0]
 
     def _rows(self, own: FloatArray, data: FloatArray) -> tuple[FloatArray, FloatArray] | None:
         """Return whitened residuals with their derivatives, and the orthonormal basis beside which they are.
@@ -271,7 +287,20 @@ class OutputError(Term):
     def _simulated(
         self, own: FloatArray, wanted: Sequence[str], initial: FloatArray | None = None
     ) -> FloatArray | None:
-        return on_record(self.simulator, self.structure, own, self.record, wanted, initial=initial)
+        found = on_record(self.simulator, self.structure, own, self.record, wanted, initial=initial)
+        if found is None or not self.moving_load:
+            return found
+        return without_square(found, self._names, self.record.load)
+
+    def _columns(self) -> FloatArray:
+        """Return offsets, drifts and moving load, shape (columns, samples, outputs)."""
+        drifts = drift_columns(self.record, len(self._names), self.drift_degree, anew_after_s=self.anew_after_s)
+        return np.concatenate([drifts, load_columns(self.record, self._names)]) if self.moving_load else drifts
+
+    @property
+    def _names(self) -> tuple[str, ...]:
+        """Names of the outputs."""
+        return tuple(self.structure.outputs)
 
     def _white(self, values: FloatArray) -> FloatArray:
         """Return whitened rows, shape (rows, used samples * outputs), from (rows, samples, outputs)."""
