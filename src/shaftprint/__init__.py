@@ -1,7 +1,75 @@
 """Fingerprints of ship propulsion lines, identified from a logger recording.
 
-The rooms, in the order in which data flow through them: ``vessel``, ``campaign``, ``recording``, ``signals``,
-``spectra``, ``models``, ``identify``, ``fingerprint``, ``report``; ``tug`` is a simulated ship that writes recordings.
+``import shaftprint as sp`` gives the rooms; a room is loaded when it is first used. Data flow through them in this
+order, and each hands one noun to the next:
+
+=============== =========================== ==========================================================================
+room            nouns                       verbs
+=============== =========================== ==========================================================================
+``vessel``      ``Vessel``                  ``load_vessel``
+``campaign``    ``Campaign``                ``load_campaign``, ``setpoint``
+``recording``   ``Recording``               ``read_recording``, ``write_recording``
+``signals``     ``Signals``                 ``prepare_signals``, ``inspect_channels``
+``spectra``     ``FrequencyResponse``       ``estimate_response``, ``response_from_arrays``, ``plant_from_closed_loop``
+``models``      ``Structure``, ``Parameter`` ``structure``, ``margins``, ``limited``
+``identify``    ``Identification``,         ``identify``, ``assess``, ``profile``, ``identifiability``,
+                ``Verdict``                 ``predict_accuracy``, ``compare_structures``
+``time_domain`` ``Record``                  ``records_of``, ``identify_in_time``, ``identify_nonlinear``
+``simulation``  ``Trace``                   ``simulate``, ``simulate_exactly``, ``equilibrium``, ``linearise``
+``validation``  ``Validation``              ``validate``
+``fingerprint`` ``Fingerprint``             ``take_fingerprint``, ``read_fingerprint``, ``write_fingerprint``
+``report``                                  ``render_report``, ``plot_bode``
+``tug``         ``Truth``                   ``sail``
+=============== =========================== ==========================================================================
+
+Verbs take the noun first and the rest by keyword. Errors that a user can mend are ``errors.ShaftprintError``.
 """
 
+import importlib
+from types import ModuleType
+
 __version__ = "0.1.0"
+
+_ROOMS = (
+    "arrays",
+    "campaign",
+    "clocks",
+    "errors",
+    "export",
+    "files",
+    "fingerprint",
+    "identify",
+    "models",
+    "nonlinearity",
+    "normal",
+    "propeller",
+    "recording",
+    "report",
+    "settings",
+    "signals",
+    "simulation",
+    "spectra",
+    "time_domain",
+    "torsion",
+    "tug",
+    "units",
+    "validation",
+    "vessel",
+)
+
+
+def __getattr__(name: str) -> ModuleType:
+    """Load a room when it is first used: all of them together take seconds.
+
+    Raises
+    ------
+    AttributeError
+        If there is no room of that name.
+    """
+    if name not in _ROOMS:
+        raise AttributeError(f"module 'shaftprint' has no attribute {name!r}; its rooms are {', '.join(_ROOMS)}.")
+    return importlib.import_module(f"shaftprint.{name}")
+
+
+def __dir__() -> list[str]:
+    return ["__version__", *_ROOMS]

@@ -1,0 +1,27 @@
+# What type checkers see of the rooms, which __init__.py loads when they are first used.
+from shaftprint import arrays as arrays
+from shaftprint import campaign as campaign
+from shaftprint import clocks as clocks
+from shaftprint import errors as errors
+from shaftprint import export as export
+from shaftprint import files as files
+from shaftprint import fingerprint as fingerprint
+from shaftprint import identify as identify
+from shaftprint import models as models
+from shaftprint import nonlinearity as nonlinearity
+from shaftprint import normal as normal
+from shaftprint import propeller as propeller
+from shaftprint import recording as recording
+from shaftprint import report as report
+from shaftprint import settings as settings
+from shaftprint import signals as signals
+from shaftprint import simulation as simulation
+from shaftprint import spectra as spectra
+from shaftprint import time_domain as time_domain
+from shaftprint import torsion as torsion
+from shaftprint import tug as tug
+from shaftprint import units as units
+from shaftprint import validation as validation
+from shaftprint import vessel as vessel
+
+__version__: str
