@@ -13,16 +13,17 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import LineTest, Repeats, Term, TermTest, fit_ceiling, fit_percent
+from shaftprint.identify import LineTest, Repeats, Term, TermTest
 from shaftprint.models import Structure
 from shaftprint.time_domain._at_once import at_once
 from shaftprint.time_domain._input_response import excited, explained_part
 from shaftprint.time_domain._moving_load import load_columns, with_square, without_square
 from shaftprint.time_domain._nuisance import drift_columns, orthonormal, without
 from shaftprint.time_domain._record import Record
-from shaftprint.time_domain._record_fit import RecordFit
+from shaftprint.time_domain._record_fit import RecordFit, record_fit
 from shaftprint.time_domain._record_repeats import RecordRepeats
 from shaftprint.time_domain._simulator import Simulator, on_record
+from shaftprint.time_domain._turned import turned
 from shaftprint.time_domain._whitening import Whitening
 
 # Cost of a simulation that runs away, over that of no model at all.
@@ -160,24 +161,13 @@ class OutputError(Term):
                 "narrow the bounds, or start from a fit to a frequency response."
             )
         rows, basis = found
-        model = self.model(own)
-        used, measured = self.record.used, self._outputs()
-        size = len(self.structure.outputs)
-        power = np.diag(self.whitening.noise.power)
-        part = RecordFit(
-            structure=self.structure,
-            record=self.record,
-            noise=self.whitening.noise,
-            model={name: frozen_float(model[:, i]) for i, name in enumerate(self.structure.outputs)},
-            fit_percent={
-                name: fit_percent(measured[used, i] + 0j, model[used, i] + 0j)
-                for i, name in enumerate(self.structure.outputs)
-            },
-            fit_ceiling={
-                name: fit_ceiling(measured[used, i] + 0j, np.full(int(used.sum()), power[i]))
-                for i, name in enumerate(self.structure.outputs)
-            },
-            whitened=frozen_float(rows[0].reshape(-1, size)),
+        part = record_fit(
+            self.structure,
+            self.record,
+            self.whitening.noise,
+            measured=self._outputs(),
+            model=self.model(own),
+            whitened=rows[0].reshape(-1, len(self._names)),
         )
         test = self._tested(rows, basis)
         line = LineTest(
@@ -219,18 +209,7 @@ class OutputError(Term):
         return with_square(found, self._names, self.record.load) if self.moving_load else np.asarray(found)
 
     def left(self, own: FloatArray) -> FloatArray:
-        """Return what the model leaves of the outputs as they are compared, shape (samples, outputs).
-
-        Parameters
-        ----------
-        own
-            All parameters of the structure, shape (parameters,).
-
-        Raises
-        ------
-        IdentificationError
-            If the simulation runs away.
-        """
+        """Return what the model leaves of the outputs as they are compared; see ``model``."""
         pair = np.stack([self._outputs(), self.model(own)])
         if self.moving_load:
             pair = np.concatenate([without_square(one[None], self._names, self.record.load) for one in pair])
@@ -240,11 +219,6 @@ class OutputError(Term):
         """Return whitened residuals and their derivatives, shape (1 + free, used samples * outputs).
 
         None where the simulation runs away.
-
-        Parameters
-        ----------
-        own
-            All parameters of the structure, shape (parameters,).
         """
         found = self._rows(own, self.measured)
         return None if found is None else found[0]
@@ -319,11 +293,3 @@ class OutputError(Term):
             directions[output, :, :, output] = moves
         table = self._white(directions.reshape(-1, self.record.samples, size))
         return explained_part(rows[0], np.concatenate([rows[1:], table]), basis)
-
-
-def turned(rows: FloatArray) -> FloatArray:
-    """Return rows of the same products with each other that are no longer than many, shape (rows, rows)."""
-    if rows.shape[1] < rows.shape[0]:
-        return np.pad(rows, ((0, 0), (0, rows.shape[0] - rows.shape[1])))
-    triangle: FloatArray = np.linalg.qr(rows.T, mode="r")  # type: ignore[assignment]
-    return triangle.T

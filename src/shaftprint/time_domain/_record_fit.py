@@ -3,8 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from shaftprint.arrays import FloatArray
-from shaftprint.identify import FittedTerm
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.identify import FittedTerm, fit_ceiling, fit_percent
 from shaftprint.models import Structure
 from shaftprint.time_domain._noise_model import NoiseModel
 from shaftprint.time_domain._record import Record
@@ -34,3 +36,36 @@ class RecordFit(FittedTerm):
     def name(self) -> str:
         """What messages call the data."""
         return f"record {self.record.name}"
+
+
+def record_fit(
+    structure: Structure,
+    record: Record,
+    noise: NoiseModel,
+    *,
+    measured: FloatArray,
+    model: FloatArray,
+    whitened: FloatArray,
+) -> RecordFit:
+    """Return how well a record is explained.
+
+    Parameters
+    ----------
+    measured, model
+        Outputs with offset and drift, shape (samples, outputs).
+    whitened
+        Residuals of the used samples after the noise's filter, shape (used samples, outputs).
+    """
+    used, power = record.used, np.diag(noise.power)
+    places = {name: place for place, name in enumerate(structure.outputs)}
+    return RecordFit(
+        structure=structure,
+        record=record,
+        noise=noise,
+        model={name: frozen_float(model[:, i]) for name, i in places.items()},
+        fit_percent={name: fit_percent(measured[used, i] + 0j, model[used, i] + 0j) for name, i in places.items()},
+        fit_ceiling={
+            name: fit_ceiling(measured[used, i] + 0j, np.full(int(used.sum()), power[i])) for name, i in places.items()
+        },
+        whitened=frozen_float(whitened),
+    )
