@@ -10,8 +10,10 @@ others              -       deviations, as in ``shaftprint.models``
 """
 
 from shaftprint.export._control import ControlModel, to_control
+from shaftprint.export._csv import WrittenTables, write_csv
 from shaftprint.export._fmu import WrittenFmu, write_fmu
 from shaftprint.export._fmu_build import PLATFORMS
+from shaftprint.export._json import write_json
 from shaftprint.export._matlab import WrittenMatlab, write_matlab
 from shaftprint.export._model import ExportedModel, exported_model
 from shaftprint.export._modelica import WrittenModelica, write_modelica
@@ -26,10 +28,13 @@ __all__ = [
     "WrittenFmu",
     "WrittenMatlab",
     "WrittenModelica",
+    "WrittenTables",
     "exported_model",
     "to_control",
     "to_xarray",
+    "write_csv",
     "write_fmu",
+    "write_json",
     "write_matlab",
     "write_modelica",
     "write_osp",

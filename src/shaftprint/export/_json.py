@@ -1,0 +1,123 @@
+"""A fingerprint's model in one JSON file, for programs that know nothing of shaftprint."""
+
+import json
+from pathlib import Path
+from typing import Any, Final
+
+from numpy.typing import ArrayLike
+
+from shaftprint import __version__
+from shaftprint.export._delay_model import DelayModel, delay_model
+from shaftprint.export._fmu_signals import fmu_signal
+from shaftprint.export._model import ExportedModel, exported_model
+from shaftprint.export._model_response import ModelResponse, model_response
+from shaftprint.export._tables import number_rows, parameter_rows
+from shaftprint.files import written_whole
+from shaftprint.fingerprint import Fingerprint
+from shaftprint.models import Structure
+
+LAYOUT: Final = 1
+
+
+def write_json(
+    fingerprint: Fingerprint,
+    path: str | Path,
+    *,
+    of: Structure | None = None,
+    omega_rad_s: ArrayLike | None = None,
+    overwrite: bool = False,
+) -> Path:
+    """Write parameters, combinations, state space with delays and frequency response with covariances.
+
+    Numbers that are not known are null; the file has no infinities. It complements the fingerprint itself, which only
+    shaftprint turns into a model.
+
+    Parameters
+    ----------
+    path
+        File to write.
+    of
+        The structure that was identified; the shipped one of its name if not given.
+    omega_rad_s
+        Frequencies of the response [rad/s], shape (frequencies,); 0.05 to 50 rad/s if not given.
+    overwrite
+        Whether an earlier file is replaced.
+
+    Returns
+    -------
+        The file that was written.
+
+    Raises
+    ------
+    ExportError
+        If the structure has other parameters than the fingerprint, or no state space.
+    StructureError
+        If there is no shipped structure of that name, or a block has no equations in time.
+    FileExistsError
+        If the file exists and is not to be replaced.
+    """
+    model = exported_model(fingerprint, of=of)
+    content = {
+        "layout": LAYOUT,
+        "written_by": f"shaftprint {__version__}",
+        "title": model.title,
+        "created": fingerprint.created.isoformat(),
+        "trustworthy": fingerprint.verdict.trustworthy,
+        "verdict": fingerprint.verdict.reason,
+        "structure": {"name": model.structure.name, "title": model.structure.title},
+        "working_point": {"engine_speed_rpm": model.engine_speed_rpm, "shaft_torque_nm": model.shaft_torque_nm},
+        "inputs": [_signal(model, name) for name in model.structure.inputs],
+        "outputs": [_signal(model, name) for name in model.structure.outputs],
+        "parameters": parameter_rows(fingerprint, model.structure),
+        "covariance": {"names": list(model.uncertain), "matrix": model.covariance_matrix.tolist()},
+        "not_known": list(model.not_known),
+        "numbers": number_rows(fingerprint),
+        "linear": _linear(delay_model(model)),
+        "response": _response(model_response(model, omega_rad_s)),
+    }
+    place = Path(path)
+    text = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
+    with written_whole(place, overwrite=overwrite) as part:
+        part.write_text(f"{text}\n", encoding="utf-8")
+    return place
+
+
+def _signal(model: ExportedModel, name: str) -> dict[str, Any]:
+    """Return a signal and what a deviation of 1 stands for outside."""
+    signal = fmu_signal(name)
+    sizes = (model.engine_speed_rpm, model.shaft_torque_nm)
+    scale = sizes[signal.setting] if signal.setting >= 0 else 1.0
+    return {
+        "name": name,
+        "meaning": signal.meaning,
+        "unit": signal.unit,
+        "scale": scale,
+        "offset": scale if signal.is_whole else 0.0,
+    }
+
+
+def _linear(linear: DelayModel) -> dict[str, Any]:
+    return {
+        "form": "dx/dt = A x + B [u; w], [y; z] = C x + D [u; w], w(t) = z(t - tau), outputs y(t - shift)",
+        "states": list(linear.states),
+        "A": linear.a.tolist(),
+        "B": linear.b.tolist(),
+        "C": linear.c.tolist(),
+        "D": linear.d.tolist(),
+        "tau_s": linear.tau_s.tolist(),
+        "shift_s": linear.shift_s.tolist(),
+    }
+
+
+def _response(found: ModelResponse) -> dict[str, Any]:
+    return {
+        "axes": ["output", "input", "frequency"],
+        "omega_rad_s": found.omega_rad_s.tolist(),
+        "real": found.response.real.tolist(),
+        "imaginary": found.response.imag.tolist(),
+        "magnitude_db": found.magnitude_db.tolist(),
+        "magnitude_std_db": found.magnitude_std_db.tolist(),
+        "phase_deg": found.phase_deg.tolist(),
+        "phase_std_deg": found.phase_std_deg.tolist(),
+        "covariance_of_real_and_imaginary": found.channel_covariance.tolist(),
+    }

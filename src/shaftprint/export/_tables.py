@@ -1,0 +1,97 @@
+"""The numbers of a fingerprint as tables of plain values: what CSV and JSON are written from."""
+
+import math
+from typing import TypeAlias
+
+from shaftprint.export._model_response import ModelResponse
+from shaftprint.fingerprint import Fingerprint, Quantity
+from shaftprint.models import Structure
+from shaftprint.normal import NORMAL_95
+
+Cell: TypeAlias = str | float | bool | None
+Row: TypeAlias = dict[str, Cell]
+
+
+def parameter_rows(fingerprint: Fingerprint, structure: Structure) -> list[Row]:
+    """Return a row for each parameter of the structure, those that were held included."""
+    found = {quantity.name: quantity for quantity in fingerprint.parameters}
+    rows = []
+    for parameter in structure.parameters:
+        if parameter.name in found:
+            rows.append(quantity_row(found[parameter.name]) | {"held": False})
+            continue
+        held = Quantity(
+            name=parameter.name,
+            unit=parameter.unit,
+            value=fingerprint.held[parameter.name],
+            std=0.0,
+            meaning=parameter.meaning,
+        )
+        rows.append(quantity_row(held) | {"held": True})
+    return rows
+
+
+def number_rows(fingerprint: Fingerprint) -> list[Row]:
+    """Return a row for each combination, physical value, margin and calibration."""
+    kinds = {
+        "combination": fingerprint.combinations,
+        "physical value": fingerprint.physical,
+        "margin": fingerprint.margins,
+        "calibration": fingerprint.calibration,
+    }
+    return [{"kind": kind, **quantity_row(quantity)} for kind, found in kinds.items() for quantity in found]
+
+
+def quantity_row(quantity: Quantity) -> Row:
+    """Return a number with its uncertainty; what is not known, or not finite, is None.
+
+    The 95 % interval is that of the profile likelihood where there is one, else the first-order one; an end that the
+    data did not set is None.
+    """
+    low, high = quantity.interval_95 or (
+        quantity.value - NORMAL_95 * quantity.std,
+        quantity.value + NORMAL_95 * quantity.std,
+    )
+    open_low, open_high = quantity.interval_open
+    return {
+        "name": quantity.name,
+        "unit": quantity.unit,
+        "value": _finite(quantity.value),
+        "std": _finite(quantity.std),
+        "lower_95": None if open_low else _finite(low),
+        "upper_95": None if open_high else _finite(high),
+        "interval_from_profile": quantity.interval_95 is not None,
+        "at_bound": quantity.at_bound,
+        "expected": _finite(quantity.expected),
+        "expected_std": _finite(quantity.expected_std),
+        "meaning": quantity.meaning,
+    }
+
+
+def response_rows(found: ModelResponse) -> list[Row]:
+    """Return a row for each output, input and frequency: the response and its 95 % band to first order."""
+    magnitude, phase = found.magnitude_db, found.phase_deg
+    half_db, half_deg = NORMAL_95 * found.magnitude_std_db, NORMAL_95 * found.phase_std_deg
+    rows: list[Row] = []
+    for i, output in enumerate(found.outputs):
+        for j, source in enumerate(found.inputs):
+            for k, omega in enumerate(found.omega_rad_s):
+                level, turn, value = magnitude[i, j, k], phase[i, j, k], found.response[i, j, k]
+                numbers = {
+                    "omega_rad_s": omega,
+                    "frequency_hz": omega / (2.0 * math.pi),
+                    "real": value.real,
+                    "imaginary": value.imag,
+                    "magnitude_db": level,
+                    "magnitude_lower_95_db": level - half_db[i, j, k],
+                    "magnitude_upper_95_db": level + half_db[i, j, k],
+                    "phase_deg": turn,
+                    "phase_lower_95_deg": turn - half_deg[i, j, k],
+                    "phase_upper_95_deg": turn + half_deg[i, j, k],
+                }
+                rows.append({"output": output, "input": source} | {key: _finite(n) for key, n in numbers.items()})
+    return rows
+
+
+def _finite(value: float | None) -> float | None:
+    return None if value is None or not math.isfinite(value) else float(value)
