@@ -10,6 +10,7 @@ from matplotlib.artist import Artist
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.identify import model_band
 from shaftprint.report._style import DATA, Handle, LineLook
+from shaftprint.report._symbols import plain_label
 from shaftprint.report._uncertainty import measured_points
 from shaftprint.units import decibel
 
@@ -93,7 +94,7 @@ def draw_trace(
     cause: str | None = None,
 ) -> dict[str, Handle]:
     """Draw a model's line, and its band where it has a covariance; return what the legend must explain."""
-    label = curve.label
+    label = plain_label(curve.label)
     bands: list[Artist] = []
     if curve.covariance is not None:
         place = channel_of(curve.structure.outputs, curve.structure.inputs, output, cause)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.report._style import REFERENCE, house_style, legend_below, legend_entries, look, new_figure
-from shaftprint.report._symbols import mathtext
+from shaftprint.report._symbols import mathtext, plain_label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -64,7 +64,7 @@ def plot_differences(found: Mapping[str, Sequence["Difference"]]) -> "Figure":
                 markersize=4.0,
                 linewidth=1.0,
                 capsize=2.0,
-                label=label,
+                label=plain_label(label),
             )
         axes.set_yticks(range(len(names)), [mathtext(name) for name in names])
         axes.set_ylim(len(names) - 0.5, -0.5)

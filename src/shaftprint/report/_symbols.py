@@ -52,3 +52,8 @@ def with_unit(label: str, unit: str) -> str:
 def response_label(output: str, input_: str) -> str:
     """Return the label of a response, output over input, as mathtext."""
     return f"{mathtext(output)} / {mathtext(input_)}"
+
+
+def plain_label(label: str) -> str:
+    """Return the name of a model, test or fingerprint for a figure of matplotlib, which takes $ for mathematics."""
+    return label.replace("$", r"\$")

@@ -72,3 +72,23 @@ def test_a_structure_that_is_not_known_is_named(tmp_path, fingerprint):
     text = page.read_text(encoding="utf-8")
     assert "Not drawn, since its structure is another or not known here: b." in text
     assert "structure MY-LOOP instead of GAUGE-CLOSED" in text
+
+
+def test_names_of_users_are_text_everywhere(visit, tmp_path, fingerprint):
+    """In words, tables, legends of both kinds and data: none is run, parsed as a formula or made a link."""
+    evil = (
+        "<img src=x onerror=alert(1)>",
+        "</script><script>alert(2)</script>",
+        "a_b $x^{$ <a href='http://x.y'>z</a>",
+    )
+    page = render_comparison(tmp_path / "evil", dict.fromkeys(evil, fingerprint))
+    with visit(page) as found:
+        found.page.on("dialog", lambda dialog: found.messages.append(f"dialog: {dialog.message}"))
+        for name in ("differences", "responses"):
+            found.show(name)
+        assert found.messages == []
+        legend = found.page.locator("#plot-responses .legendtext").all_text_contents()
+        assert evil[0] in legend
+        assert evil[2] in legend
+        assert found.page.locator("a[href^=http], img[src=x]").count() == 0
+        assert evil[1] in found.page.locator("#found").inner_text()

@@ -12,7 +12,7 @@ from shaftprint.report._uncertainty import measured_points
 from shaftprint.report.plots._panels import Grid
 from shaftprint.report.plots._plot import Json, Plot
 from shaftprint.report.plots._traces import MARKERS, band, colour, line, points, straight
-from shaftprint.report.plots._words import name_text, over_text
+from shaftprint.report.plots._words import label_text, over_text
 
 if TYPE_CHECKING:
     from shaftprint.report._bode_parts import Trace
@@ -110,7 +110,7 @@ def _column(
 
 def _model(grid: Grid, column: int, curve: "Curve", trace: "Trace", channel: tuple[str, str], place: int) -> list[Json]:
     found: list[Json] = []
-    label = name_text(curve.label)
+    label = label_text(curve.label)
     panels = [grid.place(row, column) for row in (0, 1)]
     if curve.covariance is not None:
         at = channel_of(curve.structure.outputs, curve.structure.inputs, *channel)
@@ -145,8 +145,8 @@ def _data(
     shade = "@data" if place[1] == 1 else colour(place[0])
     found: list[Json] = []
     for chosen, filled, text in (
-        (response.used, True, f"{name_text(label)}, 95 % interval"),
-        (~response.used, False, f"{name_text(label)}, line not used"),
+        (response.used, True, f"{label_text(label)}, 95 % interval"),
+        (~response.used, False, f"{label_text(label)}, line not used"),
     ):
         if not chosen.any():
             continue

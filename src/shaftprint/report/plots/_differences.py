@@ -7,7 +7,7 @@ from shaftprint.report._difference_figure import shown_names, shown_percent
 from shaftprint.report.plots._panels import Grid
 from shaftprint.report.plots._plot import Plot, numbers
 from shaftprint.report.plots._traces import MARKERS, colour, points
-from shaftprint.report.plots._words import name_text
+from shaftprint.report.plots._words import label_text, name_text
 
 if TYPE_CHECKING:
     from shaftprint.report._differences import Difference
@@ -32,7 +32,7 @@ def difference_plot(found: Mapping[str, Sequence["Difference"]]) -> Plot:
         drawn = points(
             [percent[0] for _, percent in shown],
             [],
-            name_text(label),
+            label_text(label),
             axes,
             shade=colour(place),
             marker=MARKERS[place % len(MARKERS)],

@@ -9,7 +9,7 @@ from shaftprint.models import Margins, loop_gain, margins
 from shaftprint.report.plots._panels import Grid
 from shaftprint.report.plots._plot import Json, Plot
 from shaftprint.report.plots._traces import line, points, straight
-from shaftprint.report.plots._words import name_text
+from shaftprint.report.plots._words import label_text
 
 if TYPE_CHECKING:
     from shaftprint.report._curve import Curve
@@ -34,7 +34,7 @@ def nyquist_plot(curve: "Curve") -> Plot:
     axes = grid.place(0, 0)
     omega = np.geomspace(*SPAN_RAD_S, POINTS)
     gain = _loop(curve, omega)
-    gain_line = line(gain.real, gain.imag, f"loop gain L of {name_text(curve.label)}", 0, axes)
+    gain_line = line(gain.real, gain.imag, f"loop gain L of {label_text(curve.label)}", 0, axes)
     gain_line |= {"text": [f"{value:.3g} rad/s" for value in omega], "hovertemplate": "%{text}<br>%{x:.3f}, %{y:.3f}j"}
     layout = grid.layout()
     layout["xaxis"] |= {"range": list(WINDOW), "constrain": "domain"}

@@ -13,7 +13,7 @@ from shaftprint.report._step_band_figure import DURATION_S
 from shaftprint.report.plots._panels import Grid
 from shaftprint.report.plots._plot import Json, Plot, numbers, packed
 from shaftprint.report.plots._traces import band, line
-from shaftprint.report.plots._words import name_text, over_text
+from shaftprint.report.plots._words import label_text, name_text, over_text
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Excitation
@@ -71,7 +71,7 @@ def _model(
     validation: "Validation", comparison: "Comparison", few: slice, number: int, row: int, axes: Json
 ) -> list[Json]:
     traces = comparison.traces
-    name = name_text(validation.model.name)
+    name = label_text(validation.model.name)
     half = deviations(validation.settings.coverage) * traces.model_std[row]
     found: list[Json] = []
     if np.any(half > 0.0):
@@ -118,7 +118,7 @@ def step_plot(identification: "Identification") -> Plot:
     titles = [over_text(*channel) for channel in channels]
     grid = Grid(columns=len(channels), titles=titles, x_titles=["time after the step [s]"], y_titles=["response [-]"])
     traces: list[Json] = []
-    name = name_text(identification.structure.name)
+    name = label_text(identification.structure.name)
     for place in range(len(channels)):
         axes = grid.place(0, place)
         text = f"{PERCENT * found.coverage:g} % band"

@@ -1,5 +1,7 @@
 """Words on interactive figures: names with slanted letters and lowered indices, all else as it is written."""
 
+from markupsafe import escape
+
 from shaftprint.report._symbols import unit_text
 from shaftprint.report._table import symbol_html
 
@@ -7,6 +9,11 @@ from shaftprint.report._table import symbol_html
 def name_text(formula: str) -> str:
     """Return a parameter name or formula for a label; what a user named cannot become a link or a tag."""
     return str(symbol_html(formula))
+
+
+def label_text(label: str) -> str:
+    """Return the name of a model, test or fingerprint as it was given: no part of it is a formula or a tag."""
+    return str(escape(label)).replace("$", "&#36;")
 
 
 def axis_text(label: str, unit: str = "") -> str:
