@@ -1,0 +1,99 @@
+"""``shaftprint export fmu`` writes a fingerprint's model as an FMU."""
+
+import importlib
+import zipfile
+from xml.etree import ElementTree as ET
+
+import click
+import pytest
+
+from shaftprint.cli._export import FORMATS
+from shaftprint.fingerprint import read_fingerprint
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_table_of_formats_agrees_with_each_format(run, name):
+    command = importlib.import_module(f"shaftprint.cli._export_{name.replace('-', '_')}").command
+    assert isinstance(command, click.Command)
+    assert command.name == name
+    assert command.get_short_help_str(limit=200) == FORMATS[name]
+    assert f"{name} " in run("export", "--help").output
+    for parameter in command.params:
+        if isinstance(parameter, click.Option):
+            assert parameter.help, f"{name} {parameter.name}"
+
+
+def description(path):
+    with zipfile.ZipFile(path) as archive:
+        # our own file
+        return ET.fromstring(archive.read("modelDescription.xml")), archive.namelist()  # noqa: S314
+
+
+@pytest.mark.parametrize("version", ["2", "3"])
+def test_file_and_folder_give_the_same(run, demo, tmp_path, version):
+    folder, _ = demo
+    one, two = tmp_path / "tug.fmu", tmp_path / "other" / "tug.fmu"
+    two.parent.mkdir()
+    arguments = ("--source-only", "--fmi", version, "--sample", 3, "--seed", 1)
+    result = run("export", "fmu", folder, *arguments, "-o", one)
+    assert result.exit_code == 0
+    assert str(one) in result.output
+    assert run("export", "fmu", folder / "fingerprint.json", *arguments, "-o", two).exit_code == 0
+    assert one.read_bytes() == two.read_bytes()
+    found, names = description(one)
+    assert found.get("fmiVersion") == f"{version}.0"
+    assert "sources/model.c" in names
+    assert not any(name.startswith("binaries") for name in names)
+
+
+def test_values_are_those_of_the_fingerprint(run, demo, tmp_path):
+    folder, _ = demo
+    path = tmp_path / "tug.fmu"
+    assert run("export", "fmu", folder, "--source-only", "-o", path).exit_code == 0
+    found, _ = description(path)
+    start = {v.get("name"): v[0].get("start") for v in found.iter("ScalarVariable")}
+    fingerprint = read_fingerprint(folder / "fingerprint.json")
+    for quantity in fingerprint.parameters:
+        assert float(start[quantity.name]) == quantity.value
+    assert float(start["working_point.engine_speed"]) == fingerprint.conditions.engine_speed.value
+    assert float(start["engine_speed_set_point"]) == fingerprint.conditions.engine_speed.value
+
+
+def test_limits_and_values_of_the_user(run, demo, tmp_path):
+    folder, _ = demo
+    path = tmp_path / "tug.fmu"
+    given = ("--structure", "GAUGE-TORQUE", "--set", "m_max=2.5", "--set", "m_min=-0.5", "--set", "T_aw=0.4")
+    assert run("export", "fmu", folder, *given, "--source-only", "-o", path).exit_code == 0
+    found, _ = description(path)
+    start = {v.get("name"): v[0].get("start") for v in found.iter("ScalarVariable")}
+    assert float(start["m_max"]) == 2.5
+    assert int(found.get("numberOfEventIndicators")) > 0
+
+
+def test_name_of_the_vessel_by_default(run, demo, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    result = run("export", "fmu", demo[0], "--source-only")
+    assert result.exit_code == 0
+    (path,) = tmp_path.iterdir()
+    assert path.name == "Stan-Tug-1205,-port-GAUGE-CLOSED.fmu"
+    again = run("export", "fmu", demo[0], "--source-only")
+    assert again.exit_code == 1
+    assert "--force" in again.stderr
+    assert run("export", "fmu", demo[0], "--source-only", "--force").exit_code == 0
+
+
+def test_mistakes_end_in_a_sentence_and_leave_nothing(run, demo, tmp_path):
+    path = tmp_path / "tug.fmu"
+    cases = [
+        (("--structure", "CL4"), "expected the parameters of structure CL4"),
+        (("--set", "K_x=1"), "expected a parameter of GAUGE-CLOSED"),
+        (("--source-only", "--platform", "win64"), "leave --platform out"),
+        (("--set", "omega_n=1e9"), "parameter omega_n: expected a value from"),
+    ]
+    for arguments, words in cases:
+        result = run("export", "fmu", demo[0], *arguments, "-o", path)
+        assert result.exit_code != 0
+        assert words in " ".join(result.stderr.split())
+    assert run("export", "fmu", tmp_path / "missing.json").exit_code == 1
+    assert run("export", "amiga").exit_code == 2
+    assert list(tmp_path.iterdir()) == []
