@@ -19,6 +19,7 @@ def test_commands_are_those_that_were_asked_for():
         "demo",
         "sail",
         "inspect",
+        "convert",
         "predict",
         "identify",
         "compare",

@@ -18,6 +18,7 @@ COMMANDS = {
     "inspect": "Say what is in a recording and whether it is good enough.",
     "merge": "Bring the recordings of two loggers onto the clock of the first.",
     "join": "Join files that one logger wrote one after the other, in the order given.",
+    "convert": "Write recordings of any readable format as the native container.",
     "identify": "Identify the fingerprint from a recording.",
     "compare": "Say what differs between fingerprints, and whether it is more than chance.",
     "compare-structures": "Say which of several structures a recording wants, and why.",

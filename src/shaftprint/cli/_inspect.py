@@ -10,6 +10,8 @@ from shaftprint.cli._fingerprint_tables import print_findings
 from shaftprint.cli._inputs import NAMES
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._raw_levels import levels_of
+from shaftprint.cli._reading import hints_of, reading_options
+from shaftprint.cli._sensor_map import Seen, proposed_sensors
 from shaftprint.cli._signal_tables import print_lines, print_signals
 from shaftprint.cli._tables import print_table
 from shaftprint.nonlinearity import detect
@@ -31,32 +33,38 @@ FEWEST_AT_CROSSOVER = 2
 @click.argument("recording", type=click.Path(path_type=Path))
 @click.option("--vessel", help=f"Vessel file, {NAMES} stan-tug-1205: says what the channels are.")
 @click.option("--campaign", help=f"Campaign file, {NAMES} thesis: says what was asked of the ship.")
+@reading_options
 @no_progress_option
-def command(recording: Path, vessel: str | None, campaign: str | None, no_progress: bool) -> None:
+def command(recording: Path, vessel: str | None, campaign: str | None, no_progress: bool, **said: object) -> None:
     """Say what is in a recording and whether it is good enough.
 
-    Without a vessel file, the channels with rates, spans and levels. With one, what each sensor shows: pulses,
-    faults, outliers. With a campaign file too, the calibration and the signal-to-noise ratio of every test line.
+    Without a vessel file, the channels with rates, spans and levels, and a proposal for its sensors. With one, what
+    each sensor shows: pulses, faults, outliers. With a campaign file too, the calibration and the signal-to-noise ratio
+    of every test line.
     """
     if campaign is not None and vessel is None:
         raise click.UsageError("--campaign needs --vessel, which says what each channel is.")
     ship = None if vessel is None else load_vessel(vessel)
     asked = None if campaign is None else load_campaign(campaign)
-    with read_recording(recording) as opened:
-        _print_channels(opened, hidden=no_progress)
+    with read_recording(recording, **hints_of(**said)) as opened:
+        seen = _print_channels(opened, hidden=no_progress)
         if ship is None:
+            print_findings("Left out", [f"{name}: {reason}" for name, reason in opened.left_out.items()])
+            click.echo("Proposal for the vessel file; lines that begin with # are for you to fill in\n")
+            click.echo(proposed_sensors(seen))
             return
         _print_sensors(opened, ship, hidden=no_progress)
         if asked is not None:
             _print_test(opened, ship, asked, hidden=no_progress)
 
 
-def _print_channels(opened: Recording, *, hidden: bool) -> None:
-    rows = []
+def _print_channels(opened: Recording, *, hidden: bool) -> list[Seen]:
+    rows, seen = [], []
     with progress(hidden=hidden) as steps:
         steps.begin("Reading the channels", total=float(len(opened.channels)))
         for channel in opened.channels.values():
             levels = levels_of(channel)
+            seen.append(Seen(channel=channel, is_pulses=levels.is_pulses))
             values = [f"{value:.5g}" for value in (levels.lowest, levels.mean, levels.highest)]
             span = f"{channel.start_s:g} to {channel.start_s + channel.duration_s:g}"
             rows.append((channel.name, channel.unit, f"{channel.rate_hz:g}", span, *values, str(levels.not_numbers)))
@@ -64,6 +72,9 @@ def _print_channels(opened: Recording, *, hidden: bool) -> None:
     click.echo(f"{opened.path}: {opened.format}, SHA-256 {opened.sha256}\n")
     columns = ("channel", "unit", "rate [Hz]", "span [s]", "lowest", "mean", "highest", "not a number")
     print_table("Channels, raw", columns, rows, numbers=(2, 4, 5, 6, 7))
+    if opened.began is not None:
+        click.echo(f"Second 0 is {opened.began.isoformat(sep=' ')} by the logger's clock.\n")
+    return seen
 
 
 def _print_sensors(opened: Recording, ship: Vessel, *, hidden: bool) -> None:

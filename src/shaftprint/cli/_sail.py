@@ -6,13 +6,20 @@ import click
 
 from shaftprint.cli._inputs import load_trial
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.tug import sail, truth_path
+from shaftprint.recording import expect_known_ending
+from shaftprint.tug import sail_as, truth_path
 
 
 @click.command("sail")
 @click.argument("vessel")
 @click.argument("campaign")
-@click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Recording to write.")
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="Recording to write: .nc, .h5, .csv, .mat, .mf4 or .tdms.",
+)
 @click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of all randomness.")
 @click.option("--force", is_flag=True, help="Replace an existing recording.")
 @no_progress_option
@@ -24,9 +31,10 @@ def command(vessel: str, campaign: str, output: Path, seed: int, force: bool, no
     """
     if output.is_dir():
         raise click.ClickException(f"{output}: expected a file for the recording, found a folder; add a file name.")
+    expect_known_ending(output)
     trial = load_trial(vessel, campaign)
     with progress(hidden=no_progress) as steps:
         steps.begin("Sailing", total=1.0)
-        sail(trial.vessel, trial.campaign, output, seed=seed, overwrite=force, progress=steps.reach)
+        sail_as(trial.vessel, trial.campaign, output, seed=seed, overwrite=force, progress=steps.reach)
     click.echo(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
     click.echo(f"{truth_path(output)}: what was put into it.")

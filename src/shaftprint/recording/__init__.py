@@ -12,22 +12,40 @@ rate                  Hz       samples a second of one channel
 Files are opened read-only. Values that are not numbers are passed on as they are.
 """
 
+from shaftprint.recording._from_arrays import Samples, recording_from_arrays
 from shaftprint.recording._read import read_recording
 from shaftprint.recording._recording import Channel, Recording
 from shaftprint.recording._write import write_recording
 from shaftprint.recording._writer import RecordingWriter
-from shaftprint.recording.readers import READERS, Reader
-from shaftprint.recording.writers import write_csv, write_mat_v5, write_mat_v73
+from shaftprint.recording.readers import READERS, Reader, ReaderFunction
+from shaftprint.recording.writers import (
+    NATIVE_ENDINGS,
+    expect_known_ending,
+    write_by_ending,
+    write_csv,
+    write_mat_v5,
+    write_mat_v73,
+    write_mdf4,
+    write_tdms,
+)
 
 __all__ = [
+    "NATIVE_ENDINGS",
     "READERS",
     "Channel",
     "Reader",
+    "ReaderFunction",
     "Recording",
     "RecordingWriter",
+    "Samples",
+    "expect_known_ending",
     "read_recording",
+    "recording_from_arrays",
+    "write_by_ending",
     "write_csv",
     "write_mat_v5",
     "write_mat_v73",
+    "write_mdf4",
     "write_recording",
+    "write_tdms",
 ]

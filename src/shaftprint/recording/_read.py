@@ -5,7 +5,7 @@ from pathlib import Path
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers import READERS, Reader
+from shaftprint.recording.readers import READERS, Reader, read_outside
 
 
 def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **hints: object) -> Recording:
@@ -16,7 +16,8 @@ def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **h
     path
         The file.
     readers
-        Formats to try; exactly one must claim the file.
+        Formats to try; exactly one must claim the file. When not given, readers of other installed packages (entry
+        points of the group ``shaftprint.readers``) come first.
     hints
         What the file does not say, such as ``sample_rate_hz`` for a MATLAB file without a clock.
 
@@ -34,6 +35,9 @@ def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **h
     try:
         if path.stat().st_size == 0:
             raise RecordingError(f"{path}: expected a logger file, found an empty one.")
+        outside = read_outside(path, **hints) if readers is READERS else None
+        if outside is not None:
+            return outside
         claims = [reader for reader in readers if reader.is_mine(path)]
         if len(claims) == 1:
             return claims[0].read(path, **hints)

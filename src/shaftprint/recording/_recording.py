@@ -2,7 +2,7 @@
 
 import hashlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 from types import TracebackType
@@ -88,6 +88,10 @@ class Channel:
         values *= self.scale
         values += self.offset
         return values
+
+    def with_unit(self, unit: str) -> Self:
+        """Return the same channel in a unit that the user gives, where the file gives none."""
+        return replace(self, unit=unit)
 
     def time_s(self, start: int, stop: int) -> FloatArray:
         """Return the times of the samples [start, stop) [s], shape (stop - start,)."""

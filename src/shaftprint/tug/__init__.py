@@ -22,6 +22,7 @@ from shaftprint.tug._ideal import IdealSignals, simulate_signals
 from shaftprint.tug._linearise import linearised_response
 from shaftprint.tug._noise import Noise
 from shaftprint.tug._sail import sail
+from shaftprint.tug._sail_as import sail_as
 from shaftprint.tug._sailing import Sailing
 from shaftprint.tug._truth import StripTruth, Truth, read_truth, truth_path
 from shaftprint.tug._tug import Tug
@@ -37,6 +38,7 @@ __all__ = [
     "linearised_response",
     "read_truth",
     "sail",
+    "sail_as",
     "simulate_signals",
     "truth_path",
 ]

@@ -2,6 +2,7 @@
 
 import importlib
 import importlib.util
+import logging
 from pathlib import Path
 from typing import Any
 
@@ -26,11 +27,16 @@ def library(path: Path, package: str, what: str) -> Any:
         If it is not installed, or does not run on this computer.
     """
     try:
-        return importlib.import_module(package)
+        found = importlib.import_module(package)
     except ImportError:
         raise _absent(path, package, what) from None
     except (OSError, NotImplementedError) as error:
         raise RecordingError(f"{path}: {package}, which reads {what} files, does not run here ({error}).") from None
+    # what a library has to say about odd bytes goes into our own sentences
+    for name in list(logging.root.manager.loggerDict):
+        if name.partition(".")[0] == package:
+            logging.getLogger(name).setLevel(logging.CRITICAL)
+    return found
 
 
 def expect_library(path: Path, package: str, what: str) -> None:

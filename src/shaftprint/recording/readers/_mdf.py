@@ -1,6 +1,7 @@
 """ASAM MDF 3 and 4 files: channel groups, each with a master channel of times."""
 
-import logging
+import contextlib
+import re
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ from shaftprint.recording.readers._units import plain_unit
 
 NAME = "MDF"
 
+_VERSION = re.compile(rb"[234]\.\d[\d \0]")
 _SIGNATURES = (b"MDF     ", b"UnFinMF ")
 # ASAM MDF 4.1, block CN: type of a channel and of what a master counts; block CC: type of a conversion.
 _MASTERS = (2, 3)
@@ -48,8 +50,8 @@ def read(path: Path, **hints: object) -> Recording:
     """
     rate = rate_hint(path, hints)
     asammdf = library(path, "asammdf", NAME)
-    # what it has to say about odd bytes goes into our own sentences
-    logging.getLogger("asammdf").setLevel(logging.CRITICAL)
+    _close_in_silence(asammdf)
+    _expect_version(path)
     with told_as_damage(path, NAME):
         file = asammdf.MDF(str(path), process_bus_logging=False)
     opened = Opened(path, file.close)
@@ -69,6 +71,28 @@ def read(path: Path, **hints: object) -> Recording:
     except BaseException:
         opened.close()
         raise
+
+
+def _expect_version(path: Path) -> None:
+    """Refuse a file whose version cannot be read, which the library would leave open."""
+    with path.open("rb") as file:
+        version = file.read(12)[8:]
+    if not _VERSION.fullmatch(version):
+        raise RecordingError(
+            f"{path}: expected a version such as 4.10 in the MDF file, found {version!r}; it is damaged, copy it again "
+            "from the logger."
+        )
+
+
+def _close_in_silence(asammdf: Any) -> None:
+    """Let what the library leaves of a file that it failed to open be cleaned up without a word."""
+
+    def close(file: Any) -> None:
+        with contextlib.suppress(Exception):
+            file.close()
+
+    for kind in (asammdf.blocks.mdf_v4.MDF4, asammdf.blocks.mdf_v3.MDF3):
+        kind.__del__ = close
 
 
 def _gather(path: Path, file: Any, opened: Opened, rate_hz: float | None) -> Gathered:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._container import FORMAT, GROUP, VERSION
 from shaftprint.recording._recording import Channel, Recording, sha256_of
+from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._hints import expect_hints
 
 NAME = "shaftprint recording (NetCDF-4)"
@@ -25,7 +26,8 @@ def is_mine(path: Path) -> bool:
     try:
         with h5py.File(path, "r") as file:
             return bool(file.attrs.get("format") == FORMAT)
-    except OSError:
+    except Exception:
+        # h5py raises errors of many kinds on damaged bytes
         return True
 
 
@@ -45,28 +47,27 @@ def read(path: Path, **hints: object) -> Recording:
             f"{path}: expected a whole recording, found a damaged or truncated file ({error})."
         ) from None
     try:
-        version = int(file.attrs.get("format_version", 0))
-        if version != VERSION:
-            raise RecordingError(
-                f"{path}: expected version {VERSION} of the {FORMAT} format, found {version}; use a later shaftprint."
-            )
-        if GROUP not in file:
-            raise RecordingError(f'{path}: expected a group "{GROUP}", found none.')
-        channels = {
-            name: _channel(path, name, dataset)
-            for name, dataset in file[GROUP].items()
-            if "sample_rate_hz" in dataset.attrs
-        }
-        return Recording(
-            path=path,
-            sha256=sha256_of(path),
-            format=NAME,
-            channels=channels,
-            release=file.close,
-        )
+        with told_as_damage(path, NAME):
+            return _recording(path, file)
     except BaseException:
         file.close()
         raise
+
+
+def _recording(path: Path, file: Any) -> Recording:
+    version = int(file.attrs.get("format_version", 0))
+    if version != VERSION:
+        raise RecordingError(
+            f"{path}: expected version {VERSION} of the {FORMAT} format, found {version}; use a later shaftprint."
+        )
+    if GROUP not in file:
+        raise RecordingError(f'{path}: expected a group "{GROUP}", found none.')
+    channels = {
+        name: _channel(path, name, dataset)
+        for name, dataset in file[GROUP].items()
+        if "sample_rate_hz" in dataset.attrs
+    }
+    return Recording(path=path, sha256=sha256_of(path), format=NAME, channels=channels, release=file.close)
 
 
 def _channel(path: Path, name: str, dataset: Any) -> Channel:
@@ -81,12 +82,16 @@ def _channel(path: Path, name: str, dataset: Any) -> Channel:
             f"found none named {', '.join(missing)}."
         )
 
+    count = int(np.prod(dataset.shape))
+    stored = int(dataset.id.get_storage_size())
+    expect_plausible(path, name, samples=count, sample_bytes=dataset.dtype.itemsize, stored_bytes=stored)
+
     def source(start: int, stop: int) -> NDArray[Any]:
         if not dataset:
             raise RecordingError(f"{path}, channel {name}: the recording has been closed already.")
         try:
             counts: NDArray[Any] = dataset[start:stop]
-        except OSError as error:
+        except (OSError, RuntimeError) as error:
             raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are damaged ({error}).") from None
         return counts
 
@@ -95,7 +100,7 @@ def _channel(path: Path, name: str, dataset: Any) -> Channel:
         unit=str(attributes["units"]),
         rate_hz=float(attributes["sample_rate_hz"]),
         start_s=float(attributes["start_s"]),
-        count=int(np.prod(dataset.shape)),
+        count=count,
         scale=float(attributes.get("scale_factor", 1.0)),
         offset=float(attributes.get("add_offset", 0.0)),
         long_name=str(attributes.get("long_name", "")),

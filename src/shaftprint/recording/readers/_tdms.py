@@ -45,11 +45,12 @@ def read(path: Path, **hints: object) -> Recording:
     """
     rate = rate_hint(path, hints)
     nptdms = library(path, "nptdms", NAME)
-    with told_as_damage(path, NAME):
-        file = nptdms.TdmsFile.open(path)
-    opened = Opened(path, file.close)
+    # the library leaves a file open that it fails to read
+    raw = path.open("rb")
+    opened = Opened(path, raw.close)
     try:
         with told_as_damage(path, NAME):
+            file = nptdms.TdmsFile.open(raw)
             gathered = _gather(path, file, opened, rate)
             return Recording(
                 path=path,

@@ -1,0 +1,76 @@
+"""``shaftprint convert``: recordings of other formats into the native container, or into another format."""
+
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.cli._reading import hints_of, reading_options
+from shaftprint.errors import RecordingError
+from shaftprint.recording import Channel, Recording, expect_known_ending, read_recording, write_by_ending
+
+
+@click.command("convert")
+@click.argument("recordings", nargs=-1, required=True, metavar="IN...", type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="File to write (.nc, .h5, .csv, .mat, .mf4, .tdms), or a folder for several inputs, which get .nc there.",
+)
+@click.option("--channel", "chosen", multiple=True, help="Only this channel; may be given several times.")
+@click.option("--unit", "units", multiple=True, metavar="CHANNEL=UNIT", help="Unit of a channel whose file gives none.")
+@click.option("--force", is_flag=True, help="Replace an existing file.")
+@reading_options
+@no_progress_option
+def command(
+    recordings: tuple[Path, ...],
+    output: Path,
+    chosen: tuple[str, ...],
+    units: tuple[str, ...],
+    force: bool,
+    no_progress: bool,
+    **said: object,
+) -> None:
+    """Write recordings of any readable format as the native container.
+
+    Channels keep their own clocks and counts. The ending of the output chooses another format. Input files are not
+    changed.
+    """
+    into_folder = output.is_dir()
+    if len(recordings) > 1 and not into_folder:
+        raise click.UsageError(f"{output}: expected an existing folder for {len(recordings)} recordings.")
+    targets = [output / f"{path.name.removesuffix('.gz')}.nc" if into_folder else output for path in recordings]
+    given = dict(_unit(text) for text in units)
+    with progress(hidden=no_progress) as steps:
+        for source, target in zip(recordings, targets, strict=True):
+            expect_known_ending(target)
+            steps.begin(f"Converting {source.name}")
+            with read_recording(source, **hints_of(**said)) as opened:
+                channels = [_with_unit(opened, name, given) for name in chosen or opened.channels]
+                write_by_ending(target, channels, overwrite=force)
+                left_out = dict(opened.left_out)
+            for name, reason in left_out.items():
+                click.echo(f"{source}: left out {name}: {reason}", err=True)
+            click.echo(f"{target}: {len(channels)} channels of {source}.")
+
+
+def _unit(text: str) -> tuple[str, str]:
+    name, found, unit = text.rpartition("=")
+    if not found or not name:
+        raise click.UsageError(f'--unit: expected CHANNEL=UNIT such as M_s="N m", found "{text}".')
+    return name, unit
+
+
+def _with_unit(opened: Recording, name: str, units: dict[str, str]) -> Channel:
+    """Return a channel with the unit that was given for it, which must not contradict the file's."""
+    channel = opened.channel(name)
+    if name not in units or units[name] == channel.unit:
+        return channel
+    if channel.unit:
+        raise RecordingError(
+            f'{opened.path}, channel {name}: expected no other unit than the file\'s "{channel.unit}", found '
+            f'"{units[name]}"; leave --unit out.'
+        )
+    return channel.with_unit(units[name])

@@ -1,0 +1,21 @@
+"""What a user may say of a recording that the file does not say itself."""
+
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+
+def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options ``--sample-rate``, ``--delimiter``, ``--decimal`` and ``--encoding``."""
+    rate = click.option("--sample-rate", type=float, help="Samples a second, where the file has no clock [Hz].")
+    delimiter = click.option("--delimiter", help="What stands between the columns of a text file.")
+    decimal = click.option("--decimal", type=click.Choice([".", ","]), help="Decimal sign of a text file.")
+    encoding = click.option("--encoding", help="Encoding of a text file that is not UTF-8, such as cp1252.")
+    return rate(delimiter(decimal(encoding(command))))
+
+
+def hints_of(**said: object) -> dict[str, Any]:
+    """Return what was said, under the names that readers know, without what was not."""
+    names = {"sample_rate": "sample_rate_hz"}
+    return {names.get(name, name): value for name, value in said.items() if value is not None}

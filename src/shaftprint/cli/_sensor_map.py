@@ -1,0 +1,122 @@
+"""A proposal for the sensors of the vessel file, from what a recording's channels are called and look like."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from shaftprint.recording import Channel
+
+Use: TypeAlias = Literal["speed", "shaft_torque", "set_point", "rack", "ship_speed"]
+
+_SET_POINT = re.compile(r"set[ _-]*p|setpoint|demand|lever|throttle|soll|u_set|command", re.IGNORECASE)
+_TORQUE = re.compile(r"torque|m_s\b|\bms\b|koppel|drehmoment|strain", re.IGNORECASE)
+_PULSES = re.compile(r"ptm|pulse|tacho|pick|rpm|speed|\bn_?e", re.IGNORECASE)
+_ENGINE = re.compile(r"eng|motor|_e\b|crank|flywheel", re.IGNORECASE)
+
+_FIELDS = {
+    "speed": (
+        'name = "{name}"',
+        'channel = "{channel}"',
+        'unit = "{unit}"',
+        'shaft = "{shaft}"  # engine or propeller: check',
+        "# pulses_per_revolution =        # count the strips or teeth, then take the # away",
+    ),
+    "shaft_torque": (
+        'channel = "{channel}"',
+        'unit = "{unit}"',
+        "{scale}",
+        "# zero_nm =                      # turn the shaft slowly both ways before the test [N m]",
+        "# latency_s =                    # of the telemetry, from its data sheet [s]",
+        "# full_scale_nm =                # largest torque that it passes on [N m]",
+    ),
+    "set_point": ('channel = "{channel}"', 'unit = "{unit}"'),
+    "rack": (
+        'channel = "{channel}"',
+        'unit = "{unit}"',
+        "cycle_s = {cycle:g}",
+        "# latency_s =                    # [s]",
+    ),
+    "ship_speed": (
+        'channel = "{channel}"',
+        'unit = "{unit}"',
+        "cycle_s = {cycle:g}",
+        "# resolution =                   # step of the value, in its unit",
+        "# latency_s =                    # [s]",
+    ),
+}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Seen:
+    """What is known of a channel without a vessel file."""
+
+    channel: Channel
+    """The channel."""
+    is_pulses: bool
+    """Whether its values are at two levels, most of the time at one of them."""
+
+
+def proposed_sensors(seen: Sequence[Seen]) -> str:
+    """Return text for the vessel file: what can be told is filled in, the rest is left for the user.
+
+    Parameters
+    ----------
+    seen
+        The channels of a recording.
+    """
+    uses = {item.channel.name: _use(item) for item in seen}
+    lines = []
+    single: set[str] = set()
+    speeds = 0
+    for item in seen:
+        use = uses[item.channel.name]
+        if use is None or use in single:
+            continue
+        if use == "speed":
+            speeds += 1
+            lines.append("[[sensors.speed]]")
+        else:
+            single.add(use)
+            lines.append(f"[sensors.{use}]")
+        lines += [field.format(**_values(item.channel, speeds)) for field in _FIELDS[use]]
+        lines.append("")
+    for needed in ("shaft_torque", "set_point"):
+        if needed not in single:
+            lines += [f"# [sensors.{needed}]: no channel looks like it", ""]
+    if not speeds:
+        lines += ["# [[sensors.speed]]: no channel holds pulses", ""]
+    rate = max((item.channel.rate_hz for item in seen), default=0.0)
+    return "\n".join([*lines, "[logger]", f"sample_rate_hz = {rate!r}"])
+
+
+def _use(item: Seen) -> Use | None:
+    """Return what a channel is most likely used for: unit and name first, then its shape."""
+    name, unit = item.channel.name, item.channel.unit
+    if unit == "%" and item.channel.rate_hz <= 100.0:
+        return "rack"
+    if unit in ("kn", "m/s"):
+        return "ship_speed"
+    if _SET_POINT.search(name) and unit == "V":
+        return "set_point"
+    if _TORQUE.search(name) and unit in ("V", "N m") and not item.is_pulses:
+        return "shaft_torque"
+    if unit == "N m":
+        return "shaft_torque"
+    if item.is_pulses and unit in ("V", "") and (_PULSES.search(name) or unit == "V"):
+        return "speed"
+    return None
+
+
+def _values(channel: Channel, speeds: int) -> dict[str, object]:
+    is_torque = channel.unit == "N m"
+    return {
+        "channel": channel.name.replace("\\", "\\\\").replace('"', '\\"'),
+        "unit": channel.unit,
+        "name": f"n_{speeds}",
+        "shaft": "engine" if _ENGINE.search(channel.name) else "propeller",
+        "cycle": 1.0 / channel.rate_hz,
+        "scale": "scale_nm_per_unit = 1.0"
+        if is_torque
+        else "# scale_nm_per_unit =            # torque for one volt, from the calibration [N m/V]",
+    }

@@ -1,0 +1,60 @@
+"""Writing a recording in the format that the ending of the file's name says."""
+
+from collections.abc import Callable, Iterable
+from pathlib import Path
+
+from shaftprint.errors import RecordingError
+from shaftprint.recording._recording import Channel
+from shaftprint.recording._write import write_recording
+from shaftprint.recording.writers._csv import write_csv
+from shaftprint.recording.writers._mat_v73 import write_mat_v73
+from shaftprint.recording.writers._mdf4 import write_mdf4
+from shaftprint.recording.writers._tdms import write_tdms
+
+NATIVE_ENDINGS = (".nc", ".h5", ".hdf5")
+"""Endings of the native container."""
+
+_WRITERS: dict[str, Callable[..., None]] = {
+    **dict.fromkeys(NATIVE_ENDINGS, write_recording),
+    ".csv": write_csv,
+    ".mat": write_mat_v73,
+    ".mf4": write_mdf4,
+    ".tdms": write_tdms,
+}
+
+
+def expect_known_ending(path: Path) -> None:
+    """Refuse a file whose ending names no format that can be written.
+
+    Raises
+    ------
+    RecordingError
+        If it does not; the message lists the endings.
+    """
+    if path.suffix.lower() not in _WRITERS:
+        raise RecordingError(
+            f'{path}: expected one of the endings {", ".join(_WRITERS)}, found "{path.suffix}"; give the file one of '
+            "them."
+        )
+
+
+def write_by_ending(path: str | Path, channels: Iterable[Channel], *, overwrite: bool = False) -> None:
+    """Write channels as .nc, .h5, .hdf5 (native container), .csv, .mat (version 7.3), .mf4 or .tdms.
+
+    Parameters
+    ----------
+    path
+        The file to write, whole or not at all.
+    channels
+        Channels of any recording; for .csv and .mat on one clock.
+    overwrite
+        Whether a file of that name may be replaced.
+
+    Raises
+    ------
+    RecordingError
+        If the ending is of no format, the format cannot hold the channels, or the file cannot be written.
+    """
+    path = Path(path)
+    expect_known_ending(path)
+    _WRITERS[path.suffix.lower()](path, channels, overwrite=overwrite)

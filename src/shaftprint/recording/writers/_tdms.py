@@ -1,0 +1,68 @@
+"""NI TDMS files: one group, each channel with waveform properties and counts with a linear scale."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from shaftprint.errors import RecordingError
+from shaftprint.files import written_whole
+from shaftprint.recording._container import CHUNK_SAMPLES
+from shaftprint.recording._recording import Channel
+from shaftprint.recording.readers import library
+
+_GROUP = "recording"
+_NO_SCALE_BEFORE = 0xFFFFFFFF
+
+
+def write_tdms(path: str | Path, channels: Iterable[Channel], *, overwrite: bool = False) -> None:
+    """Write channels, each on its own clock, as TDMS.
+
+    Parameters
+    ----------
+    path
+        The file to write, whole or not at all.
+    channels
+        Channels of any recording; counts are written as counts with their scale.
+    overwrite
+        Whether a file of that name may be replaced.
+
+    Raises
+    ------
+    RecordingError
+        If npTDMS is not installed or the file cannot be written.
+    """
+    path = Path(path)
+    nptdms = library(path, "nptdms", "TDMS")
+    try:
+        with written_whole(path, overwrite=overwrite) as part, nptdms.TdmsWriter(str(part)) as writer:
+            for channel in channels:
+                properties = _properties(nptdms.types, channel)
+                # an empty channel is one segment without samples
+                for start in range(0, max(channel.count, 1), CHUNK_SAMPLES):
+                    counts = channel.read(start, min(start + CHUNK_SAMPLES, channel.count))
+                    said = properties if start == 0 else None
+                    writer.write_segment([nptdms.ChannelObject(_GROUP, channel.name, counts, said)])
+    except OSError as error:
+        raise RecordingError(f"{path}: the file cannot be written: {error}") from None
+
+
+def _properties(types: Any, channel: Channel) -> dict[str, object]:
+    found: dict[str, object] = {
+        "wf_increment": 1.0 / channel.rate_hz,
+        "wf_start_offset": float(channel.start_s),
+        "wf_samples": types.Int32(1),
+        "unit_string": channel.unit,
+        "description": channel.long_name,
+    }
+    if channel.read(0, 0).dtype == np.int16 and (channel.scale, channel.offset) != (1.0, 0.0):
+        found |= {
+            "NI_Scaling_Status": "unscaled",
+            "NI_Number_Of_Scales": types.Uint32(1),
+            "NI_Scale[0]_Scale_Type": "Linear",
+            "NI_Scale[0]_Linear_Slope": float(channel.scale),
+            "NI_Scale[0]_Linear_Y_Intercept": float(channel.offset),
+            "NI_Scale[0]_Linear_Input_Source": types.Uint32(_NO_SCALE_BEFORE),
+        }
+    return found

@@ -1,0 +1,65 @@
+"""Sailing into the file format of another logger."""
+
+import shutil
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from shaftprint.campaign import Campaign
+from shaftprint.errors import RecordingError
+from shaftprint.files import written_whole
+from shaftprint.recording import NATIVE_ENDINGS, expect_known_ending, read_recording, write_by_ending
+from shaftprint.tug._sail import sail
+from shaftprint.tug._truth import Truth, truth_path
+from shaftprint.tug._tug import Tug
+from shaftprint.vessel import Vessel
+
+
+def sail_as(
+    vessel: Vessel,
+    campaign: Campaign,
+    path: str | Path,
+    *,
+    tug: Tug | None = None,
+    seed: int,
+    overwrite: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> Truth:
+    """Sail a campaign as ``sail`` does and write its recording in the format that the file's ending says.
+
+    Parameters
+    ----------
+    vessel, campaign, tug, seed, overwrite, progress
+        As for ``sail``.
+    path
+        Recording to write: .nc, .h5 or .hdf5 (native container), .csv, .mat, .mf4 or .tdms; the truth goes to
+        ``NAME.truth.json`` beside it.
+
+    Raises
+    ------
+    SettingsError
+        If the truth is not physical.
+    RecordingError
+        If the ending is of no format, a file exists and may not be replaced, the format cannot hold channels with
+        clocks of their own, or a file cannot be written.
+    """
+    path = Path(path)
+    expect_known_ending(path)
+    if path.suffix.lower() in NATIVE_ENDINGS:
+        return sail(vessel, campaign, path, tug=tug, seed=seed, overwrite=overwrite, progress=progress)
+    for place in (path, truth_path(path)):
+        if place.exists() and not overwrite:
+            raise RecordingError(f"{place} exists already; choose another name or delete it first.")
+    try:
+        with tempfile.TemporaryDirectory(prefix=".shaftprint-", dir=path.parent) as folder:
+            native = Path(folder) / "recording.nc"
+            truth = sail(vessel, campaign, native, tug=tug, seed=seed, progress=progress)
+            with (
+                written_whole(truth_path(path), overwrite=overwrite) as part,
+                read_recording(native) as recording,
+            ):
+                shutil.copyfile(truth_path(native), part)
+                write_by_ending(path, recording.channels.values(), overwrite=overwrite)
+    except OSError as error:
+        raise RecordingError(f"{path}: the recording cannot be written: {error}") from None
+    return truth
