@@ -14,7 +14,7 @@ comma := ,
 space := $(subst ,, )
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint bench wheel lock clean
+.PHONY: help demo test lint docs bench wheel lock clean
 
 help: ## Say what can be made
 	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-6s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -32,6 +32,9 @@ lint: $(VENV)/lint ## Check style, types and the direction of imports
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+docs: $(VENV)/docs ## Build the pages into build/docs; a warning is an error
+	$(BIN)/python -m sphinx -W --keep-going -b html docs build/docs
 
 bench: $(VENV)/benchmark ## Run shaftprint beside its peers and print the ratios
 	$(BIN)/python -m benchmarks
@@ -54,7 +57,7 @@ $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)
 
 # One stamp a set of requirements; the project itself is installed so that changes to src/ take effect at once.
-$(VENV)/run $(VENV)/test $(VENV)/lint $(VENV)/benchmark: $(VENV)/%: requirements/%.txt pyproject.toml | $(VENV)/bin/python
+$(VENV)/run $(VENV)/test $(VENV)/lint $(VENV)/docs $(VENV)/benchmark: $(VENV)/%: requirements/%.txt pyproject.toml | $(VENV)/bin/python
 	@echo "Installing requirements/$*.txt into $(VENV) (a minute or two) ..."
 	@$(PIP) install --quiet --require-hashes --requirement requirements/$*.txt
 	@$(PIP) install --quiet --no-deps --no-build-isolation --editable .
