@@ -7,6 +7,12 @@ import click
 # The one-line help of every format; asking its file for it would import what only that format needs.
 FORMATS = {
     "fmu": "Write an FMU (FMI 2.0 or 3.0) for Simulink, Open Simulation Platform and others.",
+    "osp": "Describe the variable groups of the FMU to Open Simulation Platform.",
+    "ssp": "Write the parameters as an SSP parameter set (.ssv).",
+    "modelica": "Write a Modelica package with limits and exact delays.",
+    "matlab": "Write a .mat file and a function for MATLAB and Octave that rebuilds the objects.",
+    "csv": "Write tables of parameters, combinations and the frequency response with its band.",
+    "json": "Write parameters, state space and frequency response as one JSON file.",
 }
 
 

@@ -15,7 +15,7 @@ from shaftprint.errors import ExportError
 from shaftprint.export._delay_model import DelayModel, delay_model
 from shaftprint.export._fmu_signals import fmu_signal
 from shaftprint.export._model import ExportedModel
-from shaftprint.export._model_response import ModelResponse, model_response
+from shaftprint.export._model_response import ModelResponse, channel_covariance, model_response
 from shaftprint.files import written_whole
 from shaftprint.spectra import FrequencyResponse
 
@@ -180,6 +180,7 @@ def _measured(measured: FrequencyResponse) -> dict[str, Any]:
     return {
         "omega_rad_s": measured.omega_rad_s,
         "H": measured.response,
+        "covariance": channel_covariance(measured.covariance, len(measured.outputs)),
         "full_covariance": np.moveaxis(measured.covariance, 0, -1),
         "inputs": _cell(measured.inputs),
         "outputs": _cell(measured.outputs),

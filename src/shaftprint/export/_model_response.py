@@ -55,17 +55,32 @@ class ModelResponse:
     @property
     def channel_covariance(self) -> FloatArray:
         """Covariance of the real and imaginary part of each channel, shape (outputs, inputs, frequencies, 2, 2)."""
-        outputs, inputs, count = self.response.shape
-        channels = outputs * inputs
-        parts = self.covariance.reshape(count, 2, channels, 2, channels)
-        own = np.einsum("fickc->cfik", parts)
-        return np.asarray(own.reshape(outputs, inputs, count, 2, 2))
+        return channel_covariance(self.covariance, self.response.shape[0])
 
     def _along(self, real: FloatArray, imaginary: FloatArray) -> FloatArray:
         """Return the variance along a direction of each response, over the fourth power of its size."""
         direction = np.stack([real, imaginary], axis=-1)
         found = np.einsum("...i,...ij,...j->...", direction, self.channel_covariance, direction)
         return np.asarray(np.maximum(found, 0.0) / np.abs(self.response) ** 4)
+
+
+def channel_covariance(covariance: FloatArray, outputs: int) -> FloatArray:
+    """Return the covariance of the real and imaginary part of each channel of a response.
+
+    Parameters
+    ----------
+    covariance
+        Covariance of [Re, Im] of all channels, shape (frequencies, 2 channels, 2 channels).
+    outputs
+        Number of outputs, which are slower than the inputs.
+
+    Returns
+    -------
+        Shape (outputs, inputs, frequencies, 2, 2).
+    """
+    count, channels = covariance.shape[0], covariance.shape[1] // 2
+    parts = covariance.reshape(count, 2, channels, 2, channels)
+    return np.asarray(np.einsum("fickc->cfik", parts).reshape(outputs, -1, count, 2, 2))
 
 
 def usual_frequencies() -> FloatArray:

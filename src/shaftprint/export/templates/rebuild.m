@@ -5,6 +5,7 @@ function [model, response, omega] = @NAME@(omega)
 %     model.sys      ss object with its delays, exact (Control System Toolbox of MATLAB)
 %     model.frd      frd object of the response (Control System Toolbox of MATLAB, package control of Octave)
 %     model.idfrd    idfrd object of the response with its covariance (System Identification Toolbox)
+%   and, where the file holds what was measured, model.measured.frd and model.measured.idfrd of that;
 %   each is empty where there is no such class. The numbers that they are made of stand beside them. An output whose
 %   time stamps lie ahead of what can be known comes late in model.sys, by model.sys_lateness_s.
 %
@@ -27,9 +28,12 @@ function [model, response, omega] = @NAME@(omega)
   response = response_of(model.linear, omega);
   model.sys = rebuilt_system(model);
   model.sys_lateness_s = max(-model.linear.output_delay_s(:), 0);
-  model.frd = rebuilt('frd', @() frd(model.response.H, model.response.omega_rad_s));
-  model.idfrd = rebuilt('idfrd', @() idfrd(model.response.H, model.response.omega_rad_s, 0, ...
-      'CovarianceData', model.response.covariance));
+  model.frd = rebuilt_frd(model.response);
+  model.idfrd = rebuilt_idfrd(model.response);
+  if isfield(model, 'measured')
+    model.measured.frd = rebuilt_frd(model.measured);
+    model.measured.idfrd = rebuilt_idfrd(model.measured);
+  end
   if nargout == 0
     draw(model, response, omega);
     clear model
@@ -77,6 +81,16 @@ function sys = rebuilt_system(model)
     warning('shaftprint:rebuild', 'no state space with these delays can be made here: %s', problem.message);
     sys = [];
   end
+end
+
+function object = rebuilt_frd(data)
+% Return a response as an object of its class.
+  object = rebuilt('frd', @() frd(data.H, data.omega_rad_s));
+end
+
+function object = rebuilt_idfrd(data)
+% Return a response with its covariance as an object of its class.
+  object = rebuilt('idfrd', @() idfrd(data.H, data.omega_rad_s, 0, 'CovarianceData', data.covariance));
 end
 
 function object = rebuilt(name, make)

@@ -1,0 +1,40 @@
+"""``shaftprint export modelica``: a model as Modelica text."""
+
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._exported import (
+    file_to_write,
+    fingerprint_argument,
+    force_option,
+    model_to_export,
+    set_option,
+    structure_option,
+)
+from shaftprint.export import write_modelica
+
+
+@click.command("modelica")
+@fingerprint_argument
+@structure_option
+@set_option
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="File to write; named after the vessel by default."
+)
+@force_option
+def command(
+    fingerprint: Path, structure: str | None, given: tuple[tuple[str, float], ...], output: Path | None, force: bool
+) -> None:
+    """Write a Modelica package with limits and exact delays.
+
+    FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. The package needs no
+    library; its block Line has inputs and outputs in rpm and N m about the working point, and Step is an
+    experiment with it.
+    """
+    model = model_to_export(fingerprint, structure, dict(given))
+    written = write_modelica(model, file_to_write(output, model, ".mo", force=force), overwrite=force)
+    click.echo(f"package {written.package}: block Line, experiment Step")
+    for name in written.late_outputs:
+        click.echo(f"{name} comes later than its time stamp in the recording, which lies ahead of what can be known")
+    click.echo(written.path)
