@@ -18,10 +18,13 @@ from pydantic_core import ErrorDetails
 from shaftprint.errors import SettingsError
 from shaftprint.files import written_whole
 
-Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
-PositiveNumber = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0.0)]
-NotNegativeNumber = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0.0)]
-PositiveInteger = Annotated[int, Field(strict=True, gt=0)]
+# Larger than anything on a ship in any unit, and small enough that products and squares stay numbers.
+_LARGEST = 1e30
+
+Number = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=-_LARGEST, le=_LARGEST)]
+PositiveNumber = Annotated[float, Field(strict=True, allow_inf_nan=False, gt=0.0, le=_LARGEST)]
+NotNegativeNumber = Annotated[float, Field(strict=True, allow_inf_nan=False, ge=0.0, le=_LARGEST)]
+PositiveInteger = Annotated[int, Field(strict=True, gt=0, le=1_000_000)]
 Name = Annotated[str, Field(strict=True, min_length=1)]
 
 # The ending of a key that names its unit; matches the longest, as a search finds the leftmost.
@@ -75,7 +78,8 @@ def read_settings(path: str | Path, model_class: type[_Model]) -> _Model:
         raise SettingsError(f"{path}: expected a settings file, found nothing there.") from None
     except (OSError, UnicodeDecodeError) as error:
         raise SettingsError(f"{path}: expected a text file in UTF-8, found {error}.") from None
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:
+        # more than a mistake in the text: numbers of thousands of digits, brackets within thousands of brackets
         raise SettingsError(f"{path}: expected TOML, found a mistake: {error}.") from None
     try:
         return model_class.model_validate(content)

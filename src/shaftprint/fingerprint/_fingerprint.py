@@ -208,7 +208,7 @@ def _fingerprint_text(place: Path) -> str:
         content = json.loads(text)
     except OSError as error:
         raise FingerprintError(f"{place}: expected a fingerprint in JSON, but it cannot be read: {error}.") from None
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise FingerprintError(f"{place}: expected a fingerprint in JSON, found something else: {error}.") from None
     schema = content.get("schema_version") if isinstance(content, dict) else None
     if schema is None:
