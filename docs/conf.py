@@ -60,6 +60,7 @@ html_copy_source = False
 html_sidebars = {"index": []}
 html_theme_options = {
     "show_prev_next": False,
+    "header_links_before_dropdown": 8,
     "navigation_with_keys": True,
     "show_nav_level": 1,
     "navbar_end": ["theme-switcher"],
