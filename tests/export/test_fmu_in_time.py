@@ -181,6 +181,18 @@ def test_starts_in_steady_running(fmu, slave):
         assert own.get("engine_speed", "shaft_torque") == pytest.approx([0.9 * SPEED_RPM, 0.81 * TORQUE_NM], rel=1e-9)
 
 
+def test_late_mean_starts_in_steady_running(fmu, slave):
+    """A pick-up that averages and is late shows the set point at once where the ship has run at it for ever."""
+    chosen = structure("FREE-PITCH").free_between(T_average=(0.0, 1.0), t_pickup=(0.0, 1.0))
+    values = {"T_average": 0.1, "t_pickup": 0.2}
+    with slave(fmu(chosen, values)) as own:
+        own.start(set_point=SPEED_RPM * 1.02)
+        for begin, duration in ((0.0, 0.03), (0.03, 0.1), (0.13, 0.4)):
+            assert own.get("engine_speed") == pytest.approx([1.02 * SPEED_RPM], rel=1e-9)
+            own.fmu.doStep(begin, duration)
+        assert own.get("engine_speed") == pytest.approx([1.02 * SPEED_RPM], rel=1e-9)
+
+
 def test_torque_limit_holds_the_engine(fmu, slave):
     """By hand: an engine of 1.1 times the working-point torque turns a propeller no faster than ``sqrt(1.1)``."""
     chosen, values = TORQUE
