@@ -13,7 +13,7 @@ Row: TypeAlias = dict[str, Cell]
 
 
 def parameter_rows(fingerprint: Fingerprint, structure: Structure) -> list[Row]:
-    """Return a row for each parameter of the structure, those that were held included."""
+    """Return a row for each parameter of the structure; of those that were held no uncertainty is known."""
     found = {quantity.name: quantity for quantity in fingerprint.parameters}
     rows = []
     for parameter in structure.parameters:
@@ -24,7 +24,7 @@ def parameter_rows(fingerprint: Fingerprint, structure: Structure) -> list[Row]:
             name=parameter.name,
             unit=parameter.unit,
             value=fingerprint.held[parameter.name],
-            std=0.0,
+            std=math.inf,
             meaning=parameter.meaning,
         )
         rows.append(quantity_row(held) | {"held": True})
