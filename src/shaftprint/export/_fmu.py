@@ -29,7 +29,7 @@ from shaftprint.export._model import ExportedModel
 from shaftprint.files import written_whole
 from shaftprint.models import evaluate
 
-CORE: Final = ("core.c", "history.c", "snapshot.c", "steady.c", "values.c")
+CORE: Final = ("core.c", "history.c", "snapshot.c", "start.c", "steady.c", "values.c")
 HEADERS: Final = ("core.h",)
 LONGEST_STEP_S: Final = 1e-3
 SHORTEST_STEP_S: Final = 1e-6

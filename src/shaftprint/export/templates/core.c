@@ -1,36 +1,18 @@
 /* Steps, events and values of the model. */
-#include "core.h"
-
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
+
+#include "core.h"
 
 #define JUMP 1e-9
 #define SAME_INPUT 1e-12
 #define STEPS_AFTER_BREAK 3
-#define SHORTEST_STEP_S 1e-6
 /* How closely a limit's time is found, as a share of a step. */
 #define RESOLVED 1e-6
 #define MOST_ROUNDS 30
 
-static int failed(Model *m, const char *problem) {
-    m->problem = problem;
-    return 0;
-}
-
-static int all_finite(const double *values, int count) {
-    for (int i = 0; i < count; i++)
-        if (!isfinite(values[i])) return 0;
-    return 1;
-}
-
 /* What a deviation is multiplied by. */
 double core_scale(const Fixed *f, int setting) { return setting < 0 ? 1.0 : f->settings[setting]; }
-
-static void remember_inputs(Fixed *f) {
-    memcpy(f->fed, f->v.u, sizeof f->fed);
-    memcpy(f->fed_rates, f->v.u_rate, sizeof f->fed_rates);
-}
 
 /* Give the equations their inputs as they are at a time. */
 void core_inputs(Model *m, double time) {
@@ -51,60 +33,6 @@ static void at(Model *m, double time, int outputs_too) {
 
 /* Let inputs and pasts be those of a time. */
 void core_evaluate(Model *m, double time) { at(m, time, 1); }
-
-static void use_parameters(Model *m) {
-    Fixed *f = &m->f;
-    for (int i = 0; i < PARAMETERS; i++) f->v.p[i] = f->given[i] + model_draws[f->posterior_sample][i];
-    model_delays(&f->v, f->delay);
-    model_periods(&f->v, f->period);
-    for (int j = 0; j < LATES; j++)
-        if (!model_feeds[j] && f->delay[j] < 0.0) f->delay[j] = 0.0;
-}
-
-static int use_step(Model *m) {
-    Fixed *f = &m->f;
-    const double longest = steady_longest_step(m);
-    f->step = f->settings[INTERNAL_STEP] < longest ? f->settings[INTERNAL_STEP] : longest;
-    if (!(f->step >= SHORTEST_STEP_S)) return failed(m, "a time constant is too short to be followed in time");
-    return 1;
-}
-
-void core_reset(Model *m) {
-    Fixed *f = &m->f;
-    memset(f, 0, sizeof *f);
-    memcpy(f->given, model_start, sizeof f->given);
-    memcpy(f->settings, model_settings, sizeof f->settings);
-    for (int i = 0; i < INPUTS; i++) f->inputs[i] = model_input_offset[i] * core_scale(f, model_input_scale[i]);
-    f->stale = 1;
-}
-
-/* Start in steady running at the inputs. */
-int core_start(Model *m) {
-    Fixed *f = &m->f;
-    double rates[STATES + 1], lates[LATES + 1];
-    f->time = f->v.time = f->sampled = f->input_time = f->start_time;
-    core_inputs(m, f->time);
-    use_parameters(m);
-    if (!steady_find(m)) return failed(m, "there is no steady running at these inputs and parameters");
-    use_parameters(m);
-    if (!all_finite(f->delay, LATES) || !all_finite(f->period, SAMPLES))
-        return failed(m, "a delay or a period is no finite number");
-    for (int j = 0; j < LATES; j++)
-        if (f->delay[j] < 0.0) return failed(m, "a delay is negative");
-    core_inputs(m, f->time);
-    model_rates(&f->v, rates);
-    model_lates(&f->v, lates);
-    if (!all_finite(rates, STATES) || !all_finite(lates, LATES))
-        return failed(m, "the equations are not finite at these parameters: a time constant may be zero");
-    if (!use_step(m)) return 0;
-    for (int k = 0; k < SAMPLES; k++) f->ticks[k] = 0.0;
-    remember_inputs(f);
-    if (!history_begin(m)) return failed(m, "there is no memory left");
-    f->stale = f->changed = 0;
-    return 1;
-}
-
-int core_ready(Model *m) { return m->f.stale && m->f.mode <= INITIALISING ? core_start(m) : 1; }
 
 static double due(const Fixed *f, int sample) { return f->start_time + (f->ticks[sample] + 1.0) * f->period[sample]; }
 
@@ -136,7 +64,7 @@ static int begin_segment(Model *m, int order) {
         if (fabs(lates[j] - m->node[f->nodes - 1].late[j]) > JUMP * (1.0 + fabs(lates[j]))) order = 0;
     if (order > HIGHEST_ORDER) return 1;
     history_forget(m);
-    if (!history_add(m, order)) return failed(m, "there is no memory left");
+    if (!history_add(m, order)) return core_failed(m, "there is no memory left");
     history_settle(m);
     return 1;
 }
@@ -162,12 +90,12 @@ static int changes(Model *m) {
     Fixed *f = &m->f;
     const int changed = f->changed;
     if (changed) {
-        use_parameters(m);
+        core_use_parameters(m);
         history_settle(m);
         f->changed = 0;
     }
     at(m, f->time, 0);
-    if (changed && !use_step(m)) return 0;
+    if (changed && !core_use_step(m)) return 0;
     const int moved = inputs_moved(f);
     const int taken = take_samples(m, 0);
     return changed || moved || taken ? begin_segment(m, 1) : 1;
@@ -258,11 +186,11 @@ static int advance(Model *m, double next) {
         if (begins_now(m) && count < STEPS_AFTER_BREAK) count = STEPS_AFTER_BREAK;
         const double end = count > 1.0 ? f->time + length / count : next;
         const double reached = step_to_limit(m, f->time, end);
-        if (!all_finite(f->v.x, STATES)) return failed(m, "the states grew beyond all numbers: the loop is unstable");
+        if (!core_all_finite(f->v.x, STATES)) return core_failed(m, "the states grew beyond all numbers: the loop is unstable");
         f->time = reached;
         take_samples(m, 1);
         history_forget(m);
-        if (!history_add(m, -1)) return failed(m, "there is no memory left");
+        if (!history_add(m, -1)) return core_failed(m, "there is no memory left");
         if (reached < end && !begin_segment(m, 1)) return 0;
     }
     f->time = next;
@@ -281,7 +209,7 @@ int core_do_step(Model *m, double duration) {
         for (int k = 0; k < SAMPLES; k++)
             if (f->period[k] > 0.0 && due(f, k) < next - tiny(end)) next = due(f, k);
         if (!advance(m, next)) return 0;
-        remember_inputs(f);
+        core_remember_inputs(f);
         if (!arrive(m)) return 0;
         if (next < end && !changes(m)) return 0;
     }
@@ -296,7 +224,7 @@ int core_completed_step(Model *m) {
     at(m, m->f.time, 0);
     take_samples(m, 1);
     history_forget(m);
-    return history_add(m, -1) ? 1 : failed(m, "there is no memory left");
+    return history_add(m, -1) ? 1 : core_failed(m, "there is no memory left");
 }
 
 /* Keep what was before an event. */
@@ -313,7 +241,7 @@ int core_event(Model *m, double *next_time) {
     if (!arrive(m) || !changes(m)) return 0;
     /* an event that nothing else explains is a limit that begins or ends to act */
     if (!begin_segment(m, expected || begins_now(m) ? HIGHEST_ORDER + 1 : 1)) return 0;
-    remember_inputs(f);
+    core_remember_inputs(f);
     *next_time = history_next_arrival(m);
     for (int k = 0; k < SAMPLES; k++)
         if (f->period[k] > 0.0 && due(f, k) < *next_time) *next_time = due(f, k);

@@ -80,10 +80,17 @@ void history_forget(Model *m);
 int steady_find(Model *m);
 double steady_longest_step(Model *m);
 
-/* core.c */
+/* start.c */
+int core_failed(Model *m, const char *problem);
+int core_all_finite(const double *values, int count);
+void core_remember_inputs(Fixed *f);
+void core_use_parameters(Model *m);
+int core_use_step(Model *m);
 void core_reset(Model *m);
 int core_start(Model *m);
 int core_ready(Model *m);
+
+/* core.c */
 int core_do_step(Model *m, double duration);
 int core_completed_step(Model *m);
 int core_event(Model *m, double *next_time);

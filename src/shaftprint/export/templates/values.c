@@ -5,18 +5,13 @@
 
 #define WITHIN(reference, first, count) ((reference) >= (first) && (reference) < (first) + (count))
 
-static int refused(Model *m, const char *problem) {
-    m->problem = problem;
-    return 0;
-}
-
 static int set_setting(Model *m, int setting, double value) {
     Fixed *f = &m->f;
     if (setting == INTERNAL_STEP) {
-        if (!(value > 0.0)) return refused(m, "the internal step must be above 0 s");
-        if (f->mode > INITIALISING) return refused(m, "the internal step cannot be changed during the run");
+        if (!(value > 0.0)) return core_failed(m, "the internal step must be above 0 s");
+        if (f->mode > INITIALISING) return core_failed(m, "the internal step cannot be changed during the run");
     } else if (value == 0.0) {
-        return refused(m, "a value of the working point must not be zero");
+        return core_failed(m, "a value of the working point must not be zero");
     }
     /* an input that nobody has set yet stays at the working point */
     for (int i = 0; i < INPUTS; i++)
@@ -29,7 +24,7 @@ static int set_setting(Model *m, int setting, double value) {
 /* Set a variable; 0 if it is not to be set, or to no such value. */
 int core_set(Model *m, unsigned int reference, double value) {
     Fixed *f = &m->f;
-    if (!isfinite(value)) return refused(m, "a value that is no finite number was given");
+    if (!isfinite(value)) return core_failed(m, "a value that is no finite number was given");
     if (WITHIN(reference, VR_INPUT, INPUTS)) {
         f->inputs[reference - VR_INPUT] = value;
         f->input_rates[reference - VR_INPUT] = 0.0;
@@ -41,11 +36,11 @@ int core_set(Model *m, unsigned int reference, double value) {
     } else if (WITHIN(reference, VR_PARAMETER, PARAMETERS)) {
         f->given[reference - VR_PARAMETER] = value;
     } else if (reference == VR_POSTERIOR_SAMPLE && DRAWS > 0) {
-        if (f->mode > INITIALISING) return refused(m, "the posterior sample cannot be changed during the run");
-        if (value < 0.0 || value > DRAWS) return refused(m, "there is no posterior sample of that number");
+        if (f->mode > INITIALISING) return core_failed(m, "the posterior sample cannot be changed during the run");
+        if (value < 0.0 || value > DRAWS) return core_failed(m, "there is no posterior sample of that number");
         f->posterior_sample = (int)value;
     } else {
-        return refused(m, "a variable that is not there, or not to be set, was set");
+        return core_failed(m, "a variable that is not there, or not to be set, was set");
     }
     f->stale = f->changed = 1;
     return 1;
@@ -54,7 +49,7 @@ int core_set(Model *m, unsigned int reference, double value) {
 /* Say how fast an input changes from now on, in its own unit per second. */
 int core_set_rate(Model *m, unsigned int reference, double value) {
     if (!WITHIN(reference, VR_INPUT, INPUTS) || !isfinite(value))
-        return refused(m, "the change of a variable that is no input, or one that is no finite number, was given");
+        return core_failed(m, "the change of a variable that is no input, or one that is no finite number, was given");
     m->f.input_rates[reference - VR_INPUT] = value;
     return 1;
 }
@@ -93,7 +88,7 @@ int core_get(Model *m, unsigned int reference, double *value) {
     } else if (reference == VR_STEP) {
         *value = f->step;
     } else {
-        return refused(m, "a variable that is not there was read");
+        return core_failed(m, "a variable that is not there was read");
     }
     return 1;
 }
