@@ -130,6 +130,7 @@ class Constant(Expression):
     """A fixed number, such as the 1 of ``1 - G``; a number beside an expression becomes one."""
 
     number: float
+    """The number, in the unit of the expression."""
 
     def evaluate(self, walk: Walk) -> Dual:
         """Return the number at every frequency."""

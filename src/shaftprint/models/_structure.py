@@ -287,6 +287,11 @@ class Structure:
         Returns
         -------
             Shape (..., 1 + wanted, channels, frequencies).
+
+        Raises
+        ------
+        StructureError
+            If a value is missing or a wanted name is no parameter.
         """
         table = np.asarray(values, dtype=np.float64)
         if table.shape[-1:] != (len(self.parameters),):

@@ -97,7 +97,7 @@ class SpeedSignal:
     speed_rev_s: FloatArray
     """Engine-side speed [rev/s], shape (samples,)."""
     pulse_rate_hz: float
-    """Mean number of pulses a second: the rate at which the speed is really sampled."""
+    """Mean number of pulses a second: the rate at which the speed is really sampled [Hz]."""
     averaging_s: float
     """Length of the window over which the value is a mean [s]; 0 where the averaging has been removed."""
     hold_s: float
