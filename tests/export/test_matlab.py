@@ -83,7 +83,14 @@ def test_octave_loads_what_was_written(tug, tmp_path):
 
 @needs_octave
 def test_classes_of_matlab_get_their_arguments(tug, tmp_path):
-    write_matlab(tug, tmp_path / "line.mat")
+    lines = FrequencyResponse(
+        frequency_hz=np.array([0.1, 0.2, 0.4]),
+        response=np.full((2, 1, 3), 1.0 + 0.5j),
+        covariance=np.tile(np.diag([1e-4, 2e-4, 3e-4, 4e-4]), (3, 1, 1)),
+        inputs=("n_set",),
+        outputs=("n", "M_s"),
+    )
+    write_matlab(tug, tmp_path / "line.mat", measured=lines)
     stubs = {
         "ss": "function s = ss(A, B, C, D)\n s = struct('A', A, 'B', B, 'C', C, 'D', D);\nend\n",
         "setDelayModel": "function s = setDelayModel(H, tau)\n s = H; s.tau = tau;\nend\n",
@@ -97,8 +104,13 @@ def test_classes_of_matlab_get_their_arguments(tug, tmp_path):
         "m = line()",
         "tau = m.sys.tau; delay = m.sys.OutputDelay; late = m.sys_lateness_s; D = m.sys.D; Ts = m.idfrd.Ts",
         "name = m.idfrd.name; size_of_C = size(m.idfrd.C); w = m.frd.w; out = strjoin(m.sys.OutputName', ',')",
+        "measured = squeeze(m.measured.idfrd.C(2, 1, 3, :, :)); lines = m.measured.frd.w",
         "save('-v6', 'out.mat', 'tau', 'delay', 'late', 'D', 'Ts', 'name', 'size_of_C', 'w', 'out')",
+        "save('-v6', '-append', 'out.mat', 'measured', 'lines')",
     )
+    # variances of the real and of the imaginary part of the torque
+    np.testing.assert_allclose(found["measured"], np.diag([2e-4, 4e-4]))
+    np.testing.assert_allclose(found["lines"], 2.0 * np.pi * np.array([0.1, 0.2, 0.4]))
     assert found["tau"] == pytest.approx(0.0731)
     np.testing.assert_allclose(found["delay"], [0.0417, 0.0307], rtol=1e-12)
     np.testing.assert_allclose(found["late"], [0.0, 0.0])

@@ -152,6 +152,26 @@ def test_the_equations_have_the_response_of_the_structure(exported, name, sensor
     np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-10)
 
 
+@pytest.mark.parametrize("name", [*STRUCTURES, "limited"])
+def test_there_is_an_equation_for_every_unknown(exported, name):
+    ast = pytest.importorskip("pymoca.ast", reason="pymoca reads Modelica")
+    chosen = limited("torque", "rate", "smoke", "deadband", period_s=0.02) if name == "limited" else structure(name)
+    text, _ = modelica_text(exported(chosen), "Tug")
+    model = flat(text, "Line")
+    # pymoca leaves connectors out of what is flat
+    block = pytest.importorskip("pymoca.parser").parse(text, bypass_cache=True).classes["Tug"].classes["Line"]
+    outputs = [symbol.name for symbol in block.symbols.values() if str(symbol.type) == "RealOutput"]
+    assert outputs == sides(exported(chosen), tuple(chosen.outputs))[0]
+    unknown = outputs + [symbol.name for symbol in model.symbols.values() if "parameter" not in symbol.prefixes]
+    parts = [
+        part
+        for equation in model.equations
+        for part in (equation.blocks[0] if isinstance(equation, ast.WhenEquation) else [equation])
+    ]
+    solved = [str(part.left.operands[0] if isinstance(part.left, ast.Expression) else part.left) for part in parts]
+    assert sorted(solved) == sorted(unknown)
+
+
 def in_time(text, outputs, until_s, step_s, jump):
     """Return outputs of the experiment by Runge and Kutta's rule, late signals straight between the steps."""
     reader = Reader(flat(text, "Step"))

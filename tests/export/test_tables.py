@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import ExportError
-from shaftprint.export import write_csv, write_json
+from shaftprint.export import to_control, to_xarray, write_csv, write_json
 from shaftprint.fingerprint import Fingerprint, Quantity
 from shaftprint.models import structure
 
@@ -122,6 +122,14 @@ def test_json_is_strict_and_complete(fingerprint, tmp_path):
     ]
     np.testing.assert_allclose(own, expected, rtol=1e-12)
     np.testing.assert_allclose(np.array(found["response"]["real"])[0, 0], expected.real)
+
+
+def test_python_takes_the_fingerprint_itself(fingerprint):
+    pytest.importorskip("control", reason="python-control gets the model")
+    pytest.importorskip("xarray", reason="xarray gets the model")
+    found = to_control(fingerprint(), pade_order=4)
+    assert found.system.name == "OL3"
+    assert float(to_xarray(fingerprint())["value"].sel(parameter="K_p")) == 4.6
 
 
 @pytest.mark.parametrize("write", [write_csv, write_json])

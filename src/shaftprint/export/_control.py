@@ -9,7 +9,8 @@ from scipy.linalg import block_diag
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import ExportError
 from shaftprint.export._delay_model import DelayModel, delay_model
-from shaftprint.export._model import ExportedModel
+from shaftprint.export._model import ExportedModel, exported_model
+from shaftprint.fingerprint import Fingerprint
 
 if TYPE_CHECKING:
     from control import FrequencyResponseData, StateSpace
@@ -53,12 +54,14 @@ class ControlModel:
 
 
 def to_control(
-    model: ExportedModel, *, pade_order: int | None = None, band_rad_s: tuple[float, float] = (0.05, 50.0)
+    model: ExportedModel | Fingerprint, *, pade_order: int | None = None, band_rad_s: tuple[float, float] = (0.05, 50.0)
 ) -> ControlModel:
     """Return a model as a state space of python-control.
 
     Parameters
     ----------
+    model
+        The model, or the fingerprint of a shipped structure.
     pade_order
         Order of the Pade approximation of every delay; needed where there is one.
     band_rad_s
@@ -81,11 +84,12 @@ def to_control(
         raise ExportError(
             f"to_control: expected a band with two ascending frequencies above 0 rad/s, found {band_rad_s}."
         )
-    linear = delay_model(model)
+    chosen = exported_model(model) if isinstance(model, Fingerprint) else model
+    linear = delay_model(chosen)
     order = _order(linear, pade_order)
     a, b, c, d = _without_delays(linear, order)
     names = {"inputs": list(linear.inputs), "outputs": list(linear.outputs)}
-    system = control.ss(a, b, c, d, name=model.structure.name, **names)
+    system = control.ss(a, b, c, d, name=chosen.structure.name, **names)
     omega = np.geomspace(low, high, POINTS)
     exact = linear.response(1j * omega)
     distance = np.abs(np.asarray(system(1j * omega, squeeze=False)) - exact).max(axis=-1)

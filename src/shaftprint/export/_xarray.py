@@ -6,18 +6,21 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shaftprint.errors import ExportError
-from shaftprint.export._model import ExportedModel
+from shaftprint.export._model import ExportedModel, exported_model
 from shaftprint.export._model_response import model_response
+from shaftprint.fingerprint import Fingerprint
 
 if TYPE_CHECKING:
     from xarray import Dataset
 
 
-def to_xarray(model: ExportedModel, omega_rad_s: ArrayLike | None = None) -> "Dataset":
+def to_xarray(model: ExportedModel | Fingerprint, omega_rad_s: ArrayLike | None = None) -> "Dataset":
     """Return response, its uncertainty, parameters and their covariance as a dataset.
 
     Parameters
     ----------
+    model
+        The model, or the fingerprint of a shipped structure.
     omega_rad_s
         Frequencies [rad/s], shape (frequencies,); 0.05 to 50 rad/s if not given.
 
@@ -35,6 +38,7 @@ def to_xarray(model: ExportedModel, omega_rad_s: ArrayLike | None = None) -> "Da
         import xarray
     except ImportError:
         raise ExportError('to_xarray needs xarray; pip install "shaftprint[xarray]".') from None
+    model = exported_model(model) if isinstance(model, Fingerprint) else model
     found, std = model_response(model, omega_rad_s), model.std
     axes = ("output", "input", "omega")
     names = list(model.structure.names)
