@@ -249,6 +249,7 @@ class Inverse(Expression):
     """The inverse ``1 / G``."""
 
     of: Expression
+    """What is inverted."""
 
     def evaluate(self, walk: Walk) -> Dual:
         """Apply the quotient rule."""
@@ -272,6 +273,7 @@ class Sensitivity(Expression):
     """What feedback leaves of an error: ``S = 1 / (1 + L)`` for the loop gain ``L`` under negative feedback."""
 
     loop: Expression
+    """The loop gain ``L``."""
 
     def evaluate(self, walk: Walk) -> Dual:
         """Apply ``dS = -S^2 dL``."""

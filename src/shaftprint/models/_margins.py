@@ -37,7 +37,8 @@ class Margins:
     peak_sensitivity_rad_s: float
     """Frequency of the peak [rad/s]."""
     poles: ComplexArray
-    """Dominant closed-loop poles [rad/s], rightmost first, those with positive imaginary part and real ones."""
+    """Dominant closed-loop poles [rad/s], rightmost first, those with positive imaginary part and real ones, shape
+    (poles,)."""
 
 
 def margins(structure: Structure, values: ArrayLike) -> Margins:

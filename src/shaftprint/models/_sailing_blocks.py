@@ -94,6 +94,7 @@ class SailingShaft(Block):
 
     inertia: tuple[Parameter, ...]
     torque: SailingTorque
+    """Torque of the propeller over the speed of the shaft."""
     engine_slope: Parameter | None = None
 
     @property

@@ -32,8 +32,8 @@ class Record:
     used: BoolArray
     """Which samples count: false in gaps, and while the model forgets its start; shape (samples,)."""
     drive: Mapping[str, FloatArray]
-    """The inputs before the filter, ``every`` samples for one of the record and ``margin`` more at either end; shape (drive
-    samples,)."""
+    """The inputs before the filter, ``every`` samples for one of the record and ``margin`` more at either end, each of
+    shape (``drive_samples``,)."""
     every: int = 1
     """Samples of the drive for one of the record."""
     hold: bool = False

@@ -42,7 +42,8 @@ class Spectrum:
     bands: Bands
     """The lines in bands."""
     outside: FloatArray
-    """Square sum of each output at all other lines but zero: noise, and what no line of the input explains."""
+    """Square sum of each output at all other lines but zero: noise, and what no line of the input explains; shape
+    (outputs,)."""
 
     def response(self, input_name: str, *, most: int | None = None) -> FrequencyResponse:
         """Return the response in the middle of the bands, without leakage.
