@@ -25,6 +25,7 @@ from shaftprint.report.plots import (
     signal_to_noise_plot,
     validation_plot,
 )
+from shaftprint.report.plots._plot import packed
 
 
 def trace(plot, name, axes="x"):
@@ -33,7 +34,8 @@ def trace(plot, name, axes="x"):
 
 
 def decoded(packed):
-    return np.frombuffer(base64.b64decode(packed["bdata"]), dtype="<f4")
+    counts = np.frombuffer(base64.b64decode(packed["int16"]), dtype="<i2").astype(float)
+    return np.where(counts == -32768.0, np.nan, packed["offset"] + packed["scale"] * counts)
 
 
 def test_what_is_not_finite_is_a_gap_and_no_text_ends_a_script():
@@ -88,7 +90,18 @@ def test_a_test_is_drawn_as_it_was_measured(signals, campaign):
     plot = excitation_plot(signals, campaign.staircases)
     first = round((campaign.staircases[0].start_s - signals.start_s) * signals.rate_hz)
     speed = signals.engine_speed.speed_rev_s[first] / signals.working_point.engine_speed_rev_s - 1.0
-    assert decoded(trace(plot, "response")["y"])[0] == pytest.approx(speed, abs=1e-6)
+    assert decoded(trace(plot, "response")["y"])[0] == pytest.approx(speed, abs=2e-5)
+
+
+@pytest.mark.parametrize(
+    "values", [[0.0, 1.0, -3.5, 2.25], [5.0, float("nan"), 6.0], [7.0, 7.0], [float("nan")], [1e-9, -1e9]]
+)
+def test_a_packed_signal_is_itself_within_a_sixty_thousandth_of_its_range(values):
+    given = np.array(values)
+    found = decoded(packed(given))
+    assert np.array_equal(np.isnan(found), np.isnan(given))
+    span = np.nanmax(given) - np.nanmin(given) if np.isfinite(given).any() else 0.0
+    assert np.all(np.isnan(given) | (np.abs(found - given) <= span / 60_000.0))
 
 
 def test_an_excerpt_that_is_not_there_is_refused():

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 STRETCHES = 1200
 # Samples that are kept for each period of the highest frequency of a signal without anything faster.
-SAMPLES_A_PERIOD = 10.0
+SAMPLES_A_PERIOD = 6.0
 _CHUNK = 1 << 20
 
 

@@ -25,7 +25,7 @@ from shaftprint.report._table import Table, sentence_html
 from shaftprint.report.plots import plotly_script, plotly_sheets, plotly_version
 
 # Of a larger one a picture in dots is smaller, and still fine in print.
-LARGEST_SVG_BYTES = 100_000
+LARGEST_SVG_BYTES = 80_000
 TEMPLATE = "report.html.j2"
 TABLE_TEMPLATE = "table.html.j2"
 STYLE = "report.css"

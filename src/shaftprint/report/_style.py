@@ -25,9 +25,9 @@ from shaftprint.report._shorter_svg import shorter_svg
 WIDTH_CM = 16.0
 CM_PER_INCH = 2.54
 FONT_PT = 8.0
-PNG_DPI = 220
+PNG_DPI = 170
 # A line, its band and their mixtures; a third of the size of a picture in true colours.
-PNG_COLOURS = 128
+PNG_COLOURS = 64
 MOST_COLUMNS = 4
 LEGEND_SHARE = 0.98
 FEW_DECADES = 30.0

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from shaftprint.validation import Comparison, Validation
 
 PERCENT = 100.0
-MOST_PICTURES = 8
+MOST_BANDS = 2
 AROUND_STEP_S = (0.5, 6.0)
 # A step counts as larger than another where it is higher by more than the noise of a level.
 HIGHER = 1.05
@@ -33,7 +33,7 @@ def validation_section(inputs: Inputs) -> list[Section]:
             alt="Error of speed and torque in every excerpt as points with intervals, and a line at the allowed error.",
             draw=partial(plot_validation_summary, first),
         ),
-        *(_picture(inputs.validations, comparison) for comparison in shown_excerpts(first)[:MOST_PICTURES]),
+        *(_picture(inputs.validations, comparison) for comparison in shown_excerpts(first)),
     ]
     return [
         Section(
@@ -70,14 +70,19 @@ def _picture(validations: "Sequence[Validation]", comparison: "Comparison") -> P
 
 
 def shown_excerpts(validation: "Validation") -> "list[Comparison]":
-    """Return the excerpts that are worth a figure: all but steps, and of each staircase its largest step."""
+    """Return the excerpts that are worth a figure: staircases, the largest step of each, the two worst chirp bands."""
     largest: dict[str, Comparison] = {}
+    bands: list[Comparison] = []
     for comparison in validation.comparisons:
         if comparison.excerpt.kind == "step":
             before = largest.setdefault(comparison.excerpt.record, comparison)
             if _height(comparison) > HIGHER * _height(before):
                 largest[comparison.excerpt.record] = comparison
-    return [c for c in validation.comparisons if c.excerpt.kind != "step" or c in largest.values()]
+        if comparison.excerpt.kind == "chirp band":
+            bands.append(comparison)
+    worst = sorted(bands, key=lambda c: -max(misfit.error for misfit in c.misfits))[:MOST_BANDS]
+    chosen = (*largest.values(), *worst)
+    return [c for c in validation.comparisons if c.excerpt.kind == "staircase" or c in chosen]
 
 
 def _height(comparison: "Comparison") -> float:

@@ -16,7 +16,7 @@ QUIET = (
     "--disable-sync",
     "--no-first-run",
 )
-WAIT_MS = 15_000
+WAIT_MS = 60_000
 
 
 @dataclass
@@ -38,7 +38,8 @@ class Visit:
     def show(self, name):
         """Scroll to a plot and wait until it is drawn; return a handle of it."""
         place = self.page.locator(f"#plot-{name}")
-        place.scroll_into_view_if_needed()
+        # Playwright's own way waits until nothing moves, which a busy machine may never see.
+        place.evaluate("element => element.scrollIntoView({block: 'center'})")
         self.wait_for(f"document.getElementById('plot-{name}').dataset.state === 'drawn'")
         return place
 

@@ -240,7 +240,7 @@ def test_without_scripts_the_figures_and_words_are_there(visit, report):
     with visit(report, java_script_enabled=False) as found:
         assert found.page.locator("#look").is_hidden()
         for image in itertools.islice(found.page.locator("img").all(), 4):
-            image.scroll_into_view_if_needed()
+            image.evaluate("element => element.scrollIntoView()")
             assert image.is_visible()
             assert image.bounding_box()["height"] > 100
         assert found.page.locator(".plot:visible").count() == 0

@@ -20,6 +20,9 @@ Json: TypeAlias = dict[str, Any]
 
 # Digits of a number in the data of the page; a screen shows four.
 DIGITS = 6
+# Steps between the lowest and the highest value of a packed signal, and the number that stands for none.
+STEPS = 65_000
+GAP = -32_768
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -47,12 +50,17 @@ def numbers(values: FloatArray | Sequence[float], *, digits: int = DIGITS) -> li
 
 
 def packed(values: FloatArray) -> Json:
-    """Return a long signal in the way of plotly that takes least room: 32-bit numbers in base 64.
+    """Return a long signal as whole numbers of 16 bits in base 64, ``value = offset + scale * number``.
 
-    Not a number stays so, and is a gap in the line.
+    A screen of 4,000 dots shows a sixteenth of these steps. Not a number is a gap in the line.
     """
-    data = np.ascontiguousarray(values, dtype="<f4").tobytes()
-    return {"dtype": "f4", "bdata": base64.b64encode(data).decode()}
+    finite = values[np.isfinite(values)]
+    low, high = (float(finite.min()), float(finite.max())) if finite.size else (0.0, 0.0)
+    scale = (high - low) / STEPS or 1.0
+    counts = np.full(values.shape, GAP, dtype="<i2")
+    counts[np.isfinite(values)] = np.round((finite - low) / scale) - STEPS // 2
+    offset = low + scale * (STEPS // 2)
+    return {"int16": base64.b64encode(counts.tobytes()).decode(), "scale": scale, "offset": offset}
 
 
 def _rounded(value: float, digits: int) -> float | None:

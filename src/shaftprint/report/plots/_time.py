@@ -11,7 +11,7 @@ from shaftprint.normal import deviations
 from shaftprint.report._envelope import envelope, worthwhile
 from shaftprint.report._step_band_figure import DURATION_S
 from shaftprint.report.plots._panels import Grid
-from shaftprint.report.plots._plot import Json, Plot, numbers, packed
+from shaftprint.report.plots._plot import Json, Plot, packed
 from shaftprint.report.plots._traces import band, line
 from shaftprint.report.plots._words import label_text, name_text, over_text
 
@@ -25,8 +25,6 @@ PERCENT = 100.0
 STRETCHES = 2000
 BAND_POINTS = 400
 STEP_POINTS = 301
-# Digits of a time [s] that tell milliseconds in a recording of hours.
-MILLISECONDS = 8
 OUTPUTS = (("n", "engine speed"), ("M_s", "shaft torque"))
 DEVIATION = "deviation over<br>working point [-]"
 
@@ -140,9 +138,9 @@ def _signal(
 
 
 def _samples(time: FloatArray, values: FloatArray) -> Json:
-    """Return a long signal as 32-bit numbers; evenly spaced times as first and distance, which halves the file."""
+    """Return a long signal as 16-bit numbers; evenly spaced times as first and distance, which halves the file."""
     gaps = np.diff(time)
     if gaps.size and np.ptp(gaps) < 1e-6 * gaps.mean():
         spaced: Json = {"x0": float(time[0]), "dx": float((time[-1] - time[0]) / (time.size - 1))}
         return {"x": None} | spaced | {"y": packed(values)}
-    return {"x": numbers(time, digits=MILLISECONDS), "y": packed(values)}
+    return {"x": packed(time), "y": packed(values)}

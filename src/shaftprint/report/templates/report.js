@@ -37,6 +37,16 @@
   const darkScreen = window.matchMedia("(prefers-color-scheme: dark)");
   const look = () => root.dataset.look || (darkScreen.matches ? "dark" : "light");
 
+  // Long signals come as whole numbers of 16 bits in base 64; the lowest stands for a gap.
+  function unpacked({ int16, scale, offset }) {
+    const bytes = Uint8Array.from(atob(int16), (letter) => letter.charCodeAt(0));
+    const view = new DataView(bytes.buffer);
+    return Float64Array.from({ length: bytes.length / 2 }, (_, place) => {
+      const count = view.getInt16(2 * place, true);
+      return count === -32768 ? NaN : offset + scale * count;
+    });
+  }
+
   function coloured(value, colours) {
     if (typeof value === "string" && value.startsWith("@")) {
       const plain = colours[value.replace(/~$/, "")];
@@ -48,6 +58,7 @@
       return typeof value[0] === "number" ? value : value.map((part) => coloured(part, colours));
     }
     if (value !== null && typeof value === "object") {
+      if (value.int16 !== undefined) return unpacked(value);
       return Object.fromEntries(Object.entries(value).map(([key, part]) => [key, coloured(part, colours)]));
     }
     return value;
