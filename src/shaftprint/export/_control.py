@@ -9,6 +9,7 @@ from scipy.linalg import block_diag
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import ExportError
 from shaftprint.export._delay_model import DelayModel, delay_model
+from shaftprint.export._library import library
 from shaftprint.export._model import ExportedModel, exported_model
 from shaftprint.fingerprint import Fingerprint
 
@@ -75,10 +76,7 @@ def to_control(
     StructureError
         If a block of the structure has no equations in time.
     """
-    try:
-        import control
-    except ImportError:
-        raise ExportError('to_control needs python-control; pip install "shaftprint[control]".') from None
+    control = library("control", "to_control")
     low, high = band_rad_s
     if not 0.0 < low < high < np.inf:
         raise ExportError(

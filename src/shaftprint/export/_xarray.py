@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from shaftprint.errors import ExportError
+from shaftprint.export._library import library
 from shaftprint.export._model import ExportedModel, exported_model
 from shaftprint.export._model_response import model_response
 from shaftprint.fingerprint import Fingerprint
@@ -34,15 +34,12 @@ def to_xarray(model: ExportedModel | Fingerprint, omega_rad_s: ArrayLike | None 
     ExportError
         If xarray is missing, or the frequencies are not positive and ascending.
     """
-    try:
-        import xarray
-    except ImportError:
-        raise ExportError('to_xarray needs xarray; pip install "shaftprint[xarray]".') from None
+    xarray = library("xarray", "to_xarray")
     model = exported_model(model) if isinstance(model, Fingerprint) else model
     found, std = model_response(model, omega_rad_s), model.std
     axes = ("output", "input", "omega")
     names = list(model.structure.names)
-    return xarray.Dataset(
+    made: Dataset = xarray.Dataset(
         {
             "response": (
                 axes,
@@ -73,3 +70,4 @@ def to_xarray(model: ExportedModel | Fingerprint, omega_rad_s: ArrayLike | None 
             "not_known": list(model.not_known),
         },
     )
+    return made

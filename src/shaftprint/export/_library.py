@@ -1,0 +1,27 @@
+"""Packages that only some exports need."""
+
+import importlib
+from typing import Any
+
+from shaftprint.errors import ExportError
+
+
+def library(name: str, verb: str) -> Any:
+    """Return an optional package, which has an extra of its name.
+
+    Parameters
+    ----------
+    name
+        The package.
+    verb
+        What needs it.
+
+    Raises
+    ------
+    ExportError
+        If it is not installed.
+    """
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        raise ExportError(f'{verb} needs the package {name}: pip install "shaftprint[{name}]".') from None
