@@ -2,7 +2,7 @@
 
 import argparse
 
-from benchmarks import family, long_chirp, nonlinear_fit, nonlinear_loop, profiles, raw_recording, repeats, start_up
+from benchmarks import family, long_chirp, nonlinear_fit, nonlinear_loop, profiles, raw_recording, readers, repeats, start_up
 from benchmarks.timing import print_machine
 
 ROWS = {
@@ -14,6 +14,7 @@ ROWS = {
     8: (start_up.run, 25),
     9: (profiles.run, 15),
     10: (nonlinear_fit.run, 1),
+    12: (readers.run, 1),
 }
 
 
@@ -21,7 +22,7 @@ def main() -> None:
     """Run the chosen rows of the benchmarks and print what they took."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("--rows", type=int, nargs="+", choices=tuple(ROWS), default=tuple(ROWS), help="rows to run")
-    parser.add_argument("--repetitions", type=int, help="repetitions of each instead of 9, 3, 7, 7, 5, 25, 15 and 1")
+    parser.add_argument("--repetitions", type=int, help="repetitions of each instead of 9, 3, 7, 7, 5, 25, 15, 1 and 1")
     chosen = parser.parse_args()
     print_machine()
     for row in chosen.rows:

@@ -35,15 +35,15 @@ _BLOCK_CHARACTERS = 8_000_000
 
 def is_mine(path: Path) -> bool:
     """Return whether the file is text, packed or not, that ends as a text file or begins as a table."""
+    name = path.with_suffix("") if path.suffix.lower() == ".gz" else path
     try:
         with _binary(path) as file:
             begin = file.read(_FIRST_BYTES)
     except (EOFError, zlib.error, gzip.BadGzipFile):
         # too damaged to tell: the name decides
-        return Path(path.stem).suffix.lower() in _ENDINGS
+        return name.suffix.lower() in _ENDINGS
     if b"\0" in begin and not begin.startswith(_UTF_16):
         return False
-    name = path.with_suffix("") if path.suffix.lower() == ".gz" else path
     if name.suffix.lower() in _ENDINGS:
         return True
     lines = begin.decode("utf-8-sig", "replace").splitlines()
