@@ -133,6 +133,18 @@ def test_without_the_classes_it_says_so_by_empty_objects(tug, tmp_path):
     assert found["e"].tolist() == [1, 1, 1]
 
 
+@needs_octave
+def test_a_class_without_inner_delays_gives_no_system_rather_than_a_wrong_one(tug, tmp_path):
+    write_matlab(tug, tmp_path / "line.mat")
+    # as the control package of Octave: ss, but no setDelayModel
+    (tmp_path / "ss.m").write_text("function s = ss(A, B, C, D)\n s = struct('A', A);\nend\n")
+    found = octave(
+        tmp_path, "m = line()", "e = isempty(m.sys); said = lastwarn()", "save('-v6', 'out.mat', 'e', 'said')"
+    )
+    assert found["e"] == 1
+    assert found["said"].startswith("no state space with these delays can be made here")
+
+
 def test_the_data_file_comes_back_through_scipy(tug, tmp_path):
     omega = np.array([0.3, 1.0, 4.0])
     lines = FrequencyResponse(
