@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from shaftprint import __version__
 from shaftprint.export._delay_model import DelayModel, delay_model
-from shaftprint.export._fmu_signals import fmu_signal
+from shaftprint.export._described import scaled_signal
 from shaftprint.export._model import ExportedModel, exported_model
 from shaftprint.export._model_response import ModelResponse, model_response
 from shaftprint.export._tables import number_rows, parameter_rows
@@ -84,15 +84,13 @@ def write_json(
 
 def _signal(model: ExportedModel, name: str) -> dict[str, Any]:
     """Return a signal and what a deviation of 1 stands for outside."""
-    signal = fmu_signal(name)
-    sizes = (model.engine_speed_rpm, model.shaft_torque_nm)
-    scale = sizes[signal.setting] if signal.setting >= 0 else 1.0
+    scaled = scaled_signal(model, name)
     return {
         "name": name,
-        "meaning": signal.meaning,
-        "unit": signal.unit,
-        "scale": scale,
-        "offset": scale if signal.is_whole else 0.0,
+        "meaning": scaled.signal.meaning,
+        "unit": scaled.signal.unit,
+        "scale": scaled.scale,
+        "offset": scaled.offset,
     }
 
 

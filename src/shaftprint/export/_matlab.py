@@ -13,7 +13,7 @@ from scipy.io import savemat
 from shaftprint import __version__
 from shaftprint.errors import ExportError
 from shaftprint.export._delay_model import DelayModel, delay_model
-from shaftprint.export._fmu_signals import fmu_signal
+from shaftprint.export._described import scaled_signal
 from shaftprint.export._model import ExportedModel
 from shaftprint.export._model_response import ModelResponse, channel_covariance, model_response
 from shaftprint.files import written_whole
@@ -135,15 +135,13 @@ def _content(
 
 def _signals(model: ExportedModel, names: tuple[str, ...]) -> dict[str, Any]:
     """Return names, and what a deviation of 1 stands for outside."""
-    sizes = (model.engine_speed_rpm, model.shaft_torque_nm)
-    signals = [fmu_signal(name) for name in names]
-    scale = [sizes[signal.setting] if signal.setting >= 0 else 1.0 for signal in signals]
+    signals = [scaled_signal(model, name) for name in names]
     return {
         "names": _cell(names),
-        "meanings": _cell([signal.meaning for signal in signals]),
-        "units": _cell([signal.unit for signal in signals]),
-        "scale": np.array(scale),
-        "offset": np.array([size if signal.is_whole else 0.0 for signal, size in zip(signals, scale, strict=True)]),
+        "meanings": _cell([scaled.signal.meaning for scaled in signals]),
+        "units": _cell([scaled.signal.unit for scaled in signals]),
+        "scale": np.array([scaled.scale for scaled in signals]),
+        "offset": np.array([scaled.offset for scaled in signals]),
     }
 
 

@@ -6,6 +6,7 @@ from typing import Final
 
 from shaftprint import __version__
 from shaftprint.export._c_text import identifier
+from shaftprint.export._described import described_parameters
 from shaftprint.export._fmu_signals import ENGINE_SPEED, FmuSignal, fmu_signal
 from shaftprint.export._model import ExportedModel
 from shaftprint.export._modelica_equations import ModelicaEquations, Names, modelica_equations
@@ -91,7 +92,7 @@ def modelica_text(model: ExportedModel, package: str) -> tuple[str, ModelicaEqua
         *(_connector(s, "RealInput", -110, i, len(inputs)) for i, s in enumerate(inputs)),
         *(_connector(s, "RealOutput", 110, i, len(outputs)) for i, s in enumerate(outputs)),
         *(_parameter(name, *entry) for name, entry in working_point.items()),
-        *_parameters(model, parameters),
+        *(_parameter(parameters[p.name], p.unit, value, words) for p, value, words in described_parameters(model)),
         *equations.parameters,
     ]
     sizes = list(working_point)
@@ -143,18 +144,6 @@ def _connector(signal: FmuSignal, kind: str, x: int, place: int, count: int) -> 
 
 def _parameter(name: str, unit: str, value: float, meaning: str) -> str:
     return f"parameter Real {name}{_unit(unit)} = {modelica_number(float(value))} {modelica_string(meaning)};"
-
-
-def _parameters(model: ExportedModel, names: dict[str, str]) -> list[str]:
-    """Return the parameters that stand in the equations, with what is known of them."""
-    std, found = model.std, []
-    for parameter, value in zip(model.structure.parameters, model.values, strict=True):
-        if parameter.held and value == 0.0:
-            continue
-        known = f"; standard deviation {std[parameter.name]:.3g}" if parameter.name in std else ""
-        known = "; not known from the test" if parameter.name in model.not_known else known
-        found.append(_parameter(names[parameter.name], parameter.unit, value, f"{parameter.meaning}{known}"))
-    return found
 
 
 def _inwards(signal: FmuSignal, sizes: list[str]) -> str:

@@ -5,6 +5,7 @@ from typing import Final
 from xml.etree.ElementTree import Element, SubElement, indent, register_namespace, tostring
 
 from shaftprint import __version__
+from shaftprint.export._described import described_parameters
 from shaftprint.export._fmu_units import BASE_UNITS, unit_name
 from shaftprint.export._fmu_variables import _structured as structured_name
 from shaftprint.export._model import ExportedModel
@@ -67,12 +68,5 @@ def _entries(model: ExportedModel) -> list[tuple[str, str, float, str]]:
         ("working_point.engine_speed", "rpm", model.engine_speed_rpm, "engine speed of the working point"),
         ("working_point.shaft_torque", "N m", model.shaft_torque_nm, "shaft torque at the gauge of the working point"),
     ]
-    std = model.std
-    for parameter, value in zip(model.structure.parameters, model.values, strict=True):
-        # a parameter that is held at zero is no part of the equations, and none of the FMU
-        if parameter.held and value == 0.0:
-            continue
-        known = f"; standard deviation {std[parameter.name]:.3g}" if parameter.name in std else ""
-        known = "; not known from the test" if parameter.name in model.not_known else known
-        found.append((structured_name(parameter.name), parameter.unit, float(value), f"{parameter.meaning}{known}"))
+    found += [(structured_name(p.name), p.unit, value, words) for p, value, words in described_parameters(model)]
     return found

@@ -1,0 +1,40 @@
+"""What is written of parameters and signals, the same in every format."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from shaftprint.export._fmu_signals import FmuSignal, fmu_signal
+from shaftprint.export._model import ExportedModel
+from shaftprint.models import Parameter
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ScaledSignal:
+    """An input or output, and what its deviation stands for outside: ``offset + scale * deviation``."""
+
+    signal: FmuSignal
+    """Its name, unit and meaning outside."""
+    scale: float
+    """Size of a deviation of 1, in the unit."""
+    offset: float
+    """Value at the working point, in the unit; zero for what stays a deviation."""
+
+
+def scaled_signal(model: ExportedModel, name: str) -> ScaledSignal:
+    """Return an input or output of a structure as it is outside."""
+    signal = fmu_signal(name)
+    sizes = (model.engine_speed_rpm, model.shaft_torque_nm)
+    scale = sizes[signal.setting] if signal.setting >= 0 else 1.0
+    return ScaledSignal(signal=signal, scale=scale, offset=scale if signal.is_whole else 0.0)
+
+
+def described_parameters(model: ExportedModel) -> Iterator[tuple[Parameter, float, str]]:
+    """Give each parameter that stands in the equations, its value, and what it is and how well it is known."""
+    std = model.std
+    for parameter, value in zip(model.structure.parameters, model.values, strict=True):
+        # held at zero, it is a lag or a delay that is not there
+        if parameter.held and value == 0.0:
+            continue
+        known = f"; standard deviation {std[parameter.name]:.3g}" if parameter.name in std else ""
+        known = "; not known from the test" if parameter.name in model.not_known else known
+        yield parameter, float(value), f"{parameter.meaning}{known}"
