@@ -23,7 +23,7 @@ author = "the shaftprint authors"
 copyright = "the shaftprint authors"
 version = release = shaftprint.__version__
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "numpydoc", "mathml", "generated_reference"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "numpydoc", "mathml", "generated_reference", "no_requests"]
 exclude_patterns = ["_extensions"]
 default_role = "code"
 # Several rooms have a noun of the same name (WorkingPoint of a vessel and of signals); a link from a signature, where

@@ -9,6 +9,7 @@ room            nouns                       verbs
 ``vessel``      ``Vessel``                  ``load_vessel``
 ``campaign``    ``Campaign``                ``load_campaign``, ``setpoint``
 ``recording``   ``Recording``               ``read_recording``, ``write_recording``
+``clocks``      ``ClockMap``                ``align``
 ``signals``     ``Signals``                 ``prepare_signals``, ``inspect_channels``
 ``spectra``     ``FrequencyResponse``       ``estimate_response``, ``response_from_arrays``, ``plant_from_closed_loop``
 ``models``      ``Structure``, ``Parameter`` ``structure``, ``margins``, ``limited``
@@ -18,6 +19,7 @@ room            nouns                       verbs
 ``simulation``  ``Trace``                   ``simulate``, ``simulate_exactly``, ``equilibrium``, ``linearise``
 ``validation``  ``Validation``              ``validate``
 ``fingerprint`` ``Fingerprint``             ``take_fingerprint``, ``read_fingerprint``, ``write_fingerprint``
+``export``      ``ExportedModel``           ``exported_model``, ``write_fmu``, ``write_matlab``, ``write_modelica``
 ``report``                                  ``render_report``, ``plot_bode``
 ``tug``         ``Truth``                   ``sail``
 =============== =========================== ==========================================================================

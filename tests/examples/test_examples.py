@@ -2,6 +2,7 @@
 
 import re
 import runpy
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -160,6 +161,44 @@ def test_limits(run, tmp_path, monkeypatch):
     low = 676.6 / 1183.8
     assert traces["GAUGE-TORQUE-RATE"].outputs["M_s"][steady] == pytest.approx(low**2 - 1.0, abs=1e-3)
     assert traces["GAUGE-CLOSED"].outputs["M_s"][steady] == pytest.approx(2.0 * (low - 1.0), abs=1e-3)
+
+
+def test_compare_fingerprints(run):
+    defined = run("compare_fingerprints.py")
+    deviations = defined["deviations"]
+    # 1.5 kg m2 more and a fifth less integral gain stand out; what was left alone does not
+    assert deviations["I_dn"] > 20.0
+    assert deviations["K_p / K_i"] > 3.0
+    assert all(abs(deviations[name]) < 3.0 for name in ("I_up", "k_q", "t_d + t_sp"))
+    before, after = defined["before"].quantity("I_dn"), defined["after"].quantity("I_dn")
+    assert (before.value, after.value) == (pytest.approx(17.0, rel=0.01), pytest.approx(18.5, rel=0.01))
+    # the scale of the gauge, 2 %, is in the number but not in the change
+    assert before.std == pytest.approx(0.02 * 17.0, rel=0.1)
+    assert defined["own_std"](defined["before"], "I_dn") < 0.005 * 17.0
+
+
+def test_predict_campaign(run, capsys):
+    predicted = run("predict_campaign.py")["predicted"]
+    assert "finds 11 numbers for the 12 free parameters of GAUGE-CLOSED" in capsys.readouterr().out
+    std = {test: accuracy.estimate("tau_dn").std for test, accuracy in predicted.items()}
+    # noise is what it is: half as much again of amplitude makes it two thirds
+    assert std["short"] / std["short, 1.5 times as loud"] == pytest.approx(1.5, rel=0.01)
+    assert std["thesis"] / 0.32 == pytest.approx(0.00084, rel=0.02)
+    # the calculation says what the test cannot
+    assert predicted["thesis and the calculation"].estimate("tau_up").std < 0.029 < 0.1
+    assert predicted["thesis"].estimate("tau_up").std > 0.1
+
+
+def test_export_and_simulate(run, capsys):
+    pytest.importorskip("fmpy", reason="FMUs are run by FMPy")
+    if shutil.which("cc") is None:
+        pytest.skip("there is no C compiler called cc")
+    defined = run("export_and_simulate.py")
+    printed = capsys.readouterr().out
+    # an integrating governor follows a step of 2 % to the end
+    first, last = map(float, re.search(r"from ([\d.]+) to ([\d.]+) rpm", printed).groups())
+    assert last / first == pytest.approx(1.02, abs=2e-4)
+    assert np.abs(defined["fmu_rpm"] - defined["own_rpm"]).max() < 1e-5 * defined["own_rpm"].max()
 
 
 def test_every_example_is_run():
