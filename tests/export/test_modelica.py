@@ -2,6 +2,7 @@
 
 import operator
 import re
+from functools import cache
 
 import numpy as np
 import pytest
@@ -42,14 +43,19 @@ BINARY = {
 UNARY = {"-": operator.neg, "abs": abs, "exp": np.exp, "sqrt": np.sqrt, "sin": np.sin, "cos": np.cos, "tanh": np.tanh}
 
 
-def flat(text, name):
-    """Parse a text and return one of its models without structure."""
-    pytest.importorskip("pymoca", reason="pymoca reads Modelica")
-    from pymoca import ast, tree
-    from pymoca.parser import parse
+@cache
+def parsed(text):
+    """Read a text."""
+    parser = pytest.importorskip("pymoca.parser", reason="pymoca reads Modelica")
+    return parser.parse(text, bypass_cache=True)
 
-    whole = tree.flatten(parse(text, bypass_cache=True), ast.ComponentRef.from_tuple(("Tug", name)))
-    return whole.classes[f"Tug.{name}"]
+
+def flat(text, name):
+    """Return one of the models of a text without structure."""
+    whole = parsed(text)
+    from pymoca import ast, tree
+
+    return tree.flatten(whole, ast.ComponentRef.from_tuple(("Tug", name))).classes[f"Tug.{name}"]
 
 
 class Reader:
@@ -159,7 +165,7 @@ def test_there_is_an_equation_for_every_unknown(exported, name):
     text, _ = modelica_text(exported(chosen), "Tug")
     model = flat(text, "Line")
     # pymoca leaves connectors out of what is flat
-    block = pytest.importorskip("pymoca.parser").parse(text, bypass_cache=True).classes["Tug"].classes["Line"]
+    block = parsed(text).classes["Tug"].classes["Line"]
     outputs = [symbol.name for symbol in block.symbols.values() if str(symbol.type) == "RealOutput"]
     assert outputs == sides(exported(chosen), tuple(chosen.outputs))[0]
     unknown = outputs + [symbol.name for symbol in model.symbols.values() if "parameter" not in symbol.prefixes]
