@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from shaftprint.validation import Comparison, Validation
 
 PERCENT = 100.0
-STRETCHES = 2000
-BAND_POINTS = 400
+STRETCHES = 1600
+BAND_POINTS = 200
 STEP_POINTS = 301
 OUTPUTS = (("n", "engine speed"), ("M_s", "shaft torque"))
 DEVIATION = "deviation over<br>working point [-]"
