@@ -15,7 +15,7 @@ from shaftprint.identify import Identification, Prior, Settings, identify, prior
 from shaftprint.models import Structure, structure
 from shaftprint.signals import Signals
 from shaftprint.spectra import FrequencyResponse, estimate_response
-from shaftprint.time_domain._identify_in_time import output_error, with_noise_at
+from shaftprint.time_domain._identify_in_time import TimeSettings, output_error, with_noise_at
 from shaftprint.time_domain._nonlinear_covariance import with_scatter_of_blocks
 from shaftprint.time_domain._nonlinear_drive import sharpened
 from shaftprint.time_domain._nonlinear_fragile import Fragile, fragile_stretches, without_fragile
@@ -28,6 +28,7 @@ from shaftprint.time_domain._nonlinear_touched import touched
 from shaftprint.time_domain._output_error import OutputError
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._records_of import records_of
+from shaftprint.time_domain._simulator import ExactDelays
 from shaftprint.vessel import Vessel
 
 LINEAR = "GAUGE-CLOSED"
@@ -153,11 +154,11 @@ class _Task:
         """Return the fit, and how many of the starts that went on reached what led to it, and how many these were."""
         how = self.how
         common = {"rng": self.rng, "settings": how, "priors": self.priors}
-        coarse = self._renewed(self._parts(sines, how.coarse_rate_hz, how.coarse_drive_hz), start)
+        coarse = self._renewed(self._parts(sines, how.coarse_rate_hz, how.coarse_drive_hz, how.coarse_step_s), start)
         first = first_pass(coarse, start, drawn, **common)  # type: ignore[arg-type]
         many = from_these(coarse, best_ends(first, how.better), **common)  # type: ignore[arg-type]
         ends = best_ends(many, how.kept)
-        parts = self._parts(sines, how.rate_hz, how.drive_hz)
+        parts = self._parts(sines, how.rate_hz, how.drive_hz, how.step_s)
         best = {p.name: p.value for p in many.parameters}
         for number in range(how.rounds):
             parts = self._renewed(parts, best)
@@ -178,10 +179,12 @@ class _Task:
             for stretch in fragile_stretches(record.name, record.time_s, whole[record.name].used & ~record.used)
         )
 
-    def _parts(self, sines: Sequence[str], rate_hz: float, drive_hz: float) -> list[Part]:
+    def _parts(self, sines: Sequence[str], rate_hz: float, drive_hz: float, step_s: float) -> list[Part]:
         untouched = np.array([line not in sines for line in self.response.lines])
         records = self._records([*sines, *self.names], rate_hz, drive_hz)
-        parts: list[Part] = [replace(output_error(self.structure, record), moving_load=True) for record in records]
+        settings = TimeSettings(simulator=ExactDelays(longest_step_s=step_s))
+        terms = [output_error(self.structure, record, settings=settings) for record in records]
+        parts: list[Part] = [replace(term, moving_load=True) for term in terms]
         if np.any(self.response.used & untouched):
             # small signals of the limited structure are those of the linear one, whose formulas are at hand
             parts.append((_small(self.structure), replace(self.response, used=self.response.used & untouched)))

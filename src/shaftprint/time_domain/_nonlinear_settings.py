@@ -11,7 +11,7 @@ from shaftprint.time_domain._records_of import RATE_HZ
 class NonlinearSettings:
     """Three passes: all starts for a few steps, the better ones further, on coarse records; the best on fine ones.
 
-    A coarse record has half the samples of a fine one and a quarter of the steps of its simulation. It moves optima a
+    A coarse record has half the samples of a fine one and half the steps of its simulation. It moves optima a
     little, but does not add or lose one: that depends on levels of limits, not on milliseconds. After a few steps the
     starts that will not win are far behind.
     """
@@ -30,10 +30,14 @@ class NonlinearSettings:
     """Samples of a coarse record a second [Hz]."""
     coarse_drive_hz: float = 50.0
     """Samples of its drive a second [Hz]."""
+    coarse_step_s: float = 0.01
+    """Longest step of its simulation [s]."""
     rate_hz: float = RATE_HZ
     """Samples of a fine record a second [Hz]."""
     drive_hz: float = DRIVE_RATE_HZ
     """Samples of its drive a second [Hz]."""
+    step_s: float = 5e-3
+    """Longest step of its simulation [s]."""
     rounds: int = 2
     """How many times the noise is estimated anew on fine records."""
     tolerance: float = 1e-5
@@ -48,6 +52,7 @@ class NonlinearSettings:
             If one is not positive.
         """
         counts = (self.starts, self.better, self.kept, self.rounds, self.first_iterations, self.max_iterations)
-        rates = (self.coarse_rate_hz, self.coarse_drive_hz, self.rate_hz, self.drive_hz, self.tolerance)
-        if min(counts) < 1 or not min(rates) > 0.0:
+        rates = (self.coarse_rate_hz, self.coarse_drive_hz, self.rate_hz, self.drive_hz)
+        smallest = min(*rates, self.coarse_step_s, self.step_s, self.tolerance)
+        if min(counts) < 1 or not smallest > 0.0:
             raise IdentificationError(f"nonlinear fit: expected positive numbers, found {self}.")

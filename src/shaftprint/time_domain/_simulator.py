@@ -1,6 +1,7 @@
 """What a structure does during a record, with derivatives, on the record's grid."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -43,8 +44,12 @@ class Simulator(Protocol):
         """Return the states of steady running at the first sample of the drive, shape (states,)."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
 class ExactDelays:
     """The simulation of the package: delays by history, exact forward sensitivities."""
+
+    longest_step_s: float = 5e-3
+    """Longest step of the simulation [s]."""
 
     def __call__(
         self,
@@ -58,7 +63,14 @@ class ExactDelays:
         """Return the outputs at every sample of the drive, and their derivatives."""
         inputs = {name: record.drive[name] for name in structure.inputs}
         return simulate(
-            structure, values, record.drive_time_s, inputs, wanted=wanted, hold=record.hold, initial=initial
+            structure,
+            values,
+            record.drive_time_s,
+            inputs,
+            wanted=wanted,
+            hold=record.hold,
+            longest_step_s=self.longest_step_s,
+            initial=initial,
         )
 
     def rest(self, structure: Structure, values: FloatArray, record: Record) -> FloatArray:
