@@ -23,7 +23,15 @@ author = "the shaftprint authors"
 copyright = "the shaftprint authors"
 version = release = shaftprint.__version__
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "numpydoc", "mathml", "generated_reference", "no_requests"]
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.viewcode",
+    "numpydoc",
+    "mathml",
+    "generated_reference",
+    "no_requests",
+]
 exclude_patterns = ["_extensions"]
 default_role = "code"
 # Several rooms have a noun of the same name (WorkingPoint of a vessel and of signals); a link from a signature, where
@@ -42,7 +50,7 @@ nb_execution_raise_on_error = True
 nb_execution_show_tb = True
 nb_merge_streams = True
 
-autodoc_default_options = {"members": True, "show-inheritance": False}
+autodoc_default_options = {"members": True}
 autodoc_member_order = "bysource"
 autodoc_typehints_format = "short"
 autodoc_class_signature = "mixed"
@@ -57,7 +65,7 @@ html_static_path = ["_static"]
 html_css_files = ["shaftprint.css"]
 html_show_sourcelink = False
 html_copy_source = False
-html_sidebars = {"index": []}
+html_sidebars = {page: [] for page in ("index", "start", "what-to-measure", "thesis")}
 html_theme_options = {
     "show_prev_next": False,
     "header_links_before_dropdown": 8,
@@ -75,7 +83,10 @@ def list_all_guides(app: Sphinx, page: str, source: list[str]) -> None:
     if page != "guides":
         return
     lists = [(HERE / f"{name}.md").read_text(encoding="utf-8") for name in ("index", "evidence")]
-    elsewhere = set(re.findall(r"^[\w/-]+$", "\n".join(lists), flags=re.MULTILINE)) | {"index", "guides"}
+    elsewhere = set(re.findall(r"^(?:[\w ]+<)?([\w/-]+)>?$", "\n".join(lists), flags=re.MULTILINE)) | {
+        "index",
+        "guides",
+    }
     listed = re.findall(r"^[\w-]+$", source[0], flags=re.MULTILINE)
     there = {name for name in app.env.found_docs if "/" not in name} - elsewhere
     names = [name for name in listed if name in there] + sorted(there - set(listed))

@@ -104,8 +104,15 @@ def keep_dashes(app: Sphinx, what: str, name: str, value: object, options: objec
     lines[:] = [re.sub(r"(?<=  )- (?= )", r"\\-", line) for line in lines]
 
 
+def link_names(app: Sphinx, page: str, source: list[str]) -> None:
+    """Make links to the reference of the public names in the table of equations."""
+    if page == "theory/equations":
+        source[0] = re.sub(r"`(shaftprint(?:\.[a-z]\w*)+\.[A-Za-z]\w*)`", r"{py:obj}`\1`", source[0])
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Write the pages before any is read."""
     app.connect("builder-inited", write_pages)
     app.connect("autodoc-process-docstring", keep_dashes)
+    app.connect("source-read", link_names)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,69 @@
+"""The rooms that one import gives: all of them, loaded when they are used, with the names that the tables promise."""
+
+import importlib
+import pkgutil
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import shaftprint as sp
+
+ROOT = Path(__file__).parents[2]
+# the command line is no library
+ROOMS = {room.name for room in pkgutil.iter_modules(sp.__path__)} - {"__main__", "cli"}
+LIBRARY = (ROOT / "docs" / "library.md").read_text(encoding="utf-8")
+
+
+def test_every_room_is_given_by_the_package_and_known_to_type_checkers():
+    assert set(dir(sp)) == ROOMS | {"__version__"}
+    stub = Path(sp.__file__).with_suffix(".pyi").read_text(encoding="utf-8")
+    assert set(re.findall(r"^from shaftprint import (\w+) as \1$", stub, flags=re.MULTILINE)) == ROOMS
+    for room in ROOMS:
+        assert getattr(sp, room) is importlib.import_module(f"shaftprint.{room}")
+
+
+def test_a_room_that_is_not_there_is_refused():
+    with pytest.raises(AttributeError, match="has no attribute 'gearbox'; its rooms are arrays, campaign"):
+        _ = sp.gearbox
+
+
+def test_the_import_loads_no_room():
+    code = (
+        "import sys, shaftprint as sp; sp.__version__; print([m for m in sys.modules if m.startswith('shaftprint.')])"
+    )
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout == "[]\n"
+
+
+def promised():
+    """Return room and name of every noun and verb in the tables of the page and of the package."""
+    for room, nouns in re.findall(
+        r"^\| \[(\w+)\]\(reference/generated/\w+\.rst\) \|(.*)\|$", LIBRARY, flags=re.MULTILINE
+    ):
+        yield from ((room, name) for name in re.findall(r"`(\w+)`", nouns))
+    room = ""
+    for first, rest in re.findall(r"^(``\w+``|) {2,}(.*)$", sp.__doc__, flags=re.MULTILINE):
+        room = first.strip("`") or room
+        yield from ((room, name) for name in re.findall(r"``(\w+)``", rest))
+
+
+@pytest.mark.parametrize(("room", "name"), sorted(set(promised())))
+def test_nouns_and_verbs_are_public(room, name):
+    assert name in importlib.import_module(f"shaftprint.{room}").__all__
+
+
+def test_both_tables_are_read():
+    assert len(set(promised())) > 40
+
+
+def test_the_reference_lists_every_room():
+    listed = re.findall(r"^generated/(\w+)$", (ROOT / "docs/reference/index.md").read_text("utf-8"), flags=re.MULTILINE)
+    assert sorted(listed) == sorted(ROOMS | {"commands"})
+
+
+def test_every_example_is_on_the_page():
+    listed = set(re.findall(r"`(\w+\.py)`", LIBRARY))
+    assert listed == {path.name for path in (ROOT / "examples").glob("*.py")}
