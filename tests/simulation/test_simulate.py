@@ -196,3 +196,12 @@ def test_wrong_input_is_named(change, message):
     rest = {name: value for name, value in given.items() if name in ("wanted", "initial")}
     with pytest.raises(StructureError, match=message):
         simulate(model, given["values"], given["time"], given["inputs"], **rest)
+
+
+def test_a_late_mean_of_a_speed_away_from_the_working_point_starts_where_it_stays():
+    """What the pick-up shows is the difference of two sums that go on for ever, both late, and one late of late."""
+    ship = structure("FREE-PITCH").held_at(T_average=0.1, t_pickup=0.2)
+    time_s = np.arange(0.0, 2.0, 0.01)
+    still = {name: np.full(time_s.size, 0.02 if name == "n_set" else 0.0) for name in ship.inputs}
+    found = simulate(ship, ship.vector({}), time_s, still)
+    assert found.outputs["n"] == pytest.approx(np.full(time_s.size, 0.02), abs=1e-9)

@@ -125,7 +125,7 @@ def fmu_program(structure: Structure, values: FloatArray) -> FmuProgram:
     """
     pairs = zip(structure.parameters, values, strict=True)
     gone = frozenset(p.name for p, value in pairs if p.held and value == 0.0)
-    program = _with_drifts(program_of(structure, gone))
+    program = program_of(structure, gone)
     pasts, signals, lateness = list(program.pasts), [], []
     for signal, shift in zip(program.signals, program.shifts, strict=True):
         lateness.append(maximum(-shift, 0.0) if not shift.equals(0.0) else shift)
@@ -136,15 +136,6 @@ def fmu_program(structure: Structure, values: FloatArray) -> FmuProgram:
         pasts.append(Late(signal=signal, drift=_drift(program, signal), delay=maximum(shift, 0.0)))
     ready = replace(program, pasts=tuple(pasts), signals=tuple(signals))
     return FmuProgram(program=ready, gone=gone, lateness=tuple(lateness))
-
-
-def _with_drifts(program: Program) -> Program:
-    """Return a program in which what is late of a mean, the difference of two running sums, does not drift."""
-    pasts = tuple(replace(late, drift=Quantity("number")) for late in program.pasts)
-    for _ in program.pasts:
-        found = replace(program, pasts=pasts)
-        pasts = tuple(replace(late, drift=_drift(found, late.signal)) for late in program.pasts)
-    return replace(program, pasts=pasts)
 
 
 def _drift(program: Program, signal: Quantity) -> Quantity:

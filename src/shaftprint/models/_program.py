@@ -186,6 +186,7 @@ class _Resolver:
         self._open: set[tuple[str, int]] = set()
         self._kept: list[Quantity] = []
         self._rates: dict[int, Quantity] = {}
+        self._drifting: set[int] = set()
 
     def __call__(self, formula: Quantity) -> Quantity:
         """Return the formula without unknown signals and without rates of change."""
@@ -209,12 +210,19 @@ class _Resolver:
         return swept([formula], self._slope_in_time)[0]
 
     def drift(self, formula: Quantity) -> Quantity:
-        """Return how fast a formula changes while only sums that go on for ever do."""
-        running = self._flow.running
-        return swept(
-            [formula],
-            lambda leaf: self.rate(leaf.place) if leaf.operation == "state" and leaf.place in running else None,
-        )[0]
+        """Return how fast a formula changes while only sums that go on for ever do, and what is late of them."""
+        return swept([formula], self._slope_in_steady_running)[0]
+
+    def _slope_in_steady_running(self, leaf: Quantity) -> Quantity | None:
+        if leaf.operation == "state" and leaf.place in self._flow.running:
+            return self.rate(leaf.place)
+        if leaf.operation == "past" and leaf.place not in self._drifting:
+            # a signal that is late of itself goes round a loop, which stands still in steady running
+            self._drifting.add(leaf.place)
+            found = self.drift(self(self._flow.pasts[leaf.place].signal))
+            self._drifting.discard(leaf.place)
+            return found
+        return None
 
     def _slope_in_time(self, leaf: Quantity) -> Quantity | None:
         if leaf.operation == "state":
