@@ -65,7 +65,7 @@ html_static_path = ["_static"]
 html_css_files = ["shaftprint.css"]
 html_show_sourcelink = False
 html_copy_source = False
-html_sidebars = {page: [] for page in ("index", "start", "what-to-measure", "thesis")}
+html_sidebars = {page: [] for page in ("index", "start", "what-to-measure")}
 html_theme_options = {
     "show_prev_next": False,
     "header_links_before_dropdown": 8,
@@ -82,7 +82,7 @@ def list_all_guides(app: Sphinx, page: str, source: list[str]) -> None:
     """Put guides that no list names at the end of the list of guides, and leave out what is not there."""
     if page != "guides":
         return
-    lists = [(HERE / f"{name}.md").read_text(encoding="utf-8") for name in ("index", "evidence")]
+    lists = [(HERE / f"{name}.md").read_text(encoding="utf-8") for name in ("index", "evidence", "thesis")]
     elsewhere = set(re.findall(r"^(?:[\w ]+<)?([\w/-]+)>?$", "\n".join(lists), flags=re.MULTILINE)) | {
         "index",
         "guides",
@@ -90,7 +90,7 @@ def list_all_guides(app: Sphinx, page: str, source: list[str]) -> None:
     listed = re.findall(r"^[\w-]+$", source[0], flags=re.MULTILINE)
     there = {name for name in app.env.found_docs if "/" not in name} - elsewhere
     names = [name for name in listed if name in there] + sorted(there - set(listed))
-    source[0] = re.sub(r"(?<=```{toctree}\n)[^`]*", "\n".join(names) + "\n", source[0])
+    source[0] = re.sub(r"(?<=:maxdepth: 1\n\n)[^`]*", "\n".join(names) + "\n", source[0])
 
 
 def setup(app: Sphinx) -> None:

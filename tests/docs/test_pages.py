@@ -42,16 +42,26 @@ def commands_of(page):
     return [shlex.split(line[1], comments=True) for line in found if line]
 
 
-OTHER_TESTS = "\n".join(
-    path.read_text(encoding="utf-8") for path in (ROOT / "tests").rglob("test_*.py") if path != Path(__file__)
-)
+OTHER_TESTS = [path for path in (ROOT / "tests").rglob("test_*.py") if path.parent != Path(__file__).parent]
+OTHER_TEXT = "\n".join(path.read_text(encoding="utf-8") for path in OTHER_TESTS)
 # A page that another test opens has its own checks there, of what its Python finds.
-OPENED = {page for page in PAGES if f'"{Path(page).name}"' in OTHER_TESTS}
+OPENED = {page for page in PAGES if f'"{Path(page).name}"' in OTHER_TEXT}
 WITH_PYTHON = [page for page in PAGES if python_of(page)]
 WITH_COMMANDS = [page for page in PAGES if commands_of(page)]
 
 
-@pytest.mark.parametrize("page", [page for page in WITH_PYTHON if page not in OPENED])
+# sails the whole campaign
+FULL_SIZE = {"docs/thesis-figures.md"}
+
+
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(page, marks=pytest.mark.full_size) if page in FULL_SIZE else page
+        for page in WITH_PYTHON
+        if page not in OPENED
+    ],
+)
 def test_python_of_a_page_runs(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     names = {"__name__": "page"}
@@ -67,7 +77,7 @@ def test_pages_with_tests_of_their_own_are_run_there():
     for page in WITH_PYTHON:
         if page in OPENED:
             name = re.escape(Path(page).name)
-            tests = [path for path in (ROOT / "tests").rglob("test_*.py") if re.search(name, path.read_text("utf-8"))]
+            tests = [path for path in OTHER_TESTS if re.search(name, path.read_text(encoding="utf-8"))]
             assert any(re.search(r"exec\(|runpy", path.read_text(encoding="utf-8")) for path in tests), page
 
 
