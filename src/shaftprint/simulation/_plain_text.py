@@ -30,11 +30,11 @@ from numpy import cos, exp, log, sin, sqrt, tanh
 
 
 def minimum(a, b):
-    return a if a.real <= b.real else b
+    return b if b.real < a.real else a
 
 
 def maximum(a, b):
-    return a if b.real <= a.real else b
+    return b if a.real < b.real else a
 
 
 def choose(a, b, at_most, above):
