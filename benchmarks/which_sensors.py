@@ -52,11 +52,11 @@ class Case:
     """The truth with the sizes of its noise."""
 
 
-def with_pick_up(pulses: int, *, shaft: str = "engine", rate_hz: float = 2000.0) -> Vessel:
-    """Return the Stan Tug with one speed pick-up of so many pulses a revolution, and a logger of that rate."""
+def with_pick_up(pulses: int, *, shaft: str = "engine", rate_hz: float = 2000.0, share: float = 0.25) -> Vessel:
+    """Return the Stan Tug with one pick-up of so many strips, of so large a share of the pitch, and such a logger."""
     sensor = SpeedSensor(
         name="n", channel="PTM", shaft=shaft, pulses_per_revolution=pulses, unit="V",
-        pulse_width_deg=19.8 if pulses == 1 else min(25.4, 90.0 / pulses),
+        pulse_width_deg=19.8 if pulses == 1 else min(25.4, share * 360.0 / pulses),
     )  # fmt: skip
     sensors = VESSEL.sensors.model_copy(update={"speed": (sensor,)})
     return VESSEL.model_copy(update={"sensors": sensors, "logger": Logger(sample_rate_hz=rate_hz)})
@@ -73,6 +73,7 @@ def cases() -> Iterator[Case]:
     yield Case(name="one pulse a turn on the propeller shaft", vessel=with_pick_up(1, shaft="propeller"))
     yield Case(name="four pulses a turn on the propeller shaft", vessel=with_pick_up(4, shaft="propeller"))
     yield Case(name="12 pulses a turn on the engine, 2 kHz", vessel=with_pick_up(12))
+    yield Case(name="12 pulses as wide as their gaps, 10 kHz", vessel=with_pick_up(12, rate_hz=10_000.0, share=0.5))
     yield Case(name="12 pulses a turn on the engine, 10 kHz", vessel=with_pick_up(12, rate_hz=10_000.0))
     yield Case(name="one pulse a turn on the engine, 10 kHz", vessel=with_pick_up(1, rate_hz=10_000.0))
     yield Case(name="one pulse a turn on the engine, 500 Hz", vessel=with_pick_up(1, rate_hz=500.0))
