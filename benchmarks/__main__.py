@@ -2,7 +2,17 @@
 
 import argparse
 
-from benchmarks import family, long_chirp, nonlinear_fit, nonlinear_loop, profiles, raw_recording, readers, repeats, start_up
+from benchmarks import (
+    family,
+    long_chirp,
+    nonlinear_fit,
+    nonlinear_loop,
+    profiles,
+    raw_recording,
+    readers,
+    repeats,
+    start_up,
+)
 from benchmarks.timing import print_machine
 
 ROWS = {
