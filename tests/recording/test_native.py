@@ -2,6 +2,7 @@
 
 import hashlib
 import shutil
+import subprocess
 
 import h5netcdf
 import h5py
@@ -216,7 +217,45 @@ def test_a_closed_recording_says_so(native):
 
 def test_a_truncated_recording_is_told(native):
     native.write_bytes(native.read_bytes()[:200_000])
-    with pytest.raises(RecordingError, match=r"test\.nc: expected a whole recording, found a damaged or truncated"):
+    with pytest.raises(RecordingError, match=r"test\.nc: expected a whole .* file, found a damaged or truncated"):
+        read_recording(native)
+
+
+def test_the_seal_is_the_hash_of_what_is_before_it(native):
+    content = native.read_bytes()
+    before, line, digest = content.rpartition(b"\nshaftprint recording, SHA-256 of what is before this line: ")
+    assert line
+    assert digest.decode() == hashlib.sha256(before).hexdigest() + "\n"
+
+
+def test_a_whole_file_is_opened_without_a_second_program(native, monkeypatch):
+    def start(*words, **settings):
+        raise AssertionError("a program was started")
+
+    monkeypatch.setattr(subprocess, "run", start)
+    with read_recording(native) as recording:
+        assert recording.channel("M_s").count == 300_000
+    with h5py.File(native, "r+") as file:
+        file["channels/M_s"].attrs["long_name"] = "another"
+    with pytest.raises(AssertionError, match="a program was started"):
+        read_recording(native)
+
+
+def test_a_file_without_its_seal_is_read_after_a_look(native, counts):
+    content = native.read_bytes()
+    native.write_bytes(content[: content.rindex(b"\nshaftprint recording, SHA-256")])
+    with read_recording(native) as recording:
+        assert recording.format == "shaftprint recording (NetCDF-4)"
+        assert np.array_equal(recording.channel("M_s").read(0, 300_000), counts["M_s"])
+
+
+def test_a_heap_that_leads_round_in_circles_is_refused(native):
+    content = native.read_bytes()
+    # specification of HDF5, III.E: a collection of objects; object 1 begins 16 bytes on, its length 8 bytes further
+    heap = content.index(b"GCOL")
+    assert content[heap + 16 : heap + 18] == b"\1\0"
+    native.write_bytes(content[: heap + 24] + b"\xf0" + b"\xff" * 7 + content[heap + 32 :])
+    with pytest.raises(RecordingError, match="in which HDF5's library does not come to an end; copy it again"):
         read_recording(native)
 
 

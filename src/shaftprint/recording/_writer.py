@@ -15,6 +15,7 @@ from shaftprint.files import written_whole
 from shaftprint.recording._channel_writer import ChannelWriter
 from shaftprint.recording._container import FORMAT, GROUP, VERSION
 from shaftprint.recording._recording import Channel
+from shaftprint.recording._seal import add_seal
 
 
 class RecordingWriter:
@@ -52,6 +53,7 @@ class RecordingWriter:
         self._stack = ExitStack()
         self._open: dict[str, ChannelWriter] = {}
         self._file: Any = None
+        self._part = self._path
 
     def __enter__(self) -> Self:
         """Open the file under its temporary name.
@@ -62,8 +64,8 @@ class RecordingWriter:
             If the file exists and may not be replaced, or its folder cannot be written.
         """
         try:
-            part = self._stack.enter_context(written_whole(self._path, overwrite=self._overwrite))
-            self._file = self._stack.enter_context(h5py.File(part, "w", track_order=True))
+            self._part = self._stack.enter_context(written_whole(self._path, overwrite=self._overwrite))
+            self._file = self._stack.enter_context(h5py.File(self._part, "w", track_order=True))
         except OSError as error:
             raise self._cannot_be_written(error) from None
         root = {"Conventions": "CF-1.11", "format": FORMAT, "format_version": VERSION}
@@ -91,6 +93,8 @@ class RecordingWriter:
             with self._stack:
                 for number, channel in enumerate(self._open.values()):
                     channel.finish(number)
+                self._file.close()
+                add_seal(self._part)
         except OSError as failure:
             raise self._cannot_be_written(failure) from None
 

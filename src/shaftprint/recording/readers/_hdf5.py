@@ -8,31 +8,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording._container import FORMAT
 from shaftprint.recording._recording import Recording, Source, sha256_of
-from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
+from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._epoch import from_second_zero
+from shaftprint.recording.readers._hdf5_open import expect_storage, is_hdf5, open_hdf5
 from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._native import has_mark
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._vectors import Vector, gather_vectors
 
 NAME = "HDF5 or NetCDF-4"
 
-_SIGNATURE = b"\x89HDF\r\n\x1a\n"
 _MOST_COLUMNS = 64
 
 
 def is_mine(path: Path) -> bool:
-    """Return whether the file is whole HDF5 without the mark of the native container."""
-    with path.open("rb") as file:
-        if file.read(len(_SIGNATURE)) != _SIGNATURE:
-            return False
-    try:
-        with h5py.File(path, "r") as opened:
-            return bool(opened.attrs.get("format") != FORMAT)
-    except Exception:
-        # h5py raises errors of many kinds on damaged bytes; the native reader tells of them
-        return False
+    """Return whether the file begins as HDF5, without the mark of the native container."""
+    return is_hdf5(path) and not has_mark(path)
 
 
 def read(path: Path, **hints: object) -> Recording:
@@ -46,8 +38,7 @@ def read(path: Path, **hints: object) -> Recording:
         If the file is damaged or no channel can be used.
     """
     rate = rate_hint(path, hints)
-    with told_as_damage(path, NAME):
-        file = h5py.File(path, "r")
+    file = open_hdf5(path, NAME)
     opened = Opened(path, file.close)
     try:
         with told_as_damage(path, NAME):
@@ -100,8 +91,7 @@ def _walk(
 
 def _vector(path: Path, item: Any, key: str, group: str, opened: Opened, column: int | None = None) -> Vector:
     count = int(item.shape[0])
-    stored = int(item.id.get_storage_size())
-    expect_plausible(path, key, samples=item.size, sample_bytes=item.dtype.itemsize, stored_bytes=stored + 64)
+    expect_storage(path, key, item)
     attributes = {name: _plain(value) for name, value in item.attrs.items() if not name.isupper()}
     scale = float(np.asarray(item.attrs.get("scale_factor", 1.0)).ravel()[0])
     offset = float(np.asarray(item.attrs.get("add_offset", 0.0)).ravel()[0])

@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording._recording import Recording, Source, sha256_of
-from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
+from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._epoch import from_second_zero
+from shaftprint.recording.readers._hdf5_open import expect_storage, open_hdf5
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._mat_variables import MatVariables, gather_variables, object_reason
 from shaftprint.recording.readers._opened import Opened
@@ -43,8 +44,7 @@ def read(path: Path, **hints: object) -> Recording:
         If the file is damaged, or has no channels or no clock.
     """
     rate = rate_hint(path, hints)
-    with told_as_damage(path, "MATLAB"):
-        file = h5py.File(path, "r")
+    file = open_hdf5(path, "MATLAB")
     opened = Opened(path, file.close)
     try:
         with told_as_damage(path, "MATLAB"):
@@ -98,8 +98,7 @@ def _keep(path: Path, item: Any, key: str, group: str, kind: bytes, opened: Open
     elif item.size == 1:
         variables.scalars.setdefault(group, {})[key] = float(item[()].ravel()[0])
     elif item.size == length:
-        stored = int(item.id.get_storage_size())
-        expect_plausible(path, inside, samples=item.size, sample_bytes=item.dtype.itemsize, stored_bytes=stored + 64)
+        expect_storage(path, inside, item)
         variables.vectors.append(
             Vector(name=key, group=group, count=int(item.size), source=_source(path, key, item, opened))
         )

@@ -3,32 +3,32 @@
 from pathlib import Path
 from typing import Any
 
-import h5py
-import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording._container import FORMAT, GROUP, VERSION
-from shaftprint.recording._recording import Channel, Recording, sha256_of
-from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
+from shaftprint.recording._recording import Channel, Recording
+from shaftprint.recording._seal import has_seal, hashed
+from shaftprint.recording.readers._damage import told_as_damage
+from shaftprint.recording.readers._hdf5_open import expect_storage, is_hdf5, open_hdf5
 from shaftprint.recording.readers._hints import expect_hints
 
 NAME = "shaftprint recording (NetCDF-4)"
 
-_HDF5_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+# The mark stands in the first attribute of the file, which lies within the first 3 kB.
+_MARK = FORMAT.encode("ascii")
+_FIRST_BYTES = 16_384
 
 
 def is_mine(path: Path) -> bool:
-    """Return whether the file is a native container, or HDF5 that is too damaged to tell."""
+    """Return whether the file is HDF5 with the mark of the native container, whole or damaged."""
+    return is_hdf5(path) and has_mark(path)
+
+
+def has_mark(path: Path) -> bool:
+    """Return whether a file has the native container's seal or name; HDF5's library might hang where it is damaged."""
     with path.open("rb") as file:
-        if file.read(len(_HDF5_SIGNATURE)) != _HDF5_SIGNATURE:
-            return False
-    try:
-        with h5py.File(path, "r") as file:
-            return bool(file.attrs.get("format") == FORMAT)
-    except Exception:
-        # h5py raises errors of many kinds on damaged bytes
-        return True
+        return _MARK in file.read(_FIRST_BYTES) or has_seal(path)
 
 
 def read(path: Path, **hints: object) -> Recording:
@@ -40,21 +40,19 @@ def read(path: Path, **hints: object) -> Recording:
         If the file is damaged, of a later version, or lacks an attribute.
     """
     expect_hints(path, hints, {})
-    try:
-        file = h5py.File(path, "r")
-    except OSError as error:
-        raise RecordingError(
-            f"{path}: expected a whole recording, found a damaged or truncated file ({error})."
-        ) from None
+    known = hashed(path)
+    file = open_hdf5(path, NAME, is_whole=known.is_sealed)
     try:
         with told_as_damage(path, NAME):
-            return _recording(path, file)
+            return _recording(path, file, known.sha256)
     except BaseException:
         file.close()
         raise
 
 
-def _recording(path: Path, file: Any) -> Recording:
+def _recording(path: Path, file: Any, sha256: str) -> Recording:
+    if file.attrs.get("format") != FORMAT:
+        raise RecordingError(f'{path}: expected the attribute format "{FORMAT}", found another; is the file damaged?')
     version = int(file.attrs.get("format_version", 0))
     if version != VERSION:
         raise RecordingError(
@@ -67,7 +65,7 @@ def _recording(path: Path, file: Any) -> Recording:
         for name, dataset in file[GROUP].items()
         if "sample_rate_hz" in dataset.attrs
     }
-    return Recording(path=path, sha256=sha256_of(path), format=NAME, channels=channels, release=file.close)
+    return Recording(path=path, sha256=sha256, format=NAME, channels=channels, release=file.close)
 
 
 def _channel(path: Path, name: str, dataset: Any) -> Channel:
@@ -82,9 +80,7 @@ def _channel(path: Path, name: str, dataset: Any) -> Channel:
             f"found none named {', '.join(missing)}."
         )
 
-    count = int(np.prod(dataset.shape))
-    stored = int(dataset.id.get_storage_size())
-    expect_plausible(path, name, samples=count, sample_bytes=dataset.dtype.itemsize, stored_bytes=stored)
+    expect_storage(path, name, dataset)
 
     def source(start: int, stop: int) -> NDArray[Any]:
         if not dataset:
@@ -100,7 +96,7 @@ def _channel(path: Path, name: str, dataset: Any) -> Channel:
         unit=str(attributes["units"]),
         rate_hz=float(attributes["sample_rate_hz"]),
         start_s=float(attributes["start_s"]),
-        count=count,
+        count=int(dataset.size),
         scale=float(attributes.get("scale_factor", 1.0)),
         offset=float(attributes.get("add_offset", 0.0)),
         long_name=str(attributes.get("long_name", "")),

@@ -1,0 +1,86 @@
+"""Opening HDF5 files without hanging on damaged ones."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import h5py
+
+from shaftprint.errors import RecordingError
+from shaftprint.recording.readers import _hdf5_probe
+from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
+
+_SIGNATURE = b"\x89HDF\r\n\x1a\n"
+# Blocks are unpacked whole; ours and MATLAB's have up to a few MB.
+_LARGEST_BLOCK = 1 << 28
+
+
+def is_hdf5(path: Path) -> bool:
+    """Return whether the file begins as HDF5."""
+    with path.open("rb") as file:
+        return file.read(len(_SIGNATURE)) == _SIGNATURE
+
+
+def open_hdf5(path: Path, what: str, *, is_whole: bool = False) -> Any:
+    """Open an HDF5 file, read only; one that may be damaged is first looked at by a program of its own.
+
+    Parameters
+    ----------
+    path
+        The file.
+    what
+        The format, in words.
+    is_whole
+        Whether its bytes are known to be those that were written.
+
+    Raises
+    ------
+    RecordingError
+        If HDF5's library refuses the file, or hangs or crashes on it.
+    """
+    if not is_whole:
+        _expect_an_end(path, what)
+    with told_as_damage(path, what):
+        return h5py.File(path, "r")
+
+
+def expect_storage(path: Path, name: str, dataset: Any) -> None:
+    """Refuse a data set that promises more samples than are stored, or has blocks too large to unpack.
+
+    Raises
+    ------
+    RecordingError
+        If it does.
+    """
+    sample_bytes = dataset.dtype.itemsize
+    # up to 64 kB may lie in the header, and count as stored in no block
+    stored = int(dataset.id.get_storage_size()) + 64
+    expect_plausible(path, name, samples=dataset.size, sample_bytes=sample_bytes, stored_bytes=stored)
+    block = sample_bytes
+    for length in dataset.chunks or ():
+        block *= length
+    if block > _LARGEST_BLOCK:
+        raise RecordingError(
+            f"{path}, channel {name}: expected blocks of at most {_LARGEST_BLOCK >> 20} MiB, found blocks of "
+            f"{block >> 20} MiB; if the file is not damaged, write it with smaller ones (h5repack -l CHUNK=262144)."
+        )
+
+
+def _expect_an_end(path: Path, what: str) -> None:
+    """Refuse a file in which HDF5's library does not find back."""
+    program = [sys.executable, "-P", _hdf5_probe.__file__, str(path.resolve())]
+    done = subprocess.run(  # noqa: S603
+        program,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        env=os.environ | {"OPENBLAS_NUM_THREADS": "1"},
+        check=False,
+    )
+    if done.returncode != 0:
+        raise RecordingError(
+            f"{path}: expected a whole {what} file, found a damaged one in which HDF5's library does not come to an "
+            "end; copy it again from the logger."
+        )
