@@ -31,6 +31,7 @@ extensions = [
     "mathml",
     "generated_reference",
     "no_requests",
+    "short_types",
 ]
 exclude_patterns = ["_extensions"]
 default_role = "code"
@@ -63,6 +64,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = "shaftprint"
 html_static_path = ["_static"]
 html_css_files = ["shaftprint.css"]
+html_context = {"default_mode": "auto"}
 html_show_sourcelink = False
 html_copy_source = False
 html_sidebars = {page: [] for page in ("index", "start", "what-to-measure")}
