@@ -33,10 +33,18 @@ def with_names(plain: Callable[..., str]) -> Callable[..., str]:
     return written
 
 
+def made_each_time(
+    app: Sphinx, what: str, name: str, value: object, options: object, signature: str | None, returned: str | None
+) -> tuple[str | None, str | None]:
+    """Write a default that is made anew each time as ``...``: the marker of dataclasses is no Python."""
+    return (None if signature is None else signature.replace("<factory>", "...")), returned
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Put the writer where Sphinx looks for its own."""
     plain = sphinx_typing.stringify_annotation
     for module in [module for name, module in sys.modules.items() if name.startswith("sphinx.")]:
         if getattr(module, "stringify_annotation", None) is plain:
             module.stringify_annotation = with_names(plain)
+    app.connect("autodoc-process-signature", made_each_time)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
