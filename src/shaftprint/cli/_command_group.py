@@ -1,11 +1,11 @@
-"""A group of commands that are imported only when they are called."""
+"""The commands of the program, and how they end."""
 
 import errno
-import importlib
 from typing import Any
 
 import click
 
+from shaftprint.cli._lazy_group import LazyGroup
 from shaftprint.errors import ShaftprintError
 
 # The one-line help of every command, in the order of use. It stands here, and not in the commands only, because
@@ -36,25 +36,10 @@ COMMANDS = {
 INTERRUPTED = 130
 
 
-class CommandGroup(click.Group):
+class CommandGroup(LazyGroup):
     """The commands by name, with one place that turns errors into a sentence and an exit code."""
 
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the names in the order of use."""
-        return list(COMMANDS)
-
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Import a command; None if there is none of that name."""
-        if cmd_name not in COMMANDS:
-            return None
-        module = importlib.import_module(f"shaftprint.cli._{cmd_name.replace('-', '_')}")
-        command: click.Command = module.command
-        return command
-
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """List the commands with their help without importing them."""
-        with formatter.section("Commands"):
-            formatter.write_dl(list(COMMANDS.items()))
+    helps = COMMANDS
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; what the user can mend ends in one sentence and a non-zero exit code.

@@ -1,8 +1,8 @@
 """``shaftprint export``: the identified model in the user's tool, one format a file beside this one."""
 
-import importlib
-
 import click
+
+from shaftprint.cli._lazy_group import LazyGroup
 
 # The one-line help of every format; asking its file for it would import what only that format needs.
 FORMATS = {
@@ -16,25 +16,12 @@ FORMATS = {
 }
 
 
-class FormatGroup(click.Group):
-    """The formats by name, imported only when they are called."""
+class FormatGroup(LazyGroup):
+    """The formats by name."""
 
-    def list_commands(self, ctx: click.Context) -> list[str]:
-        """Return the names."""
-        return list(FORMATS)
-
-    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
-        """Import a format; None if there is none of that name."""
-        if cmd_name not in FORMATS:
-            return None
-        module = importlib.import_module(f"shaftprint.cli._export_{cmd_name.replace('-', '_')}")
-        command: click.Command = module.command
-        return command
-
-    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """List the formats with their help without importing them."""
-        with formatter.section("Formats"):
-            formatter.write_dl(list(FORMATS.items()))
+    helps = FORMATS
+    prefix = "export_"
+    heading = "Formats"
 
 
 @click.group("export", cls=FormatGroup, subcommand_metavar="FORMAT [ARGS]...")

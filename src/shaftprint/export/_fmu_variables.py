@@ -59,7 +59,7 @@ def _signals(model: ExportedModel, equations: FmuEquations) -> Iterator[Variable
     references, program = equations.references, equations.ready.program
     for i, signal in enumerate(equations.inputs):
         yield Variable(
-            name=_structured(signal.name),
+            name=structured_name(signal.name),
             reference=references["INPUT"] + i,
             causality="input",
             variability="continuous",
@@ -70,7 +70,7 @@ def _signals(model: ExportedModel, equations: FmuEquations) -> Iterator[Variable
     for i, signal in enumerate(equations.outputs):
         inputs, states = equations.ready.reached(program.signals[i])
         yield Variable(
-            name=_structured(signal.name),
+            name=structured_name(signal.name),
             reference=references["OUTPUT"] + i,
             causality="output",
             variability="continuous",
@@ -127,7 +127,7 @@ def _parameters(model: ExportedModel, equations: FmuEquations) -> Iterator[Varia
         known = f"; standard deviation {std[parameter.name]:.3g}" if parameter.name in std else ""
         known = "; not known from the test" if parameter.name in model.not_known else known
         yield Variable(
-            name=_structured(parameter.name),
+            name=structured_name(parameter.name),
             reference=equations.references["PARAMETER"] + i,
             causality="parameter",
             variability="tunable",
@@ -142,7 +142,7 @@ def _inner(equations: FmuEquations) -> Iterator[Variable]:
     for i, signal in enumerate(equations.outputs):
         if not ready.lateness[i].is_number:
             yield Variable(
-                name=f"lateness.{_structured(signal.name)}",
+                name=f"lateness.{structured_name(signal.name)}",
                 reference=references["LATENESS"] + i,
                 causality="calculatedParameter",
                 variability="tunable",
@@ -172,6 +172,6 @@ def _inner(equations: FmuEquations) -> Iterator[Variable]:
         )
 
 
-def _structured(name: str) -> str:
+def structured_name(name: str) -> str:
     """Return a name of the structured naming convention, quoted where it must be."""
     return name if identifier(name) == name else "'" + name.replace("\\", "").replace("'", "") + "'"

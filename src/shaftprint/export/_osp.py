@@ -12,7 +12,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from shaftprint.export._fmu_signals import ENGINE_SPEED, SHAFT_TORQUE, FmuSignal, fmu_signal
 from shaftprint.export._fmu_units import unit_definitions, unit_name
-from shaftprint.export._fmu_variables import _structured as structured_name
+from shaftprint.export._fmu_variables import structured_name
 from shaftprint.export._model import ExportedModel
 from shaftprint.files import written_whole
 

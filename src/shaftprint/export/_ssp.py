@@ -7,7 +7,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, register_namespac
 from shaftprint import __version__
 from shaftprint.export._described import described_parameters
 from shaftprint.export._fmu_units import BASE_UNITS, unit_name
-from shaftprint.export._fmu_variables import _structured as structured_name
+from shaftprint.export._fmu_variables import structured_name
 from shaftprint.export._model import ExportedModel
 from shaftprint.files import written_whole
 
