@@ -61,14 +61,13 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
 def _print_channels(opened: Recording, *, hidden: bool) -> list[Seen]:
     rows, seen = [], []
     with progress(hidden=hidden) as steps:
-        steps.begin("Reading the channels", total=float(len(opened.channels)))
-        for channel in opened.channels.values():
-            levels = levels_of(channel)
-            seen.append(Seen(channel=channel, is_pulses=levels.is_pulses))
-            values = [f"{value:.5g}" for value in (levels.lowest, levels.mean, levels.highest)]
-            span = f"{channel.start_s:g} to {channel.start_s + channel.duration_s:g}"
-            rows.append((channel.name, channel.unit, f"{channel.rate_hz:g}", span, *values, str(levels.not_numbers)))
-            steps.advance(1.0)
+        steps.begin("Reading the channels", total=1.0)
+        found = levels_of(list(opened.channels.values()), reach=steps.reach)
+    for channel, levels in zip(opened.channels.values(), found, strict=True):
+        seen.append(Seen(channel=channel, is_pulses=levels.is_pulses))
+        values = [f"{value:.5g}" for value in (levels.lowest, levels.mean, levels.highest)]
+        span = f"{channel.start_s:g} to {channel.start_s + channel.duration_s:g}"
+        rows.append((channel.name, channel.unit, f"{channel.rate_hz:g}", span, *values, str(levels.not_numbers)))
     click.echo(f"{opened.path}: {opened.format}, SHA-256 {opened.sha256}\n")
     columns = ("channel", "unit", "rate [Hz]", "span [s]", "lowest", "mean", "highest", "not a number")
     print_table("Channels, raw", columns, rows, numbers=(2, 4, 5, 6, 7))

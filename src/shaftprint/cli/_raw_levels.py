@@ -1,5 +1,6 @@
 """What the raw channels of a recording hold, before a vessel file says what they are."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,32 +32,60 @@ class Levels:
     """Whether almost all values lie near the lowest or the highest, and few of them near one of these."""
 
 
-def levels_of(channel: Channel) -> Levels:
-    """Return the levels of a channel, read once in blocks.
+class _Counted:
+    """What has been seen of a channel so far."""
+
+    def __init__(self, channel: Channel) -> None:
+        self.channel = channel
+        self.lowest, self.highest, self.total, self.count = np.inf, -np.inf, 0.0, 0
+        self.is_pulses = False
+
+    def add(self, start: int) -> None:
+        """Look at the block that begins at a sample."""
+        values = self.channel.values(start, min(start + BLOCK_SAMPLES, self.channel.count))
+        finite = values[np.isfinite(values)]
+        if finite.size:
+            self.is_pulses = _are_pulses(finite) if self.count == 0 else self.is_pulses
+            self.lowest, self.highest = min(self.lowest, float(finite.min())), max(self.highest, float(finite.max()))
+            self.total, self.count = self.total + float(finite.sum()), self.count + finite.size
+
+    def levels(self) -> Levels:
+        """Return the levels of all blocks."""
+        channel, count = self.channel, self.count
+        if not count:
+            return Levels(lowest=np.nan, mean=np.nan, highest=np.nan, not_numbers=channel.count, is_pulses=False)
+        return Levels(
+            lowest=self.lowest,
+            mean=self.total / count,
+            highest=self.highest,
+            not_numbers=channel.count - count,
+            is_pulses=self.is_pulses,
+        )
+
+
+def levels_of(channels: Sequence[Channel], *, reach: Callable[[float], None]) -> list[Levels]:
+    """Return the levels of channels, read once, block by block: some formats have all channels in one record.
+
+    Parameters
+    ----------
+    channels
+        The channels of a recording.
+    reach
+        Is told the share that is done, 0 to 1.
 
     Raises
     ------
     RecordingError
         If the file cannot be read.
     """
-    lowest, highest, total, count = np.inf, -np.inf, 0.0, 0
-    first: FloatArray | None = None
-    for start in range(0, channel.count, BLOCK_SAMPLES):
-        values = channel.values(start, min(start + BLOCK_SAMPLES, channel.count))
-        finite = values[np.isfinite(values)]
-        if finite.size:
-            first = finite if first is None else first
-            lowest, highest = min(lowest, float(finite.min())), max(highest, float(finite.max()))
-            total, count = total + float(finite.sum()), count + finite.size
-    if not count or first is None:
-        return Levels(lowest=np.nan, mean=np.nan, highest=np.nan, not_numbers=channel.count, is_pulses=False)
-    return Levels(
-        lowest=lowest,
-        mean=total / count,
-        highest=highest,
-        not_numbers=channel.count - count,
-        is_pulses=_are_pulses(first),
-    )
+    counted = [_Counted(channel) for channel in channels]
+    most = max((channel.count for channel in channels), default=0)
+    for start in range(0, most, BLOCK_SAMPLES):
+        for item in counted:
+            if start < item.channel.count:
+                item.add(start)
+        reach(min((start + BLOCK_SAMPLES) / most, 1.0))
+    return [item.levels() for item in counted]
 
 
 def _are_pulses(values: FloatArray) -> bool:

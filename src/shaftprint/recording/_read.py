@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
+from shaftprint.recording._printable import printable
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers import READERS, Reader, read_outside
 
@@ -36,13 +37,18 @@ def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **h
         if path.stat().st_size == 0:
             raise RecordingError(f"{path}: expected a logger file, found an empty one.")
         outside = read_outside(path, **hints) if readers is READERS else None
-        if outside is not None:
-            return outside
-        claims = [reader for reader in readers if reader.is_mine(path)]
-        if len(claims) == 1:
-            return claims[0].read(path, **hints)
+        return outside or _the_reader(path, readers).read(path, **hints)
     except OSError as error:
         raise RecordingError(f"{path}: the file cannot be read ({error}).") from None
+    except RecordingError as error:
+        # what is quoted from a damaged file may hold anything
+        raise RecordingError(printable(str(error))) from error.__cause__
+
+
+def _the_reader(path: Path, readers: Sequence[Reader]) -> Reader:
+    claims = [reader for reader in readers if reader.is_mine(path)]
+    if len(claims) == 1:
+        return claims[0]
     if claims:
         names = " and ".join(reader.NAME for reader in claims)
         raise RecordingError(

@@ -35,8 +35,9 @@ def write_recording(
     RecordingError
         If the file exists and may not be replaced, or cannot be written.
     """
+    found = list(channels)
     with RecordingWriter(path, attributes=attributes, overwrite=overwrite) as writer:
-        for channel in channels:
+        for channel in found:
             is_counts = channel.read(0, 0).dtype == np.int16
             writer.declare(
                 channel.name,
@@ -48,6 +49,9 @@ def write_recording(
                 long_name=channel.long_name,
                 dtype="int16" if is_counts else "float64",
             )
-            for start in range(0, channel.count, CHUNK_SAMPLES):
+        # block by block, not channel by channel: some formats keep all channels of a moment in one record
+        for start in range(0, max((channel.count for channel in found), default=0), CHUNK_SAMPLES):
+            for channel in found:
                 stop = min(start + CHUNK_SAMPLES, channel.count)
-                writer.append(channel.name, channel.read(start, stop))
+                if start < stop:
+                    writer.append(channel.name, channel.read(start, stop))

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
+from shaftprint.recording._printable import printable
 from shaftprint.recording._recording import Channel
 
 _SHOWN = 5
@@ -26,7 +27,7 @@ class Gathered:
         try:
             channel = make()
         except RecordingError as error:
-            self.left_out[name] = str(error).removeprefix(f"{self.path}").lstrip(":, ")
+            self.left_out[name] = printable(str(error)).removeprefix(f"{self.path}").lstrip(":, ")
         else:
             self.channels[name] = channel
 
@@ -57,10 +58,10 @@ def unique_names(named: "list[tuple[str, str]]") -> list[str]:
     named
         Group and name of every channel.
     """
-    plain = [name.replace("/", "|") or "unnamed" for _, name in named]
+    plain = [printable(name.replace("/", "|")) or "unnamed" for _, name in named]
     found: list[str] = []
     for (group, _), name in zip(named, plain, strict=True):
-        candidate = name if plain.count(name) == 1 else f"{group.replace('/', '|')}.{name}"
+        candidate = name if plain.count(name) == 1 else f"{printable(group.replace('/', '|'))}.{name}"
         number = 2
         unique = candidate
         while unique in found:

@@ -3,8 +3,9 @@
 import contextlib
 import re
 from datetime import datetime
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from shaftprint.recording.readers._damage import expect_plausible, told_as_damag
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers._mdf_records import Records, expect_in_record
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._units import plain_unit
 
@@ -52,9 +54,14 @@ def read(path: Path, **hints: object) -> Recording:
     asammdf = library(path, "asammdf", NAME)
     _close_in_silence(asammdf)
     _expect_version(path)
-    with told_as_damage(path, NAME):
-        file = asammdf.MDF(str(path), process_bus_logging=False)
-    opened = Opened(path, file.close)
+    handle = path.open("rb")
+    try:
+        with told_as_damage(path, NAME):
+            file = asammdf.MDF(handle, process_bus_logging=False)
+    except BaseException:
+        handle.close()
+        raise
+    opened = Opened(path, partial(_close, file, handle))
     try:
         with told_as_damage(path, NAME):
             gathered = _gather(path, file, opened, rate)
@@ -71,6 +78,11 @@ def read(path: Path, **hints: object) -> Recording:
     except BaseException:
         opened.close()
         raise
+
+
+def _close(file: Any, handle: BinaryIO) -> None:
+    file.close()
+    handle.close()
 
 
 def _expect_version(path: Path) -> None:
@@ -104,6 +116,7 @@ def _gather(path: Path, file: Any, opened: Opened, rate_hz: float | None) -> Gat
         if file.masters_db.get(group) != index and int(channel.channel_type) not in _MASTERS
     ]
     names = unique_names([(f"group {group}", file.groups[group].channels[index].name) for group, index in places])
+    records = Records(file)
     clocks: dict[int, Clock | RecordingError] = {}
     for (group, index), name in zip(places, names, strict=True):
         if group not in clocks:
@@ -116,7 +129,7 @@ def _gather(path: Path, file: Any, opened: Opened, rate_hz: float | None) -> Gat
             clock = clocks[group]
             if isinstance(clock, RecordingError):
                 raise clock
-            return _channel(path, file, opened, group, index, name, clock)
+            return _channel(path, file, records, opened, group, index, name, clock)
 
         gathered.add(name, make)
     return gathered
@@ -139,6 +152,7 @@ def _clock(path: Path, file: Any, group: int, rate_hz: float | None) -> Clock:
             raise RecordingError(f"{path}: expected a master channel of times, found none; give the sample rate.")
         return Clock(rate_hz=rate_hz, start_s=0.0)
     channel = file.groups[group].channels[master]
+    expect_in_record(path, f"master {channel.name}", file.groups[group].channel_group, channel)
     if int(getattr(channel, "sync_type", _TIME)) != _TIME:
         raise RecordingError(f"{path}: expected a master channel of times, found one of angles, distances or numbers.")
 
@@ -150,13 +164,16 @@ def _clock(path: Path, file: Any, group: int, rate_hz: float | None) -> Clock:
         return uniform_clock(path, f"master {channel.name}", count, read)
 
 
-def _channel(path: Path, file: Any, opened: Opened, group: int, index: int, name: str, clock: Clock) -> Channel:
+def _channel(
+    path: Path, file: Any, records: Records, opened: Opened, group: int, index: int, name: str, clock: Clock
+) -> Channel:
     described = file.groups[group].channels[index]
     count = _count(path, file, group)
+    expect_in_record(path, name, file.groups[group].channel_group, described)
     conversion = described.conversion
     kind = -1 if conversion is None else int(conversion.conversion_type)
     scale, offset = 1.0, 0.0
-    first, invalid = _samples(file, group, index, 0, min(count, 2), raw=True)
+    first, invalid = records.samples(group, index, 0, min(count, 2), raw=True)
     if first.ndim != 1 or first.dtype.kind not in "fiu":
         raise RecordingError(f"{path}, channel {name}: expected one real number a sample, found {_shape(first)}.")
     is_counts = first.dtype == np.int16 and invalid is None and (conversion is None or kind == _LINEAR)
@@ -169,9 +186,8 @@ def _channel(path: Path, file: Any, opened: Opened, group: int, index: int, name
     raw = is_counts or (_is_v4(file) and kind >= _FIRST_TEXT_CONVERSION)
 
     def source(start: int, stop: int) -> NDArray[Any]:
-        opened.expect_open(name)
-        with told_as_damage(path, NAME):
-            values, invalid = _samples(file, group, index, start, stop, raw=raw)
+        with opened.reading(name), told_as_damage(path, NAME):
+            values, invalid = records.samples(group, index, start, stop, raw=raw)
             if len(values) != stop - start:
                 raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are missing; is the file cut?")
             if is_counts:
@@ -193,23 +209,6 @@ def _channel(path: Path, file: Any, opened: Opened, group: int, index: int, name
         offset=offset,
         long_name=str(getattr(described, "comment", "") or "")[:200],
     )
-
-
-def _samples(file: Any, group: int, index: int, start: int, stop: int, *, raw: bool) -> tuple[NDArray[Any], Any]:
-    if stop == start:
-        # the library takes no count for all of them
-        values, _ = _samples(file, group, index, start, start + 1, raw=raw)
-        return values[:0], None
-    found = file.get(
-        group=group,
-        index=index,
-        samples_only=True,
-        raw=raw,
-        ignore_invalidation_bits=True,
-        record_offset=start,
-        record_count=stop - start,
-    )
-    return np.asarray(found[0]), found[1]
 
 
 def _is_v4(file: Any) -> bool:

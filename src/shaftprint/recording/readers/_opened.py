@@ -1,6 +1,8 @@
 """A library's open file that says so once it has been closed."""
 
-from collections.abc import Callable
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
@@ -22,6 +24,20 @@ class Opened:
         self._path = path
         self._close = close
         self._is_open = True
+        self._turn = threading.Lock()
+
+    @contextmanager
+    def reading(self, name: str) -> Iterator[None]:
+        """Let one thread at a time read: signals are prepared in several, and a file has one place to read from.
+
+        Raises
+        ------
+        RecordingError
+            If the file has been closed.
+        """
+        with self._turn:
+            self.expect_open(name)
+            yield
 
     def expect_open(self, name: str) -> None:
         """Refuse to read a channel of a file that has been closed.

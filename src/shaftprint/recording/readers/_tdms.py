@@ -90,8 +90,7 @@ def _channel(path: Path, name: str, channel: Any, clock: Clock, opened: Opened) 
     is_counts = kind == np.dtype(np.int16)
 
     def source(start: int, stop: int) -> NDArray[Any]:
-        opened.expect_open(name)
-        with told_as_damage(path, NAME):
+        with opened.reading(name), told_as_damage(path, NAME):
             values = channel.read_data(start, stop - start)
             if len(values) != stop - start:
                 raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are missing; is the file cut?")
