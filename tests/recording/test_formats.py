@@ -1,5 +1,6 @@
 """Files that the formats' own libraries write, and what they say of clocks, units, scales and gaps."""
 
+from concurrent.futures import ThreadPoolExecutor
 from datetime import UTC, datetime
 
 import asammdf
@@ -12,7 +13,7 @@ import pytest
 import scipy.io
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording import read_recording, write_by_ending, write_mdf4, write_tdms
+from shaftprint.recording import RecordingWriter, read_recording, write_by_ending, write_mdf4, write_tdms
 
 FAST = 2.0 + np.arange(1000) / 500.0
 SLOW = np.arange(300) / 100.0
@@ -236,3 +237,24 @@ def test_the_content_decides_not_the_name(tmp_path, name):
     other = path.rename(tmp_path / name)
     with read_recording(other) as recording:
         assert recording.format == "MDF 4.10"
+
+
+@pytest.mark.parametrize("ending", [".mf4", ".tdms"])
+def test_channels_may_be_read_by_several_threads_at_once(tmp_path, ending):
+    rng = np.random.default_rng(4)
+    counts = {f"c{number}": rng.integers(-999, 999, 40_000).astype(np.int16) for number in range(6)}
+    native, path = tmp_path / "six.nc", tmp_path / f"six{ending}"
+    with RecordingWriter(native) as writer:
+        for name, values in counts.items():
+            writer.declare(name, unit="V", rate_hz=1000.0)
+            writer.append(name, values)
+    with read_recording(native) as recording:
+        write_by_ending(path, recording.channels.values())
+    with read_recording(path) as recording, ThreadPoolExecutor(6) as threads:
+
+        def read(name):
+            starts = range(0, 40_000, 500)
+            return np.concatenate([recording.channel(name).read(start, start + 500) for start in starts])
+
+        for name, found in zip(counts, threads.map(read, counts), strict=True):
+            assert np.array_equal(found, counts[name])

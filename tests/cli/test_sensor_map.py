@@ -1,0 +1,63 @@
+"""The proposal of ``shaftprint inspect`` for the sensors of the vessel file."""
+
+import tomllib
+
+import numpy as np
+
+from shaftprint.recording import RecordingWriter
+
+
+def _map(result):
+    """Return the proposed part of the vessel file; its comments are left out."""
+    assert result.exit_code == 0
+    return tomllib.loads(result.output.partition("are for you to fill in\n")[2])
+
+
+def test_sensors_of_the_simulated_tug(run, recording):
+    found = _map(run("inspect", recording))
+    assert [speed["channel"] for speed in found["sensors"]["speed"]] == ["PTM_e", "PTM_1", "PTM_4"]
+    assert [speed["shaft"] for speed in found["sensors"]["speed"]] == ["engine", "propeller", "propeller"]
+    assert found["sensors"]["shaft_torque"] == {"channel": "M_s", "unit": "V"}
+    assert found["sensors"]["set_point"] == {"channel": "U_setpoint", "unit": "V"}
+    assert found["logger"] == {"sample_rate_hz": 2000.0}
+
+
+def test_what_cannot_be_told_is_left_for_the_user(run, recording):
+    lines = run("inspect", recording).output.splitlines()
+    assert len([line for line in lines if line.startswith("# pulses_per_revolution =")]) == 3
+    assert len([line for line in lines if line.startswith("# scale_nm_per_unit =")]) == 1
+
+
+def test_shapes_and_units_of_a_foreign_recording(run, tmp_path):
+    seconds = np.arange(20_000) / 1000.0
+    channels = {
+        # 60 pulses a second that stay up for a fifth of the time; a sine of the same levels is none
+        "Tacho motor": ("V", 1000.0, np.where(seconds * 60.0 % 1.0 < 0.2, 5.0, 0.1)),
+        "Tacho sine": ("V", 1000.0, np.sin(2.0 * np.pi * 60.0 * seconds)),
+        "Drehmoment": ("N m", 1000.0, 20e3 + 1e3 * np.sin(seconds)),
+        "Lever": ("V", 1000.0, np.sin(0.3 * seconds)),
+        "ECU rack": ("%", 50.0, 50.0 + np.sin(seconds[::20])),
+        "GPS": ("kn", 1.0, np.linspace(8.0, 9.0, 20)),
+        "Cabin": ("K", 1.0, np.full(20, 293.0)),
+    }
+    path = tmp_path / "foreign.nc"
+    with RecordingWriter(path) as writer:
+        for name, (unit, rate_hz, values) in channels.items():
+            writer.declare(name, unit=unit, rate_hz=rate_hz, dtype="float64")
+            writer.append(name, values)
+    found = _map(run("inspect", path))["sensors"]
+    assert [(speed["channel"], speed["shaft"]) for speed in found["speed"]] == [("Tacho motor", "engine")]
+    assert found["shaft_torque"] == {"channel": "Drehmoment", "unit": "N m", "scale_nm_per_unit": 1.0}
+    assert found["set_point"]["channel"] == "Lever"
+    assert found["rack"] == {"channel": "ECU rack", "unit": "%", "cycle_s": 0.02}
+    assert found["ship_speed"] == {"channel": "GPS", "unit": "kn", "cycle_s": 1.0}
+
+
+def test_sensors_that_no_channel_looks_like_are_named(run, tmp_path):
+    path = tmp_path / "cabin.nc"
+    with RecordingWriter(path) as writer:
+        writer.declare("Cabin", unit="K", rate_hz=1.0, dtype="float64")
+        writer.append("Cabin", np.full(20, 293.0))
+    output = run("inspect", path).output
+    for words in ("[sensors.shaft_torque]: no", "[sensors.set_point]: no", "[[sensors.speed]]: no channel holds"):
+        assert words in output
