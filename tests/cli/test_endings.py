@@ -23,7 +23,7 @@ def _raising(error):
 
 
 def test_error_of_the_library_is_one_sentence_and_code_1(run, monkeypatch, tmp_path):
-    monkeypatch.setattr(_sail, "sail", _raising(RecordingError("channel M_s: expected volts, found amperes.")))
+    monkeypatch.setattr(_sail, "sail_as", _raising(RecordingError("channel M_s: expected volts, found amperes.")))
     result = run("sail", "stan-tug-1205", "short", "-o", tmp_path / "x.nc")
     assert result.exit_code == 1
     assert result.stderr == "Error: channel M_s: expected volts, found amperes.\n"
@@ -32,7 +32,7 @@ def test_error_of_the_library_is_one_sentence_and_code_1(run, monkeypatch, tmp_p
 
 def test_full_disk_is_one_sentence_and_code_1(run, monkeypatch, tmp_path):
     full = OSError(errno.ENOSPC, "No space left on device", "x.nc")
-    monkeypatch.setattr(_sail, "sail", _raising(full))
+    monkeypatch.setattr(_sail, "sail_as", _raising(full))
     result = run("sail", "stan-tug-1205", "short", "-o", tmp_path / "x.nc")
     assert result.exit_code == 1
     assert result.stderr == (
@@ -41,7 +41,7 @@ def test_full_disk_is_one_sentence_and_code_1(run, monkeypatch, tmp_path):
 
 
 def test_error_of_the_system_without_file_name(run, monkeypatch, tmp_path):
-    monkeypatch.setattr(_sail, "sail", _raising(OSError("unable to write")))
+    monkeypatch.setattr(_sail, "sail_as", _raising(OSError("unable to write")))
     result = run("sail", "stan-tug-1205", "short", "-o", tmp_path / "x.nc")
     assert result.exit_code == 1
     assert result.stderr == "Error: unable to write; check the path, the permissions and the free space.\n"
@@ -55,14 +55,14 @@ def test_reader_that_went_away_is_left_to_click(run, monkeypatch, tmp_path):
 
 
 def test_interruption_is_code_130(run, monkeypatch, tmp_path):
-    monkeypatch.setattr(_sail, "sail", _raising(KeyboardInterrupt()))
+    monkeypatch.setattr(_sail, "sail_as", _raising(KeyboardInterrupt()))
     result = run("sail", "stan-tug-1205", "short", "-o", tmp_path / "x.nc")
     assert result.exit_code == 130
     assert result.stderr == "Interrupted; nothing is left half-written.\n"
 
 
 def test_unforeseen_error_is_not_hidden(run, monkeypatch, tmp_path):
-    monkeypatch.setattr(_sail, "sail", _raising(ZeroDivisionError("a mistake in the program")))
+    monkeypatch.setattr(_sail, "sail_as", _raising(ZeroDivisionError("a mistake in the program")))
     with pytest.raises(ZeroDivisionError, match="a mistake in the program"):
         run("sail", "stan-tug-1205", "short", "-o", tmp_path / "x.nc")
 

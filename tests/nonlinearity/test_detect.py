@@ -1,5 +1,6 @@
 """Each nonlinearity alone is named and nothing else; a linear line shows nothing."""
 
+import os
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +10,7 @@ from shaftprint.errors import SignalError
 from shaftprint.nonlinearity import FALSE_ALARM, detect
 from shaftprint.tug import Noise
 
+SEEDS = int(os.environ.get("SHAFTPRINT_SEEDS", "12"))
 FREE = {"motoring_torque_nm": 9000.0}
 STEADY = {"K_p": 5.7, "K_i": 4.27, "t_d": 0.0703, "omega_n": 10.3, "zeta": 0.47, "t_sp": 0.0518}
 
@@ -62,12 +64,12 @@ def test_an_integrator_that_winds_up_is_named_beside_its_limit(found, vessel):
     assert estimate(told, "T_aw").value > 5.0
 
 
-def test_a_linear_line_shows_nothing_in_forty_recordings(make, campaign, strong):
-    """At the stated level the chance that any of 40 shows a finding is 4 %: one would be suspicious, two a fault."""
+def test_a_linear_line_shows_nothing(make, campaign, strong):
+    """At the stated level any of 12 shows a finding in 1 of 100 such tests; ``SHAFTPRINT_SEEDS=40`` looks at 40."""
     assert FALSE_ALARM <= 1e-3
     alarms = [
         [finding.kind for finding in told.findings]
-        for seed in range(100, 140)
+        for seed in range(100, 100 + SEEDS)
         if not (told := detect(make(strong, seed=seed, **FREE), campaign, strong, governor=STEADY)).linear
     ]
     assert alarms == []
