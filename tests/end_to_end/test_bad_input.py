@@ -96,7 +96,10 @@ def test_truncated_recording(short_trip, refused, tmp_path, share):
     content = short_trip.path.read_bytes()
     path = tmp_path / "cut.nc"
     path.write_bytes(content[: int(share * len(content))])
-    assert refused(path).startswith(f"{path}: expected a whole recording, found a damaged or truncated file")
+    sentence = refused(path)
+    assert sentence.startswith(f"{path}: expected a whole shaftprint recording")
+    assert "truncated file" in sentence
+    assert sentence.endswith("copy it again from the logger.")
 
 
 @pytest.mark.parametrize(
