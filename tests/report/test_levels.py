@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.clocks import Alignment, ClockMap
 from shaftprint.recording import Channel, Recording
-from shaftprint.report._levels import channel_levels, clock_map_table, clock_table, level_table
+from shaftprint.report._levels import clock_map_table, clock_table, level_table
 
 
 def channel(name, values, rate_hz=10.0, start_s=0.0):
@@ -17,8 +17,9 @@ def channel(name, values, rate_hz=10.0, start_s=0.0):
 
 @pytest.mark.parametrize("chunk", [1, 3, 1 << 20])
 def test_levels_do_not_hang_on_the_pieces(monkeypatch, chunk):
-    monkeypatch.setattr("shaftprint.report._levels._CHUNK", chunk)
-    found = channel_levels(channel("a", [1.0, 5.0, np.nan, 5.0, -1.0, 5.0, 0.0]))
+    monkeypatch.setattr("shaftprint.recording._levels.BLOCK_SAMPLES", chunk)
+    values = [1.0, 5.0, np.nan, 5.0, -1.0, 5.0, 0.0]
+    found = Recording(path="x.nc", sha256="", format="", channels={"a": channel("a", values)}).levels()["a"]
     assert (found.lowest, found.highest, found.missing) == (-1.0, 5.0, 1)
     assert found.mean == pytest.approx(15.0 / 6.0)
     assert (found.at_highest, found.at_lowest) == (pytest.approx(3.0 / 6.0), pytest.approx(1.0 / 6.0))

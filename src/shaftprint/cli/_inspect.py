@@ -9,7 +9,6 @@ from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.cli._fingerprint_tables import print_findings
 from shaftprint.cli._inputs import NAMES
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.cli._raw_levels import levels_of
 from shaftprint.cli._reading import hints_of, reading_options
 from shaftprint.cli._sensor_map import Seen, proposed_sensors
 from shaftprint.cli._signal_tables import print_lines, print_signals
@@ -62,12 +61,13 @@ def _print_channels(opened: Recording, *, hidden: bool) -> list[Seen]:
     rows, seen = [], []
     with progress(hidden=hidden) as steps:
         steps.begin("Reading the channels", total=1.0)
-        found = levels_of(list(opened.channels.values()), reach=steps.reach)
-    for channel, levels in zip(opened.channels.values(), found, strict=True):
+        found = opened.levels(steps.reach)
+    for name, channel in opened.channels.items():
+        levels = found[name]
         seen.append(Seen(channel=channel, is_pulses=levels.is_pulses))
         values = [f"{value:.5g}" for value in (levels.lowest, levels.mean, levels.highest)]
         span = f"{channel.start_s:g} to {channel.start_s + channel.duration_s:g}"
-        rows.append((channel.name, channel.unit, f"{channel.rate_hz:g}", span, *values, str(levels.not_numbers)))
+        rows.append((channel.name, channel.unit, f"{channel.rate_hz:g}", span, *values, str(levels.missing)))
     click.echo(f"{opened.path}: {opened.format}, SHA-256 {opened.sha256}\n")
     columns = ("channel", "unit", "rate [Hz]", "span [s]", "lowest", "mean", "highest", "not a number")
     print_table("Channels, raw", columns, rows, numbers=(2, 4, 5, 6, 7))

@@ -12,9 +12,11 @@ rate                  Hz       samples a second of one channel
 Files are opened read-only. Values that are not numbers are passed on as they are.
 """
 
+from shaftprint.recording._channel import Channel
 from shaftprint.recording._from_arrays import Samples, recording_from_arrays
+from shaftprint.recording._levels import Levels
 from shaftprint.recording._read import read_recording
-from shaftprint.recording._recording import Channel, Recording
+from shaftprint.recording._recording import Recording
 from shaftprint.recording._write import write_recording
 from shaftprint.recording._writer import RecordingWriter
 from shaftprint.recording.readers import READERS, Reader, ReaderFunction
@@ -33,6 +35,7 @@ __all__ = [
     "NATIVE_ENDINGS",
     "READERS",
     "Channel",
+    "Levels",
     "Reader",
     "ReaderFunction",
     "Recording",

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
+from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
-from shaftprint.recording._recording import Channel
 
 # Measured on 22.9 million samples x 5 channels: level 1 writes in 3.2 s of CPU to 113 MB, level 4 in
 # 5.1 s to 110 MB; all levels read in 0.8 s.

@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
-from shaftprint.recording._recording import Channel, Recording, Source, sha256_of
+from shaftprint.recording._channel import Channel, Source
+from shaftprint.recording._recording import Recording, sha256_of
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

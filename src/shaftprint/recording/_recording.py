@@ -1,101 +1,16 @@
-"""The noun of the room: a raw logger file, untouched, with its channels read on request."""
+"""The noun of the room: a raw logger file, untouched."""
 
 import hashlib
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self, TypeAlias
+from typing import Self
 
-import numpy as np
-from numpy.typing import NDArray
-
-from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
-
-Counts: TypeAlias = NDArray[np.int16] | NDArray[np.float64]
-Source: TypeAlias = Callable[[int, int], NDArray[Any]]
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Channel:
-    """One channel of a recording, on its own clock; ``value = counts * scale + offset``."""
-
-    name: str
-    """Name of the channel."""
-    unit: str
-    """Unit of the scaled value, such as ``V``; empty where the file does not say."""
-    rate_hz: float
-    """Sample rate [Hz]."""
-    start_s: float
-    """Time of the first sample [s]."""
-    count: int
-    """Number of samples."""
-    source: Source = field(repr=False)
-    """Gives the raw counts of the samples [start, stop)."""
-    scale: float = 1.0
-    """Value of one count [unit]; 1 where the file holds values."""
-    offset: float = 0.0
-    """Value at count zero [unit]; 0 where the file holds values."""
-    long_name: str = ""
-    """What the channel is, in words."""
-
-    def __post_init__(self) -> None:
-        """Check that the channel can be placed in time.
-
-        Raises
-        ------
-        RecordingError
-            If the rate is not positive, the scale is zero, or a number is not finite.
-        """
-        numbers = (self.rate_hz, self.start_s, self.scale, self.offset)
-        if not np.all(np.isfinite(numbers)) or self.rate_hz <= 0.0 or self.scale == 0.0:
-            raise RecordingError(
-                f"channel {self.name}: expected a positive rate, a scale other than 0 and finite "
-                f"numbers, found rate {self.rate_hz:g} Hz, start {self.start_s:g} s, "
-                f"scale {self.scale:g}, offset {self.offset:g}."
-            )
-
-    @property
-    def duration_s(self) -> float:
-        """Length of the channel [s], each sample counted with its period."""
-        return self.count / self.rate_hz
-
-    def read(self, start: int, stop: int) -> Counts:
-        """Return the raw counts of the samples [start, stop), shape (stop - start,).
-
-        Raises
-        ------
-        RecordingError
-            If the samples are not in the recording or the file can no longer be read.
-        """
-        if not 0 <= start <= stop <= self.count:
-            raise RecordingError(
-                f"channel {self.name}: expected samples within [0, {self.count}), found [{start}, {stop})."
-            )
-        return self.source(start, stop)
-
-    def values(self, start: int, stop: int) -> FloatArray:
-        """Return the samples [start, stop) in the channel's unit, shape (stop - start,).
-
-        Raises
-        ------
-        RecordingError
-            As ``read``.
-        """
-        values = self.read(start, stop).astype(np.float64)
-        values *= self.scale
-        values += self.offset
-        return values
-
-    def with_unit(self, unit: str) -> Self:
-        """Return the same channel in a unit that the user gives, where the file gives none."""
-        return replace(self, unit=unit)
-
-    def time_s(self, start: int, stop: int) -> FloatArray:
-        """Return the times of the samples [start, stop) [s], shape (stop - start,)."""
-        return self.start_s + np.arange(start, stop) / self.rate_hz
+from shaftprint.recording._channel import Channel
+from shaftprint.recording._levels import Levels, levels_of
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -132,6 +47,21 @@ class Recording:
                 f'{self.path}: expected a channel "{name}", found {", ".join(self.channels) or "none"}.'
             )
         return self.channels[name]
+
+    def levels(self, reach: Callable[[float], None] | None = None) -> dict[str, Levels]:
+        """Return the levels of every channel by its name, from one reading of the file.
+
+        Parameters
+        ----------
+        reach
+            Is told the share that is done, 0 to 1.
+
+        Raises
+        ------
+        RecordingError
+            If the file cannot be read.
+        """
+        return dict(zip(self.channels, levels_of(list(self.channels.values()), reach=reach), strict=True))
 
     def close(self) -> None:
         """Release the file; channels cannot be read afterwards."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
-from shaftprint.recording._recording import Source
+from shaftprint.recording._channel import Source
 
 
 class Spool:

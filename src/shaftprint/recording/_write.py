@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
+from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
-from shaftprint.recording._recording import Channel
 from shaftprint.recording._writer import RecordingWriter
 
 

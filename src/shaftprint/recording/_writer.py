@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
 from shaftprint.files import written_whole
+from shaftprint.recording._channel import Channel
 from shaftprint.recording._channel_writer import ChannelWriter
 from shaftprint.recording._container import FORMAT, GROUP, VERSION
-from shaftprint.recording._recording import Channel
 from shaftprint.recording._seal import add_seal
 
 

@@ -1,7 +1,6 @@
 """Tables of the raw channels: what levels they reach, and by which clocks they run."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,69 +10,21 @@ from shaftprint.report._table import Cell, Table
 
 if TYPE_CHECKING:
     from shaftprint.clocks import Alignment
-    from shaftprint.recording import Channel, Recording
+    from shaftprint.recording import Levels, Recording
 
 PERCENT, MILLI, PPM = 100.0, 1e3, 1e6
-_CHUNK = 1 << 20
 # A channel that spends more than this share of its time at its highest or lowest value may be cut off there.
 CUT_OFF = 0.01
 # Pulses are at their ends most of the time: a channel with both ends that often is one of pulses.
 PULSES = 0.8
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Levels:
-    """Levels of one raw channel in its unit."""
-
-    lowest: float
-    """Smallest value [unit]; not a number where there is none."""
-    mean: float
-    """Mean [unit]; not a number where there is none."""
-    highest: float
-    """Largest value [unit]; not a number where there is none."""
-    at_lowest: float
-    """Share of the samples at the smallest value."""
-    at_highest: float
-    """Share of the samples at the largest value."""
-    missing: int
-    """Number of samples that are no number."""
-
-
-def channel_levels(channel: "Channel") -> Levels:
-    """Return the levels of a channel, read once in pieces.
-
-    Raises
-    ------
-    RecordingError
-        If the file cannot be read.
-    """
-    lowest, highest, total, count, low, high = np.inf, -np.inf, 0.0, 0, 0, 0
-    for first in range(0, channel.count, _CHUNK):
-        values = channel.values(first, min(first + _CHUNK, channel.count))
-        values = values[np.isfinite(values)]
-        if not values.size:
-            continue
-        smallest, largest = float(values.min()), float(values.max())
-        low = (low if smallest >= lowest else 0) + int(np.count_nonzero(values == min(smallest, lowest)))
-        high = (high if largest <= highest else 0) + int(np.count_nonzero(values == max(largest, highest)))
-        lowest, highest = min(lowest, smallest), max(highest, largest)
-        total, count = total + float(values.sum()), count + values.size
-    known = count > 0
-    return Levels(
-        lowest=lowest if known else np.nan,
-        mean=total / count if known else np.nan,
-        highest=highest if known else np.nan,
-        at_lowest=low / count if known else 0.0,
-        at_highest=high / count if known else 0.0,
-        missing=channel.count - count,
-    )
-
-
 def level_table(recording: "Recording") -> Table:
     """Return lowest, mean and highest value of every raw channel, and what share of its time it spends at the ends."""
     rows: list[tuple[Cell, ...]] = []
-    for channel in recording.channels.values():
-        found = channel_levels(channel)
+    levels = recording.levels()
+    for name, channel in recording.channels.items():
+        found = levels[name]
         rows.append(
             (
                 channel.name,
@@ -93,7 +44,7 @@ def level_table(recording: "Recording") -> Table:
     )
 
 
-def _remark(found: Levels) -> str:
+def _remark(found: "Levels") -> str:
     if found.lowest == found.highest:
         return "never changes: dead, or not connected"
     if found.at_lowest + found.at_highest > PULSES:

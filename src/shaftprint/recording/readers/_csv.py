@@ -14,7 +14,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
-from shaftprint.recording._recording import Channel, Recording, sha256_of
+from shaftprint.recording._channel import Channel
+from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import uniform_clock
 from shaftprint.recording.readers._csv_dates import dates, seconds_from

@@ -13,7 +13,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
-from shaftprint.recording._recording import Channel, Recording, Source, sha256_of
+from shaftprint.recording._channel import Channel, Source
+from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._clock import Clock, uniform_clock
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._dewesoft_index import INDEX, UnpackedChannel
@@ -53,15 +54,7 @@ def read(path: Path, **hints: object) -> Recording:
                 unpacked = UnpackedChannel(**entry)
                 gathered.add(unpacked.name, partial(_channel, path, unpacked, Path(folder.name), opened))
             began = index["began"]
-            return Recording(
-                path=path,
-                sha256=sha256_of(path),
-                format=NAME,
-                channels=gathered.expect_some(),
-                left_out=gathered.left_out,
-                began=None if began is None else datetime.fromisoformat(began),
-                release=opened.close,
-            )
+            return gathered.recording(NAME, opened.close, None if began is None else datetime.fromisoformat(began))
     except BaseException:
         opened.close()
         raise

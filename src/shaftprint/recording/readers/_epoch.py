@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
-from shaftprint.recording._recording import Channel
+from shaftprint.recording._channel import Channel
 
 # three years: no test lasts that long
 _LATER_THAN_ANY_TEST_S = 1e8

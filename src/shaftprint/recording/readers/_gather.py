@@ -2,11 +2,14 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from datetime import datetime
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
+from shaftprint.recording._channel import Channel
 from shaftprint.recording._printable import printable
-from shaftprint.recording._recording import Channel
+from shaftprint.recording._recording import Recording, sha256_of
+from shaftprint.recording.readers._epoch import from_second_zero
 
 _SHOWN = 5
 
@@ -30,6 +33,43 @@ class Gathered:
             self.left_out[name] = printable(str(error)).removeprefix(f"{self.path}").lstrip(":, ")
         else:
             self.channels[name] = channel
+
+    def recording(self, kind: str, release: Callable[[], None], began: datetime | None = None) -> Recording:
+        """Return the recording of these channels.
+
+        Parameters
+        ----------
+        kind
+            Name of the file format.
+        release
+            What closing it does.
+        began
+            Date of second zero.
+
+        Raises
+        ------
+        RecordingError
+            If there is no channel that can be used.
+        """
+        return self._recording(self.expect_some(), kind, release, began)
+
+    def recording_from_second_zero(self, kind: str, release: Callable[[], None]) -> Recording:
+        """Return the same with times from the first sample on, where they count seconds since 1970."""
+        channels, began = from_second_zero(self.expect_some())
+        return self._recording(channels, kind, release, began)
+
+    def _recording(
+        self, channels: Mapping[str, Channel], kind: str, release: Callable[[], None], began: datetime | None
+    ) -> Recording:
+        return Recording(
+            path=self.path,
+            sha256=sha256_of(self.path),
+            format=kind,
+            channels=channels,
+            left_out=self.left_out,
+            began=began,
+            release=release,
+        )
 
     def expect_some(self) -> Mapping[str, Channel]:
         """Return the channels.

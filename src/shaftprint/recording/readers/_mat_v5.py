@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 import scipy.io
 
-from shaftprint.recording._recording import Recording, sha256_of
+from shaftprint.recording._recording import Recording
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._damage import told_as_damage
-from shaftprint.recording.readers._epoch import from_second_zero
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._mat_variables import MatVariables, gather_variables, object_reason
 from shaftprint.recording.readers._vectors import Vector
@@ -49,16 +48,7 @@ def read(path: Path, **hints: object) -> Recording:
         try:
             gathered = gather_variables(path, _survey(path, spool), rate_hz=rate)
             spool.finish()
-            channels, began = from_second_zero(gathered.expect_some())
-            return Recording(
-                path=path,
-                sha256=sha256_of(path),
-                format=NAME,
-                channels=channels,
-                left_out=gathered.left_out,
-                began=began,
-                release=spool.close,
-            )
+            return gathered.recording_from_second_zero(NAME, spool.close)
         except BaseException:
             spool.close()
             raise

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording._recording import Recording, Source, sha256_of
+from shaftprint.recording._channel import Source
+from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._damage import told_as_damage
-from shaftprint.recording.readers._epoch import from_second_zero
 from shaftprint.recording.readers._hdf5_open import expect_storage, open_hdf5
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._mat_variables import MatVariables, gather_variables, object_reason
@@ -51,16 +51,7 @@ def read(path: Path, **hints: object) -> Recording:
             variables = MatVariables()
             _survey(path, file, "", opened, variables)
             gathered = gather_variables(path, variables, rate_hz=rate)
-            channels, began = from_second_zero(gathered.expect_some())
-            return Recording(
-                path=path,
-                sha256=sha256_of(path),
-                format=NAME,
-                channels=channels,
-                left_out=gathered.left_out,
-                began=began,
-                release=opened.close,
-            )
+            return gathered.recording_from_second_zero(NAME, opened.close)
     except BaseException:
         opened.close()
         raise

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
-from shaftprint.recording._recording import Channel, Recording, sha256_of
+from shaftprint.recording._channel import Channel
+from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._clock import Clock, uniform_clock
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._extra import library
@@ -66,15 +67,8 @@ def read(path: Path, **hints: object) -> Recording:
         with told_as_damage(path, NAME):
             gathered = _gather(path, file, opened, rate)
             began = file.start_time
-            return Recording(
-                path=path,
-                sha256=sha256_of(path),
-                format=f"{NAME} {file.version}",
-                channels=gathered.expect_some(),
-                left_out=gathered.left_out,
-                began=began if isinstance(began, datetime) and began.year > 1970 else None,
-                release=opened.close,
-            )
+            known = isinstance(began, datetime) and began.year > 1970
+            return gathered.recording(f"{NAME} {file.version}", opened.close, began if known else None)
     except BaseException:
         opened.close()
         raise

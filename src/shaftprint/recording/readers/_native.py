@@ -6,8 +6,9 @@ from typing import Any
 from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
+from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import FORMAT, GROUP, VERSION
-from shaftprint.recording._recording import Channel, Recording
+from shaftprint.recording._recording import Recording
 from shaftprint.recording._seal import has_seal, hashed
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._hdf5_open import expect_storage, is_hdf5, open_hdf5

@@ -7,9 +7,9 @@ import numpy as np
 import scipy.io
 from numpy.typing import NDArray
 
-from shaftprint.recording._recording import Recording, Source, sha256_of
+from shaftprint.recording._channel import Source
+from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
-from shaftprint.recording.readers._epoch import from_second_zero
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._vectors import Vector, gather_vectors
@@ -48,16 +48,7 @@ def read(path: Path, **hints: object) -> Recording:
             ]
             scalars = {"": _numbers(vars(file)["_attributes"])}
             gathered = gather_vectors(path, vectors, scalars, rate_hz=rate)
-            channels, began = from_second_zero(gathered.expect_some())
-            return Recording(
-                path=path,
-                sha256=sha256_of(path),
-                format=NAME,
-                channels=channels,
-                left_out=gathered.left_out,
-                began=began,
-                release=opened.close,
-            )
+            return gathered.recording_from_second_zero(NAME, opened.close)
     except BaseException:
         opened.close()
         raise

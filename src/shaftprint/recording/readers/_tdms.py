@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
-from shaftprint.recording._recording import Channel, Recording, sha256_of
+from shaftprint.recording._channel import Channel
+from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._clock import Clock, uniform_clock
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._extra import library
@@ -52,15 +53,7 @@ def read(path: Path, **hints: object) -> Recording:
         with told_as_damage(path, NAME):
             file = nptdms.TdmsFile.open(raw)
             gathered = _gather(path, file, opened, rate)
-            return Recording(
-                path=path,
-                sha256=sha256_of(path),
-                format=NAME,
-                channels=gathered.expect_some(),
-                left_out=gathered.left_out,
-                began=_began(file),
-                release=opened.close,
-            )
+            return gathered.recording(NAME, opened.close, _began(file))
     except BaseException:
         opened.close()
         raise

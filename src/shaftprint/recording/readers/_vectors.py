@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording._recording import Channel, Source
+from shaftprint.recording._channel import Channel, Source
 from shaftprint.recording.readers._clock import Clock, uniform_clock
 from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._units import plain_unit, seconds_in

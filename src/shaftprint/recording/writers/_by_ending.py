@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording._recording import Channel
+from shaftprint.recording._channel import Channel
 from shaftprint.recording._write import write_recording
 from shaftprint.recording.writers._csv import write_csv
 from shaftprint.recording.writers._mat_v73 import write_mat_v73

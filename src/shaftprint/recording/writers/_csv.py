@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.errors import RecordingError
 from shaftprint.files import written_whole
-from shaftprint.recording._recording import Channel
+from shaftprint.recording._channel import Channel
 from shaftprint.recording.writers._shared_clock import on_one_clock
 
 _BLOCK = 16_384

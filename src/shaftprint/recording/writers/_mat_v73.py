@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
 from shaftprint.files import written_whole
+from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
-from shaftprint.recording._recording import Channel
 from shaftprint.recording.writers._mat_names import expect_matlab_names
 from shaftprint.recording.writers._shared_clock import on_one_clock
 

@@ -9,8 +9,8 @@ import numpy as np
 
 from shaftprint.errors import RecordingError
 from shaftprint.files import written_whole
+from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
-from shaftprint.recording._recording import Channel
 from shaftprint.recording.readers import library
 
 _VERSION = "4.10"

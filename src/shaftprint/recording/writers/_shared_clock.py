@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording._recording import Channel
+from shaftprint.recording._channel import Channel
 
 
 def on_one_clock(path: Path, channels: Iterable[Channel]) -> tuple[Channel, ...]:

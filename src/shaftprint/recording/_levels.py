@@ -1,4 +1,4 @@
-"""What the raw channels of a recording hold, before a vessel file says what they are."""
+"""What levels the raw channels of a recording reach, before a vessel file says what they are."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.recording import Channel
+from shaftprint.recording._channel import Channel
 
 BLOCK_SAMPLES = 262_144
 
@@ -19,7 +19,7 @@ FEWEST_CROSSINGS = 4
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Levels:
-    """Levels of one channel in its unit."""
+    """Levels of one raw channel in its unit."""
 
     lowest: float
     """Smallest value [unit]; not a number where there is none."""
@@ -27,8 +27,12 @@ class Levels:
     """Mean [unit]; not a number where there is none."""
     highest: float
     """Largest value [unit]; not a number where there is none."""
-    not_numbers: int
-    """How many samples are not finite."""
+    at_lowest: float
+    """Share of the samples at the smallest value."""
+    at_highest: float
+    """Share of the samples at the largest value."""
+    missing: int
+    """Number of samples that are no number."""
     is_pulses: bool
     """Whether almost all values lie near the lowest or the highest, and few of them near one of these."""
 
@@ -39,32 +43,38 @@ class _Counted:
     def __init__(self, channel: Channel) -> None:
         self.channel = channel
         self.lowest, self.highest, self.total, self.count = np.inf, -np.inf, 0.0, 0
+        self.at_lowest = self.at_highest = 0
         self.is_pulses = False
 
     def add(self, start: int) -> None:
         """Look at the block that begins at a sample."""
         values = self.channel.values(start, min(start + BLOCK_SAMPLES, self.channel.count))
         finite = values[np.isfinite(values)]
-        if finite.size:
-            self.is_pulses = _are_pulses(finite) if self.count == 0 else self.is_pulses
-            self.lowest, self.highest = min(self.lowest, float(finite.min())), max(self.highest, float(finite.max()))
-            self.total, self.count = self.total + float(finite.sum()), self.count + finite.size
+        if not finite.size:
+            return
+        self.is_pulses = _are_pulses(finite) if self.count == 0 else self.is_pulses
+        lowest, highest = min(self.lowest, float(finite.min())), max(self.highest, float(finite.max()))
+        # what was lowest so far counts no longer where something lower has come
+        self.at_lowest = (self.at_lowest if lowest == self.lowest else 0) + int(np.count_nonzero(finite == lowest))
+        self.at_highest = (self.at_highest if highest == self.highest else 0) + int(np.count_nonzero(finite == highest))
+        self.lowest, self.highest = lowest, highest
+        self.total, self.count = self.total + float(finite.sum()), self.count + finite.size
 
     def levels(self) -> Levels:
         """Return the levels of all blocks."""
-        channel, count = self.channel, self.count
-        if not count:
-            return Levels(lowest=np.nan, mean=np.nan, highest=np.nan, not_numbers=channel.count, is_pulses=False)
+        known = self.count > 0
         return Levels(
-            lowest=self.lowest,
-            mean=self.total / count,
-            highest=self.highest,
-            not_numbers=channel.count - count,
+            lowest=self.lowest if known else np.nan,
+            mean=self.total / self.count if known else np.nan,
+            highest=self.highest if known else np.nan,
+            at_lowest=self.at_lowest / self.count if known else 0.0,
+            at_highest=self.at_highest / self.count if known else 0.0,
+            missing=self.channel.count - self.count,
             is_pulses=self.is_pulses,
         )
 
 
-def levels_of(channels: Sequence[Channel], *, reach: Callable[[float], None]) -> list[Levels]:
+def levels_of(channels: Sequence[Channel], *, reach: Callable[[float], None] | None = None) -> list[Levels]:
     """Return the levels of channels, read once, block by block: some formats have all channels in one record.
 
     Parameters
@@ -85,7 +95,8 @@ def levels_of(channels: Sequence[Channel], *, reach: Callable[[float], None]) ->
         for item in counted:
             if start < item.channel.count:
                 item.add(start)
-        reach(min((start + BLOCK_SAMPLES) / most, 1.0))
+        if reach is not None:
+            reach(min((start + BLOCK_SAMPLES) / most, 1.0))
     return [item.levels() for item in counted]
 
 
