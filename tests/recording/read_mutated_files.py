@@ -91,6 +91,11 @@ def _text(path):
     path.write_text("Logger 7\n\nDate;M_s;U\n;N m;V\n" + "\n".join(rows) + "\n")
 
 
+def _plain(path):
+    titles = "# made by a program\n# time [s]  M_s [N m]  U\n"
+    path.write_text(titles + "".join(f"{0.1 * k:10.4f} {k:8d} {-3.5e-2 * k:12.4e}\n" for k in range(60)))
+
+
 def _packed(path):
     _text(path)
     path.write_bytes(gzip.compress(path.read_bytes(), mtime=0))
@@ -103,7 +108,7 @@ def _noise(path):
 FORMATS = {
     "native.nc": _native, "log.mf4": _mdf, "log.mdf": _mdf3, "log.tdms": _tdms, "v4.mat": _mat("4"),
     "v5.mat": _mat("5"), "v73.mat": _mat73, "other.nc": _netcdf4, "classic.nc": _netcdf3, "log.csv": _text,
-    "log.csv.gz": _packed, "log.dxd": _noise,
+    "log.csv.gz": _packed, "plain.txt": _plain, "log.dxd": _noise,
 }  # fmt: skip
 
 

@@ -102,7 +102,8 @@ def test_hints_settle_what_the_file_leaves_open(tmp_path):
         ("clock [s],a [V]\n0,1\n1,2\n", 'line 1: expected a column "time \\[s\\]"'),
         ("time [s],a [V],a [V]\n0,1,2\n1,2,3\n", "line 1: expected different names, found a twice"),
         ("time [s],\n0,\n1,\n", 'line 1: expected titles like "M_s \\[V\\]", found ""'),
-        ("0 1 2\n", "found none of them in"),
+        ("0 1 2\n", "line 1: expected titles .* above 3 columns of numbers, found none"),
+        ("a word\n", "found none of them in"),
     ],
 )
 def test_a_file_that_cannot_be_used_is_explained(tmp_path, text, expected):
@@ -117,7 +118,11 @@ def test_a_file_that_cannot_be_used_is_explained(tmp_path, text, expected):
     [
         ({"decimal": ","}, 'decimal sign and delimiter to differ, found "," for both'),
         ({"delimiter": 5}, "the hint delimiter cannot be 5"),
-        ({"sample_rate_hz": 5.0}, "only the hints delimiter, decimal, encoding for this format, found the hint sample"),
+        (
+            {"sheet": 5},
+            "only the hints columns, delimiter, decimal, encoding, sample_rate_hz for this .*, found the hint sheet",
+        ),
+        ({"sample_rate_hz": 0.0}, "the hint sample_rate_hz cannot be 0"),
         ({"encoding": "nonsense"}, "expected text in nonsense"),
     ],
 )

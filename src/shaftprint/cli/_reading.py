@@ -7,12 +7,15 @@ import click
 
 
 def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options ``--sample-rate``, ``--delimiter``, ``--decimal`` and ``--encoding``."""
+    """Add the options ``--sample-rate``, ``--columns``, ``--delimiter``, ``--decimal`` and ``--encoding``."""
     rate = click.option("--sample-rate", type=float, help="Samples a second, where the file has no clock [Hz].")
+    columns = click.option(
+        "--columns", metavar="NAME,...", help='Titles of a text file without them, such as "time [s],u,y [rad/s]".'
+    )
     delimiter = click.option("--delimiter", help="What stands between the columns of a text file.")
     decimal = click.option("--decimal", type=click.Choice([".", ","]), help="Decimal sign of a text file.")
     encoding = click.option("--encoding", help="Encoding of a text file that is not UTF-8, such as cp1252.")
-    return rate(delimiter(decimal(encoding(command))))
+    return rate(columns(delimiter(decimal(encoding(command)))))
 
 
 def hints_of(**said: object) -> dict[str, Any]:

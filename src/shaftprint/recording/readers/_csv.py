@@ -17,18 +17,26 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording._spool import Spool
-from shaftprint.recording.readers._clock import uniform_clock
+from shaftprint.recording.readers._clock import Clock, uniform_clock
 from shaftprint.recording.readers._csv_dates import dates, seconds_from
-from shaftprint.recording.readers._csv_header import Header, looks_like_a_table, read_header
+from shaftprint.recording.readers._csv_header import (
+    WHITE_SPACE,
+    Header,
+    looks_like_a_table,
+    read_header,
+    split_row,
+)
 from shaftprint.recording.readers._epoch import from_second_zero
-from shaftprint.recording.readers._hints import expect_hints
+from shaftprint.recording.readers._hints import rate_hint
 
 NAME = "CSV"
 
-_ENDINGS = (".csv", ".tsv", ".txt", ".asc")
+_ENDINGS = (".csv", ".tsv", ".txt", ".asc", ".lvm")
 _GZIP = b"\x1f\x8b"
 _UTF_16 = (b"\xff\xfe", b"\xfe\xff")
 _FIRST_BYTES = 4096
+# printed times are rounded
+_RATE_AGREEMENT = 1e-3
 _FIRST_ROWS = 1000
 _LONGEST_LINE = 1_000_000
 _BLOCK_CHARACTERS = 8_000_000
@@ -54,7 +62,8 @@ def is_mine(path: Path) -> bool:
 def read(path: Path, **hints: object) -> Recording:
     """Read a text file, packed with gzip or not, into temporary files, one a column; closing deletes them.
 
-    Hints: ``delimiter`` and ``decimal`` where the file leaves it open, ``encoding`` if it is not UTF-8.
+    Hints: ``columns``, titles such as ``time [s],M_s [N m]``, where the file has none or others; ``sample_rate_hz``
+    where it has no times; ``delimiter`` and ``decimal`` where it leaves them open; ``encoding`` if it is not UTF-8.
     Empty fields become values that are not numbers.
 
     Raises
@@ -62,7 +71,7 @@ def read(path: Path, **hints: object) -> Recording:
     RecordingError
         If header, a row or the clock cannot be used.
     """
-    expect_hints(path, hints, {"delimiter": str, "decimal": str, "encoding": str})
+    rate_hz = rate_hint(path, hints, {"columns": str, "delimiter": str, "decimal": str, "encoding": str})
     encoding = cast(str, hints.get("encoding", _encoding(path)))
     try:
         with _text(path, encoding) as file:
@@ -71,17 +80,21 @@ def read(path: Path, **hints: object) -> Recording:
                 list(islice(_lines(path, file), _FIRST_ROWS)),
                 delimiter=cast("str | None", hints.get("delimiter")),
                 decimal=cast("str | None", hints.get("decimal")),
+                columns=cast("str | None", hints.get("columns")),
+                has_rate=rate_hz is not None,
             )
         spool = Spool(path, header.names)
         try:
             with _text(path, encoding) as file:
                 count, began = _unpack(path, file, header, spool)
-            return _recording(path, header, spool, count, began)
+            return _recording(path, header, spool, count, began, rate_hz)
         except BaseException:
             spool.close()
             raise
     except (UnicodeError, LookupError) as error:
-        raise RecordingError(f"{path}: expected text in {encoding}, found {error}; pass encoding=.") from None
+        raise RecordingError(
+            f"{path}: expected text in {encoding}, found {error}; pass encoding= (--encoding)."
+        ) from None
     except (EOFError, zlib.error, gzip.BadGzipFile) as error:
         raise RecordingError(
             f"{path}: expected a whole gzip file, found a damaged or truncated one ({error})."
@@ -126,11 +139,11 @@ def _unpack(path: Path, file: TextIO, header: Header, spool: Spool) -> tuple[int
         if header.decimal == ",":
             lines = [line.replace(",", ".") for line in lines]
         rows = [line for line in lines if not line.isspace()]
-        if header.second is None and rows:
+        if header.dated and rows:
             rows, found = _without_dates(path, rows, header)
             began = found[0] if began is None else began
         block = _numbers(path, rows, header, count)
-        if header.second is None and began is not None and rows:
+        if began is not None and rows:
             block[:, header.time_column] = seconds_from(began, found)
         elif header.second not in (None, 1.0):
             block[:, header.time_column] *= header.second
@@ -145,10 +158,11 @@ def _without_dates(
 ) -> "tuple[list[str], np.ndarray[tuple[int], np.dtype[np.datetime64]]]":
     """Return rows with zeros in place of their dates, and the dates."""
     plain, texts = [], []
+    time = cast(int, header.time_column)
     for row in rows:
-        fields = row.rstrip("\r\n").split(header.delimiter)
-        texts.append(fields[header.time_column].strip().strip('"') if header.time_column < len(fields) else "")
-        fields[min(header.time_column, len(fields) - 1)] = "0"
+        fields = split_row(row, header.delimiter)
+        texts.append(fields[time].strip().strip('"') if time < len(fields) else "")
+        fields[min(time, len(fields) - 1)] = "0"
         plain.append(header.delimiter.join(fields))
     return plain, dates(path, texts)
 
@@ -163,7 +177,7 @@ def _numbers(path: Path, lines: Sequence[str], header: Header, before: int) -> F
     except ValueError:
         block = np.empty((len(lines), width))
         for number, line in enumerate(lines):
-            fields = [field.strip() or "nan" for field in line.rstrip("\n").split(header.delimiter)]
+            fields = [field.strip() or "nan" for field in split_row(line, header.delimiter)]
             try:
                 block[number] = _exactly(width, fields)
             except ValueError:
@@ -180,7 +194,8 @@ def _numbers(path: Path, lines: Sequence[str], header: Header, before: int) -> F
 
 
 def _parse(lines: Sequence[str], delimiter: str) -> FloatArray:
-    return np.loadtxt(lines, dtype=np.float64, delimiter=delimiter, comments=None, ndmin=2)
+    between = None if delimiter == WHITE_SPACE else delimiter
+    return np.loadtxt(lines, dtype=np.float64, delimiter=between, comments=None, ndmin=2)
 
 
 def _exactly(width: int, fields: Sequence[str]) -> list[float]:
@@ -189,9 +204,23 @@ def _exactly(width: int, fields: Sequence[str]) -> list[float]:
     return [float(field) for field in fields]
 
 
-def _recording(path: Path, header: Header, spool: Spool, count: int, began: datetime | None) -> Recording:
-    time = header.time_column
-    clock = uniform_clock(path, f"column {header.names[time]}", count, spool.source(time))
+def _clock(path: Path, header: Header, spool: Spool, count: int, rate_hz: float | None) -> Clock:
+    """Return the clock of the times, or that of the rate which the caller knows."""
+    if header.time_column is None:
+        return Clock(rate_hz=cast(float, rate_hz), start_s=0.0)
+    name = f"column {header.names[header.time_column]}"
+    clock = uniform_clock(path, name, count, spool.source(header.time_column))
+    if rate_hz is not None and abs(clock.rate_hz / rate_hz - 1.0) > _RATE_AGREEMENT:
+        raise RecordingError(
+            f"{path}: expected one sample rate, found {clock.rate_hz:g} Hz in {name} and {rate_hz:g} Hz in the hint."
+        )
+    return clock
+
+
+def _recording(
+    path: Path, header: Header, spool: Spool, count: int, began: datetime | None, rate_hz: float | None
+) -> Recording:
+    clock = _clock(path, header, spool, count, rate_hz)
     channels = {
         name: Channel(
             name=name,
@@ -202,7 +231,7 @@ def _recording(path: Path, header: Header, spool: Spool, count: int, began: date
             source=spool.source(number),
         )
         for number, (name, unit) in enumerate(zip(header.names, header.units, strict=True))
-        if number != time
+        if number != header.time_column
     }
     moved, epoch = from_second_zero(channels)
     return Recording(

@@ -10,10 +10,16 @@ from shaftprint.recording.readers._csv_dates import is_date
 from shaftprint.recording.readers._units import plain_unit, seconds_in
 from shaftprint.recording.readers._vectors import TIME_NAMES
 
-_DELIMITERS = (";", "\t", ",")
+WHITE_SPACE = " "
+_MARKS = (";", "\t", ",")
+_DELIMITERS = (*_MARKS, WHITE_SPACE)
+# a title with its unit behind it, where white space stands between columns
+_SPACED_TITLE = re.compile(r"\S+(?:\s*[\[(][^\])]*[\])])?")
 _COLUMN = re.compile(r"(?P<name>.*\S)\s*[\[(](?P<unit>[^\])]*)[\])]")
 _NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?|[+-]?(nan|inf(inity)?)", re.IGNORECASE)
-_TIMES = (*TIME_NAMES, "date", "datetime", "date/time", "date time", "datum", "elapsed time")
+_TIMES = (*TIME_NAMES, "date", "datetime", "date/time", "date time", "datum", "elapsed time", "x_value")
+# LabVIEW's titles end with one for remarks, which its rows of numbers do not have.
+_REMARKS = "comment"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -21,7 +27,7 @@ class Header:
     """How the lines of a text file are to be read."""
 
     delimiter: str
-    """What stands between two columns."""
+    """What stands between two columns; a space for white space of any length."""
     decimal: str
     """Decimal point or comma."""
     names: tuple[str, ...]
@@ -30,13 +36,31 @@ class Header:
     """Unit of each column; empty where the file gives none."""
     lines: int
     """How many lines stand before the first row of numbers."""
-    time_column: int
-    """Which column holds the times."""
+    time_column: int | None
+    """Which column holds the times; None where there is none."""
     second: float | None
-    """How many seconds one unit of time has; None where times are dates."""
+    """How many seconds one unit of time has; None where times are dates, or there are none."""
+
+    @property
+    def dated(self) -> bool:
+        """Whether times are dates."""
+        return self.time_column is not None and self.second is None
 
 
-def read_header(path: Path, lines: Sequence[str], *, delimiter: str | None, decimal: str | None) -> Header:
+def split_row(line: str, delimiter: str) -> list[str]:
+    """Return the fields of a line as they are written."""
+    return line.split() if delimiter == WHITE_SPACE else line.rstrip("\r\n").split(delimiter)
+
+
+def read_header(
+    path: Path,
+    lines: Sequence[str],
+    *,
+    delimiter: str | None,
+    decimal: str | None,
+    columns: str | None = None,
+    has_rate: bool = False,
+) -> Header:
     """Understand titles such as ``time [s];M_s [V];...``, or titles with a row of units below.
 
     Lines before the titles are passed over. Without a unit, times are seconds.
@@ -49,27 +73,32 @@ def read_header(path: Path, lines: Sequence[str], *, delimiter: str | None, deci
         Its first lines.
     delimiter, decimal
         What the caller knows; found in the lines if absent.
+    columns
+        Titles that the caller gives in place of the file's, separated by commas.
+    has_rate
+        Whether the caller knows the sample rate, so that a column of times may be absent.
 
     Raises
     ------
     RecordingError
-        If a name is missing or comes twice, there is no column of times, or delimiter or decimal sign could be read in
-        two ways.
+        If a name is missing or comes twice, there are no titles or no times, or delimiter or decimal sign could be
+        read in two ways.
     """
-    delimiter, first = _layout(path, lines, delimiter)
-    titles, units = _titles(lines, first, delimiter)
+    given = [] if columns is None else [title.strip() for title in columns.split(",")]
+    delimiter, first = _layout(path, lines, delimiter, len(given))
+    titles, units = (given, []) if given else _titles(lines, first, delimiter)
     names, units = _named(path, first, titles, units)
-    time = next((place for place, name in enumerate(names) if name.lower() in _TIMES), None)
     rows = lines[first:]
-    dated = time is not None and is_date(_fields(rows[0], delimiter)[time] if rows and time < len(names) else "")
-    second = None if dated or time is None else (1.0 if units[time] == "" else seconds_in(units[time]))
-    if time is None or (second is None and not dated):
+    where = f"{path}, line {max(first, 1)}"
+    time, second = _time(where, rows, delimiter, names, units)
+    if time is None and not has_rate:
         raise RecordingError(
-            f'{path}, line {max(first, 1)}: expected a column "time [s]", found "{"; ".join(titles)[:80]}".'
+            f'{where}: expected a column "time [s]", found "{"; ".join(titles)[:80]}"; '
+            "name it so with columns= (--columns), or pass sample_rate_hz= (--sample-rate)."
         )
-    if len(names) == 1:
-        raise RecordingError(f"{path}, line {first}: expected a channel beside the time, found none.")
-    decimal = decimal or _decimal(path, rows, delimiter, time if dated else None)
+    if time is not None and len(names) == 1:
+        raise RecordingError(f"{where}: expected a channel beside the time, found none.")
+    decimal = decimal or _decimal(path, rows, delimiter, time if second is None else None)
     if decimal == delimiter:
         raise RecordingError(f'{path}: expected decimal sign and delimiter to differ, found "{decimal}" for both.')
     return Header(
@@ -84,37 +113,46 @@ def read_header(path: Path, lines: Sequence[str], *, delimiter: str | None, deci
 
 
 def looks_like_a_table(lines: Sequence[str]) -> bool:
-    """Return whether text has rows of at least two numbers under a line of titles."""
-    return any(_first_row(lines, delimiter) for delimiter in _DELIMITERS)
+    """Return whether text has rows of numbers below each other, at least two in a row."""
+    return any(_first_row(lines, delimiter) is not None for delimiter in _DELIMITERS)
 
 
-def _layout(path: Path, lines: Sequence[str], delimiter: str | None) -> tuple[str, int]:
-    """Return the delimiter and the number of lines before the first row of numbers."""
+def _layout(path: Path, lines: Sequence[str], delimiter: str | None, width: int) -> tuple[str, int]:
+    """Return the delimiter and the number of lines before the first row of numbers, of which there are ``width``."""
     candidates = (delimiter,) if delimiter else _DELIMITERS
-    for candidate in candidates:
-        first = _first_row(lines, candidate)
-        if first:
+    places = {candidate: _first_row(lines, candidate, width) for candidate in candidates}
+    for candidate, first in places.items():
+        if first or (first == 0 and width):
             return candidate, first
-    title = lines[0] if lines else ""
-    found = [candidate for candidate in candidates if candidate in title]
-    if len(found) != 1 and delimiter is None:
-        what = "several of them" if found else "none of them"
+    if width:
+        raise RecordingError(f"{path}: expected a row of {width} columns, as the hint columns says, found none.")
+    untitled = [candidate for candidate, first in places.items() if first == 0]
+    if untitled:
+        found = len(_fields(lines[0], untitled[0]))
         raise RecordingError(
-            f"{path}, line 1: expected columns separated by semicolon, tab or comma, found {what} in "
-            f'"{title.strip()[:80]}"; pass delimiter=.'
+            f'{path}, line 1: expected titles such as "time [s];M_s [N m]" above {found} columns of numbers, found '
+            "none; pass columns= (--columns), such as time,u,y."
         )
-    return delimiter or found[0], 1
+    title = lines[0] if lines else ""
+    marks = [mark for mark in _MARKS if mark in title]
+    if len(marks) != 1 and delimiter is None:
+        what = "several of them" if marks else "none of them"
+        raise RecordingError(
+            f"{path}, line 1: expected columns separated by semicolon, tab, comma or white space, found {what} in "
+            f'"{title.strip()[:80]}"; pass delimiter= (--delimiter).'
+        )
+    return delimiter or marks[0], 1
 
 
-def _first_row(lines: Sequence[str], delimiter: str) -> int | None:
-    """Return the place of the first row of numbers that has titles above it and a row like it below."""
-    for place in range(1, len(lines)):
-        fields = _fields(lines[place], delimiter)
-        if len(fields) < 2 or not _is_row(fields):
+def _first_row(lines: Sequence[str], delimiter: str, width: int = 0) -> int | None:
+    """Return the place of the first row of numbers, ``width`` or else at least two, that has a row like it below."""
+    for place, line in enumerate(lines):
+        fields = _fields(line, delimiter)
+        if (len(fields) != width if width else len(fields) < 2) or not _is_row(fields):
             continue
         below = next((line for line in lines[place + 1 :] if line.strip()), None)
         if below is None or _is_row(_fields(below, delimiter)):
-            return None if _is_row(_fields(lines[place - 1], delimiter)) else place
+            return place
     return None
 
 
@@ -124,20 +162,48 @@ def _is_row(fields: Sequence[str]) -> bool:
 
 
 def _fields(line: str, delimiter: str) -> list[str]:
-    return [field.strip().strip('"').strip() for field in line.strip("\r\n").split(delimiter)]
+    return [field.strip().strip('"').strip() for field in split_row(line, delimiter)]
+
+
+def _time(
+    where: str, rows: Sequence[str], delimiter: str, names: Sequence[str], units: Sequence[str]
+) -> tuple[int | None, float | None]:
+    """Return which column holds the times, and how many seconds its unit has, None for dates."""
+    time = next((place for place, name in enumerate(names) if name.lower() in _TIMES), None)
+    if time is None:
+        return None, None
+    first = _fields(rows[0], delimiter) if rows else []
+    if is_date(first[time] if time < len(first) else ""):
+        return time, None
+    second = 1.0 if units[time] == "" else seconds_in(units[time])
+    if second is None:
+        raise RecordingError(f'{where}: expected a column "time [s]", found "{names[time]} [{units[time]}]".')
+    return time, second
 
 
 def _titles(lines: Sequence[str], first: int, delimiter: str) -> tuple[list[str], list[str]]:
     """Return titles and units: those of a row of its own, where the time's field there is a unit of time."""
-    below = _fields(lines[first - 1].lstrip("\ufeff").lstrip("#%"), delimiter) if lines else [""]
+    width = len(split_row(lines[first], delimiter)) if first < len(lines) else 0
+    below = _title_fields(lines[first - 1], delimiter, width) if lines else [""]
     if first >= 2:
-        above = _fields(lines[first - 2].lstrip("\ufeff").lstrip("#%"), delimiter)
+        above = _title_fields(lines[first - 2], delimiter, width)
         time = next((place for place, name in enumerate(above) if name.lower() in _TIMES), None)
         if time is not None and len(above) == len(below):
             units = [field.strip("[]() ") for field in below]
             if seconds_in(units[time]) is not None or units[time] in ("", "-"):
                 return above, ["" if unit == "-" else unit for unit in units]
     return below, []
+
+
+def _title_fields(line: str, delimiter: str, width: int) -> list[str]:
+    """Return the titles of a line; with white space between columns those that are as many as the columns."""
+    line = line.lstrip("\ufeff").lstrip("#%")
+    if delimiter != WHITE_SPACE:
+        titles = _fields(line, delimiter)
+        return titles[:-1] if len(titles) == width + 1 and titles[-1].lower() == _REMARKS else titles
+    spaced = _SPACED_TITLE.findall(line)
+    far_apart = re.split(r"\s{2,}", line.strip())
+    return far_apart if len(spaced) != width == len(far_apart) else spaced
 
 
 def _named(path: Path, first: int, titles: Sequence[str], units: Sequence[str]) -> tuple[list[str], list[str]]:
@@ -166,6 +232,7 @@ def _decimal(path: Path, rows: Sequence[str], delimiter: str, dates: int | None)
     points = any("." in field for field in fields)
     if commas and points:
         raise RecordingError(
-            f"{path}: expected a decimal point or a decimal comma, found both in the first rows; pass decimal=."
+            f"{path}: expected a decimal point or a decimal comma, found both in the first rows; pass decimal= "
+            "(--decimal)."
         )
     return "," if commas else "."

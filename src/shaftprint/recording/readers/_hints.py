@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import cast
 
 from shaftprint.errors import RecordingError
@@ -23,15 +24,17 @@ def expect_hints(path: Path, hints: Mapping[str, object], known: Mapping[str, ty
             raise RecordingError(f"{path}: the hint {name} cannot be {value!r}.")
 
 
-def rate_hint(path: Path, hints: Mapping[str, object]) -> float | None:
-    """Return the hint ``sample_rate_hz`` [Hz], if given; no other is known.
+def rate_hint(
+    path: Path, hints: Mapping[str, object], others: Mapping[str, type | tuple[type, ...]] = MappingProxyType({})
+) -> float | None:
+    """Return the hint ``sample_rate_hz`` [Hz], if given; beside it only ``others`` are known.
 
     Raises
     ------
     RecordingError
-        If it is not a positive number, or another hint is given.
+        If it is not a positive number, or a hint is given that is not known.
     """
-    expect_hints(path, hints, {"sample_rate_hz": (int, float)})
+    expect_hints(path, hints, {**others, "sample_rate_hz": (int, float)})
     if "sample_rate_hz" not in hints:
         return None
     rate = float(cast(float, hints["sample_rate_hz"]))

@@ -2,7 +2,8 @@
 
 _PLAIN = {
     "volt": "V", "volts": "V", "v": "V", "nm": "N m", "n·m": "N m", "n*m": "N m", "n.m": "N m", "newton metre": "N m",
-    "newton-meter": "N m", "newton meters": "N m", "percent": "%", "pct": "%", "kt": "kn", "kts": "kn", "knot": "kn",
+    "newton-meter": "N m", "newton meters": "N m",
+    "knm": "kN m", "kn·m": "kN m", "kn.m": "kN m", "percent": "%", "pct": "%", "kt": "kn", "kts": "kn", "knot": "kn",
     "knots": "kn", "sec": "s", "secs": "s", "second": "s", "seconds": "s", "m s-1": "m/s",
     "m s^-1": "m/s", "mps": "m/s", "hertz": "Hz", "hz": "Hz",
 }  # fmt: skip
