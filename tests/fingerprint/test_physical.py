@@ -5,6 +5,7 @@ The propeller shaft turns at 1183.8 / 60 / 3.82 = 5.164921 rev/s, so 2 pi n_s0 =
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from shaftprint.fingerprint import physical_quantities
@@ -97,3 +98,25 @@ def test_values_grow_with_the_torque_of_the_working_point(gauge_fit, working_poi
         assert after.value == pytest.approx(factor * before.value)
         if before.name != "K_Q":
             assert after.std == pytest.approx(factor * before.std)
+
+
+def test_torque_coefficient_is_that_of_the_whole_test(core, working_point, vessel):
+    """The whole test took 2 % more torque than the stretches of the working point, known to 0.6 %."""
+    point = replace(working_point, load=1.02, load_std=0.006)
+    found = {quantity.name: quantity for quantity in physical_quantities(core, point, vessel)}
+    assert found["K_Q"].value == pytest.approx(1.02 * 0.049430, rel=2e-5)
+    # 2 % of the gauge's scale, 25 / 1725 of its zero, 0.6 / 1.02 % of the load; not the scatter of the working point
+    assert found["K_Q"].std == pytest.approx(0.0253898 * 1.02 * 0.049430, rel=1e-4)
+
+
+def test_a_zero_that_the_fit_has_found_is_off_the_torque_coefficient(fit, truth, working_point, vessel):
+    """Of 1725 N m 50 are the gauge's zero: the propeller takes 1675, and its slope is 2 * 1675 / 1725."""
+    found = fit("GAUGE-CLOSED", truth | {"k_q": 2.0 * 1675.0 / 1725.0})
+    numbers = {q.name: q for q in physical_quantities(found, replace(working_point, load_std=0.006), vessel)}
+    assert numbers["K_Q"].value == pytest.approx(1675.0 / 1725.0 * 0.049430, rel=1e-4)
+    slope = next(e for e in found.parameters if e.name == "k_q")
+    own = np.hypot(slope.std / slope.value, 0.006)
+    assert numbers["K_Q"].std / numbers["K_Q"].value == pytest.approx(np.hypot(own, 0.02), rel=1e-3)
+    # beside it what the vessel file knows of the zero: 25 of 1725 N m
+    zero = numbers["gauge zero share"]
+    assert (zero.expected, zero.expected_std) == (0.0, pytest.approx(1.44928, rel=1e-5))

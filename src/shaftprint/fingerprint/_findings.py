@@ -3,7 +3,7 @@
 import numpy as np
 
 from shaftprint.fingerprint._fingerprint import Quantity
-from shaftprint.fingerprint._physical import GAUGE_ZERO
+from shaftprint.fingerprint._physical import GAUGE_ZERO, LOAD_WANDER
 from shaftprint.identify import Budget, Estimate, Identification
 from shaftprint.models import Parameter
 
@@ -22,7 +22,7 @@ OFF_ZERO = 2.0
 # A number rests on what was known beforehand when more than this share of its variance is from there.
 MOSTLY = 0.5
 # What the test itself measures: sources whose names begin so.
-MEASURED = ("noise of ", "working-point ")
+MEASURED = ("noise of ", "working-point ", LOAD_WANDER)
 PERCENT = 100.0
 AMPLE, SMALL = 2.0, 1.3
 WHY = {
@@ -155,7 +155,8 @@ def _gauge_zero(physical: tuple[Quantity, ...]) -> list[str]:
 def _against_expected(physical: tuple[Quantity, ...]) -> list[str]:
     found = []
     for quantity in physical:
-        if quantity.expected is None:
+        # a value that is expected to be none has its own sentence
+        if not quantity.expected:
             continue
         spread = np.hypot(quantity.std, quantity.expected_std or 0.0)
         if abs(quantity.value - quantity.expected) > SURPRISING * spread:

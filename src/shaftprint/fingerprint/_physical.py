@@ -3,7 +3,7 @@
 With the working point ``n_s0`` [rev/s] of the propeller shaft and ``M_s0`` [N m] at the gauge::
 
     I      = tau M_s0 / (2 pi n_s0)                     inertia, thesis eq. 2.23
-    K_Q    = M_s0 eta_R / (rho n_s0^2 D^5)              thesis eqs 2.9-2.11 at J = 0
+    K_Q    = (k_q / 2) d M_s0 eta_R / (rho n_s0^2 D^5)  thesis eqs 2.9-2.11 at J = 0
     dM/dn  = v K_p M_s0 / n_e0                          proportional governor action on the shaft torque
     zero   = 2 / k_q - 1                                zero offset of the gauge over M_s0
 
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 PERCENT = 100.0
 IDEAL_SLOPE = 2.0
 GAUGE_ZERO = "gauge zero share"
+LOAD_WANDER = "wander of the load"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -69,7 +70,11 @@ def physical_numbers(
                     expected_std=plan.expected_std,
                 )
             )
-    return (*found, *_gauge_zero(structure), _torque_coefficient(working_point, vessel))
+    return (
+        *found,
+        *_gauge_zero(structure, working_point, vessel),
+        _torque_coefficient(float(named["k_q"]) if _finds_zero(structure) else None, working_point, vessel),
+    )
 
 
 def physical_quantities(
@@ -136,9 +141,9 @@ def _product(factor: float, *names: str) -> Callable[[Mapping[str, FloatArray]],
     return lambda named: np.asarray(factor * np.prod([named[name] for name in names], axis=0))
 
 
-def _gauge_zero(structure: Structure) -> tuple[PhysicalNumber, ...]:
+def _gauge_zero(structure: Structure, working_point: "WorkingPoint", vessel: "Vessel") -> tuple[PhysicalNumber, ...]:
     """Return the zero offset of the gauge over the working-point torque, where the fit is free to find it."""
-    if "k_q" not in [parameter.name for parameter in structure.free]:
+    if not _finds_zero(structure):
         return ()
     number = Combination(
         name=GAUGE_ZERO,
@@ -146,30 +151,50 @@ def _gauge_zero(structure: Structure) -> tuple[PhysicalNumber, ...]:
         of=lambda named: PERCENT * (IDEAL_SLOPE / named["k_q"] - 1.0),
         meaning="zero offset of the torque gauge, or constant friction, over the working-point torque",
     )
-    return (PhysicalNumber(number=number),)
+    stated_nm = vessel.sensors.shaft_torque.zero_std_nm
+    if stated_nm is None:
+        return (PhysicalNumber(number=number),)
+    stated = PERCENT * stated_nm / working_point.shaft_torque_nm
+    return (PhysicalNumber(number=number, expected=0.0, expected_std=stated),)
 
 
-def _torque_coefficient(working_point: "WorkingPoint", vessel: "Vessel") -> PhysicalNumber:
-    sensor, torque = vessel.sensors.shaft_torque, working_point.shaft_torque_nm
+def _finds_zero(structure: Structure) -> bool:
+    return "k_q" in [parameter.name for parameter in structure.free]
+
+
+def _torque_coefficient(slope: float | None, working_point: "WorkingPoint", vessel: "Vessel") -> PhysicalNumber:
+    """Return the torque coefficient, with the fitted slope ``k_q`` where the fit was free to find it."""
     shaft_rev_s = working_point.engine_speed_rev_s / vessel.gearbox.ratio
-    value = (
-        torque
+    shown = (
+        working_point.load
+        * working_point.shaft_torque_nm
         * vessel.propeller.relative_rotative_efficiency
         / (vessel.water_density_kg_m3 * shaft_rev_s**2 * vessel.propeller.diameter_m**5)
     )
-    shares = {
-        "gauge scale": sensor.scale_std_fraction or 0.0,
-        "gauge zero": (sensor.zero_std_nm or 0.0) / torque,
-        "working-point torque": working_point.shaft_torque_std_nm / torque,
-        "working-point speed": -2.0 * working_point.engine_speed_std_rev_s / working_point.engine_speed_rev_s,
-    }
+    finds_zero = slope is not None
+    value = shown if slope is None else shown * slope / IDEAL_SLOPE
+    shares = _shares_of_coefficient(working_point, vessel, finds_zero=finds_zero)
     return PhysicalNumber(
         number=Combination(
             name="K_Q",
             unit="-",
-            of=lambda named: np.asarray(value),
+            of=_product(shown / IDEAL_SLOPE, "k_q") if finds_zero else _product(shown),
             meaning="torque coefficient of the propeller at the working point",
         ),
         direct={source: value * share for source, share in shares.items() if share},
         expected=vessel.propeller.torque_coefficient,
     )
+
+
+def _shares_of_coefficient(working_point: "WorkingPoint", vessel: "Vessel", *, finds_zero: bool) -> dict[str, float]:
+    """Return the change of the torque coefficient for one standard deviation of each source, over its size."""
+    sensor, torque = vessel.sensors.shaft_torque, working_point.shaft_torque_nm
+    shares = {"gauge scale": sensor.scale_std_fraction or 0.0}
+    if not finds_zero:
+        shares["gauge zero"] = (sensor.zero_std_nm or 0.0) / torque
+    if working_point.load_std is not None:
+        return shares | {LOAD_WANDER: working_point.load_std / working_point.load}
+    return shares | {
+        "working-point torque": working_point.shaft_torque_std_nm / torque,
+        "working-point speed": -2.0 * working_point.engine_speed_std_rev_s / working_point.engine_speed_rev_s,
+    }

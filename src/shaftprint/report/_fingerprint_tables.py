@@ -86,7 +86,7 @@ def physical_table(fingerprint: "Fingerprint", truth: Mapping[str, float]) -> Ta
     for quantity in fingerprint.physical:
         lower, upper = limits(quantity)
         expected = quantity.expected
-        share = "–" if expected is None else f"{plain(100.0 * (quantity.value / expected - 1.0), 1)} %"
+        share = "–" if not expected else f"{plain(100.0 * (quantity.value / expected - 1.0), 1)} %"
         true = truth.get(quantity.name, math.nan)
         rows.append(
             (
@@ -107,7 +107,7 @@ def physical_table(fingerprint: "Fingerprint", truth: Mapping[str, float]) -> Ta
         rows=tuple(rows),
         note=(
             "Standard deviations hold the scale of the torque gauge too, with the sign with which it enters; that of "
-            "K_Q holds its zero and the scatter of the working point. The difference is that from the vessel file."
+            "K_Q holds the wander of the load. The difference is that from the vessel file."
         ),
     )
 

@@ -12,6 +12,7 @@ from shaftprint.signals._calibrate import calibrate
 from shaftprint.signals._compare import compare_speeds
 from shaftprint.signals._condition import conditioned
 from shaftprint.signals._dc_scale import DcScale, dc_scale
+from shaftprint.signals._load import with_load_of_test
 from shaftprint.signals._match import expect_campaign, expect_length
 from shaftprint.signals._outliers import fault_limits
 from shaftprint.signals._pick_up import PickUp, read_pick_up
@@ -215,6 +216,15 @@ def _put_together(
     scale = DcScale(value=1.0, std=0.0, findings=())
     if not thesis:
         slope_std = float(calibration.covariance[0, 0]) ** 0.5 / abs(calibration.slope_rev_s_per_v)
+        working_point = with_load_of_test(
+            working_point,
+            quiet,
+            campaign,
+            speed_rev_s=speed,
+            torque_nm=torque,
+            rate_hz=rate_hz,
+            start_s=start_s,
+        )
         scale = dc_scale(n_set, speed, campaign, rate_hz=rate_hz, start_s=start_s, slope_std=slope_std)
         _stretch(n_set, scale.value, about=working_point.engine_speed_rev_s)
     ship_speed, moored = _ship_speed_signal(sources, vessel, clock, quiet)

@@ -35,6 +35,10 @@ class WorkingPoint:
     """Standard deviation of ``M_s0`` [N m]: scatter between steady stretches, without the gauge's own scale error."""
     set_point_v: float
     """Mean set-point voltage [V] of the stretches that were used."""
+    load: float = 1.0
+    """Mean propeller load (torque over the square of the speed) of the whole test over that of these stretches [-]."""
+    load_std: float | None = None
+    """Standard deviation of ``load`` as the mean of a load that wanders [-]; None where there are too few windows."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
