@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from shaftprint.errors import ExportError
+from shaftprint.errors import ExportError, FingerprintError
 from shaftprint.export import to_control, to_xarray, write_csv, write_json
 from shaftprint.fingerprint import Fingerprint, Quantity
 from shaftprint.models import structure
@@ -134,7 +134,7 @@ def test_python_takes_the_fingerprint_itself(fingerprint):
 
 @pytest.mark.parametrize("write", [write_csv, write_json])
 def test_the_wrong_structure_is_refused(fingerprint, tmp_path, write):
-    with pytest.raises(ExportError, match="give the structure that it was identified with"):
+    with pytest.raises(FingerprintError, match="name the structure that it was identified with"):
         write(fingerprint(), tmp_path / "tug.json", of=structure("OL5"))
     assert list(tmp_path.iterdir()) == []
 

@@ -105,7 +105,6 @@ def _of_fingerprint(chosen: Structure, fingerprint: Fingerprint, given: Mapping[
     std = {quantity.name: quantity.std for quantity in fingerprint.parameters}
     free = [name for name in found if name not in given]
     uncertain = [name for name in free if np.isfinite(std[name]) and std[name] > 0.0]
-    places = [list(found).index(name) for name in uncertain]
     fixed = {name: value for name, value in (fingerprint.held | dict(given)).items() if name in chosen.names}
     origins = dict.fromkeys(chosen.names, "usual value") | dict.fromkeys(known, "fingerprint")
     origins |= dict.fromkeys(given, "--set")
@@ -114,6 +113,6 @@ def _of_fingerprint(chosen: Structure, fingerprint: Fingerprint, given: Mapping[
         values=frozen_float(chosen.vector(known | dict(given))),
         origins=tuple(origins[name] for name in chosen.names),
         uncertain=tuple(uncertain),
-        covariance=frozen_float(np.array(fingerprint.covariance).reshape(len(found), -1)[np.ix_(places, places)]),
+        covariance=frozen_float(fingerprint.covariance_of(uncertain)),
         not_known=tuple(name for name in free if not np.isfinite(std[name])),
     )

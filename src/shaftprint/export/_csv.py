@@ -53,7 +53,9 @@ def write_csv(
     Raises
     ------
     ExportError
-        If the structure has other parameters than the fingerprint, or the frequencies are wrong.
+        If the frequencies are wrong.
+    FingerprintError
+        If the structure has other parameters than the fingerprint.
     StructureError
         If there is no shipped structure of that name.
     FileExistsError

@@ -50,7 +50,9 @@ def write_json(
     Raises
     ------
     ExportError
-        If the structure has other parameters than the fingerprint, or no state space.
+        If the structure has no state space.
+    FingerprintError
+        If the structure has other parameters than the fingerprint.
     StructureError
         If there is no shipped structure of that name, or a block has no equations in time.
     FileExistsError

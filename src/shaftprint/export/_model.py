@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import ExportError
-from shaftprint.fingerprint import Fingerprint
+from shaftprint.fingerprint import Fingerprint, identified_model
 from shaftprint.models import Structure, structure
 
 
@@ -81,27 +81,19 @@ def exported_model(fingerprint: Fingerprint, *, of: Structure | None = None) -> 
     ------
     StructureError
         If there is no shipped structure of that name.
-    ExportError
+    FingerprintError
         If the structure has other parameters than the fingerprint.
     """
-    chosen = structure(fingerprint.structure) if of is None else of
-    found = {quantity.name: quantity for quantity in fingerprint.parameters}
-    known = {name: quantity.value for name, quantity in found.items()} | fingerprint.held
-    other = sorted(set(chosen.names) ^ set(known))
-    if other:
-        raise ExportError(
-            f"fingerprint of {fingerprint.structure}: expected the parameters of structure {chosen.name}, found a "
-            f"difference in {', '.join(other)}; give the structure that it was identified with."
-        )
-    uncertain = tuple(name for name, quantity in found.items() if np.isfinite(quantity.std) and quantity.std > 0.0)
-    places = [list(found).index(name) for name in uncertain]
+    found = identified_model(fingerprint, structure(fingerprint.structure) if of is None else of)
+    std = {quantity.name: quantity.std for quantity in fingerprint.parameters}
+    uncertain = tuple(name for name in std if np.isfinite(std[name]) and std[name] > 0.0)
     return ExportedModel(
         title=fingerprint.conditions.vessel,
-        structure=chosen.held_at(**fingerprint.held),
-        values=frozen_float([known[name] for name in chosen.names]),
+        structure=found.structure,
+        values=found.values,
         engine_speed_rpm=fingerprint.conditions.engine_speed.value,
         shaft_torque_nm=fingerprint.conditions.shaft_torque.value,
         uncertain=uncertain,
-        covariance=frozen_float(np.array(fingerprint.covariance).reshape(len(found), -1)[np.ix_(places, places)]),
-        not_known=tuple(name for name, quantity in found.items() if not np.isfinite(quantity.std)),
+        covariance=frozen_float(fingerprint.covariance_of(uncertain)),
+        not_known=found.not_known,
     )

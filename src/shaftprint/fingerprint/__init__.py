@@ -24,15 +24,18 @@ from shaftprint.fingerprint._fingerprint import (
 )
 from shaftprint.fingerprint._inertia import inertia_beside
 from shaftprint.fingerprint._margins import margin_quantities
+from shaftprint.fingerprint._model import IdentifiedModel, identified_model
 from shaftprint.fingerprint._physical import physical_quantities
 from shaftprint.fingerprint._take import take_fingerprint
 
 __all__ = [
     "Conditions",
     "Fingerprint",
+    "IdentifiedModel",
     "Quality",
     "Quantity",
     "SourceFile",
+    "identified_model",
     "inertia_beside",
     "margin_quantities",
     "physical_quantities",

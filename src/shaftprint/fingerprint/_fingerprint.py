@@ -1,11 +1,14 @@
 """The noun of the room: what is kept of one test, as a JSON record."""
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Final, Literal
 
+import numpy as np
 from pydantic import AwareDatetime, BaseModel, ConfigDict, ValidationError
 
+from shaftprint.arrays import FloatArray
 from shaftprint.errors import FingerprintError
 from shaftprint.files import written_whole
 from shaftprint.identify import Budget, Prior, Verdict
@@ -165,6 +168,21 @@ class Fingerprint(_Record):
         raise FingerprintError(
             f"the fingerprint has no {name!r}; it has {', '.join(quantity.name for quantity in found)}."
         )
+
+    def covariance_of(self, names: Sequence[str]) -> FloatArray:
+        """Return the covariance of some of the parameters, shape (names, names).
+
+        Raises
+        ------
+        FingerprintError
+            If one of them is not a parameter.
+        """
+        order = [quantity.name for quantity in self.parameters]
+        foreign = [name for name in names if name not in order]
+        if foreign:
+            raise FingerprintError(f"the fingerprint has no parameter {foreign[0]!r}; it has {', '.join(order)}.")
+        places = [order.index(name) for name in names]
+        return np.array(self.covariance).reshape(len(order), len(order))[np.ix_(places, places)]
 
 
 def write_fingerprint(fingerprint: Fingerprint, path: str | Path) -> None:

@@ -1,0 +1,63 @@
+"""The model that a fingerprint describes: its structure as it was identified, with values and covariance."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import FingerprintError
+from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.models import Structure
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class IdentifiedModel:
+    """A structure as it was identified, with what was found of its parameters."""
+
+    structure: Structure
+    """The structure; free is what was identified, the rest is held as it was then."""
+    values: FloatArray
+    """All its parameters, shape (parameters,)."""
+    covariance: FloatArray
+    """Covariance of its free parameters, shape (free, free); not finite where the test says nothing of one."""
+
+    @property
+    def not_known(self) -> tuple[str, ...]:
+        """Free parameters of which the test said nothing."""
+        return tuple(
+            parameter.name
+            for parameter, variance in zip(self.structure.free, np.diag(self.covariance), strict=True)
+            if not np.isfinite(variance)
+        )
+
+
+def identified_model(fingerprint: Fingerprint, structure: Structure) -> IdentifiedModel:
+    """Return the model of a saved fingerprint.
+
+    Parameters
+    ----------
+    fingerprint
+        A saved fingerprint.
+    structure
+        The structure that it names.
+
+    Raises
+    ------
+    FingerprintError
+        If the structure has other parameters than the fingerprint.
+    """
+    found = {quantity.name: quantity.value for quantity in fingerprint.parameters}
+    named = found | fingerprint.held
+    apart = sorted(set(structure.names) ^ set(named))
+    if apart:
+        raise FingerprintError(
+            f"fingerprint of {fingerprint.structure}: expected the parameters of structure {structure.name}, found a "
+            f"difference in {', '.join(apart)}; name the structure that it was identified with."
+        )
+    bounds = {p.name: (p.lower, p.upper) for p in structure.parameters if p.name in found}
+    identified = structure.held_at(**fingerprint.held).free_between(**bounds)
+    return IdentifiedModel(
+        structure=identified,
+        values=frozen_float([named[name] for name in identified.names]),
+        covariance=frozen_float(fingerprint.covariance_of([parameter.name for parameter in identified.free])),
+    )
