@@ -22,10 +22,11 @@ from shaftprint.report._folder import FIGURES, PAGE, PLOTS, report_written_whole
 from shaftprint.report._sections import Picture, Section
 from shaftprint.report._style import save_figure
 from shaftprint.report._table import Table, sentence_html
-from shaftprint.report.plots import plotly_script, plotly_sheets, plotly_version
+from shaftprint.report.plots import plotly_script, plotly_sheets, plotly_version, quick_script
 
 # Of a larger one a picture in dots is smaller, and still fine in print.
 LARGEST_SVG_BYTES = 80_000
+CSS_PX_AN_INCH = 96.0
 TEMPLATE = "report.html.j2"
 TABLE_TEMPLATE = "table.html.j2"
 STYLE = "report.css"
@@ -55,11 +56,28 @@ class Page:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class _Drawn:
-    """Where an interactive figure is, as the page names it."""
+class _Still:
+    """Where a static figure is, as the page names it, and its size."""
+
+    source: str
+    width_px: int
+    height_px: int
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Chart:
+    """Where the data of an interactive figure are, as the page names them, and its height."""
 
     source: str
     height_px: int
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Scripts:
+    """Where the page's own script and plotly's are, as the page names them."""
+
+    page: str
+    library: str
 
 
 def write_page(
@@ -96,20 +114,20 @@ def write_page(
     library = plotly_script() if interactive else b""
     with report_written_whole(place, overwrite=overwrite) as part:
         pictures = [picture for section in page.sections for picture in section.pictures]
-        sources, plots = {}, {}
+        stills, plots = {}, {}
         for number, picture in enumerate(pictures, start=1):
-            sources[picture.name] = _drawn(picture, part)
+            stills[picture.name] = _written_still(picture, part)
             if interactive and picture.plot is not None:
                 plots[picture.name] = _written_plot(picture, part)
             if progress is not None:
                 progress(number / len(pictures))
-        scripts = _scripts(part, library) if interactive else ()
-        (part / PAGE).write_text(_html(page, sources, plots, scripts, plotly_sheets(library)), encoding="utf-8")
+        scripts = _written_scripts(part, library) if interactive else None
+        (part / PAGE).write_text(_html(page, stills, plots, scripts, plotly_sheets(library)), encoding="utf-8")
     return place / PAGE
 
 
-def _drawn(picture: Picture, part: Path) -> str:
-    """Draw and save a picture, as PNG where an SVG would be large; return its address on the page."""
+def _written_still(picture: Picture, part: Path) -> _Still:
+    """Draw and save a picture, as PNG where an SVG would be large."""
     figure = picture.draw()
     path = part / FIGURES / f"{picture.name}.svg"
     save_figure(figure, path)
@@ -117,10 +135,11 @@ def _drawn(picture: Picture, part: Path) -> str:
         path.unlink()
         path = path.with_suffix(".png")
         save_figure(figure, path)
-    return f"{FIGURES}/{path.name}"
+    width, height = (round(CSS_PX_AN_INCH * length) for length in figure.get_size_inches())
+    return _Still(source=f"{FIGURES}/{path.name}", width_px=width, height_px=height)
 
 
-def _written_plot(picture: Picture, part: Path) -> _Drawn:
+def _written_plot(picture: Picture, part: Path) -> _Chart:
     """Write an interactive figure as a script that hands it to the page: a page from a disk may not read other files.
 
     Raises
@@ -133,24 +152,25 @@ def _written_plot(picture: Picture, part: Path) -> _Drawn:
     plot = picture.plot()
     address = f"{PLOTS}/{picture.name}.js"
     (part / address).write_text(f"shaftprintPlot({json.dumps(picture.name)},{plot.text()});\n", encoding="utf-8")
-    return _Drawn(source=address, height_px=plot.height_px)
+    return _Chart(source=address, height_px=plot.height_px)
 
 
-def _scripts(part: Path, library: bytes) -> tuple[str, ...]:
-    """Write plotly's script and the page's own into the folder of plots; return their addresses."""
-    names = (f"plotly-{plotly_version(library)}.min.js", SCRIPT)
-    for name, content in zip(names, (library, _template(SCRIPT).encode()), strict=True):
-        (part / PLOTS / name).write_bytes(content)
-    return tuple(f"{PLOTS}/{name}" for name in names)
+def _written_scripts(part: Path, library: bytes) -> _Scripts:
+    """Write plotly's script and the page's own into the folder of plots."""
+    scripts = _Scripts(page=f"{PLOTS}/{SCRIPT}", library=f"{PLOTS}/plotly-{plotly_version(library)}.min.js")
+    (part / scripts.page).write_text(_template(SCRIPT), encoding="utf-8")
+    (part / scripts.library).write_bytes(quick_script(library))
+    return scripts
 
 
 def _html(
     page: Page,
-    sources: Mapping[str, str],
-    plots: Mapping[str, _Drawn],
-    scripts: Sequence[str],
+    stills: Mapping[str, _Still],
+    plots: Mapping[str, _Chart],
+    scripts: _Scripts | None,
     empty_sheets: Sequence[str],
 ) -> str:
+    first_plot = next(iter(plots), None)
     style = _template(STYLE)
     environment = Environment(
         loader=DictLoader({name: _template(name) for name in (TEMPLATE, TABLE_TEMPLATE)}),
@@ -170,14 +190,17 @@ def _html(
         sections=page.sections,
         files=page.files,
         ending=page.ending,
-        sources=sources,
+        stills=stills,
         plots=plots,
+        first_plot=first_plot,
+        # What a reader sees first is not to wait for a place near the screen.
+        at_once={next(iter(stills), None), first_plot},
         scripts=scripts,
         empty_sheets=empty_sheets,
         shown=lambda table: _shown(table_template, table),
         # The style sheet is ours and holds nothing of the user's.
         style=Markup(style),  # noqa: S704
-        policy=_policy(style, scripted=bool(scripts)),
+        policy=_policy(style, scripted=scripts is not None),
     )
 
 

@@ -18,6 +18,8 @@ from shaftprint.arrays import FloatArray
 
 Json: TypeAlias = dict[str, Any]
 
+# Kinds of traces that a report may draw: plotly's script on the page has no others.
+TRACE_TYPES = ("bar", "scatter")
 # Digits of a number in the data of the page; a screen shows four.
 DIGITS = 6
 # Steps between the lowest and the highest value of a packed signal, and the number that stands for none.
@@ -35,6 +37,15 @@ class Plot:
     """Axes and legend, as plotly takes them."""
     height_px: int = 520
     """Height on the page [px]."""
+
+    def __post_init__(self) -> None:
+        """Refuse traces that the page cannot draw."""
+        for trace in self.traces:
+            kind = trace.get("type", "scatter")
+            if kind not in TRACE_TYPES:
+                raise ValueError(
+                    f"interactive figure: expected a trace of type {' or '.join(TRACE_TYPES)}, found {kind}."
+                )
 
     def text(self) -> str:
         """Return the figure as JSON without numbers that are not finite, safe inside a script."""

@@ -1,6 +1,6 @@
 "use strict";
 // Draws the interactive figures of the page when they come near the screen, and switches between light and dark.
-// Without scripts the page shows the static figures; in print it always does.
+// A static figure is seen until its chart is drawn; in print, and where data or scripts are missing, it stays.
 (() => {
   const NEAR = "500px 0px";
   const NARROW = 600;
@@ -33,6 +33,10 @@
   };
   const root = document.documentElement;
   const figures = new Map();
+  // Kept when plotly is there.
+  let library;
+  // Kept when the last chart that was asked for is there.
+  let drawn = Promise.resolve();
 
   const darkScreen = window.matchMedia("(prefers-color-scheme: dark)");
   const look = () => root.dataset.look || (darkScreen.matches ? "dark" : "light");
@@ -89,34 +93,47 @@
     const { place, figure } = figures.get(name);
     const colours = COLOURS[look()];
     const config = { ...CONFIG, toImageButtonOptions: { format: "svg", filename: name } };
-    return window.Plotly.react(place, coloured(figure.data, colours), layoutOf(figure, colours, place.clientWidth < NARROW), config).then(() => {
-      if (place.dataset.state !== "drawn") {
-        place.dataset.state = "drawn";
-        performance.mark("plot drawn");
-        fetchPictures();
-      }
+    const layout = layoutOf(figure, colours, place.clientWidth < NARROW);
+    return window.Plotly.react(place, coloured(figure.data, colours), layout, config).then(() => {
+      if (place.dataset.state === "drawn") return;
+      // The style sheet puts the chart in the place of its static figure.
+      place.dataset.state = "drawn";
+      performance.mark("plot drawn");
+      fetchPictures();
     });
   }
 
-  // Static figures wait for the first plot, and are there when the page is printed.
+  // Static figures far from the screen wait for the first plot, and are there when the page is printed.
   function fetchPictures() {
     for (const picture of document.querySelectorAll('img[loading="lazy"]')) picture.loading = "eager";
   }
 
-  function fetchData(name, place) {
+  // Without its data, or without plotly, a figure is the static one.
+  function giveUp(place) {
+    place.closest("figure").classList.remove("has-plot");
+    place.parentElement.querySelector("img").removeAttribute("aria-hidden");
+  }
+
+  function fetchData(place) {
+    const name = place.dataset.plot;
     if (figures.has(name)) return;
     figures.set(name, { place, figure: null });
-    const script = document.createElement("script");
+    // The page itself asks for the data of its first figure.
+    const early = document.getElementById("first-data");
+    const script = early && early.dataset.plot === name ? early : document.createElement("script");
+    script.addEventListener("error", () => giveUp(place));
+    if (script === early) return;
     script.src = place.dataset.source;
-    // Where the data cannot be read the static figure comes back.
-    script.addEventListener("error", () => place.closest("figure").classList.remove("has-plot"));
     document.head.append(script);
   }
 
-  // Each file of data calls this with its figure.
+  // Each file of data calls this with its figure. Charts are drawn one after the other, so that the first is seen soon.
   window.shaftprintPlot = (name, figure) => {
     figures.get(name).figure = figure;
-    draw(name);
+    drawn = drawn.then(() => library).then(() => draw(name)).catch((problem) => {
+      giveUp(figures.get(name).place);
+      if (problem) console.error(problem);
+    }).then(() => new Promise((next) => setTimeout(next)));
   };
 
   function shifted(axis, share, factor) {
@@ -140,6 +157,7 @@
   }
 
   function showAll(place, name) {
+    if (!place._fullLayout) return;
     const { figure } = figures.get(name);
     const change = {};
     for (const key of Object.keys(figure.layout).filter(isAxis)) {
@@ -179,8 +197,6 @@
   function prepare(place) {
     const name = place.dataset.plot;
     const keys = actions(place, name);
-    place.hidden = false;
-    place.style.height = `${place.dataset.height}px`;
     place.addEventListener("keydown", (event) => {
       const act = keys[event.key];
       if (!act || event.target !== place || event.ctrlKey || event.metaKey || event.altKey) return;
@@ -197,14 +213,15 @@
       button("Show all", "Show all again", keys[0]),
     );
     place.before(bar);
-    place.closest("figure").classList.add("has-plot");
+    // Both say the same; where the picture alone is seen, it is named again.
+    place.parentElement.querySelector("img").setAttribute("aria-hidden", "true");
   }
 
   function prepareLook() {
     const chosen = document.getElementById("look");
     const say = () => {
       chosen.setAttribute("aria-pressed", String(look() === "dark"));
-      for (const [name, entry] of figures) if (entry.figure) draw(name);
+      for (const [name, { place }] of figures) if (place.dataset.state === "drawn") draw(name);
     };
     chosen.hidden = false;
     chosen.addEventListener("click", () => {
@@ -220,26 +237,41 @@
     say();
   }
 
+  function prepareFigures() {
+    const places = document.querySelectorAll(".plot");
+    const script = document.getElementById("library");
+    library = new Promise((ready, failed) => {
+      script.addEventListener("load", () => (window.Plotly ? ready() : failed()));
+      script.addEventListener("error", () => failed());
+    });
+    library.catch(() => {
+      places.forEach(giveUp);
+      fetchPictures();
+    });
+    places.forEach(prepare);
+    const watcher = new IntersectionObserver((entries) => {
+      for (const entry of entries.filter((found) => found.isIntersecting)) {
+        watcher.unobserve(entry.target);
+        fetchData(entry.target);
+      }
+    }, { rootMargin: NEAR });
+    places.forEach((place) => watcher.observe(place));
+    if (places.length) fetchData(places[0]);
+  }
+
   try {
     const kept = localStorage.getItem("shaftprint-look");
     if (kept === "light" || kept === "dark") root.dataset.look = kept;
   } catch {
     // As above.
   }
-  prepareLook();
+  // The page waits for this script, so it is painted at once as it will stay: its look, and room for its charts.
+  root.classList.add("scripted");
   window.addEventListener("beforeprint", fetchPictures);
-  if (!window.Plotly) {
-    fetchPictures();
-    return;
-  }
-  const places = document.querySelectorAll(".plot");
-  places.forEach(prepare);
-  const watcher = new IntersectionObserver((entries) => {
-    for (const entry of entries.filter((found) => found.isIntersecting)) {
-      watcher.unobserve(entry.target);
-      fetchData(entry.target.dataset.plot, entry.target);
-    }
-  }, { rootMargin: NEAR });
-  places.forEach((place) => watcher.observe(place));
-  if (places.length) fetchData(places[0].dataset.plot, places[0]);
+  document.addEventListener("readystatechange", () => {
+    // All of the page is read, and plotly's script has not run yet.
+    if (document.readyState !== "interactive") return;
+    prepareLook();
+    prepareFigures();
+  });
 })();
