@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from shaftprint.clocks import ClockMap, joined, merged
+from shaftprint.clocks import Alignment, ClockMap, joined, merged
 from shaftprint.errors import ClockError
 from shaftprint.recording import Channel, Recording, read_recording, write_recording
 
@@ -59,7 +59,8 @@ def test_parts_that_were_logged_otherwise_are_refused(other, words):
 
 
 def test_two_loggers_share_one_clock():
-    clock = ClockMap(offset_s=0.25, drift=1e-4, middle_s=0.0, covariance=np.zeros((2, 2)))
+    line = ClockMap(offset_s=0.25, drift=1e-4, middle_s=0.0, covariance=np.zeros((2, 2)))
+    clock = Alignment(map=line, span_s=(0.0, 0.5))
     both = merged(part("main.nc", range(100)), [(part("engine.nc", range(50)), clock)])
     assert list(both.channels) == ["x", "x (engine)"]
     moved = both.channel("x (engine)")

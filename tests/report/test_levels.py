@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from shaftprint.clocks import Alignment, ClockMap
 from shaftprint.recording import Channel, Recording
-from shaftprint.report._levels import clock_map_table, clock_table, level_table
+from shaftprint.report._levels import clock_table, level_table
 
 
 def channel(name, values, rate_hz=10.0, start_s=0.0):
@@ -53,10 +52,3 @@ def test_channels_of_one_clock_share_a_row():
     assert [row[0] for row in rows] == ["a, b", "c"]
     assert rows[0][1:4] == ("10.00000", "0.000", "2.000")
     assert rows[1][1:4] == ("25.00000", "0.500", "2.500")
-
-
-def test_a_clock_map_in_milliseconds_and_parts_per_million():
-    line = ClockMap(offset_s=0.4, drift=30e-6, middle_s=400.0, covariance=np.diag([1e-6, 4e-12]))
-    found = Alignment(map=line, stretches=(), slower="n", scatter=1.0, worst_std_s=0.0015)
-    (row,) = clock_map_table({"bridge.tdms": found}).rows
-    assert row == ("bridge.tdms", "400.0 ± 1.0", "400.0", "30.0 ± 2.0", "1.50", "0")

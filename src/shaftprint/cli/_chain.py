@@ -1,7 +1,7 @@
 """The way from a raw recording to fitted structures, which ``identify`` and ``demo`` share."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -9,8 +9,9 @@ import numpy as np
 
 from shaftprint.cli._inputs import Trial
 from shaftprint.cli._progress import Steps
+from shaftprint.clocks import logger_clocks
 from shaftprint.errors import StructureError
-from shaftprint.fingerprint import Fingerprint, take_fingerprint
+from shaftprint.fingerprint import Fingerprint, clock_findings, clock_influences, take_fingerprint
 from shaftprint.identify import Identification, Prior, Settings, identify, priors_from_vessel
 from shaftprint.models import Structure
 from shaftprint.recording import read_recording
@@ -50,10 +51,13 @@ def measure(recording: Path, trial: Trial, *, mode: Mode, steps: Steps) -> Measu
     """
     steps.begin(f"Reading the recording ({mode} mode)", total=1.0)
     with read_recording(recording) as opened:
+        clocks = logger_clocks(opened)
         signals = prepare_signals(opened, trial.vessel, trial.campaign, mode=mode, progress=steps.reach)
     steps.begin("Measuring the test lines")
     method = ExactBin() if mode == "thesis" else WholePeriodSine()
     spectra = estimate_spectra(signals, trial.campaign, method=method)
+    influences = clock_influences(clocks, spectra=spectra, signals=signals, vessel=trial.vessel)
+    signals = replace(signals, findings=(*signals.findings, *clock_findings(influences)))
     latency = trial.vessel.sensors.set_point.latency_s or 0.0
     responses = responses_of(spectra.response, set_point_latency_s=latency)
     return Measurement(signals=signals, spectra=spectra, responses=responses)

@@ -7,7 +7,14 @@ import click
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._reading import hints_of, reading_options
 from shaftprint.errors import RecordingError
-from shaftprint.recording import Channel, Recording, expect_known_ending, read_recording, write_by_ending
+from shaftprint.recording import (
+    NATIVE_ENDINGS,
+    Channel,
+    Recording,
+    expect_known_ending,
+    read_recording,
+    write_by_ending,
+)
 
 
 @click.command("convert")
@@ -49,11 +56,18 @@ def command(
             steps.begin(f"Converting {source.name}")
             with read_recording(source, **hints_of(**said)) as opened:
                 channels = [_with_unit(opened, name, given) for name in chosen or opened.channels]
-                write_by_ending(target, channels, overwrite=force)
-                left_out = dict(opened.left_out)
+                write_by_ending(target, channels, attributes=opened.attributes, overwrite=force)
+                left_out = dict(opened.left_out) | _facts_left_out(opened, target)
             for name, reason in left_out.items():
                 click.echo(f"{source}: left out {name}: {reason}", err=True)
             click.echo(f"{target}: {len(channels)} channels of {source}.")
+
+
+def _facts_left_out(opened: Recording, target: Path) -> dict[str, str]:
+    """Return which facts on the whole recording the target cannot hold, with the reason."""
+    if target.suffix.lower() in NATIVE_ENDINGS:
+        return {}
+    return {f"the attribute {name}": "only the native container (.nc) holds it" for name in opened.attributes}
 
 
 def _unit(text: str) -> tuple[str, str]:

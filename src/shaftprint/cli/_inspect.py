@@ -6,6 +6,7 @@ import click
 import numpy as np
 
 from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.cli._clock_tables import print_clocks
 from shaftprint.cli._fingerprint_tables import print_findings
 from shaftprint.cli._inputs import NAMES
 from shaftprint.cli._progress import no_progress_option, progress
@@ -13,6 +14,8 @@ from shaftprint.cli._reading import hints_of, reading_options
 from shaftprint.cli._sensor_map import Seen, proposed_sensors
 from shaftprint.cli._signal_tables import print_lines, print_signals
 from shaftprint.cli._tables import print_table
+from shaftprint.clocks import logger_clocks
+from shaftprint.fingerprint import clock_findings, clock_influences
 from shaftprint.nonlinearity import detect
 from shaftprint.recording import Recording, read_recording
 from shaftprint.signals import ChannelReport, inspect_channels, prepare_signals
@@ -46,7 +49,9 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
     ship = None if vessel is None else load_vessel(vessel)
     asked = None if campaign is None else load_campaign(campaign)
     with read_recording(recording, **hints_of(**said)) as opened:
+        clocks = logger_clocks(opened)
         seen = _print_channels(opened, hidden=no_progress)
+        print_clocks(clocks)
         if ship is None:
             print_findings("Left out", [f"{name}: {reason}" for name, reason in opened.left_out.items()])
             click.echo("Proposal for the vessel file; lines that begin with # are for you to fill in\n")
@@ -111,7 +116,8 @@ def _print_test(opened: Recording, ship: Vessel, asked: Campaign, *, hidden: boo
         found = detect(signals, asked, ship)
     print_signals(signals)
     print_lines(spectra)
-    print_findings("Findings on the signals", signals.findings)
+    influences = clock_influences(logger_clocks(opened), spectra=spectra, signals=signals, vessel=ship)
+    print_findings("Findings on the signals", [*signals.findings, *clock_findings(influences)])
     print_findings("Nonlinearities", [found.sentence, *(finding.evidence for finding in found.findings)])
     click.echo(verdict(spectra))
 

@@ -22,7 +22,7 @@ def command(parts: tuple[Path, ...], output: Path, *, follow_on: bool, force: bo
     with ExitStack() as stack:
         opened = [stack.enter_context(read_recording(part)) for part in parts]
         whole = joined(opened, follow_on=follow_on)
-        write_recording(output, whole.channels.values(), overwrite=force)
+        write_recording(output, whole.channels.values(), attributes=whole.attributes, overwrite=force)
         for channel in whole.channels.values():
             click.echo(f"{channel.name}: {channel.count} samples, {channel.duration_s:.1f} s")
     click.echo(output)

@@ -3,11 +3,10 @@
 from pathlib import Path
 
 import click
-import numpy as np
 
+from shaftprint.cli._clock_tables import print_clocks
 from shaftprint.cli._inputs import NAMES
-from shaftprint.cli._tables import print_table
-from shaftprint.clocks import Alignment, align, merged
+from shaftprint.clocks import align, logger_clocks, merged
 from shaftprint.recording import Recording, read_recording, write_recording
 from shaftprint.signals import Content, content_of
 from shaftprint.vessel import Vessel, load_vessel
@@ -55,9 +54,9 @@ def command(
             latency_s=1e-3 * latency_ms,
             latency_std_s=1e-3 * latency_std_ms,
         )
-        _print(found, moving)
-        both = merged(still, [(moving, found.map)])
-        write_recording(output, both.channels.values(), attributes=_facts(found, moving), overwrite=force)
+        both = merged(still, [(moving, found)])
+        print_clocks(logger_clocks(both))
+        write_recording(output, both.channels.values(), attributes=both.attributes, overwrite=force)
     click.echo(output)
 
 
@@ -71,36 +70,3 @@ def _names(shared: str) -> tuple[str, str]:
 def _content(recording: Recording, name: str, ship: Vessel | None) -> Content:
     sensors = {} if ship is None else {sensor.channel: sensor for sensor in ship.sensors.speed}
     return content_of(recording.channel(name), sensors.get(name), rate_hz=RATE_HZ)
-
-
-def _print(found: Alignment, moving: Recording) -> None:
-    clock = found.map
-    offset_std, drift_std = np.sqrt(np.diag(clock.covariance))
-    rows = [
-        (
-            "offset",
-            "s",
-            f"{clock.offset_s:.6f}",
-            f"{offset_std:.2g}",
-            f"at {clock.middle_s:.0f} s of {moving.path.name}",
-        ),
-        ("drift", "ppm", f"{1e6 * clock.drift:.3f}", f"{1e6 * drift_std:.2g}", "of the reference against it"),
-        ("worst within the recording", "ms", "", f"{1e3 * found.worst_std_s:.2g}", ""),
-        ("minutes compared", "", str(len(found.stretches)), "", f"scatter {found.scatter:.2f} of what noise explains"),
-    ]
-    print_table(
-        "Clock map", ("quantity", "unit", "value", "standard deviation", "remark"), rows, numbers={2, 3}, spare=True
-    )
-
-
-def _facts(found: Alignment, moving: Recording) -> dict[str, str | float]:
-    clock = found.map
-    return {
-        "clock_of": moving.path.name,
-        "clock_sha256": moving.sha256,
-        "clock_offset_s": clock.offset_s,
-        "clock_drift": clock.drift,
-        "clock_middle_s": clock.middle_s,
-        "clock_offset_std_s": float(np.sqrt(clock.covariance[0, 0])),
-        "clock_drift_std": float(np.sqrt(clock.covariance[1, 1])),
-    }

@@ -1,11 +1,11 @@
 """The verb of the room: the map between two loggers' clocks from what both have seen."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.clocks._alignment import Alignment, Stretch
 from shaftprint.clocks._clock_map import ClockMap
 from shaftprint.clocks._coarse import RATE_HZ, coarse_offset
 from shaftprint.clocks._windows import Delay, delays_of
@@ -25,22 +25,6 @@ ITERATIONS = 50
 STRANGE, ALIKE = 0.3, 0.8
 # Share of the stretches that must lie on one line, and how near [s].
 AGREEING, NEAR_S = 0.5, 0.05
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Alignment:
-    """A clock map and what it rests on."""
-
-    map: ClockMap
-    """From the other clock to the reference."""
-    stretches: tuple[Delay, ...]
-    """What each stretch says: the time on the clock of ``slower`` and what the other one reads more."""
-    slower: str
-    """Name of the channel whose clock the stretches are on."""
-    scatter: float
-    """Root mean square of the stretches' distances from the line in their standard deviations; 1 where all is well."""
-    worst_std_s: float
-    """Largest standard deviation of the map within the stretch that both have seen [s]."""
 
 
 def align(
@@ -92,14 +76,19 @@ def align(
     found = ClockMap(
         offset_s=found.offset_s + latency_s, drift=found.drift, middle_s=found.middle_s, covariance=covariance
     )
-    ends = other.time_s[[0, -1]]
     return Alignment(
         map=found,
-        stretches=tuple(delays),
-        slower=slow.name,
+        span_s=(other.start_s, float(other.time_s[-1])),
+        stretches=tuple(_stretch(delay, latency_s, is_slower=is_slower) for delay in delays),
         scatter=scatter,
-        worst_std_s=float(found.std_s(ends).max()),
     )
+
+
+def _stretch(delay: Delay, latency_s: float, *, is_slower: bool) -> Stretch:
+    """Return what a delay says on the other clock, which has the slower content or the faster one."""
+    if is_slower:
+        return Stretch(time_s=delay.time_s, offset_s=delay.delay_s + latency_s, std_s=delay.std_s)
+    return Stretch(time_s=delay.time_s + delay.delay_s, offset_s=latency_s - delay.delay_s, std_s=delay.std_s)
 
 
 def _line(delays: Sequence[Delay], drift_std: float, names: str) -> ClockMap:

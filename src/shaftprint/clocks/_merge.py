@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from shaftprint.clocks._clock_map import ClockMap
+from shaftprint.clocks._alignment import Alignment
+from shaftprint.clocks._logger_clock import ATTRIBUTE, LoggerClock, clock_attributes, logger_clocks
 from shaftprint.errors import ClockError
 from shaftprint.recording import Channel, Recording
 
@@ -18,26 +19,31 @@ BESIDE = 0.51
 SAME_RATE = 1e-6
 
 
-def merged(reference: Recording, others: Sequence[tuple[Recording, ClockMap]]) -> Recording:
+def merged(reference: Recording, others: Sequence[tuple[Recording, Alignment]]) -> Recording:
     """Return one recording with the channels of several loggers, all on the clock of the first.
 
     Samples are neither moved nor copied: channels get another start and rate. A channel whose name is taken already
-    gets the name of its file behind its own, as in ``U_setpoint (engine)``. Closing it closes them all.
+    gets the name of its file behind its own, as in ``U_setpoint (engine)``. The clock maps, with those of recordings
+    that were merged before, go into the attributes (see ``logger_clocks``). Closing it closes them all.
 
     Parameters
     ----------
     reference
         The recording that has the clock.
     others
-        Further recordings with the maps of their clocks.
+        Further recordings with their alignments; one that is known from elsewhere needs a map and a span alone.
 
     Raises
     ------
     ClockError
         If two channels would have the same name.
+    RecordingError
+        If the clock maps that a recording holds already cannot be understood.
     """
     channels = dict(reference.channels)
-    for other, clock in others:
+    clocks = list(logger_clocks(reference))
+    for other, alignment in others:
+        names: dict[str, str] = {}
         for channel in other.channels.values():
             name = channel.name if channel.name not in channels else f"{channel.name} ({other.path.stem})"
             if name in channels:
@@ -45,14 +51,43 @@ def merged(reference: Recording, others: Sequence[tuple[Recording, ClockMap]]) -
                     f'{other.path}: expected a name that is free for channel {channel.name}, found "{name}" taken; '
                     "rename one of the files."
                 )
-            channels[name] = replace(clock.applied(channel), name=name)
-    return _one([reference, *(other for other, _ in others)], channels, "merged")
+            channels[name] = replace(alignment.map.applied(channel), name=name)
+            names[channel.name] = name
+        clocks += _clocks(reference, other, alignment, names)
+    attributes = {**reference.attributes, **clock_attributes(clocks)}
+    return _one([reference, *(other for other, _ in others)], channels, "merged", attributes)
+
+
+def _clocks(
+    reference: Recording, other: Recording, alignment: Alignment, names: Mapping[str, str]
+) -> list[LoggerClock]:
+    """Return the clock map of another recording, and those of loggers that were merged into it before."""
+    earlier = [
+        replace(
+            clock,
+            reference=reference.path.name,
+            reference_sha256=reference.sha256,
+            channels=tuple(names[name] for name in clock.channels),
+            alignment=clock.alignment.then(alignment.map),
+        )
+        for clock in logger_clocks(other)
+    ]
+    theirs = {name for clock in earlier for name in clock.channels}
+    own = LoggerClock(
+        logger=other.path.name,
+        sha256=other.sha256,
+        reference=reference.path.name,
+        reference_sha256=reference.sha256,
+        channels=tuple(name for name in names.values() if name not in theirs),
+        alignment=alignment,
+    )
+    return [own, *earlier]
 
 
 def joined(parts: Sequence[Recording], *, follow_on: bool = False) -> Recording:
     """Return one recording from parts that one logger wrote one after the other.
 
-    Closing it closes them all.
+    Attributes that all parts share are kept, and the clock maps of all of them. Closing it closes them all.
 
     Parameters
     ----------
@@ -66,6 +101,8 @@ def joined(parts: Sequence[Recording], *, follow_on: bool = False) -> Recording:
     ------
     ClockError
         If channels differ, or a part does not begin where the part before it ends.
+    RecordingError
+        If the clock maps of a part cannot be understood.
     """
     first = parts[0]
     for part in parts[1:]:
@@ -76,7 +113,13 @@ def joined(parts: Sequence[Recording], *, follow_on: bool = False) -> Recording:
                 "leave those channels out, or join other files."
             )
     channels = {name: _chain([(part, part.channels[name]) for part in parts], follow_on) for name in first.channels}
-    return _one(parts, channels, "joined")
+    shared = {
+        name: value
+        for name, value in first.attributes.items()
+        if name != ATTRIBUTE and all(part.attributes.get(name) == value for part in parts)
+    }
+    clocks = [clock for part in parts for clock in logger_clocks(part)]
+    return _one(parts, channels, "joined", shared | clock_attributes(clocks))
 
 
 def _chain(parts: Sequence[tuple[Recording, Channel]], follow_on: bool) -> Channel:
@@ -117,11 +160,15 @@ def _expect_same(recording: Recording, channel: Channel, first: Channel) -> None
         )
 
 
-def _one(parts: Sequence[Recording], channels: Mapping[str, Channel], kind: str) -> Recording:
+def _one(
+    parts: Sequence[Recording], channels: Mapping[str, Channel], kind: str, attributes: Mapping[str, str | float]
+) -> Recording:
     digest = hashlib.sha256("".join(part.sha256 for part in parts).encode()).hexdigest()
 
     def release() -> None:
         for part in parts:
             part.close()
 
-    return Recording(path=parts[0].path, sha256=digest, format=kind, channels=channels, release=release)
+    return Recording(
+        path=parts[0].path, sha256=digest, format=kind, channels=channels, attributes=attributes, release=release
+    )

@@ -13,6 +13,7 @@ gauge zero share    %           zero offset of the torque gauge over the working
 =================== =========== ==================================================================================
 """
 
+from shaftprint.fingerprint._clock_influence import NOTABLE_SHIFT, ClockInfluence, clock_findings, clock_influences
 from shaftprint.fingerprint._fingerprint import (
     Conditions,
     Fingerprint,
@@ -24,18 +25,19 @@ from shaftprint.fingerprint._fingerprint import (
 )
 from shaftprint.fingerprint._inertia import inertia_beside
 from shaftprint.fingerprint._margins import margin_quantities
-from shaftprint.fingerprint._model import IdentifiedModel, identified_model
 from shaftprint.fingerprint._physical import physical_quantities
 from shaftprint.fingerprint._take import take_fingerprint
 
 __all__ = [
+    "NOTABLE_SHIFT",
+    "ClockInfluence",
     "Conditions",
     "Fingerprint",
-    "IdentifiedModel",
     "Quality",
     "Quantity",
     "SourceFile",
-    "identified_model",
+    "clock_findings",
+    "clock_influences",
     "inertia_beside",
     "margin_quantities",
     "physical_quantities",

@@ -9,5 +9,8 @@ VERSION = 1
 GROUP = "channels"
 """The group that holds one data set a channel."""
 
+OWN = ("Conventions", "format", "format_version")
+"""Root attributes that are the container's own; all others are facts on the recording."""
+
 CHUNK_SAMPLES = 262_144
 """Samples of one compressed block: 131 s at 2000 Hz, 512 KiB of counts."""

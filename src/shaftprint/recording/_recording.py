@@ -29,6 +29,8 @@ class Recording:
     """Why other channels of the file cannot be used, by their names."""
     began: datetime | None = None
     """Date and time of second 0 by the logger's own clock, where the file gives it."""
+    attributes: Mapping[str, str | float] = field(default_factory=dict)
+    """Facts on the whole recording by their names, such as the vessel; those of the native container."""
     release: Callable[[], None] = field(repr=False, default=lambda: None)
     """What ``close`` does."""
 

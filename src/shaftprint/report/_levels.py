@@ -1,18 +1,14 @@
-"""Tables of the raw channels: what levels they reach, and by which clocks they run."""
+"""Tables of the raw channels: what levels they reach, and at which rates they were logged."""
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from shaftprint.report._numbers import plain, rounded, with_deviation
+from shaftprint.report._numbers import plain, rounded
 from shaftprint.report._table import Cell, Table
 
 if TYPE_CHECKING:
-    from shaftprint.clocks import Alignment
     from shaftprint.recording import Levels, Recording
 
-PERCENT, MILLI, PPM = 100.0, 1e3, 1e6
+PERCENT = 100.0
 # A channel that spends more than this share of its time at its highest or lowest value may be cut off there.
 CUT_OFF = 0.01
 # Pulses are at their ends most of the time: a channel with both ends that often is one of pulses.
@@ -76,34 +72,4 @@ def clock_table(recording: "Recording") -> Table:
         rows=rows,
         note="Channels of one file share the clock of its logger; where there were several loggers, their clock maps "
         "follow.",
-    )
-
-
-def clock_map_table(alignments: "Mapping[str, Alignment]") -> Table:
-    """Return how the clocks of other loggers read on the clock of the first.
-
-    Parameters
-    ----------
-    alignments
-        Clock maps by the name of the other logger or its file.
-    """
-    rows: list[tuple[Cell, ...]] = []
-    for name, found in alignments.items():
-        offset_std, drift_std = (float(std) for std in np.sqrt(np.diag(found.map.covariance)))
-        rows.append(
-            (
-                name,
-                with_deviation(MILLI * found.map.offset_s, MILLI * offset_std),
-                plain(found.map.middle_s, 1),
-                with_deviation(PPM * found.map.drift, PPM * drift_std),
-                plain(MILLI * found.worst_std_s, 2),
-                str(len(found.stretches)),
-            )
-        )
-    return Table(
-        caption="Clock maps of the other loggers",
-        header=("logger", "offset [ms]", "at [s]", "drift [ppm]", "largest std [ms]", "stretches"),
-        rows=tuple(rows),
-        note="The first logger's clock reads the offset more at the given time, and runs faster by the drift. Samples "
-        "are not moved: channels of another logger get another start and rate.",
     )

@@ -3,7 +3,9 @@
 from functools import partial
 from typing import TYPE_CHECKING
 
-from shaftprint.report._levels import clock_map_table, clock_table, level_table
+from shaftprint.fingerprint import clock_influences
+from shaftprint.report._clocks import clock_map_table, clock_sentences
+from shaftprint.report._levels import clock_table, level_table
 from shaftprint.report._numbers import plain
 from shaftprint.report._sections import Inputs, Picture, Section
 from shaftprint.report._signal_tables import local_ratio_table, overall_ratio_table, repair_table, window_table
@@ -32,7 +34,7 @@ def quality_section(inputs: Inputs) -> Section:
     return Section(
         key="quality",
         title="Data quality",
-        paragraphs=(_aliasing(inputs), _weakest(inputs)),
+        paragraphs=(_aliasing(inputs), _weakest(inputs), *_clocks(inputs)),
         tables=[table for table in tables if table.rows],
         pictures=(
             Picture(
@@ -44,6 +46,12 @@ def quality_section(inputs: Inputs) -> Section:
             ),
         ),
     )
+
+
+def _clocks(inputs: Inputs) -> list[str]:
+    """Return what is known of the clock of every logger that was merged into the recording."""
+    found = clock_influences(inputs.clocks, spectra=inputs.spectra, signals=inputs.signals, vessel=inputs.vessel)
+    return [clock_sentences(clock, influence) for clock, influence in zip(inputs.clocks, found, strict=True)]
 
 
 def _aliasing(inputs: Inputs) -> str:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from shaftprint.clocks import logger_clocks
 from shaftprint.report._inertia_sections import inertia_section
 from shaftprint.report._measurement_sections import response_section, signal_section, time_section
 from shaftprint.report._model_sections import (
@@ -25,7 +26,6 @@ from shaftprint.report._verdict_sections import verdict_section
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
-    from shaftprint.clocks import Alignment
     from shaftprint.fingerprint import Fingerprint
     from shaftprint.identify import Comparison, Identification
     from shaftprint.models import Structure
@@ -54,7 +54,6 @@ def render_report(
     comparisons: "Sequence[Comparison]" = (),
     sensitivity: "Sequence[Structure]" = (),
     validations: "Sequence[Validation]" = (),
-    clocks: "Mapping[str, Alignment] | None" = None,
     interactive: bool = True,
     overwrite: bool = False,
     progress: Callable[[float], None] | None = None,
@@ -71,7 +70,8 @@ def render_report(
     fingerprint, identification, signals, spectra, vessel, campaign
         The fingerprint and what it was made from.
     recording
-        Raw recording, open; without it the figures of raw channels are left out.
+        Raw recording, open; without it the figures of raw channels are left out, and the clocks of loggers that were
+        merged into it.
     fits
         Structures of the thesis fitted to the same responses, by name.
     thesis
@@ -86,8 +86,6 @@ def render_report(
         Structures whose Bode families are shown.
     validations
         The identified model, and others beside it, held against records that they have not seen.
-    clocks
-        Clock maps of other loggers by their name, where the recording was merged from several.
     interactive
         Whether figures can be zoomed; without it the page runs no script.
     overwrite
@@ -99,6 +97,8 @@ def render_report(
     ------
     FileExistsError
         If there is a report already and ``overwrite`` is false.
+    RecordingError
+        If the clock maps of the recording cannot be understood.
     ReportError
         If figures are to be interactive and plotly is not installed.
     """
@@ -117,7 +117,7 @@ def render_report(
         comparisons=comparisons,
         sensitivity=sensitivity,
         validations=validations,
-        clocks=clocks or {},
+        clocks=() if recording is None else logger_clocks(recording),
     )
     page = _page(inputs, _sections(inputs))
     return write_page(directory, page, interactive=interactive, overwrite=overwrite, progress=progress)
@@ -146,13 +146,21 @@ def _sections(inputs: Inputs) -> list[Section]:
     ]
 
 
+def _logs(inputs: Inputs) -> list[tuple[str, str, str]]:
+    """Return the loggers' own files of a merged recording: those that had the clock, then those that were moved."""
+    clocks = {
+        clock.reference: (clock.reference, "logger, had the clock", clock.reference_sha256) for clock in inputs.clocks
+    }
+    return [*clocks.values(), *((clock.logger, "logger, merged", clock.sha256) for clock in inputs.clocks)]
+
+
 def _page(inputs: Inputs, sections: Sequence[Section]) -> Page:
     fingerprint = inputs.fingerprint
     conditions = fingerprint.conditions
     files = Table(
         caption="Files that went into this report",
         header=("file", "what it is", "SHA-256"),
-        rows=tuple((source.name, source.role, source.sha256) for source in fingerprint.sources),
+        rows=(*((source.name, source.role, source.sha256) for source in fingerprint.sources), *_logs(inputs)),
     )
     ending = (
         f"shaftprint {fingerprint.shaftprint_version}, fingerprint schema {fingerprint.schema_version}, signals "

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from shaftprint.report._table import Table
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from shaftprint.campaign import Campaign
-    from shaftprint.clocks import Alignment
+    from shaftprint.clocks import LoggerClock
     from shaftprint.fingerprint import Fingerprint
     from shaftprint.identify import Comparison, Identification
     from shaftprint.models import Structure
@@ -42,7 +42,7 @@ class Inputs:
     comparisons: Sequence["Comparison"]
     sensitivity: Sequence["Structure"]
     validations: Sequence["Validation"] = ()
-    clocks: Mapping[str, "Alignment"] = field(default_factory=dict)
+    clocks: Sequence["LoggerClock"] = ()
 
     @property
     def aliasing_limit_hz(self) -> float:

@@ -3,11 +3,12 @@
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
-from shaftprint.recording._container import FORMAT, GROUP, VERSION
+from shaftprint.recording._container import FORMAT, GROUP, OWN, VERSION
 from shaftprint.recording._recording import Recording
 from shaftprint.recording._seal import has_seal, hashed
 from shaftprint.recording.readers._damage import told_as_damage
@@ -66,7 +67,22 @@ def _recording(path: Path, file: Any, sha256: str) -> Recording:
         for name, dataset in file[GROUP].items()
         if "sample_rate_hz" in dataset.attrs
     }
-    return Recording(path=path, sha256=sha256, format=NAME, channels=channels, release=file.close)
+    return Recording(
+        path=path,
+        sha256=sha256,
+        format=NAME,
+        channels=channels,
+        attributes=_facts(file.attrs),
+        release=file.close,
+    )
+
+
+def _facts(attributes: Any) -> dict[str, str | float]:
+    """Return the texts and numbers that stand beside the container's own attributes; other tools may add lists."""
+    found = {name: attributes[name] for name in attributes if name not in OWN}
+    texts = {name: value for name, value in found.items() if isinstance(value, str)}
+    numbers = {name: float(value) for name, value in found.items() if isinstance(value, np.number | int | float)}
+    return texts | numbers
 
 
 def _channel(path: Path, name: str, dataset: Any) -> Channel:

@@ -1,6 +1,6 @@
 """Writing a recording in the format that the ending of the file's name says."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
@@ -15,7 +15,6 @@ NATIVE_ENDINGS = (".nc", ".h5", ".hdf5")
 """Endings of the native container."""
 
 _WRITERS: dict[str, Callable[..., None]] = {
-    **dict.fromkeys(NATIVE_ENDINGS, write_recording),
     ".csv": write_csv,
     ".mat": write_mat_v73,
     ".mf4": write_mdf4,
@@ -31,14 +30,21 @@ def expect_known_ending(path: Path) -> None:
     RecordingError
         If it does not; the message lists the endings.
     """
-    if path.suffix.lower() not in _WRITERS:
+    endings = (*NATIVE_ENDINGS, *_WRITERS)
+    if path.suffix.lower() not in endings:
         raise RecordingError(
-            f'{path}: expected one of the endings {", ".join(_WRITERS)}, found "{path.suffix}"; give the file one of '
+            f'{path}: expected one of the endings {", ".join(endings)}, found "{path.suffix}"; give the file one of '
             "them."
         )
 
 
-def write_by_ending(path: str | Path, channels: Iterable[Channel], *, overwrite: bool = False) -> None:
+def write_by_ending(
+    path: str | Path,
+    channels: Iterable[Channel],
+    *,
+    attributes: Mapping[str, str | float] | None = None,
+    overwrite: bool = False,
+) -> None:
     """Write channels as .nc, .h5, .hdf5 (native container), .csv, .mat (version 7.3), .mf4 or .tdms.
 
     Parameters
@@ -47,6 +53,8 @@ def write_by_ending(path: str | Path, channels: Iterable[Channel], *, overwrite:
         The file to write, whole or not at all.
     channels
         Channels of any recording; for .csv and .mat on one clock.
+    attributes
+        Facts on the whole recording; only the native container holds them.
     overwrite
         Whether a file of that name may be replaced.
 
@@ -57,4 +65,7 @@ def write_by_ending(path: str | Path, channels: Iterable[Channel], *, overwrite:
     """
     path = Path(path)
     expect_known_ending(path)
-    _WRITERS[path.suffix.lower()](path, channels, overwrite=overwrite)
+    if path.suffix.lower() in NATIVE_ENDINGS:
+        write_recording(path, channels, attributes=attributes, overwrite=overwrite)
+    else:
+        _WRITERS[path.suffix.lower()](path, channels, overwrite=overwrite)
