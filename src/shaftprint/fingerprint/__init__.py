@@ -25,6 +25,7 @@ from shaftprint.fingerprint._fingerprint import (
 )
 from shaftprint.fingerprint._inertia import inertia_beside
 from shaftprint.fingerprint._margins import margin_quantities
+from shaftprint.fingerprint._model import IdentifiedModel, identified_model
 from shaftprint.fingerprint._physical import physical_quantities
 from shaftprint.fingerprint._take import take_fingerprint
 
@@ -33,11 +34,13 @@ __all__ = [
     "ClockInfluence",
     "Conditions",
     "Fingerprint",
+    "IdentifiedModel",
     "Quality",
     "Quantity",
     "SourceFile",
     "clock_findings",
     "clock_influences",
+    "identified_model",
     "inertia_beside",
     "margin_quantities",
     "physical_quantities",
