@@ -30,7 +30,7 @@ from shaftprint.files import written_whole
 from shaftprint.models import evaluate
 
 CORE: Final = ("core.c", "history.c", "snapshot.c", "start.c", "steady.c", "values.c")
-HEADERS: Final = ("core.h",)
+HEADERS: Final = ("core.h", "exchange.h")
 LONGEST_STEP_S: Final = 1e-3
 SHORTEST_STEP_S: Final = 1e-6
 MOST_MOVED: Final = 0.3

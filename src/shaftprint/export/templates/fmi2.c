@@ -56,7 +56,8 @@ static Status problem(Instance *c, Status status) {
     return status;
 }
 
-static Status ended(Instance *c, int good) { return good ? OK : problem(c, ERROR); }
+#define FMI(name) NAMED(fmi2##name)
+#include "exchange.h"
 
 EXPORTED String NAMED(fmi2GetTypesPlatform)(void) { return "default"; }
 
@@ -239,11 +240,6 @@ EXPORTED Status NAMED(fmi2NewDiscreteStates)(void *instance, EventInfo *info) {
     return OK;
 }
 
-EXPORTED Status NAMED(fmi2EnterContinuousTimeMode)(void *instance) {
-    ((Instance *)instance)->m.f.mode = CONTINUOUS;
-    return OK;
-}
-
 EXPORTED Status NAMED(fmi2CompletedIntegratorStep)(void *instance, int no_return, int *enter_event, int *terminate) {
     Instance *c = instance;
     (void)no_return;
@@ -251,42 +247,10 @@ EXPORTED Status NAMED(fmi2CompletedIntegratorStep)(void *instance, int no_return
     return ended(c, core_completed_step(&c->m));
 }
 
-EXPORTED Status NAMED(fmi2SetTime)(void *instance, double time) {
-    ((Instance *)instance)->m.f.time = time;
-    return OK;
-}
-
-EXPORTED Status NAMED(fmi2SetContinuousStates)(void *instance, const double x[], size_t count) {
-    Instance *c = instance;
-    if (count != STATES) return problem(c, ERROR);
-    memcpy(c->m.f.v.x, x, count * sizeof(double));
-    return OK;
-}
-
 EXPORTED Status NAMED(fmi2GetDerivatives)(void *instance, double rates[], size_t count) {
     Instance *c = instance;
     if (count != STATES || !core_ready(&c->m)) return problem(c, ERROR);
     core_derivatives(&c->m, rates);
-    return OK;
-}
-
-EXPORTED Status NAMED(fmi2GetEventIndicators)(void *instance, double indicators[], size_t count) {
-    Instance *c = instance;
-    if (count != INDICATORS || !core_ready(&c->m)) return problem(c, ERROR);
-    core_indicators(&c->m, indicators);
-    return OK;
-}
-
-EXPORTED Status NAMED(fmi2GetContinuousStates)(void *instance, double x[], size_t count) {
-    Instance *c = instance;
-    if (count != STATES || !core_ready(&c->m)) return problem(c, ERROR);
-    memcpy(x, c->m.f.v.x, count * sizeof(double));
-    return OK;
-}
-
-EXPORTED Status NAMED(fmi2GetNominalsOfContinuousStates)(void *instance, double nominals[], size_t count) {
-    if (count != STATES) return problem(instance, ERROR);
-    for (size_t i = 0; i < count; i++) nominals[i] = 1.0;
     return OK;
 }
 

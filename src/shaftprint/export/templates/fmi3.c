@@ -42,7 +42,8 @@ static Status problem(Instance *c, Status status) {
     return status;
 }
 
-static Status ended(Instance *c, int good) { return good ? OK : problem(c, ERROR); }
+#define FMI(name) NAMED(fmi3##name)
+#include "exchange.h"
 
 EXPORTED String NAMED(fmi3GetVersion)(void) { return "3.0"; }
 
@@ -260,11 +261,6 @@ EXPORTED Status NAMED(fmi3UpdateDiscreteStates)(void *instance, bool *more, bool
     return OK;
 }
 
-EXPORTED Status NAMED(fmi3EnterContinuousTimeMode)(void *instance) {
-    ((Instance *)instance)->m.f.mode = CONTINUOUS;
-    return OK;
-}
-
 EXPORTED Status NAMED(fmi3CompletedIntegratorStep)(void *instance, bool no_return, bool *enter_event,
                                                    bool *terminate) {
     Instance *c = instance;
@@ -273,42 +269,10 @@ EXPORTED Status NAMED(fmi3CompletedIntegratorStep)(void *instance, bool no_retur
     return ended(c, core_completed_step(&c->m));
 }
 
-EXPORTED Status NAMED(fmi3SetTime)(void *instance, double time) {
-    ((Instance *)instance)->m.f.time = time;
-    return OK;
-}
-
-EXPORTED Status NAMED(fmi3SetContinuousStates)(void *instance, const double x[], size_t count) {
-    Instance *c = instance;
-    if (count != STATES) return problem(c, ERROR);
-    memcpy(c->m.f.v.x, x, count * sizeof(double));
-    return OK;
-}
-
 EXPORTED Status NAMED(fmi3GetContinuousStateDerivatives)(void *instance, double rates[], size_t count) {
     Instance *c = instance;
     if (count != STATES || !core_ready(&c->m)) return problem(c, ERROR);
     core_derivatives(&c->m, rates);
-    return OK;
-}
-
-EXPORTED Status NAMED(fmi3GetEventIndicators)(void *instance, double indicators[], size_t count) {
-    Instance *c = instance;
-    if (count != INDICATORS || !core_ready(&c->m)) return problem(c, ERROR);
-    core_indicators(&c->m, indicators);
-    return OK;
-}
-
-EXPORTED Status NAMED(fmi3GetContinuousStates)(void *instance, double x[], size_t count) {
-    Instance *c = instance;
-    if (count != STATES || !core_ready(&c->m)) return problem(c, ERROR);
-    memcpy(x, c->m.f.v.x, count * sizeof(double));
-    return OK;
-}
-
-EXPORTED Status NAMED(fmi3GetNominalsOfContinuousStates)(void *instance, double nominals[], size_t count) {
-    if (count != STATES) return problem(instance, ERROR);
-    for (size_t i = 0; i < count; i++) nominals[i] = 1.0;
     return OK;
 }
 
