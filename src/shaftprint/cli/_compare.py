@@ -9,7 +9,7 @@ from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, chosen_structures
 from shaftprint.cli._tables import print_table
 from shaftprint.fingerprint import Fingerprint, read_fingerprint
-from shaftprint.report import Difference, differences, render_comparison
+from shaftprint.report import Difference, change_in_words, differences, render_comparison
 
 FEWEST = 2
 REPORT = "index.html"
@@ -78,6 +78,10 @@ def _print(first: str, name: str, found: tuple[Difference, ...]) -> None:
     moving = [_row(one) for one in found if one.normalised]
     if moving:
         print_table(f"{title}: normalised numbers, which move with the working point", header, moving)
+    click.echo(f"Has the ship changed? {change_in_words(found)}")
+    reasons = dict.fromkeys(f"{one.first.name}: {one.because}" for one in found if one.because)
+    if reasons:
+        click.echo(f"Not compared: {'. '.join(reasons)}.")
 
 
 def _row(one: Difference) -> list[str]:

@@ -20,6 +20,7 @@ from shaftprint.report._bode import plot_bode
 from shaftprint.report._calibration_figure import plot_calibration
 from shaftprint.report._campaign_figure import plot_campaign
 from shaftprint.report._comparison import render_comparison
+from shaftprint.report._comparison_cover import change_in_words
 from shaftprint.report._comparison_tables import difference_table
 from shaftprint.report._correlation_figure import plot_correlation
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
@@ -76,6 +77,7 @@ __all__ = [
     "SimulatedSignal",
     "Table",
     "ThesisMode",
+    "change_in_words",
     "closed_loop_curve",
     "damping_table",
     "difference_table",

@@ -86,8 +86,9 @@ def _sections(
         title="Differences",
         paragraphs=(
             "A number differs where the difference is more than chance makes in one of twenty comparisons, all numbers "
-            "of the comparison considered; perhaps, where that holds for the number alone. What both were told alike "
-            "by the same vessel file counts only as far as it moves the two unequally.",
+            "of the comparison considered; perhaps, where that holds for the number alone, which among so many numbers "
+            "is common. What both were told alike by the same vessel file counts only as far as it moves the two "
+            "unequally.",
         ),
         tables=_difference_tables(first, found, normalised=False),
         pictures=_difference_pictures(found),
@@ -96,8 +97,9 @@ def _sections(
         key="normalised",
         title="Differences of normalised numbers",
         paragraphs=(
-            "These are normalised with the speed and torque of their own test: they move with the working point, and "
-            "tell of a change of the ship only where a physical value does too.",
+            "These are normalised with the speed and torque of their own test, and move with them. Where a physical "
+            "value tells the same without the working point, they are not compared; the others are judged by "
+            "themselves and are of the test and its sensors rather than of the ship.",
         ),
         tables=_difference_tables(first, found, normalised=True),
     )

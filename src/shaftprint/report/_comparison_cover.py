@@ -45,7 +45,7 @@ def _headline(changes: Sequence[Card], *, usable: bool) -> tuple[State, str]:
     if "look" in states:
         return "look", "Something has changed by more than chance"
     if "open" in states:
-        return "open", "Something may have changed; the tests do not say so surely"
+        return "open", "Not all of these tests have a number in common"
     return "fine", "No change is seen"
 
 
@@ -93,20 +93,33 @@ def _changed(name: str, found: "Sequence[Difference]") -> Card:
     found = [one for one in found if not one.normalised]
     if not found:
         return Card(question=question, state="open", sentence="The two have no number in common.")
+    changed = any(one.outcome == "differs" for one in found)
+    return Card(question=question, state="look" if changed else "fine", sentence=change_in_words(found))
+
+
+def change_in_words(found: "Sequence[Difference]") -> str:
+    """Return in a sentence whether numbers that stand for the ship have changed by more than chance, and which.
+
+    Parameters
+    ----------
+    found
+        Differences of two fingerprints.
+    """
+    found = [one for one in found if not one.normalised]
     differing = [one for one in found if one.outcome == "differs"]
     if differing:
-        return Card(question=question, state="look", sentence=f"Yes: {_listed(differing)}.")
-    perhaps = [one for one in found if one.outcome == "perhaps"]
-    if perhaps:
-        return Card(question=question, state="open", sentence=f"Perhaps: {_listed(perhaps)}.")
+        return f"Yes: {_listed(differing)}."
     compared = sum(one.p_value is not None for one in found)
-    return Card(
-        question=question, state="fine", sentence=f"No: {compared} numbers that stand for the ship agree within chance."
-    )
+    words = f"No: {compared} numbers that stand for the ship agree within chance"
+    alone = [one for one in found if one.outcome == "perhaps"]
+    if not alone:
+        return f"{words}."
+    return f"{words}. Alone, {_listed(alone)} would be unlikely; among so many numbers it is not."
 
 
 def _listed(found: "Sequence[Difference]") -> str:
     words = []
+    found = sorted(found, key=lambda one: 1.0 if one.p_value is None else one.p_value)
     for one in found[:MOST_NAMED]:
         percent = in_percent(one)
         by = (

@@ -34,7 +34,7 @@ def difference_table(first: str, other: str, found: "Sequence[Difference]") -> T
             with_deviation(one.first.value, one.first.std),
             with_deviation(one.other.value, one.other.std),
             *_apart(one),
-            one.outcome,
+            f"{one.outcome}: {one.because}" if one.because else one.outcome,
             unit_text(one.first.unit),
             one.first.meaning,
         )

@@ -10,10 +10,16 @@ What both fits were told alike errs in both alike. Where both used the same vess
 inertias, of the gauge's scale and of what else it states counts in the difference only as far as it moves the two
 numbers unequally: ``(s_a - s_b)^2`` in place of ``s_a^2 + s_b^2`` for each such source. A gauge that was calibrated
 anew has another vessel file, and counts in full.
+
+The zero of the gauge is none of these: it drifts, and each test finds its own. It has changed only where it moved
+further than two zeros, each as uncertain as the vessel file says.
+
+Numbers that are normalised with speed over torque of the working point move with it by more than they are known to.
+They are not compared: physical values say the same without it.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
@@ -30,6 +36,23 @@ UNLIKELY = 0.05
 # Sources that a vessel file states once for all tests; what else a budget has is of one test.
 TOLD = ("TVC", "gauge scale", "telemetry latency")
 TOLD_PRIOR = "prior of "
+GAUGE_ZERO = "gauge zero share"
+# Parameters and combinations in which speed and torque of the working point cancel, or do not stand: they are of the
+# ship like physical values. The load of each window is in the fit, so that its wander is not in ``v K_i / (k_q - g)``.
+OF_THE_SHIP = frozenset(
+    ("t_d", "t_sp", "t_d + t_sp", "omega_n", "zeta", "K_p / K_i", "v K_i / (k_q - g)", "v K_p / (tau_up + tau_dn)")
+)
+# Normalised numbers by the physical value that tells the same without the working point.
+TOLD_BY = {
+    "tau_dn": "I_dn",
+    "tau_up": "I_up",
+    "tau_n": "I",
+    "K_p": "governor proportional action",
+    "K_i": "governor integral action",
+    "v K_p": "governor proportional action",
+    "v K_i": "governor integral action",
+    "k_q": GAUGE_ZERO,
+}
 # Physical values that are a parameter times what is known better: where the parameter has a lopsided interval from its
 # profile, theirs is as lopsided, which their standard deviation to first order does not know.
 FOLLOWS_FROM = {
@@ -56,6 +79,8 @@ class Difference:
     """Whether they differ: surely, all numbers of the comparison considered; perhaps; or not to be seen."""
     normalised: bool = False
     """Whether it moves with the working point, so that it may differ without a change of the ship."""
+    because: str = ""
+    """Why it cannot be compared; empty where it can."""
 
     @property
     def value(self) -> float:
@@ -64,13 +89,14 @@ class Difference:
 
 
 def differences(first: "Fingerprint", other: "Fingerprint") -> tuple[Difference, ...]:
-    """Return all numbers that two fingerprints share, physical ones first, with the significance of their difference.
+    """Return the differences of all numbers that two fingerprints share, those of the ship first, with significance.
 
     Many numbers make it likely that chance alone moves one of them: a number differs where it does so after Holm's
     correction (S. Holm, "A simple sequentially rejective multiple test procedure", Scandinavian Journal of Statistics
-    6, 1979), and perhaps differs where only its own p-value is below 5 %. Parameters and their combinations are
-    normalised with the speed and torque of their own test, which no test repeats to a tenth of a percent: they are
-    judged by themselves, and tell of a change of the ship only where a physical value does too.
+    6, 1979), and perhaps differs where only its own p-value is below 5 %. So one of twenty comparisons of an unchanged
+    ship, or fewer, finds a difference. Physical values, margins, and what does not move with the working point (delays,
+    the actuator, ratios of gains) are judged together; other parameters by themselves, and those that a physical value
+    tells better not at all.
 
     Parameters
     ----------
@@ -80,8 +106,21 @@ def differences(first: "Fingerprint", other: "Fingerprint") -> tuple[Difference,
         The other fingerprint, of the same or another ship.
     """
     kept = _shared(first, other, ("physical", "margins"))
-    moving = _shared(first, other, ("combinations", "parameters"))
-    return (*_judged(kept), *(replace(found, normalised=True) for found in _judged(moving)))
+    rest = _shared(first, other, ("combinations", "parameters"))
+    kept += [found for found in rest if found.first.name in OF_THE_SHIP]
+    there = {found.first.name for found in kept}
+    moving = [_moving(found, there) for found in rest if found.first.name not in OF_THE_SHIP]
+    return (*_judged(kept), *_judged(moving))
+
+
+def _moving(found: Difference, there: Collection[str]) -> Difference:
+    """Return a number that is normalised with the working point, uncompared where another tells the same without it."""
+    found = replace(found, normalised=True)
+    twin = TOLD_BY.get(found.first.name)
+    if twin is None:
+        return found
+    because = "it moves with the working point" + (f"; see {twin}" if twin in there else "")
+    return replace(found, interval_95=None, p_value=None, outcome="cannot be compared", because=because)
 
 
 def _shared(first: "Fingerprint", other: "Fingerprint", groups: Sequence[str]) -> list[Difference]:
@@ -108,9 +147,13 @@ def _difference(
     rising = apart >= 0.0
     facing_open = (a.interval_open[1], b.interval_open[0]) if rising else (a.interval_open[0], b.interval_open[1])
     if any(facing_open) or not all(math.isfinite(end) for end in (low_a, high_a, low_b, high_b)):
-        return Difference(first=a, other=b, interval_95=None, p_value=None, outcome="cannot be compared")
+        because = "the test sets no end to its interval"
+        return Difference(
+            first=a, other=b, interval_95=None, p_value=None, outcome="cannot be compared", because=because
+        )
     told_a, told_b = (_told(f, a.name) if told_alike else {} for f in (first, other))
-    left = sum((told_a.get(k, 0.0) - told_b.get(k, 0.0)) ** 2 for k in {*told_a, *told_b}) * NORMAL_95**2
+    left = sum((told_a.get(k, 0.0) - told_b.get(k, 0.0)) ** 2 for k in {*told_a, *told_b}) + _drift(a) + _drift(b)
+    left *= NORMAL_95**2
     own_a, own_b = _own_share(first, a.name, told_a), _own_share(other, b.name, told_b)
     below = math.sqrt(own_b * (b.value - low_b) ** 2 + own_a * (high_a - a.value) ** 2 + left)
     above = math.sqrt(own_b * (high_b - b.value) ** 2 + own_a * (a.value - low_a) ** 2 + left)
@@ -119,6 +162,11 @@ def _difference(
     return Difference(
         first=a, other=b, interval_95=(apart - below, apart + above), p_value=p_value, outcome="no difference seen"
     )
+
+
+def _drift(quantity: "Quantity") -> float:
+    """Return the variance with which a number is another in each test without a change, as the vessel file says."""
+    return (quantity.expected_std or 0.0) ** 2 if quantity.name == GAUGE_ZERO else 0.0
 
 
 def _interval(quantity: "Quantity", fingerprint: "Fingerprint") -> tuple[float, float]:
