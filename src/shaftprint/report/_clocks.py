@@ -92,12 +92,12 @@ def _influence(found: "ClockInfluence") -> str:
     words = (
         f"An error of that size turns the phase of {outputs} over the set point by {rounded(degrees, 2)}° at "
         f"{found.line} ({rounded(found.frequency_hz, 3)} Hz), the highest line that was used. All lines together tell "
-        f"such a delay to {rounded(MILLI * found.delay_std_s, 2)} ms, so that no parameter is moved by more than "
-        f"{rounded(found.shift, 2)} of its standard deviation"
+        f"such a delay to {rounded(MILLI * found.delay_std_s, 2)} ms, so that it moves no parameter by more than "
+        f"{rounded(found.shift, 2)} of its standard deviation."
     )
     if found.shift > NOTABLE_SHIFT:
-        return f"{words}: the standard deviations of this report do not hold it and are too small."
-    return f"{words}, which does not hold it."
+        return f"{words} The standard deviations of this report do not hold it and are too small."
+    return f"{words} The standard deviations of this report do not hold it."
 
 
 def _listed(names: Sequence[str]) -> str:
