@@ -77,9 +77,9 @@ def _rest(found: "Alignment") -> str:
     if found.scatter is None:
         return f"This was given, not found from what both saw; {worst}."
     count = len(found.stretches)
-    words = (
-        f"{count} minute{'s' if count != 1 else ''} compared scatter {plain(found.scatter, 2)} times as far as their "
-    )
+    if count == 1:
+        return f"One minute was compared; {worst}."
+    words = f"The {count} minutes that were compared scatter {plain(found.scatter, 2)} times as far as their "
     if found.scatter > UNEVEN:
         return f"{words}noise explains: the clock did not run evenly. Widened by as much, {worst}."
     return f"{words}noise explains; {worst}."
