@@ -13,6 +13,7 @@ from shaftprint.models import limited, structure
 from shaftprint.simulation import simulate_exactly
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain import identify_in_time, output_error, record_from_arrays, with_noise_at
+from shaftprint.time_domain._nonlinear_covariance import with_scatter_of_blocks
 
 RATE = 20.0
 TRUTH = {
@@ -131,6 +132,18 @@ def test_without_the_limit_the_steps_give_wrong_numbers_and_more_noise(found, te
     with_limit = found["records"].parts[1]
     assert np.all(np.diag(fit.parts[0].noise.power) > [5.0, 2.0] * np.diag(with_limit.noise.power))
     assert with_limit.fit_percent["n"] > fit.fit_percent["n"] + 3.0
+
+
+def test_a_limit_that_no_record_meets_stays_unknown_and_spoils_no_other(line, tests):
+    start = {name: 1.02 * value for name, value in TRUTH.items()} | {"m_max": 5.0}
+    fit = identify_in_time(
+        [(line, tests["chirp"])], rng=np.random.default_rng(1), settings=Settings(starts=1), start=start
+    )
+    before, after = ({p.name: p for p in one.parameters} for one in (fit, with_scatter_of_blocks(fit)))
+    assert not np.isfinite(after["m_max"].std)
+    for name in TRUTH.keys() - {"m_max"}:
+        assert before[name].std <= after[name].std < 3.0 * before[name].std, name
+        assert abs(after[name].value - TRUTH[name]) < 3.0 * after[name].std, name
 
 
 def test_derivatives_through_a_limit_are_those_of_the_cost(line, tests):

@@ -36,7 +36,9 @@ def with_scatter_of_blocks(found: Identification) -> Identification:
             slopes[list(term.columns)] = sums
             variance = variance - own @ own.T + slopes @ slopes.T
     # parameters of one size, so that a well-known one does not make another look as if nothing were known of it
-    size = np.maximum(np.linalg.norm(rows, axis=1), np.finfo(np.float64).tiny)
+    length = np.linalg.norm(rows, axis=1)
+    # the records may say nothing at all of a parameter, as of the integrator's way back from a limit that none met
+    size = np.where(length > 0.0, length, 1.0)
     inverse = np.linalg.pinv((rows @ rows.T) / np.outer(size, size), hermitian=True) / np.outer(size, size)
     scatter = np.sqrt(np.maximum(np.diag(inverse @ variance @ inverse), 0.0))
     std = np.sqrt(np.diag(found.covariance))
