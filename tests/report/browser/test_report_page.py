@@ -70,6 +70,16 @@ def test_every_plot_is_drawn_with_finite_curves_and_nothing_leaves(opened):
     assert [address for address in opened.requests if not address.startswith("file:///")] == []
 
 
+def test_charts_are_drawn_once(opened):
+    """plotly draws a chart again when its labels need more room than its margins have."""
+    for name in PLOTS:
+        opened.show(name)
+        given, taken = opened.page.evaluate(
+            f"(full => [full.margin.l, full._size.l])(document.getElementById('plot-{name}')._fullLayout)"
+        )
+        assert taken == given, name
+
+
 def test_the_bode_diagram_has_model_band_data_and_bars(opened, identification):
     """Four panels: a line and a band in each, every used line as a point with an error bar, 14 of 16 used."""
     opened.show("fit")

@@ -9,7 +9,7 @@ import numpy as np
 from shaftprint.identify import model_band
 from shaftprint.report._bode_parts import BAND_STEP, ENDLESS_DB, channel_of, measured_phase_deg, trace_of
 from shaftprint.report._uncertainty import measured_points
-from shaftprint.report.plots._panels import Grid
+from shaftprint.report.plots._panels import TWO_LEGEND_ROWS_PX, Grid
 from shaftprint.report.plots._plot import Json, Plot
 from shaftprint.report.plots._traces import MARKERS, band, colour, line, points, straight
 from shaftprint.report.plots._words import label_text, over_text
@@ -63,6 +63,7 @@ def bode_plot(
         x_titles=["frequency [rad/s]"],
         y_titles=["magnitude [dB]", "phase [deg]"],
         x_log=True,
+        below_px=TWO_LEGEND_ROWS_PX,
     )
     layout = grid.layout()
     traces: list[Json] = []

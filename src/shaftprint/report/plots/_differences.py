@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.report._difference_figure import shown_names, shown_percent
-from shaftprint.report.plots._panels import Grid
+from shaftprint.report.plots._panels import Grid, room_px
 from shaftprint.report.plots._plot import Plot, numbers
 from shaftprint.report.plots._traces import MARKERS, colour, points
 from shaftprint.report.plots._words import label_text, name_text
@@ -23,9 +23,11 @@ def difference_plot(found: Mapping[str, Sequence["Difference"]]) -> Plot:
     found
         Differences from the first fingerprint, by the name of the other.
     """
-    grid = Grid(x_titles=["difference from the first fingerprint, with 95 % interval [%]"])
-    axes = grid.place(0, 0)
     names = shown_names(found)
+    order = [name_text(name) for name in names]
+    heading = "difference from the first fingerprint, with 95 % interval [%]"
+    grid = Grid(x_titles=[heading], left_px=room_px(order))
+    axes = grid.place(0, 0)
     traces = []
     for place, (label, differences) in enumerate(found.items()):
         shown = [(d, percent) for d in differences if (percent := shown_percent(d)) is not None]
@@ -51,6 +53,5 @@ def difference_plot(found: Mapping[str, Sequence["Difference"]]) -> Plot:
         traces.append(drawn)
     layout = grid.layout()
     layout["xaxis"]["zeroline"] = True
-    order = [name_text(name) for name in names]
     layout["yaxis"] |= {"type": "category", "categoryorder": "array", "categoryarray": order, "autorange": "reversed"}
     return Plot(traces=traces, layout=layout, height_px=FRAME_PX + ROW_PX * len(names))

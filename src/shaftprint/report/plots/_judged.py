@@ -10,7 +10,7 @@ from shaftprint.report._budget_figure import PERCENT
 from shaftprint.report._profile_figure import ROOM
 from shaftprint.report._residual_figure import normalised_residuals
 from shaftprint.report._signal_to_noise_figure import THESIS_LIMIT_DB
-from shaftprint.report.plots._panels import Grid
+from shaftprint.report.plots._panels import TWO_LEGEND_ROWS_PX, Grid, room_px
 from shaftprint.report.plots._plot import Json, Plot
 from shaftprint.report.plots._traces import MARKERS, colour, line, points, straight
 from shaftprint.report.plots._words import axis_text, name_text
@@ -75,7 +75,9 @@ def budget_plot(budget: "Budget") -> Plot:
     rows = [row for row in budget.rows if row.shares]
     if not rows:
         raise ValueError("budget: expected a number whose uncertainty is known, found none.")
-    grid = Grid(x_titles=["share of the variance [%]"])
+    names = [name_text(row.name) for row in rows]
+    share = "share of the variance [%]"
+    grid = Grid(x_titles=[share], below_px=TWO_LEGEND_ROWS_PX, left_px=room_px(names))
     traces: list[Json] = []
     for source in budget.sources:
         shares = [PERCENT * row.shares.get(source, 0.0) for row in rows]
@@ -87,7 +89,7 @@ def budget_plot(budget: "Budget") -> Plot:
                 "type": "bar",
                 "orientation": "h",
                 "x": [round(share, 2) for share in shares],
-                "y": [name_text(row.name) for row in rows],
+                "y": names,
                 "name": name_text(source),
                 "marker": {"color": colour(number), "pattern": {"shape": SHAPES[number // COLOURS % len(SHAPES)]}},
                 "hovertemplate": "%{y}: %{x:.1f} %",
@@ -105,7 +107,7 @@ def residual_plot(identification: "Identification") -> Plot:
     residuals = normalised_residuals(identification)
     names = tuple(identification.fit_percent)
     below = ["residual over<br>standard deviation [-]"]
-    grid = Grid(x_titles=["frequency [rad/s]"], y_titles=below, x_log=True)
+    grid = Grid(x_titles=["frequency [rad/s]"], y_titles=below, x_log=True, below_px=TWO_LEGEND_ROWS_PX)
     axes = grid.place(0, 0)
     omega = data.omega_rad_s[fitted]
     ends = [float(omega.min()), float(omega.max())]

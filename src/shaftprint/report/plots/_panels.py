@@ -1,5 +1,7 @@
 """Panels of an interactive figure: a grid of axes that are zoomed together, titles and one legend below."""
 
+import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
@@ -11,6 +13,14 @@ BETWEEN_COLUMNS = 0.1
 BETWEEN_ROWS = 0.09
 FONT = 'system-ui, "Segoe UI", "Liberation Sans", Arial, sans-serif'
 FONT_PX = 13
+# Room that plotly would otherwise find too small when all is drawn, and draw it a second time.
+LEFT_PX = 88
+RIGHT_PX = 30
+TWO_LEGEND_ROWS_PX = 116
+LETTER_PX = 7.6
+TICK_PX = 15
+
+_TAG = re.compile("<[^>]*>")
 
 Link: TypeAlias = Literal["columns", "all", "none"]
 
@@ -35,12 +45,14 @@ class Grid:
     """Whether the horizontal axes are logarithmic."""
     below_px: int = 90
     """Room for the lowest labels and the legend [px]."""
+    left_px: int = LEFT_PX
+    """Room for the labels and titles of the leftmost axes [px]."""
 
     def layout(self, **more: Any) -> Json:
         """Return the layout of the figure, with further entries of plotly."""
         found: Json = {
             "font": {"family": FONT, "size": FONT_PX},
-            "margin": {"l": 70, "r": 20, "t": 34, "b": self.below_px},
+            "margin": {"l": self.left_px, "r": RIGHT_PX, "t": 34, "b": self.below_px},
             "legend": {"orientation": "h", "yref": "container", "y": 0, "yanchor": "bottom", "x": 0, "xanchor": "left"},
             "hovermode": "closest",
             "dragmode": "zoom",
@@ -111,6 +123,12 @@ class Grid:
             "yshift": 4,
             "showarrow": False,
         }
+
+
+def room_px(labels: Sequence[str]) -> int:
+    """Return the room that labels of a vertical axis need [px]; tags in them are not written."""
+    letters = max((len(_TAG.sub("", label)) for label in labels), default=0)
+    return max(LEFT_PX, TICK_PX + math.ceil(LETTER_PX * letters))
 
 
 def _axis(domain: tuple[float, float]) -> Json:
