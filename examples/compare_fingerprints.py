@@ -17,7 +17,7 @@ import numpy as np
 
 import shaftprint as sp
 
-OWN_SOURCES = ("noise of n", "noise of M_s", "set-point calibration", "working-point torque", "working-point speed")
+OWN_SOURCES = ("noise of n", "noise of M_s", "set-point calibration", "wander of the load")
 
 
 def fingerprint_of(tug, seed):

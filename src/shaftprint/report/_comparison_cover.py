@@ -119,7 +119,8 @@ def change_in_words(found: "Sequence[Difference]") -> str:
 
 def _listed(found: "Sequence[Difference]") -> str:
     words = []
-    found = sorted(found, key=lambda one: 1.0 if one.p_value is None else one.p_value)
+    # margins last: they follow from the other numbers
+    found = sorted(found, key=lambda one: (one.first.name.endswith(" margin"), one.p_value or 0.0))
     for one in found[:MOST_NAMED]:
         percent = in_percent(one)
         by = (
