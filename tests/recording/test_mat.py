@@ -1,11 +1,15 @@
 """MATLAB files of both kinds."""
 
 import hashlib
+import re
+import struct
+import zlib
 
 import h5py
 import numpy as np
 import pytest
 import scipy.io
+import scipy.sparse
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording import read_recording, write_mat_v5, write_mat_v73
@@ -231,3 +235,94 @@ def test_an_empty_variable_of_version_7_3_is_no_channel(tmp_path):
         file["empty"].attrs["MATLAB_empty"] = np.int32(1)
     with read_recording(path) as recording:
         assert list(recording.channels) == ["M_s"]
+
+
+def _element(kind, data):
+    return struct.pack("<2I", kind, len(data)) + data + bytes(-len(data) % 8)
+
+
+def _object(name, words):
+    """Return an object as MATLAB 7 writes it: flags of class 17, name, kind of system, class, and a reference."""
+    reference = _element(6, struct.pack("<2I", 13, 0)) + _element(5, struct.pack("<2i", 1, 1)) + _element(1, b"")
+    content = _element(6, struct.pack("<2I", 17, 0)) + b"".join(_element(1, word) for word in (name, b"MCOS", words))
+    return content + _element(14, reference + _element(6, struct.pack("<I", 0xDD000000)))
+
+
+@pytest.mark.parametrize(
+    ("kind", "advice"),
+    [
+        ("timetable", r"s = struct\('t', seconds\(tt\.Properties\.RowTimes"),
+        ("string", r"in MATLAB: tt = char\(tt\)\.$"),
+        ("datetime", r"in MATLAB: tt = posixtime\(tt\)\.$"),
+        ("duration", r"in MATLAB: tt = seconds\(tt\)\.$"),
+        ("timeseries", r"in MATLAB: tt = struct\('t', tt\.Time, 'value', tt\.Data\)\.$"),
+    ],
+)
+@pytest.mark.parametrize("is_packed", [False, True])
+def test_an_object_of_version_7_is_named_and_the_rest_is_read(tmp_path, kind, advice, is_packed):
+    path = tmp_path / "log.mat"
+    scipy.io.savemat(path, {"t": TIME, "M_s": TORQUE})
+    found = _element(14, _object(b"tt", kind.encode()))
+    if is_packed:
+        packed = zlib.compress(found)
+        found = struct.pack("<2I", 15, len(packed)) + packed
+    content = path.read_bytes()
+    path.write_bytes(content[:128] + found + content[128:])
+    with read_recording(path) as recording:
+        assert np.array_equal(recording.channel("M_s").values(0, 1000), TORQUE)
+        assert recording.left_out["tt"].startswith(f"expected numbers, found a MATLAB {kind}, which only MATLAB can")
+        assert re.search(advice, recording.left_out["tt"])
+    path.write_bytes(content[:128] + found)
+    with pytest.raises(RecordingError, match=f"none that can be used: tt: expected numbers, found a MATLAB {kind}"):
+        read_recording(path)
+
+
+def test_other_programs_may_write_what_they_like_before_the_version(tmp_path):
+    path = tmp_path / "log.mat"
+    scipy.io.savemat(path, {"t": TIME, "M_s": TORQUE})
+    content = path.read_bytes()
+    path.write_bytes(b"Saved by a logger".ljust(124) + content[124:])
+    with read_recording(path) as recording:
+        assert list(recording.channels) == ["M_s"]
+
+
+def test_version_7_3_is_known_by_what_follows_its_header(tmp_path):
+    path = tmp_path / "log.mat"
+    _save_v73(path, {"t": TIME, "M_s": TORQUE})
+    path.write_bytes(path.read_bytes().replace(b"MATLAB 7.3", b"MATLAB 7.0", 1))
+    with read_recording(path) as recording:
+        assert recording.format == "MATLAB v7.3"
+        assert list(recording.channels) == ["M_s"]
+
+
+def test_matrices_are_left_out_with_a_reason(save):
+    with read_recording(save({"fs": 1.0, "M_s": TORQUE, "a": np.ones((3, 4))})) as recording:
+        reason = "expected a vector, found an array of {}; save each of its columns as a variable of its own, in MATLAB"
+        shape = "3 x 4" if recording.format == "MATLAB v4 to v7" else "4 x 3"
+        assert recording.left_out["a"].startswith(reason.format(shape))
+
+
+def test_sparse_matrices_and_cells_are_left_out_with_a_reason(tmp_path):
+    path = tmp_path / "log.mat"
+    inside = {"s": scipy.sparse.csc_array(np.eye(3)), "x": TORQUE}
+    scipy.io.savemat(path, {"fs": 1.0, "c": np.array([TORQUE, "a"], dtype=object), "g": inside})
+    with read_recording(path) as recording:
+        assert list(recording.channels) == ["x"]
+        assert recording.left_out["g/s"] == "expected a full vector, found a sparse matrix; in MATLAB: s = full(s)."
+        assert recording.left_out["c"].startswith("expected a vector of numbers, found a cell array")
+
+
+def test_what_version_7_3_keeps_in_groups_and_references_is_left_out_with_a_reason(tmp_path):
+    path = tmp_path / "log.mat"
+    _save_v73(path, {"fs": 1.0, "M_s": TORQUE, "on": np.arange(1000.0) % 2.0, "a": {}})
+    with h5py.File(path, "r+") as file:
+        file["on"].attrs["MATLAB_class"] = np.bytes_("logical")
+        file["a"].attrs["MATLAB_sparse"] = np.uint64(3)
+        file.create_dataset("a/data", data=np.ones(3))
+        cells = file.create_dataset("c", data=[[file["M_s"].ref, file["fs"].ref]], dtype=h5py.ref_dtype)
+        cells.attrs["MATLAB_class"] = np.bytes_("cell")
+    with read_recording(path) as recording:
+        assert list(recording.channels) == ["M_s", "on"]
+        assert recording.channel("on").values(0, 4).tolist() == [0.0, 1.0, 0.0, 1.0]
+        assert recording.left_out["a"] == "expected a full vector, found a sparse matrix; in MATLAB: a = full(a)."
+        assert recording.left_out["c"].startswith("expected a vector of numbers, found a cell array")

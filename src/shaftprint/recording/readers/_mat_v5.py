@@ -1,35 +1,47 @@
 """MATLAB files up to version 7 (``save -v4``, ``-v6``, ``-v7``): vectors are channels, also those in structures."""
 
 import struct
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import scipy.io
+import scipy.sparse
+from numpy.typing import NDArray
 
 from shaftprint.recording._recording import Recording
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._hints import rate_hint
-from shaftprint.recording.readers._mat_variables import MatVariables, gather_variables, object_reason
+from shaftprint.recording.readers._mat_v5_headers import MatHeader, headers_of
+from shaftprint.recording.readers._mat_variables import (
+    MatVariables,
+    cell_reason,
+    gather_variables,
+    matrix_reason,
+    object_reason,
+    sparse_reason,
+)
 from shaftprint.recording.readers._vectors import Vector
 
 NAME = "MATLAB v4 to v7"
 
 _SIGNATURE = b"MATLAB 5.0 MAT-file"
-_NUMBERS = (
-    "double", "single", "int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64",
-)  # fmt: skip
-_OBJECTS = ("opaque", "object", "unknown", "function")
+# Version and byte order at the end of the header; programs other than MATLAB may write what they like before it.
+_MARKS = (b"\x00\x01IM", b"\x01\x00MI")
+_HEADER_BYTES = 128
+_REAL = "fiub"
 _DEEPEST = 4
 _LONGEST_NAME = 64
 
 
 def is_mine(path: Path) -> bool:
-    """Return whether the file begins as a MATLAB file of these versions; version 4 has the file ending as well."""
+    """Return whether the file begins as a MATLAB file of these versions; some need the file ending as well."""
     with path.open("rb") as file:
-        begin = file.read(20)
-    return begin.startswith(_SIGNATURE) or (path.suffix.lower() == ".mat" and _is_v4(begin))
+        begin = file.read(_HEADER_BYTES)
+    named = path.suffix.lower() == ".mat"
+    return begin.startswith(_SIGNATURE) or (named and (begin.endswith(_MARKS) or _is_v4(begin[:20])))
 
 
 def read(path: Path, **hints: object) -> Recording:
@@ -77,33 +89,61 @@ def _is_v4(begin: bytes) -> bool:
 def _survey(path: Path, spool: Spool) -> MatVariables:
     """Load one variable after the other and keep its numbers on disk."""
     variables = MatVariables()
-    for name, shape, kind in scipy.io.whosmat(path):
-        size = int(np.prod(shape))
-        if kind in _OBJECTS or name.startswith("__") or name == "None":
-            variables.left_out[name] = object_reason(name, "object")
-        elif kind in (*_NUMBERS, "char", "struct") and size:
+    for header in _headers(path):
+        name = header.name
+        if header.is_object:
+            variables.left_out[name] = object_reason(name, header.kind)
+        elif header.kind == "sparse":
+            variables.left_out[name] = sparse_reason(name)
+        elif header.kind == "cell":
+            variables.left_out[name] = cell_reason()
+        elif header.size:
             value = scipy.io.loadmat(path, variable_names=[name], struct_as_record=False, squeeze_me=True)[name]
             _keep(name, "", value, spool, variables)
     return variables
+
+
+def _headers(path: Path) -> Iterable[MatHeader]:
+    with path.open("rb") as file:
+        begin = file.read(_HEADER_BYTES)
+    if begin.endswith(_MARKS):
+        return headers_of(path)
+    # version 4 knows no objects, at which SciPy's list would stop
+    found = scipy.io.whosmat(path)
+    return [MatHeader(name=name, kind=kind, shape=shape, is_object=False) for name, shape, kind in found]
 
 
 def _keep(name: str, group: str, value: Any, spool: Spool, variables: MatVariables) -> None:
     """Sort one value into its kind; a structure gives its fields."""
     fields = getattr(value, "_fieldnames", None)
     inside = f"{group}/{name}" if group else name
-    if fields is not None and inside.count("/") < _DEEPEST:
-        for key in fields:
+    if fields is not None:
+        for key in fields if inside.count("/") < _DEEPEST else ():
             _keep(key, inside, getattr(value, key), spool, variables)
-        return
-    if isinstance(value, str):
+    elif isinstance(value, str):
         variables.texts[group, name] = value
-        return
-    array = np.asarray(value)
-    if array.dtype.kind == "c":
+    elif scipy.sparse.issparse(value):
+        variables.left_out[inside] = sparse_reason(name)
+    else:
+        _keep_array(name, group, np.asarray(value), spool, variables)
+
+
+def _keep_array(name: str, group: str, array: NDArray[Any], spool: Spool, variables: MatVariables) -> None:
+    inside = f"{group}/{name}" if group else name
+    if array.dtype.names is not None:
+        kind = str(array["s2"].ravel()[0], "utf-8", "replace") if "s2" in array.dtype.names else "object"
+        variables.left_out[inside] = object_reason(inside.replace("/", "."), kind)
+    elif array.dtype.kind == "O" and array.size:
+        variables.left_out[inside] = cell_reason()
+    elif array.dtype.kind == "c":
         variables.left_out[inside] = "expected real numbers, found complex ones."
-    elif array.dtype.kind in "fiu" and array.size == 1:
+    elif array.dtype.kind not in _REAL or not array.size:
+        return
+    elif array.size == 1:
         variables.scalars.setdefault(group, {})[name] = float(array.ravel()[0])
-    elif array.dtype.kind in "fiu" and array.ndim == 1 and array.size > 1:
+    elif array.ndim == 1:
         number = spool.add_column(inside)
         spool.append_column(number, array)
         variables.vectors.append(Vector(name=name, group=group, count=array.size, source=spool.source(number)))
+    else:
+        variables.left_out[inside] = matrix_reason(name, array.shape)

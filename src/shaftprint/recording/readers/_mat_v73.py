@@ -13,15 +13,25 @@ from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._hdf5_open import expect_storage, open_hdf5
 from shaftprint.recording.readers._hints import rate_hint
-from shaftprint.recording.readers._mat_variables import MatVariables, gather_variables, object_reason
+from shaftprint.recording.readers._mat_variables import (
+    MatVariables,
+    cell_reason,
+    gather_variables,
+    matrix_reason,
+    object_reason,
+    sparse_reason,
+)
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._vectors import Vector
 
 NAME = "MATLAB v7.3"
 
 _SIGNATURE = b"MATLAB 7.3 MAT-file"
+# HDF5 behind MATLAB's header of 512 bytes; the first releases called themselves 7.0.
+_MATLAB, _HDF5, _HDF5_AT = b"MATLAB 7.", b"\x89HDF\r\n\x1a\n", 512
 _PLAIN = (
-    b"double", b"single", b"int8", b"uint8", b"int16", b"uint16", b"int32", b"uint32", b"int64", b"uint64", b"",
+    b"double", b"single", b"int8", b"uint8", b"int16", b"uint16", b"int32", b"uint32", b"int64", b"uint64",
+    b"logical", b"",
 )  # fmt: skip
 _DEEPEST = 4
 _LONGEST_TEXT = 10_000
@@ -30,7 +40,8 @@ _LONGEST_TEXT = 10_000
 def is_mine(path: Path) -> bool:
     """Return whether the file begins as a MATLAB file of this version."""
     with path.open("rb") as file:
-        return file.read(len(_SIGNATURE)) == _SIGNATURE
+        begin = file.read(_HDF5_AT + len(_HDF5))
+    return begin.startswith(_SIGNATURE) or (begin.startswith(_MATLAB) and begin.endswith(_HDF5))
 
 
 def read(path: Path, **hints: object) -> Recording:
@@ -66,7 +77,9 @@ def _survey(path: Path, group: Any, name: str, opened: Opened, variables: MatVar
         if "MATLAB_object_decode" in item.attrs or (isinstance(item, h5py.Dataset) and kind in _object_kinds()):
             variables.left_out[inside] = object_reason(inside.replace("/", "."), kind.decode("utf-8", "replace"))
         elif isinstance(item, h5py.Group):
-            if kind in (b"struct", b"") and inside.count("/") < _DEEPEST:
+            if "MATLAB_sparse" in item.attrs:
+                variables.left_out[inside] = sparse_reason(inside.replace("/", "."))
+            elif kind in (b"struct", b"") and inside.count("/") < _DEEPEST:
                 _survey(path, item, inside, opened, variables)
         else:
             _keep(path, item, key, name, kind, opened, variables)
@@ -84,7 +97,9 @@ def _keep(path: Path, item: Any, key: str, group: str, kind: bytes, opened: Open
         variables.texts[group, key] = "".join(map(chr, item[()].ravel()))
     elif item.dtype.names is not None and length > 1:
         variables.left_out[inside] = "expected real numbers, found complex ones."
-    elif kind not in _PLAIN or item.dtype.kind not in "fiu" or item.shape is None:
+    elif item.dtype.kind == "O" and item.size:
+        variables.left_out[inside] = cell_reason()
+    elif kind not in _PLAIN or item.dtype.kind not in "fiu" or not item.size:
         return
     elif item.size == 1:
         variables.scalars.setdefault(group, {})[key] = float(item[()].ravel()[0])
@@ -93,6 +108,8 @@ def _keep(path: Path, item: Any, key: str, group: str, kind: bytes, opened: Open
         variables.vectors.append(
             Vector(name=key, group=group, count=int(item.size), source=_source(path, key, item, opened))
         )
+    else:
+        variables.left_out[inside] = matrix_reason(key, item.shape[::-1])
 
 
 def _source(path: Path, name: str, dataset: Any, opened: Opened) -> Source:

@@ -1,6 +1,6 @@
 """What the variables of a MATLAB file mean, whatever its version: vectors, numbers, texts, and objects."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -34,10 +34,44 @@ def object_reason(name: str, kind: str) -> str:
     kind
         Its class, where the file says it, else ``object``.
     """
+    told = f"expected numbers, found a MATLAB {kind}, which only MATLAB can open"
+    match kind:
+        case "string":
+            return f"{told}; in MATLAB: {name} = char({name})."
+        case "datetime":
+            return f"{told}; in MATLAB: {name} = posixtime({name})."
+        case "duration":
+            return f"{told}; in MATLAB: {name} = seconds({name})."
+        case "timeseries":
+            return f"{told}; in MATLAB: {name} = struct('t', {name}.Time, 'value', {name}.Data)."
+        case "function" | "function_handle" | "inline":
+            return f"{told}."
     return (
-        f"expected numbers, found a MATLAB {kind}, which only MATLAB can open; for a timetable, in MATLAB: "
+        f"{told}; for a timetable, in MATLAB: "
         f"s = struct('t', seconds({name}.Properties.RowTimes - {name}.Properties.RowTimes(1))); "
         f"for v = string({name}.Properties.VariableNames), s.(v) = {name}.(v); end; save('plain.mat', '-struct', 's')."
+    )
+
+
+def matrix_reason(name: str, shape: Sequence[int]) -> str:
+    """Return why an array of several columns is not read, and what to do in MATLAB."""
+    size = " x ".join(map(str, shape))
+    return (
+        f"expected a vector, found an array of {size}; save each of its columns as a variable of its own, in MATLAB: "
+        f"{name}_1 = {name}(:, 1)."
+    )
+
+
+def sparse_reason(name: str) -> str:
+    """Return why a sparse matrix is not read, and what to do in MATLAB."""
+    return f"expected a full vector, found a sparse matrix; in MATLAB: {name} = full({name})."
+
+
+def cell_reason() -> str:
+    """Return why a cell array, or an array of structures, is not read, and what to do in MATLAB."""
+    return (
+        "expected a vector of numbers, found a cell array or several structures under one name; save each element as "
+        "a variable of its own."
     )
 
 

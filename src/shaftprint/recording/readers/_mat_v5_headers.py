@@ -1,0 +1,114 @@
+"""What a MATLAB file of version 5 to 7 holds, from the headers of its variables alone.
+
+The layout is that of MathWorks' "MAT-File Format", chapter "Level 5 MAT-File Format": elements of a tag and data,
+packed ones unpacked as far as the header goes. SciPy's own list of variables stops at objects, which have no size.
+"""
+
+import math
+import struct
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+_FIRST_VARIABLE = 128
+_MATRIX, _PACKED = 14, 15
+# Enough for the flags, sizes and names of any header.
+_HEADER_BYTES = 4096
+_OPAQUE = 17
+_CLASSES = {
+    1: "cell", 2: "struct", 3: "object", 4: "char", 5: "sparse", 6: "double", 7: "single", 8: "int8", 9: "uint8",
+    10: "int16", 11: "uint16", 12: "int32", 13: "uint32", 14: "int64", 15: "uint64", 16: "function", 17: "object",
+    18: "object",
+}  # fmt: skip
+_LOGICAL = 0x0200
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class MatHeader:
+    """The header of one variable."""
+
+    name: str
+    """Its name."""
+    kind: str
+    """Its class, such as ``double``, ``logical`` or, of an object, ``timetable``."""
+    shape: tuple[int, ...]
+    """Its size; empty of an object, whose size is not published."""
+    is_object: bool
+    """Whether only MATLAB can open it."""
+
+    @property
+    def size(self) -> int:
+        """Number of its elements."""
+        return math.prod(self.shape)
+
+
+def headers_of(path: Path) -> Iterator[MatHeader]:
+    """Return the header of every variable in the order of the file; those without a name are MATLAB's own.
+
+    Raises
+    ------
+    ValueError
+        If the file is damaged.
+    zlib.error, struct.error
+        If a packed variable or a tag is.
+    """
+    with path.open("rb") as file:
+        order = "<" if file.read(_FIRST_VARIABLE).endswith(b"IM") else ">"
+        while tag := file.read(8):
+            kind, length = struct.unpack(f"{order}2I", tag)
+            begin = file.tell()
+            if kind not in (_MATRIX, _PACKED):
+                raise ValueError(f"expected a variable at byte {begin - 8}, found an element of type {kind}")
+            try:
+                header = _header(_begin_of(file, kind == _PACKED, length), order)
+            except struct.error:
+                raise ValueError(f"the variable at byte {begin - 8} is cut off in its header") from None
+            if header.name:
+                yield header
+            file.seek(begin + length)
+
+
+def _begin_of(file: BinaryIO, is_packed: bool, length: int) -> bytes:
+    """Return the begin of a variable's content, behind its tag."""
+    packed = file.read(min(length, _HEADER_BYTES))
+    # what is packed brings its own tag
+    return zlib.decompressobj().decompress(packed, _HEADER_BYTES)[8:] if is_packed else packed
+
+
+def _header(content: bytes, order: str) -> MatHeader:
+    (flags, _), place = struct.unpack_from(f"{order}2I", content, 8), 16
+    number, is_logical = flags & 0xFF, bool(flags & _LOGICAL)
+    kind = _CLASSES.get(number, "object")
+    if number == _OPAQUE:
+        (name, _, kind), _ = _texts(content, place, order, 3)
+        return MatHeader(name=name, kind=kind, shape=(), is_object=True)
+    sizes, place = _element(content, place, order)
+    shape = struct.unpack(f"{order}{len(sizes) // 4}i", sizes)
+    if min(shape, default=0) < 0:
+        raise ValueError(f"expected sizes that are not negative, found {shape[:3]}")
+    (name,), place = _texts(content, place, order, 1)
+    is_object = kind in ("object", "function")
+    if number == 3:
+        (kind,), _ = _texts(content, place, order, 1)
+    return MatHeader(name=name, kind="logical" if is_logical else kind, shape=shape, is_object=is_object)
+
+
+def _texts(content: bytes, place: int, order: str, count: int) -> tuple[list[str], int]:
+    found = []
+    for _ in range(count):
+        data, place = _element(content, place, order)
+        found.append(data.decode("utf-8", "replace"))
+    return found, place
+
+
+def _element(content: bytes, place: int, order: str) -> tuple[bytes, int]:
+    """Return the data of one element and where the next begins; up to four bytes stand within the tag."""
+    (first,) = struct.unpack_from(f"{order}I", content, place)
+    if first >> 16:
+        return content[place + 4 : place + 4 + min(first >> 16, 4)], place + 8
+    (length,) = struct.unpack_from(f"{order}I", content, place + 4)
+    if place + 8 + length > len(content):
+        raise ValueError(f"expected a header of at most {_HEADER_BYTES} bytes")
+    return content[place + 8 : place + 8 + length], place + 8 + (length + 7) // 8 * 8
