@@ -23,6 +23,8 @@ def test_what_has_changed_is_said_and_reported(run, demo, later, tmp_path):
     assert row.split()[-1] == "differs"
     row = next(line for line in result.output.splitlines() if line.strip().startswith("gain margin"))
     assert row.strip().endswith("no difference seen")
+    assert "Has the ship changed? Yes: I_dn by 50.0 %" in result.output
+    assert "Not compared, moving with the working point: K_p, K_i, tau_dn, tau_up, k_q." in result.output
     assert (tmp_path / "out" / "index.html").is_file()
 
 

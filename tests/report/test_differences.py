@@ -132,10 +132,10 @@ def test_what_moves_with_the_working_point_is_told_by_what_does_not(fingerprint)
     found = {one.first.name: one for one in differences(*pair)}
     assert found["tau_dn"].normalised
     assert (found["tau_dn"].outcome, found["tau_dn"].p_value) == ("cannot be compared", None)
-    assert found["tau_dn"].because == "it moves with the working point; see I_dn"
+    assert found["tau_dn"].because == "moving with the working point; see I_dn"
     assert found["I_dn"].outcome == "no difference seen"
     alone = differences(*(f.model_copy(update={"physical": ()}) for f in pair))
-    assert alone[0].because == "it moves with the working point"
+    assert alone[0].because == "moving with the working point"
 
 
 def test_delays_and_ratios_of_gains_stand_for_the_ship(fingerprint):

@@ -79,9 +79,14 @@ def _print(first: str, name: str, found: tuple[Difference, ...]) -> None:
     if moving:
         print_table(f"{title}: normalised numbers, which move with the working point", header, moving)
     click.echo(f"Has the ship changed? {change_in_words(found)}")
-    reasons = dict.fromkeys(f"{one.first.name}: {one.because}" for one in found if one.because)
-    if reasons:
-        click.echo(f"Not compared: {'. '.join(reasons)}.")
+    for reason in dict.fromkeys(_reason(one) for one in found if one.because):
+        names = ", ".join(one.first.name for one in found if one.because and _reason(one) == reason)
+        click.echo(f"Not compared, {reason}: {names}.")
+
+
+def _reason(one: Difference) -> str:
+    """Return why a number cannot be compared, without which one to see instead."""
+    return one.because.partition(";")[0]
 
 
 def _row(one: Difference) -> list[str]:

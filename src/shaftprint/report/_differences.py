@@ -119,7 +119,7 @@ def _moving(found: Difference, there: Collection[str]) -> Difference:
     twin = TOLD_BY.get(found.first.name)
     if twin is None:
         return found
-    because = "it moves with the working point" + (f"; see {twin}" if twin in there else "")
+    because = "moving with the working point" + (f"; see {twin}" if twin in there else "")
     return replace(found, interval_95=None, p_value=None, outcome="cannot be compared", because=because)
 
 
@@ -147,7 +147,7 @@ def _difference(
     rising = apart >= 0.0
     facing_open = (a.interval_open[1], b.interval_open[0]) if rising else (a.interval_open[0], b.interval_open[1])
     if any(facing_open) or not all(math.isfinite(end) for end in (low_a, high_a, low_b, high_b)):
-        because = "the test sets no end to its interval"
+        because = "without an end of the interval"
         return Difference(
             first=a, other=b, interval_95=None, p_value=None, outcome="cannot be compared", because=because
         )
