@@ -280,7 +280,7 @@ def test_a_report_that_fails_leaves_nothing(tmp_path, nouns, monkeypatch):
     def fail(*_):
         raise OSError("disk full")
 
-    monkeypatch.setattr(page_module, "_drawn", fail)
+    monkeypatch.setattr(page_module, "_written_still", fail)
     with pytest.raises(OSError, match="disk full"):
         render_report(tmp_path / "report", **nouns)
     assert not list(tmp_path.iterdir())
