@@ -7,7 +7,10 @@ import pytest
 from click.testing import CliRunner
 
 from shaftprint.cli import shaftprint
-from shaftprint.clocks import align
+from shaftprint.cli._chain import measure
+from shaftprint.cli._inputs import load_trial
+from shaftprint.cli._progress import progress
+from shaftprint.clocks import align, clock_attributes, logger_clocks
 from shaftprint.recording import read_recording, write_recording
 from shaftprint.signals import content_of
 
@@ -35,13 +38,45 @@ def test_the_map_is_found_within_two_milliseconds(loggers, second_logger, vessel
     assert np.abs(errors).max() < 4.0 * found.worst_std_s + 1e-5
 
 
-def test_the_fingerprint_of_the_merged_recording_is_that_of_one_logger(loggers, short_trip, short_campaign, identified):
-    merged = loggers / "merged.nc"
+@pytest.fixture(scope="module")
+def merged(loggers):
+    """Both on the clock of the bridge, in one file."""
+    path = loggers / "merged.nc"
     arguments = ["merge", loggers / "bridge.nc", loggers / "shaft.nc", "--shared", "PTM_e=PTM_4"]
-    arguments += ["--vessel", "stan-tug-1205", "-o", merged]
+    arguments += ["--vessel", "stan-tug-1205", "-o", path]
     result = CliRunner().invoke(shaftprint, [str(a) for a in arguments], catch_exceptions=False)
     assert result.exit_code == 0, result.output
     assert "drift" in result.output
+    return path
+
+
+def test_the_merged_file_states_the_true_map(merged, second_logger):
+    with read_recording(merged) as recording:
+        (clock,) = logger_clocks(recording)
+        assert clock.channels == ("PTM_1", "PTM_4", "M_s")
+        assert recording.channel("M_s").start_s == pytest.approx(second_logger.true_time_s(5.0), abs=2e-4)
+    ends = np.array(clock.alignment.span_s)
+    errors = clock.alignment.map.reference_s(ends) - second_logger.true_time_s(ends)
+    assert np.abs(errors).max() < 4.0 * clock.alignment.worst_std_s + 1e-5
+    assert clock.alignment.map.drift == pytest.approx(30e-6, abs=3.0 * clock.alignment.map.covariance[1, 1] ** 0.5)
+
+
+def test_a_clock_that_is_known_badly_becomes_a_finding(merged, tmp_path):
+    with read_recording(merged) as recording:
+        (clock,) = logger_clocks(recording)
+        line = replace(clock.alignment.map, covariance=np.diag([2.5e-5, 0.0]))
+        bad = replace(clock, alignment=replace(clock.alignment, map=line))
+        write_recording(tmp_path / "bad.nc", recording.channels.values(), attributes=clock_attributes([bad]))
+    trial = load_trial("stan-tug-1205", "short")
+    with progress(hidden=True) as steps:
+        good, poor = (
+            measure(path, trial, mode="shaftprint", steps=steps).signals for path in (merged, tmp_path / "bad.nc")
+        )
+    (finding,) = set(poor.findings) - set(good.findings)
+    assert finding.startswith("The clock of shaft.nc is known to 5 ms only: parameters may be off by up to ")
+
+
+def test_the_fingerprint_of_the_merged_recording_is_that_of_one_logger(merged, short_trip, short_campaign, identified):
     one, two = (identified(path, short_campaign).fit for path in (short_trip.path, merged))
     for a, b in zip(one.parameters, two.parameters, strict=True):
         assert b.value == pytest.approx(a.value, abs=0.5 * a.std), a.name
