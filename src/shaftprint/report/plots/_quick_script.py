@@ -1,6 +1,6 @@
 """plotly's script made to start in half the time: without the kinds of traces that no report draws.
 
-plotly's package has one script with all of its fifty kinds, maps and surfaces among them. Most of the time that a
+plotly's package has one script with all of its 47 kinds, maps and surfaces among them. Most of the time that a
 browser needs to start it goes into kinds that a report never draws: each is a function that runs when a list of kinds
 asks for it. Taken out of that list it lies idle. What is not recognised stays as it is, and only starts slower.
 """
