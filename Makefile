@@ -22,6 +22,8 @@ help: ## Say what can be made
 demo: $(VENV)/run ## Sail the simulated tug and identify it; results in demo/
 	$(BIN)/shaftprint demo -o demo
 
+# each core has a worker of its own
+test: export OPENBLAS_NUM_THREADS ?= 1
 test: $(VENV)/test ## Run all tests, with the coverage of the calculating rooms
 	$(BIN)/python -m pytest -n auto --dist loadfile --cov=shaftprint --cov-branch --cov-report=
 	$(BIN)/python -m coverage report --include '$(subst $(space),$(comma),$(ROOMS:%=src/shaftprint/%/*))' \

@@ -1,6 +1,7 @@
 """What is said without a command being called, and what that must not load."""
 
 import importlib
+import os
 import subprocess
 import sys
 
@@ -93,3 +94,20 @@ def test_unknown_command_is_a_usage_error(run):
 def test_group_knows_no_command_that_is_not_listed():
     context = click.Context(shaftprint)
     assert shaftprint.get_command(context, "main") is None
+
+
+@pytest.mark.parametrize(("said", "expected"), [(None, "1"), ("3", "3")])
+def test_matrices_get_one_thread_unless_the_user_says_more(said, expected):
+    program = (
+        "import os, sys\n"
+        "import shaftprint.cli._main as program\n"
+        "assert 'numpy' not in sys.modules\n"
+        "sys.argv = ['shaftprint', '--version']\n"
+        "try:\n    program.main()\n"
+        "finally:\n    print(os.environ['OPENBLAS_NUM_THREADS'])\n"
+    )
+    environment = {name: value for name, value in os.environ.items() if name != "OPENBLAS_NUM_THREADS"}
+    if said is not None:
+        environment["OPENBLAS_NUM_THREADS"] = said
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=environment, check=True)
+    assert done.stdout.split()[-1] == expected

@@ -1,5 +1,6 @@
 """The program ``shaftprint``: its commands and how they end."""
 
+import os
 import sys
 
 import click
@@ -20,6 +21,9 @@ def shaftprint() -> None:
 
 def main() -> None:
     """Run the program; this is the entry point of the installed command."""
+    # Matrices are small here: threads that share one wait for each other, the longer the more cores there are. NumPy is
+    # not loaded yet; who sets another number keeps it.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     for stream in (sys.stdout, sys.stderr):
         # a name that the console's code page lacks must not end a run of minutes
         stream.reconfigure(errors="replace")  # type: ignore[union-attr]
