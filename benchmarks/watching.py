@@ -211,7 +211,7 @@ def _tables(pool: ProcessPoolExecutor, options: argparse.Namespace) -> Iterator[
             pairs = [named(before, after) for before in unchanged for after in changed]
             found.append((size, pairs))
         rows.append(_row(change, found))
-    header = ("change", "size: seen in so many comparisons", "right number named", "smallest with 80 % power")
+    header = ("change", "size: seen in so many comparisons", "cause named, of those seen", "smallest with 80 % power")
     yield f"{options.tests} tests of each change and size, each compared with all of the unchanged ship.\n"
     yield _table(header, rows)
 
