@@ -1,4 +1,4 @@
-"""One short voyage for all tests of the command line, and a way to call it."""
+"""A way to call the program, and a recording to call it with."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -19,14 +19,6 @@ def run() -> Run:
         return CliRunner().invoke(shaftprint, [str(argument) for argument in arguments], catch_exceptions=False)
 
     return call
-
-
-@pytest.fixture(scope="session")
-def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Result]:
-    """The folder and the output of one short demo."""
-    folder = tmp_path_factory.mktemp("cli") / "demo"
-    arguments = ["demo", "--short", "--output", str(folder), "--no-progress"]
-    return folder, CliRunner().invoke(shaftprint, arguments, catch_exceptions=False)
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,4 @@
-"""``shaftprint inspect`` says what is in a recording and whether it is good enough."""
+"""``shaftprint inspect`` says what is in a recording; ``tests/docs`` inspects a whole test, as the pages show it."""
 
 import numpy as np
 import pytest
@@ -46,23 +46,6 @@ def test_sensors_with_a_vessel_file(run, recording):
     assert "missing pulse" in result.output
     assert "Problems\n  * None." in result.output
     assert "Signal-to-noise" not in result.output
-
-
-def test_whole_test_with_a_campaign_file(run, recording):
-    result = run("inspect", recording, "--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress")
-    assert result.exit_code == 0
-    for heading in (
-        "Channels, raw", "Sensors of the vessel file", "Steady state", "Engine-speed channels", "Strip angles of PTM_4",
-        "Time from set point to speed", "Repairs; the raw file is as it was", "Signal-to-noise ratio of the test lines",
-        "Findings on the signals",
-    ):  # fmt: skip
-        assert heading in result.output
-    # on a rigid line all three speeds have one mean
-    means = [float(_cells(result.output, name)[2]) for name in ("n_e", "n_e1", "n_e4")]
-    assert means == pytest.approx([means[0]] * 3, rel=1e-4)
-    assert _cells(result.output, "n_e")[3] == "+0.000"
-    assert result.output.rstrip().endswith("Good enough: 10 of 10 lines are usable and above 0 dB, 4 of them between 1 "
-                                           "and 12 rad/s, where the loop crosses over.")  # fmt: skip
 
 
 def test_campaign_without_vessel_is_a_usage_error(run, recording):

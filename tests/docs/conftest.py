@@ -1,0 +1,74 @@
+"""A harbour: the folder in which the user of the pages works, with what a user has."""
+
+import contextlib
+from dataclasses import replace
+
+import pytest
+from click.testing import CliRunner
+from pages import as_run
+
+from shaftprint.cli import shaftprint
+from shaftprint.fingerprint import read_fingerprint, write_fingerprint
+from shaftprint.recording import read_recording, write_csv, write_recording
+
+pytest.register_assert_rewrite("expected", "expected_exports")
+IDENTIFY = "identify log.csv --vessel mine.toml --campaign test.toml -o result"
+MY_SHIP = """
+import dataclasses
+from shaftprint.models import structure
+
+my_loop = dataclasses.replace(structure("GAUGE-CLOSED"), name="MY-LOOP")
+"""
+# The second logger's clock is behind and slow: the first's time is 0.4 s and 1.00003 times the second's own.
+BEHIND_S, SLOW = 0.4, 30e-6
+
+
+@pytest.fixture(scope="session")
+def harbour(demo, tmp_path_factory):
+    """The folder: settings that are filled in, recordings, fingerprints, a structure of one's own, a set point.
+
+    ``result`` is what the page's own command makes of the page's own log; its output is in ``printed``.
+    """
+    folder, voyage = tmp_path_factory.mktemp("harbour"), demo[0]
+    for name in ("recording.nc", "tug.nc", "last_year.nc", "thesis.nc"):
+        (folder / name).symlink_to(voyage / "recording.nc")
+    (folder / "mine.toml").symlink_to(voyage / "vessel.toml")
+    for name in ("test.toml", "campaign.toml", "last_year.toml"):
+        (folder / name).symlink_to(voyage / "campaign.toml")
+    (folder / "demo").symlink_to(voyage, target_is_directory=True)
+    write_loggers(folder)
+    write_last_years(folder, voyage)
+    (folder / "my_ship.py").write_text(MY_SHIP)
+    rows = "".join(f"{0.1 * i:.1f},{0.0 if i < 10 else 0.02}\n" for i in range(50))
+    (folder / "set_point.csv").write_text(f"time [s],n_set [-]\n{rows}")
+    return folder
+
+
+@pytest.fixture(scope="session")
+def printed(demo, harbour):
+    """The output of the commands whose results other commands take, by the command as it is run."""
+    with contextlib.chdir(harbour):
+        found = CliRunner().invoke(shaftprint, IDENTIFY.split(), catch_exceptions=False)
+    return {IDENTIFY: found, as_run(["demo"]): demo[1]}
+
+
+def write_loggers(folder):
+    """Write the recording as text, and as two loggers would have made it."""
+    with read_recording(folder / "recording.nc") as recording:
+        write_csv(folder / "log.csv", recording.channels.values())
+        write_recording(folder / "bridge.nc", [recording.channel(name) for name in ("U_setpoint", "PTM_e")])
+        rate = 1.0 + SLOW
+        shaft = [
+            replace(channel, start_s=(channel.start_s - BEHIND_S) / rate, rate_hz=channel.rate_hz * rate)
+            for channel in (recording.channel(name) for name in ("PTM_1", "PTM_4", "M_s"))
+        ]
+        write_recording(folder / "shaft.nc", shaft)
+
+
+def write_last_years(folder, voyage):
+    """Write the fingerprints of two years; in the second there is half as much inertia again behind the gauge."""
+    first = read_fingerprint(voyage / "fingerprint.json")
+    more = tuple(q.model_copy(update={"value": 1.5 * q.value}) if q.name == "I_dn" else q for q in first.physical)
+    for name, found in (("result-2025", first), ("result-2026", first.model_copy(update={"physical": more}))):
+        (folder / name).mkdir()
+        write_fingerprint(found, folder / name / "fingerprint.json")

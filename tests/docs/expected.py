@@ -1,0 +1,258 @@
+"""What the commands of the pages leave behind and print, held against what is known of the simulated tug.
+
+Each function is given the folder in which the command was run, what it printed, and its arguments.
+"""
+
+import csv
+import math
+import re
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from expected_exports import EXPORTS
+
+from shaftprint.campaign import load_campaign
+from shaftprint.fingerprint import read_fingerprint
+from shaftprint.models import structure
+from shaftprint.recording import read_recording
+from shaftprint.tug import read_truth
+from shaftprint.vessel import load_vessel
+
+CHANNELS = {"U_setpoint", "PTM_e", "PTM_1", "PTM_4", "M_s"}
+
+
+def after(words, option):
+    """Return what stands behind an option."""
+    return words[words.index(option) + 1]
+
+
+def rows(printed, heading):
+    """Return the cells of a printed table by their first one."""
+    lines = printed[printed.index(heading) :].splitlines()
+    start = next(place for place, line in enumerate(lines) if line.startswith(" ──"))
+    cells = [re.split(r"\s{2,}", line.strip()) for line in lines[start + 1 :]]
+    end = next(place for place, row in enumerate(cells) if row == [""])
+    return {row[0]: row[1:] for row in cells[:end]}
+
+
+def uncertain(cell):
+    """Return value and standard deviation of a cell."""
+    value, std = cell.split(" +/- ")
+    return float(value), float(std.split()[0])
+
+
+def expect_demo(folder, printed, words):
+    assert read_fingerprint(folder / "demo" / "fingerprint.json").structure == "GAUGE-CLOSED"
+    assert (folder / "demo" / "index.html").is_file()
+    assert "What was found" in printed
+
+
+def expect_settings(folder, printed, words):
+    load = {"vessel": load_vessel, "campaign": load_campaign}[words[1]]
+    assert load(folder / words[2]).name
+
+
+def expect_prediction(folder, printed, words):
+    name = "GAUGE-CLOSED"
+    if "--structure" in words:
+        name = "MY-LOOP"
+    assert f"{name}: gauge-aware closed loop" in printed
+    free = {parameter.name for parameter in structure("GAUGE-CLOSED").free}
+    assert free | {"t_d + t_sp", "K_p / K_i"} <= set(rows(printed, "What these lines would tell"))
+    assert "Known to 1 % or better: tau_dn" in printed
+
+
+def expect_inspection(folder, printed, words):
+    if "--vessel" not in words:
+        heading = next(line for line in printed.splitlines() if line.split()[:2] == ["channel", "unit"])
+        assert all(word in heading for word in ("rate [Hz]", "span [s]", "lowest", "mean", "highest"))
+        assert set(rows(printed, heading)) == CHANNELS
+        # a sensor map to paste
+        found = tomllib.loads(printed.partition("are for you to fill in\n")[2])
+        assert [speed["channel"] for speed in found["sensors"]["speed"]] == ["PTM_e", "PTM_1", "PTM_4"]
+        return
+    for heading in (
+        "Channels, raw", "Sensors of the vessel file", "Steady state", "Engine-speed channels", "Strip angles of PTM_4",
+        "Time from set point to speed", "Repairs; the raw file is as it was", "Signal-to-noise ratio of the test lines",
+        "Findings on the signals", "Nonlinearities",
+    ):  # fmt: skip
+        assert heading in printed
+    # on a rigid line all three speeds have one mean
+    means = rows(printed, "Engine-speed channels")
+    assert set(means) == {"n_e", "n_e1", "n_e4"}
+    mean = [next(line.split() for line in printed.splitlines() if line.split()[:1] == [name]) for name in means]
+    assert [float(cells[2]) for cells in mean] == pytest.approx([float(mean[0][2])] * 3, rel=1e-4)
+    assert mean[0][3] == "+0.000"
+    assert printed.rstrip().endswith("Good enough: 10 of 10 lines are usable and above 0 dB, 4 of them between 1 "
+                                     "and 12 rad/s, where the loop crosses over.")  # fmt: skip
+
+
+def expect_identification(folder, printed, words):
+    place = folder / after(words, "-o")
+    found = read_fingerprint(place / "fingerprint.json")
+    own = "--structure" in words
+    assert found.structure == ("MY-LOOP" if own else "GAUGE-CLOSED")
+    assert re.search(rf"^Fingerprint: {place.name}.fingerprint\.json$", printed, flags=re.MULTILINE)
+    page = (place / "index.html").read_text(encoding="utf-8")
+    assert all(f"figures/{path.name}" in page for path in (place / "figures").iterdir())
+    assert any((place / "plots").iterdir())
+    assert found.quality.weighting == "MaximumLikelihood"
+    assert found.quality.starts == 50
+    assert (found.priors["g"].mean, found.priors["g"].std) == (0.0, 0.1)
+    # table E.1 of the thesis: 54.006 kg m2 upstream of the gauge; 2 pi 54.006 n_s0 / M_s0 at the measured working point
+    torque, speed = found.conditions.shaft_torque.value, found.conditions.engine_speed.value
+    tau_up = 2.0 * math.pi * 54.006 * speed / 60.0 / 3.82 / torque
+    assert found.priors["tau_up"].mean == pytest.approx(tau_up, rel=1e-3)
+    sources = [("recording", "log.csv"), ("vessel", "mine.toml"), ("campaign", "test.toml")]
+    assert [(s.role, s.name) for s in found.sources] == sources + [("structure", "my_ship.py")] * own
+    # the truth of the simulated tug: 17.0 kg m2 of propeller, shaft and water; 0.0703 + 0.0518 s
+    assert found.quantity("I_dn").value == pytest.approx(17.0, rel=0.02)
+    assert found.quantity("t_d + t_sp").value == pytest.approx(0.1221, rel=0.05)
+
+
+def expect_saved_fingerprint(folder, printed, words):
+    assert printed.startswith("Verdict: trustworthy\n  * The fit can be trusted: GAUGE-CLOSED explains 10 good lines")
+    found = read_fingerprint(folder / words[1] / "fingerprint.json")
+    shown = rows(printed, "GAUGE-CLOSED: parameters")
+    assert set(shown) == {quantity.name for quantity in (*found.parameters, *found.combinations)}
+    assert set(rows(printed, "Physical values")) == {quantity.name for quantity in found.physical}
+
+
+def expect_recording(folder, printed, words):
+    path = folder / after(words, "-o")
+    with read_recording(path) as recording:
+        assert set(recording.channels) == CHANNELS
+        assert {(channel.count, channel.rate_hz) for channel in recording.channels.values()} == {(1_720_000, 2000.0)}
+        assert path.suffix == ".nc" or "MDF" in recording.format
+        if words[0] == "convert":
+            with read_recording(folder / words[1]) as source:
+                for name, channel in recording.channels.items():
+                    np.testing.assert_array_equal(
+                        channel.values(0, 5000), source.channel(name).values(0, 5000), err_msg=name
+                    )
+    if words[0] == "sail":
+        assert read_truth(path.with_name(f"{path.stem}.truth.json")).seed == 1
+    if path.name == "thesis.nc":
+        # the voyage of the demo, whose recording other commands take under this name
+        assert path.read_bytes() == (folder / "recording.nc").read_bytes()
+
+
+def expect_merged(folder, printed, words):
+    with read_recording(folder / after(words, "-o")) as merged, read_recording(folder / "recording.nc") as before:
+        assert set(merged.channels) == CHANNELS
+        for name, channel in merged.channels.items():
+            # the first sample and the last are where one logger would have them, within a tenth of a millisecond
+            one = before.channel(name)
+            assert channel.count == one.count
+            assert channel.start_s == pytest.approx(one.start_s, abs=1e-4), name
+            assert channel.start_s + channel.duration_s == pytest.approx(one.start_s + one.duration_s, abs=1e-4), name
+            np.testing.assert_allclose(channel.values(0, 100), one.values(0, 100), atol=1e-9)
+
+
+def expect_limits(folder, printed, words):
+    assert "Limits of the line: torque" in printed
+    limits, line = rows(printed, "Limits of the line"), rows(printed, "\nParameters\n")
+    assert {"m_max", "M_max", "share", "m_min", "M_min", "T_aw"} <= set(limits)
+    assert ("r_x" in limits) == ("--limits" in words)
+    # The engine without fuel brakes with 300 N m, and its integrator goes back in half a second. The staircase of 1 V
+    # does not reach the full torque.
+    for name, true in (("M_min", -300.0), ("T_aw", 0.5)):
+        value, std = uncertain(limits[name][0])
+        assert abs(value - true) < 3.0 * std, name
+    for name, true in (("K_p", 5.7), ("K_i", 4.27), ("t_d", 0.0703), ("t_sp", 0.0518), ("k_q", 2.0)):
+        value, std = uncertain(line[name][0])
+        assert abs(value - true) < 3.0 * std, name
+    assert set(re.findall(r"^ (St1) +(n|M_s) ", printed, flags=re.MULTILINE)) == {("St1", "n"), ("St1", "M_s")}
+
+
+def expect_structure(folder, printed, words):
+    assert printed.startswith("MY-LOOP: gauge-aware closed loop, n_set -> n, M_s\n")
+    assert set(rows(printed, "MY-LOOP")) == set(structure("GAUGE-CLOSED").names)
+    assert "t_d + t_sp [s]: total delay" in printed
+
+
+def expect_families(folder, printed, words):
+    assert printed.splitlines() == [str(Path("sensitivity", f"MY-LOOP_{output}.svg")) for output in ("n", "M_s")]
+    assert all((folder / line).read_text(encoding="utf-8").startswith("<?xml") for line in printed.splitlines())
+
+
+def expect_simulation(folder, printed, words):
+    with (folder / after(words, "-o")).open(encoding="utf-8") as file:
+        titles, *lines = csv.reader(file)
+    values = dict(zip(titles, np.array(lines, dtype=float).T, strict=True))
+    time_s = values["time [s]"]
+    if "--fingerprint" not in words:
+        # 2 % more from 1 s on, which an integrating governor follows; propeller torque has the slope 2
+        assert values["n [-]"][time_s < 1.0].tolist() == [0.0] * 10
+        assert values["n [-]"][-1] == pytest.approx(0.02, rel=0.02)
+        assert values["M_s [-]"][-1] == pytest.approx(0.04, rel=0.02)
+        return
+    assert time_s[[0, -1]].tolist() == [7880.0, 8240.0]
+    for name in ("engine speed", "shaft torque"):
+        unit = {"engine speed": "rpm", "shaft torque": "N m"}[name]
+        # steady running first, and a band where something moves
+        assert values[f"{name} std [{unit}]"][0] == 0.0
+        assert values[f"{name} std [{unit}]"].max() > 0.0
+    # St2 of the thesis goes from -3 to -7 V, 250.97 rpm each, about 1183.5 rpm; a step overshoots
+    asked, speed = values["set point [rpm]"], values["engine speed [rpm]"]
+    assert [asked.min(), asked.max()] == pytest.approx([1183.5 - 502.0, 1183.5 + 502.0], rel=2e-3)
+    assert speed.min() < 1.01 * asked.min()
+    assert speed.max() > 0.99 * asked.max()
+    if "--figure" in words:
+        assert (folder / after(words, "--figure")).read_bytes().startswith(b"\x89PNG")
+
+
+def expect_validation(folder, printed, words):
+    assert printed.startswith("Validation: ")
+    assert "GAUGE-CLOSED against records it has not seen" in printed
+    # 1 V steps of 30 s from 10 s on
+    for at in (10, 40, 70, 100, 130, 160, 190):
+        assert f"St1, step at {at}.0 s" in printed
+    assert "overshoot [%]" in printed
+    written = {path.name for path in (folder / after(words, "-o")).glob("*.svg")}
+    assert {"missed_beyond_noise.svg", "St1-whole-staircase.svg"} <= {name.replace(" ", "-") for name in written}
+
+
+def expect_explanation(folder, printed, words):
+    for heading in ("The factor:", "The damping:", "The drift:"):
+        assert heading in printed
+    assert "calculation, downstream of the gauge" in printed
+    assert "GAUGE-CLOSED" in printed
+    assert not set("\N{MINUS SIGN}\N{PLUS-MINUS SIGN}\N{DEGREE SIGN}") & set(printed)
+    place = folder / after(words, "-o")
+    assert 'id="explanation"' in (place / "index.html").read_text(encoding="utf-8")
+    assert (place / "figures" / "missing_damping.svg").is_file()
+    assert read_fingerprint(place / "fingerprint.json").structure == "GAUGE-CLOSED"
+
+
+def expect_comparison(folder, printed, words):
+    assert "result-2026 compared with result-2025" in printed
+    said = {line.split()[0]: line for line in printed.splitlines() if line.split()}
+    # half as much inertia again behind the gauge, and nothing else
+    assert said["I_dn"].split()[-1] == "differs"
+    for name in ("I_up", "K_Q", "gain", "K_p"):
+        assert said[name].rstrip().endswith(("no difference seen", "cannot be compared")), name
+    assert said["I_up"].rstrip().endswith("no difference seen")
+    assert (folder / after(words, "-o") / "index.html").is_file()
+
+
+EXPECTED = {
+    "demo": expect_demo,
+    "new": expect_settings,
+    "predict": expect_prediction,
+    "inspect": expect_inspection,
+    "identify": expect_identification,
+    "show": expect_saved_fingerprint,
+    "convert": expect_recording,
+    "sail": expect_recording,
+    "merge": expect_merged,
+    "limits": expect_limits,
+    "structures": expect_structure,
+    "sensitivity": expect_families,
+    "simulate": expect_simulation,
+    "validate": expect_validation,
+    "explain": expect_explanation,
+    "compare": expect_comparison,
+} | {f"export {name}": expect for name, expect in EXPORTS.items()}

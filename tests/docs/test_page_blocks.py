@@ -1,0 +1,161 @@
+"""Blocks of the pages in other languages: settings load, models parse, MATLAB runs, included files are there."""
+
+import json
+import re
+import shutil
+import subprocess
+import tomllib
+from importlib.metadata import EntryPoint
+from xml.etree import ElementTree as ET
+
+import numpy as np
+import pytest
+from pages import PAGES, ROOT, blocks, python_of
+
+from shaftprint.export import exported_model, write_matlab
+from shaftprint.fingerprint import read_fingerprint
+from shaftprint.recording import read_recording
+from shaftprint.recording.readers import _outside
+
+OCTAVE = shutil.which("octave-cli") or shutil.which("octave")
+needs_octave = pytest.mark.skipif(OCTAVE is None, reason="Octave runs MATLAB's lines; apt-get install octave")
+# Octave has no timetables, no strings and no files of version 7.3: these stand for them where a page uses them. A
+# string is a word of letters, of which a loop takes one after the other.
+STAND_INS = {
+    "seconds.m": "function y = seconds(x)\n  y = x;\nend\n",
+    "string.m": "function y = string(x)\n  y = [x{:}];\nend\n",
+}
+TIMETABLE = """
+tt.Properties.RowTimes = (100:0.25:110)';
+tt.Properties.VariableNames = {'n', 'M'};
+tt.n = (1:41)';
+tt.M = 2 * (1:41)';
+"""
+
+
+def of(kind):
+    """Return page and text of every block of a kind."""
+    found = [(page, text) for page in PAGES for name, text in blocks(page) if name == kind]
+    return [pytest.param(page, text, id=f"{page} {number}") for number, (page, text) in enumerate(found)]
+
+
+def octave(folder, text):
+    """Run lines in a folder."""
+    command = [OCTAVE, "--no-gui", "--quiet", "--norc", "--eval", text]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.fixture
+def acme(tmp_path, monkeypatch):
+    """The package of the page on formats, installed as its toml says."""
+    page = "docs/formats.md"
+    (tmp_path / "acme_reader.py").write_text("\n".join(python_of(page)), encoding="utf-8")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    ((_, text),) = (block for block in blocks(page) if block[0] == "toml")
+    groups = tomllib.loads(text)["project"]["entry-points"]
+    points = [EntryPoint(name, value, group) for group, found in groups.items() for name, value in found.items()]
+    monkeypatch.setattr(_outside, "entry_points", lambda group: [point for point in points if point.group == group])
+    _outside._functions.cache_clear()
+    yield tmp_path
+    _outside._functions.cache_clear()
+
+
+def test_a_reader_that_a_package_names_so_is_used(acme):
+    np.arange(3000, dtype="<f4").tofile(acme / "log.acme")
+    with read_recording(acme / "log.acme") as recording:
+        assert recording.format == "ACME logger"
+        torque = recording.channel("M_s")
+        assert (torque.unit, torque.rate_hz, torque.count) == ("N m", 1000.0, 3000)
+        assert torque.values(10, 12).tolist() == [10.0, 11.0]
+
+
+def test_toml_is_of_a_page_with_a_check_of_its_own():
+    assert {page.values[0] for page in of("toml")} == {"docs/formats.md"}
+
+
+def test_json_loads():
+    for page in of("json"):
+        assert json.loads(page.values[1])
+
+
+@pytest.mark.parametrize(("page", "text"), of("xml"))
+def test_xml_connects_what_the_export_has(page, text):
+    # our own page
+    root = ET.fromstring(f"<page>{text}</page>")  # noqa: S314
+    named = {entry.get("name") for entry in root.iter() if entry.get("simulator") == "line"}
+    assert named
+    # variables and groups that the exports of the pages' commands are tested to have
+    assert named <= {"engine_speed_set_point", "engine_speed", "shaft_torque"}
+
+
+@pytest.mark.parametrize(("page", "text"), of("modelica"))
+def test_modelica_parses_and_names_what_the_export_has(page, text):
+    parser = pytest.importorskip("pymoca.parser", reason="pymoca reads Modelica")
+    # lines of a script are statements of a function; the exports are tested to have the rest
+    tree = parser.parse(f"function script\nalgorithm\n{text}end script;\n", bypass_cache=True)
+    assert len(tree.classes["script"].statements) == 3
+    assert re.findall(r"Tug\.\w+", text) == ["Tug.mo", "Tug.Step"]
+    assert set(re.findall(r"line\.(\w+)", text)) == {"engine_speed", "shaft_torque"}
+
+
+@needs_octave
+def test_matlab_of_the_page_on_exports_runs(demo, tmp_path):
+    ((_, text),) = (block for block in blocks("docs/export-formats.md") if block[0] == "matlab")
+    fingerprint = read_fingerprint(demo[0] / "fingerprint.json")
+    model = exported_model(fingerprint)
+    write_matlab(model, tmp_path / "tug.mat")
+    save = "re = real(response); im = imag(response); save('-v6', 'out.mat', 're', 'im', 'omega');"
+    octave(tmp_path, f"set(0, 'defaultfigurevisible', 'off');\n{text}\nassert(isstruct(model));\n{save}\n")
+    from scipy.io import loadmat
+
+    found = loadmat(tmp_path / "out.mat")
+    assert found["omega"].ravel().tolist() == [0.5, 1.0, 2.0]
+    expected = model.structure.response(model.values, 1j * np.array([0.5, 1.0, 2.0]))
+    response = (found["re"] + 1j * found["im"]).reshape(expected.shape)
+    np.testing.assert_allclose(response, expected, rtol=1e-9)
+
+
+@needs_octave
+def test_matlab_of_the_page_on_formats_writes_what_is_read(tmp_path):
+    ((_, text),) = (block for block in blocks("docs/formats.md") if block[0] == "matlab")
+    for name, content in STAND_INS.items():
+        (tmp_path / name).write_text(content, encoding="utf-8")
+    assert "'-v7.3'" in text
+    octave(tmp_path, TIMETABLE + text.replace("'-v7.3'", "'-v7'"))
+    with read_recording(tmp_path / "plain.mat") as recording:
+        assert set(recording.channels) == {"n", "M"}
+        for name, factor in (("n", 1.0), ("M", 2.0)):
+            channel = recording.channel(name)
+            assert (channel.rate_hz, channel.start_s, channel.count) == (4.0, 0.0, 41)
+            assert channel.values(0, 41).tolist() == [factor * i for i in range(1, 42)]
+
+
+def test_matlab_is_of_pages_with_a_check_of_their_own():
+    assert sorted(page.values[0] for page in of("matlab")) == ["docs/export-formats.md", "docs/formats.md"]
+
+
+@pytest.mark.parametrize(("page", "text"), of("{toctree}"))
+def test_pages_of_a_table_of_contents_exist(page, text):
+    folder = (ROOT / page).parent
+    entries = [re.sub(r".*<(.*)>", r"\1", line) for line in text.splitlines() if line and not line.startswith(":")]
+    assert entries
+    for entry in entries:
+        if not entry.startswith("generated/"):
+            assert list(folder.glob(f"{entry}.md")), entry
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if "{literalinclude}" in PAGES[page]])
+def test_parts_of_examples_that_a_page_includes_are_there(page):
+    for kind, text in blocks(page):
+        if kind.startswith("{literalinclude}"):
+            path = (ROOT / page).parent / kind.split()[1]
+            # every example is run by tests/examples or tests/cli
+            assert path.resolve().parent == ROOT / "examples"
+            options = dict(re.findall(r"^:([\w-]+): (.*)$", text, flags=re.MULTILINE))
+            assert set(options) <= {"start-at", "end-before"}
+            first, last = (options.get(name, "").strip('"') for name in ("start-at", "end-before"))
+            source = path.read_text(encoding="utf-8")
+            assert first in source
+            assert last in source[source.index(first) :]

@@ -1,0 +1,60 @@
+"""Every command in a block of a page is run as it stands there, and leaves behind what it says.
+
+What is not as it stands is in ``pages.as_run``. A command that several pages show is run once.
+"""
+
+import importlib.util
+import shlex
+
+import pytest
+from click.testing import CliRunner
+from expected import EXPECTED
+from pages import commands
+
+from shaftprint.cli import shaftprint
+
+
+def key(words):
+    """Return the name of a command, with the format of an export."""
+    return " ".join(words[: 2 if words[0] == "export" else 1])
+
+
+@pytest.fixture
+def ashore(harbour, tmp_path, monkeypatch):
+    """A folder of its own for a command, with what is in the harbour, but for what the command writes itself."""
+
+    def arrive(words):
+        written = {words[at + 1] for at, word in enumerate(words) if word == "-o"}
+        written |= {words[-1]} if words[0] == "new" else set()
+        for path in harbour.iterdir():
+            if path.name not in written:
+                (tmp_path / path.name).symlink_to(path, target_is_directory=path.is_dir())
+        monkeypatch.chdir(tmp_path)
+        return tmp_path
+
+    return arrive
+
+
+@pytest.fixture
+def without_zig(monkeypatch):
+    """The user of the pages has not installed the extra for other systems; ``tests/export`` compiles for them."""
+    find = importlib.util.find_spec
+
+    def found(name, *more):
+        return None if name == "ziglang" else find(name, *more)
+
+    monkeypatch.setattr(importlib.util, "find_spec", found)
+
+
+@pytest.mark.parametrize("line", commands())
+def test_a_command_does_what_its_page_says(line, harbour, printed, ashore, without_zig):
+    words = shlex.split(line)
+    if line in printed:
+        folder, result = harbour, printed[line]
+    else:
+        folder = ashore(words)
+        result = CliRunner().invoke(shaftprint, words, catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+    assert result.stderr == ""
+    assert key(words) in EXPECTED, f"nobody says what {key(words)} leaves behind"
+    EXPECTED[key(words)](folder, result.stdout, words)
