@@ -104,3 +104,39 @@ def test_channel_without_pulses_is_dead(make_channel, values):
         SignalError, match=r"channel PTM_e: expected pulses .* dead or saturated near (1.9|2).* V from 12\.5 s on"
     ):
         pulse_levels(make_channel(values, name="PTM_e", start_s=12.5))
+
+
+def magnetic(seconds: float = 20.0, teeth: int = 60, rate_hz: float = 2000.0, noise: float = 0.01):
+    """Voltage of a magnetic pick-up, a sine as high as the teeth are fast, and when the teeth pass [samples]."""
+    fine = np.arange(0.0, seconds, 1e-5)
+    speed = 2.5 * (1.0 + 0.1 * np.sin(2.0 * np.pi * 0.3 * fine))
+    turns = np.cumsum(speed) * 1e-5 - speed[0] * 1e-5
+    time = np.arange(round(seconds * rate_hz)) / rate_hz
+    volts = np.interp(time, fine, speed * np.sin(2.0 * np.pi * teeth * turns))
+    volts += noise * 2.5 * np.random.default_rng(7).standard_normal(time.size)
+    passed = np.interp(np.arange(1.0, np.floor(teeth * turns[-1])) / teeth, turns, fine)
+    return volts, passed * rate_hz
+
+
+def test_sines_of_a_magnetic_pick_up_are_timed_at_their_zeros(make_channel):
+    volts, teeth = magnetic()
+    levels = pulse_levels(make_channel(volts))
+    edges = find_edges([volts], levels)
+    error = edges[np.abs(edges[:, np.newaxis] - teeth).argmin(axis=0)] - teeth
+    assert abs(edges.size - teeth.size) <= 1
+    # a hundredth of the height as noise, on a slope of 0.47 of it a sample
+    assert np.std(error) == pytest.approx(0.01 / 0.47, rel=0.2)
+    assert abs(np.mean(error)) < 0.005
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        np.cumsum(np.random.default_rng(4).standard_normal(80_000)),
+        np.linspace(0.0, 1.0, 80_000),
+        np.convolve(np.random.default_rng(5).standard_normal(80_000), np.hanning(200), "same"),
+    ],
+)
+def test_what_wanders_is_no_pulse(make_channel, values):
+    with pytest.raises(SignalError, match=r"expected pulses between two levels"):
+        pulse_levels(make_channel(values))

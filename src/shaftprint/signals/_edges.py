@@ -1,6 +1,6 @@
 """Rising edges of a pulse channel, between samples: hysteresis and linear interpolation."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -19,6 +19,12 @@ _ARM, _EDGE, _FIRE = 0.3, 0.5, 0.7
 
 # The levels must stand apart by this many times the noise on them.
 _LEAST_SEPARATION = 8.0
+
+# What has no levels but swings evenly, as a magnetic pick-up does: of its swings the long ones take at most so many
+# times as long as the short ones. Noise of any colour swings less evenly.
+_EVEN, _FEWEST_SWINGS = 2.0, 8
+# Of the second difference of white noise: its root is this over the standard deviation, its median this over the root.
+_SECOND_DIFFERENCE, _MEDIAN = 6.0**0.5, 0.6745
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -48,10 +54,14 @@ def pulse_levels(channel: "Channel", *, edge: str = "rising") -> PulseLevels:
     Raises
     ------
     SignalError
-        If there are no two levels that stand clear of the noise: the channel is dead or saturated.
+        If there are neither two levels that stand clear of the noise nor even swings: the channel is dead or
+        saturated.
     """
-    counts = np.concatenate(spots(channel)).astype(np.float64)
+    found = spots(channel)
+    counts = np.concatenate(found).astype(np.float64)
     low, high, noise, above = _two_levels(counts)
+    if high - low <= _LEAST_SEPARATION * noise and _swings_evenly(found, low, high):
+        noise = float(np.median(np.abs(np.diff(counts, 2)))) / (_MEDIAN * _SECOND_DIFFERENCE)
     if high - low <= _LEAST_SEPARATION * noise or high == low:
         raise SignalError(
             f"channel {channel.name}: expected pulses between two levels, found the channel dead "
@@ -121,6 +131,15 @@ def scan_edges(  # type: ignore[no-untyped-def]
     state[1] = previous
     state[2] = crossing
     return found
+
+
+def _swings_evenly(stretches: Sequence[Counts], low: float, high: float) -> bool:
+    """Return whether the channel goes up and down through its middle at a pace that hardly changes in any stretch."""
+    levels = PulseLevels(low=low, high=high, noise=0.0, duty=0.5)
+    paces = [np.diff(find_edges([stretch], levels)) for stretch in stretches]
+    return all(
+        pace.size >= _FEWEST_SWINGS and np.quantile(pace, 0.95) <= _EVEN * np.quantile(pace, 0.05) for pace in paces
+    )
 
 
 def _two_levels(counts: FloatArray) -> tuple[float, float, float, float]:
