@@ -4,7 +4,7 @@
 quantity            unit        meaning
 =================== =========== ==================================================================================
 ``I_dn``, ``I_up``  kg m2       inertia downstream and upstream of the torque gauge, at the propeller shaft
-``K_Q``             -           torque coefficient of the propeller at the working point
+``K_Q``             -           torque coefficient of the propeller, mean of the test
 gain margin         -           factor on the loop gain that reaches instability
 phase margin        deg         smallest over all crossovers
 delay margin        s           smallest extra delay in the loop that reaches instability
