@@ -1,6 +1,8 @@
 """Harmonics, levels, steps and clipped stretches against laws and closed forms."""
 
 import math
+import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ from shaftprint.nonlinearity import NUMBERS
 from shaftprint.nonlinearity._noise_model import ORDER, whiten
 from shaftprint.nonlinearity._replay import actuation_step
 from shaftprint.nonlinearity._tails import chi_square_tail, f_tail_two
+from shaftprint.nonlinearity._words import finding_of
 from shaftprint.tug import Noise
 
 FREE = {"motoring_torque_nm": 9000.0}
@@ -88,6 +91,32 @@ def test_the_words_carry_numbers(linear, limited):
     assert linear.findings[0].kind == "quadratic propeller only"
     assert linear.start_values == {}
     assert {suspicion.kind for suspicion in linear.suspicions} >= {"torque limit", "deadband", "turbocharger lag"}
+
+
+@pytest.mark.parametrize(
+    ("durations", "expected"),
+    [
+        ([], r"What the governor asks for is cut off at 0\.962 ± 0\.016 of the full-load curve, too shortly"),
+        ([0.4], r"In one stretch of 0\.40 s between 1184 and 1184 rpm the torque of the engine stays on a level"),
+        (
+            [0.4, 0.25],
+            r"In 2 stretches of together 0\.65 s between 1184 and 1184 rpm .*: 0\.962 ± 0\.016 of the full-load",
+        ),
+    ],
+)
+def test_a_limit_that_only_the_command_meets_is_not_said_to_hold_the_torque(durations, expected):
+    record = SimpleNamespace(
+        curve_speed=np.array([-1.0, 1.0]),
+        curve_torque=np.array([2.8, 2.8]),
+        brake_torque_nm=465.0,
+        rated_torque_nm=1300.0,
+        engine_speed_rev_s=1183.8 / 60.0,
+    )
+    fit = SimpleNamespace(values={"limit": 0.962}, std={"limit": 0.016}.get)
+    one = SimpleNamespace(kind="torque limit", statistic=1015.0, p_value=0.0)
+    size = len(durations)
+    limits = SimpleNamespace(duration_s=np.array(durations), torque=np.full(size, 2.7), speed=np.zeros(size))
+    assert re.match(expected, finding_of(one, SimpleNamespace(record=record, fit=fit), limits).evidence)
 
 
 @pytest.mark.parametrize(

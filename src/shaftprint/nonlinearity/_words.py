@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.arrays import FloatArray
 from shaftprint.nonlinearity._nonlinearities import Estimate, Finding
 from shaftprint.units import rpm_from_rev_s
 
@@ -91,20 +92,35 @@ def _torque_limit(outcome: "Outcome", limits: "LimitEvidence") -> tuple[tuple[Es
     )
     held = limits.duration_s[upper]
     speed = rpm_from_rev_s(record.engine_speed_rev_s * (1.0 + limits.speed[upper]))
-    where = f" between {speed.min():.0f} and {speed.max():.0f} rpm" if held.size else ""
+    level = f"{factor:.3f} ± {std:.3f} of the full-load curve"
+    if not held.size:
+        return estimates, (
+            f"What the governor asks for is cut off at {level}, too shortly for the torque of the engine to stay "
+            "there; how the speed comes back shows it."
+        )
     return estimates, (
-        f"In {held.size} stretches of together {held.sum():.2f} s{where} the torque of the engine stays on a level "
-        f"while the governor asks for more: {factor:.3f} ± {std:.3f} of the full-load curve."
+        f"In {_stretches(held)} between {speed.min():.0f} and {speed.max():.0f} rpm the torque of the engine stays on "
+        f"a level while the governor asks for more: {level}."
     )
 
 
 def _motoring_limit(outcome: "Outcome", limits: "LimitEvidence") -> tuple[tuple[Estimate, ...], str]:
     estimate = _own("m_min", outcome, "m_min", "-", "torque of the motored engine over M_b0, as a positive number")
     held = limits.duration_s[limits.torque <= 0.0]
+    level = f"{estimate.value:.2f} ± {estimate.std:.2f} M_b0 below zero"
+    if not held.size:
+        return (estimate,), (
+            f"What the governor takes away is cut off at {level}, too shortly for the torque of the engine to stay "
+            "there; how the speed comes back shows it."
+        )
     return (estimate,), (
-        f"In {held.size} stretches of together {held.sum():.2f} s the torque falls no further than "
-        f"{estimate.value:.2f} ± {estimate.std:.2f} M_b0 below zero: no fuel is left to take away."
+        f"In {_stretches(held)} the torque falls no further than {level}: no fuel is left to take away."
     )
+
+
+def _stretches(held: FloatArray) -> str:
+    many = f"{held.size} stretches of together" if held.size > 1 else "one stretch of"
+    return f"{many} {held.sum():.2f} s"
 
 
 def _rack_rate(outcome: "Outcome") -> tuple[tuple[Estimate, ...], str]:
