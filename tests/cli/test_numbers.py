@@ -19,6 +19,9 @@ from shaftprint.cli._numbers import plain, with_uncertainty
         (-0.0123, 0.098, "-0.012 +/- 0.098"),
         (2.0, 0.0, "2 +/- 0"),
         (0.02208, math.inf, "0.02208 +/- unknown"),
+        (6.0, 230.0, "6.0 +/- 230"),
+        (-1234.6, 230.0, "-1230 +/- 230"),
+        (0.0, 230.0, "0 +/- 230"),
     ],
 )
 def test_value_with_uncertainty(value, std, text):
