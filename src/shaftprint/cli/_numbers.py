@@ -8,8 +8,8 @@ DIGITS_OF_UNCERTAINTY = 2
 def with_uncertainty(value: float, std: float) -> str:
     """Return ``value +/- std``, both rounded to the second digit of the standard deviation.
 
-    An infinite standard deviation, which says that nothing is known, is written as ``unknown``. A value keeps two digits
-    of its own where a hundred or more in standard deviation would leave none.
+    An infinite standard deviation, which says that nothing is known, is written as ``unknown``. A value keeps two
+    digits of its own where a standard deviation of a hundred or more would leave none.
     """
     if not math.isfinite(std):
         return f"{value:.4g} +/- unknown"
