@@ -51,8 +51,10 @@ def with_load_of_test(
     rate_hz, start_s
         The grid.
     """
-    whole = start_s + torque_nm.size / rate_hz
-    windows = _apart([*((stretch.start_s, stretch.stop_s) for stretch in quiet), *_waves(campaign)], whole)
+    planned = [*((stretch.start_s, stretch.stop_s) for stretch in quiet), *_waves(campaign)]
+    # half a sample on either side is what rounding leaves of an end
+    first_s, last_s = start_s - 0.5 / rate_hz, start_s + (torque_nm.size + 0.5) / rate_hz
+    windows = _apart([(begin, end) for begin, end in planned if begin >= first_s and end <= last_s])
     if len(windows) < FEWEST_WINDOWS:
         return point
     own = point.shaft_torque_nm / point.engine_speed_rev_s**2
@@ -74,11 +76,11 @@ def _waves(campaign: Campaign) -> Iterator[tuple[float, float]]:
             yield wave.start_s, wave.stop_s
 
 
-def _apart(windows: list[tuple[float, float]], stop_s: float) -> list[tuple[float, float]]:
-    """Return the windows in order of time that end within the recording and do not overlap an earlier one."""
+def _apart(windows: list[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Return the windows in order of time, without those that overlap an earlier one."""
     found: list[tuple[float, float]] = []
     for begin, end in sorted(windows):
-        if end <= stop_s and (not found or begin >= found[-1][1]):
+        if not found or begin >= found[-1][1]:
             found.append((begin, end))
     return found
 
