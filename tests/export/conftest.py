@@ -1,13 +1,14 @@
 """Models written as FMUs, and two ways to run them: step by step, and by a solver from outside."""
 
 import ctypes
+import re
 import shutil
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from shaftprint.export import ExportedModel, write_fmu
+from shaftprint.export import PLATFORMS, ExportedModel, write_fmu
 
 SPEED_RPM, TORQUE_NM = 1183.8, 1740.0
 OUTPUTS = ("engine_speed", "shaft_torque")
@@ -50,6 +51,37 @@ def fmu(tmp_path_factory):
         return known[key]
 
     return write
+
+
+@pytest.fixture(scope="session")
+def zig_fmu(tmp_path_factory):
+    """Write a structure as an FMU with binaries of Zig for some systems, this computer's too, each once."""
+    pytest.importorskip("ziglang", reason="other systems need the extra fmu")
+    known = {}
+
+    def write(structure, values=(), *, version=2, platforms=tuple(PLATFORMS)):
+        key = (structure.name, tuple(sorted(dict(values).items())), version, platforms)
+        if key not in known:
+            path = tmp_path_factory.mktemp("zig") / "model.fmu"
+            with pytest.MonkeyPatch.context() as patch:
+                patch.setattr("shaftprint.export._fmu_build._host_compiler", lambda: None)
+                write_fmu(model_of(structure, values), path, version=version, platforms=platforms)
+            known[key] = path
+        return known[key]
+
+    return write
+
+
+@pytest.fixture(scope="session")
+def declared_functions():
+    """Return the names of all functions that the standard's own header declares."""
+    fmpy = pytest.importorskip("fmpy", reason="FMPy brings the headers of the standard")
+
+    def names(version):
+        text = (Path(fmpy.__file__).parent / "c-code" / f"fmi{version}Functions.h").read_text()
+        return set(re.findall(rf"FMI{version}_Export\s+\w+\s+(fmi{version}\w+)\s*;", text))
+
+    return names
 
 
 class Slave:

@@ -1,11 +1,8 @@
 """An FMU as other programs see it: its description, its functions, its state, its parameters, its binaries."""
 
 import ctypes
-import re
 import shutil
-import struct
 import zipfile
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,13 +21,6 @@ SET_POINT = SPEED_RPM * (1.0 + np.where(TIME >= 0.1, 0.05, 0.0))
 
 def same(one, two):
     return all(np.array_equal(one[name], two[name]) for name in one)
-
-
-def declared_functions(version):
-    """Names of all functions that the standard's own header declares."""
-    fmpy = pytest.importorskip("fmpy", reason="FMPy brings the headers of the standard")
-    text = (Path(fmpy.__file__).parent / "c-code" / f"fmi{version}Functions.h").read_text()
-    return set(re.findall(rf"FMI{version}_Export\s+\w+\s+(fmi{version}\w+)\s*;", text))
 
 
 # ---- description ----
@@ -101,7 +91,7 @@ def test_equal_models_give_equal_files(exported, tmp_path):
 
 
 @pytest.mark.parametrize("version", [2, 3])
-def test_binary_has_every_function_of_the_standard(fmu, tmp_path, version):
+def test_binary_has_every_function_of_the_standard(fmu, declared_functions, tmp_path, version):
     with zipfile.ZipFile(fmu(*GAUGE, version=version)) as archive:
         (name,) = (name for name in archive.namelist() if name.startswith("binaries/"))
         library = ctypes.CDLL(archive.extract(name, tmp_path))
@@ -321,39 +311,6 @@ def test_sources_are_built_by_fmpy(fmu, exported, slave, tmp_path, version, capf
         other = own.run(TIME, SET_POINT)
     for name in found:
         assert found[name] == pytest.approx(other[name], rel=1e-9)
-
-
-def exported_names(library: bytes) -> set[str]:
-    """Names that a Windows library exports, from its own tables (Microsoft, PE Format, .edata section)."""
-    (header,) = struct.unpack_from("<I", library, 0x3C)
-    assert library[:2] == b"MZ"
-    assert library[header : header + 4] == b"PE\0\0"
-    machine, sections, _, _, _, optional, characteristics = struct.unpack_from("<HHIIIHH", library, header + 4)
-    assert machine == 0x8664
-    assert characteristics & 0x2000  # a library
-    start = header + 24
-    assert struct.unpack_from("<H", library, start) == (0x20B,)
-    (address,) = struct.unpack_from("<I", library, start + 112)
-    tables = [struct.unpack_from("<8sIIII", library, start + optional + 40 * i) for i in range(sections)]
-
-    def place(at):
-        (found,) = (at - first + raw for _, size, first, _, raw in tables if first <= at < first + size)
-        return found
-
-    count, _, names = struct.unpack_from("<III", library, place(address) + 24)
-    pointers = struct.unpack_from(f"<{count}I", library, place(names))
-    return {library[place(p) : library.index(b"\0", place(p))].decode() for p in pointers}
-
-
-@pytest.mark.parametrize("version", [2, 3])
-def test_library_for_windows(exported, tmp_path, version):
-    pytest.importorskip("ziglang", reason="other systems need the extra fmu")
-    path = tmp_path / "tug.fmu"
-    write_fmu(exported(*TORQUE), path, version=version, platforms=["win64"])
-    with zipfile.ZipFile(path) as archive:
-        folder = {2: "win64", 3: "x86_64-windows"}[version]
-        library = archive.read(f"binaries/{folder}/tug.dll")
-    assert declared_functions(version) <= exported_names(library)
 
 
 def test_systems_that_are_none(exported, tmp_path):

@@ -190,7 +190,8 @@ def _pack(
         if name not in PLATFORMS:
             raise ExportError(f"FMU: there is no system {name!r}; there are {', '.join(PLATFORMS)}.")
         chosen = PLATFORMS[name]
-        binary = folder / f"{name}{chosen.suffix}"
+        binary = folder / name / f"{d.identifier}{chosen.suffix}"
+        binary.parent.mkdir()
         build_binary(folder, d.sources, name, binary)
         members[f"{chosen.folder(version)}/{d.identifier}{chosen.suffix}"] = binary.read_bytes()
     with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:

@@ -15,6 +15,8 @@ from shaftprint.errors import ExportError
 
 EXTRA: Final = 'pip install "shaftprint[fmu]"'
 LONGEST_BUILD_S: Final = 600.0
+# Without symbols nothing in a library tells when and in which folder it was built.
+ZIG_FLAGS: Final = ("-s",)
 FLAGS: Final = ("-shared", "-O2", "-g0", "-std=c99", "-fvisibility=hidden", "-ffp-contract=off")
 
 
@@ -45,9 +47,11 @@ PLATFORMS: Final[Mapping[str, FmuPlatform]] = MappingProxyType(
         "linux-arm64": FmuPlatform(
             folder_2="aarch64-linux", folder_3="aarch64-linux", suffix=".so", target="aarch64-linux-gnu.2.17"
         ),
-        "darwin64": FmuPlatform(folder_2="darwin64", folder_3="x86_64-darwin", suffix=".dylib", target="x86_64-macos"),
+        "darwin64": FmuPlatform(
+            folder_2="darwin64", folder_3="x86_64-darwin", suffix=".dylib", target="x86_64-macos.11.0"
+        ),
         "darwin-arm64": FmuPlatform(
-            folder_2="aarch64-darwin", folder_3="aarch64-darwin", suffix=".dylib", target="aarch64-macos"
+            folder_2="aarch64-darwin", folder_3="aarch64-darwin", suffix=".dylib", target="aarch64-macos.11.0"
         ),
     }
 )
@@ -86,7 +90,7 @@ def build_binary(folder: Path, sources: Sequence[str], name: str, binary: Path) 
     name
         System to build for, one of ``PLATFORMS``.
     binary
-        File to write.
+        File to write; in systems where a library knows its name, it is that of the file.
 
     Raises
     ------
@@ -96,6 +100,9 @@ def build_binary(folder: Path, sources: Sequence[str], name: str, binary: Path) 
     command = [*_compiler(name), *FLAGS, "-o", str(binary), *sources]
     if PLATFORMS[name].suffix != ".dll":
         command += ["-fPIC", "-lm"]
+    if PLATFORMS[name].suffix == ".dylib":
+        # else it would be known by the folder in which it was built
+        command.append(f"-Wl,-install_name,@rpath/{binary.name}")
     try:
         # a list of our own words and file names, no shell
         done = subprocess.run(  # noqa: S603
@@ -118,7 +125,7 @@ def _compiler(name: str) -> list[str]:
     if name == host_platform() and compiler:
         return [compiler]
     if importlib.util.find_spec("ziglang") is not None:
-        return [sys.executable, "-m", "ziglang", "cc", "-target", PLATFORMS[name].target]
+        return [sys.executable, "-m", "ziglang", "cc", "-target", PLATFORMS[name].target, *ZIG_FLAGS]
     if name == host_platform():
         raise ExportError(f"FMU for {name}: expected a C compiler called cc, found none; install one, or {EXTRA}.")
     raise ExportError(f"FMU for {name}: this needs the compiler Zig; {EXTRA}, or leave this system out.")
