@@ -79,7 +79,7 @@ class ClockMap:
     def inverse(self) -> Self:
         """Return the map from the reference clock to the other."""
         turned = -1.0 / (1.0 + self.drift)
-        slopes = np.array([[-1.0, 0.0], [0.0, -(turned**2)]])
+        slopes = np.array([[turned, 0.0], [0.0, -(turned**2)]])
         return replace(
             self,
             offset_s=-self.offset_s,
