@@ -70,6 +70,11 @@ def test_lines_that_are_not_used_tell_nothing():
     assert (found.line, found.delay_std_s) == ("line 1", pytest.approx(0.2))
 
 
+def test_a_test_without_a_line_to_use_is_said_nothing_of():
+    spectra = SimpleNamespace(response=two_lines((False, False)), speed="n_e")
+    assert clock_influences([clock(("M_s",), 0.01)], spectra=spectra, signals=SIGNALS, vessel=VESSEL) == ()
+
+
 @pytest.mark.parametrize("channels", [("U", "PTM_e", "M_s"), ("PTM_1",)])
 def test_a_clock_that_moves_nothing_against_the_set_point(channels):
     spectra = SimpleNamespace(response=two_lines(), speed="n_e")

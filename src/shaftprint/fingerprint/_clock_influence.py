@@ -55,7 +55,7 @@ class ClockInfluence:
 def clock_influences(
     clocks: "Sequence[LoggerClock]", *, spectra: "Spectra", signals: "Signals", vessel: "Vessel"
 ) -> tuple[ClockInfluence, ...]:
-    """Return what the uncertainty of every merged logger's clock does to the response of a test.
+    """Return what the uncertainty of every merged logger's clock does to the response; nothing if no line is used.
 
     Parameters
     ----------
@@ -64,6 +64,8 @@ def clock_influences(
     spectra, signals, vessel
         What was measured from it.
     """
+    if not spectra.response.used.any():
+        return ()
     channels = _channels(spectra, signals, vessel)
     return tuple(_influence(clock, spectra.response, channels) for clock in clocks)
 
