@@ -155,7 +155,7 @@ def _gauge_zero(physical: tuple[Quantity, ...]) -> list[str]:
 def _against_expected(physical: tuple[Quantity, ...]) -> list[str]:
     found = []
     for quantity in physical:
-        # a value that is expected to be none has its own sentence
+        # the zero of the gauge, expected at zero, has its own sentence
         if not quantity.expected:
             continue
         spread = np.hypot(quantity.std, quantity.expected_std or 0.0)

@@ -1,6 +1,7 @@
 """From normalised parameters to physical values.
 
-With the working point ``n_s0`` [rev/s] of the propeller shaft and ``M_s0`` [N m] at the gauge::
+With the working point ``n_s0`` [rev/s] of the propeller shaft and ``M_s0`` [N m] at the gauge, and ``d`` [-], the mean
+load of the whole test over that of the working point::
 
     I      = tau M_s0 / (2 pi n_s0)                     inertia, thesis eq. 2.23
     K_Q    = (k_q / 2) d M_s0 eta_R / (rho n_s0^2 D^5)  thesis eqs 2.9-2.11 at J = 0
@@ -10,8 +11,8 @@ With the working point ``n_s0`` [rev/s] of the propeller shaft and ``M_s0`` [N m
 A gauge that shows ``1 + e`` times the torque makes inertias and governor actions as much too large. The same ``e`` is
 in the prior of ``tau_up``, which divides an inertia in kg m2 by the torque that the gauge shows: both go into the
 budget with their signs. The scatter of the working point is in neither: ``M_s0`` divides the responses, the load of
-their windows and the prior, and multiplies what is found, whatever the load was when it was taken. It counts for
-``K_Q``, which is made of the working point itself.
+their windows and the prior, and multiplies what is found, whatever the load was when it was taken. ``K_Q`` is made of
+it: the wander of the load counts there or, where the test is too short to tell that, the scatter of the working point.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -174,12 +175,13 @@ def _torque_coefficient(slope: float | None, working_point: "WorkingPoint", vess
     finds_zero = slope is not None
     value = shown if slope is None else shown * slope / IDEAL_SLOPE
     shares = _shares_of_coefficient(working_point, vessel, finds_zero=finds_zero)
+    where = "at the working point" if working_point.load_std is None else "mean of the test"
     return PhysicalNumber(
         number=Combination(
             name="K_Q",
             unit="-",
             of=_product(shown / IDEAL_SLOPE, "k_q") if finds_zero else _product(shown),
-            meaning="torque coefficient of the propeller at the working point",
+            meaning=f"torque coefficient of the propeller, {where}",
         ),
         direct={source: value * share for source, share in shares.items() if share},
         expected=vessel.propeller.torque_coefficient,
