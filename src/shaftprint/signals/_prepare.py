@@ -18,7 +18,7 @@ from shaftprint.signals._outliers import fault_limits
 from shaftprint.signals._pick_up import PickUp, read_pick_up
 from shaftprint.signals._rack import rack_signal, read_rack
 from shaftprint.signals._ship_speed import read_ship_speed, ship_speed_signal
-from shaftprint.signals._signals import RackSignal, Repair, ShipSpeedSignal, Signals
+from shaftprint.signals._signals import RackSignal, Repair, SetPointCalibration, ShipSpeedSignal, Signals
 from shaftprint.signals._sources import Clock, Mode, Sources, common_clock, find_sources
 from shaftprint.signals._steady import SteadyStretch, steady_stretches
 from shaftprint.signals._steps import find_step_delays
@@ -215,18 +215,10 @@ def _put_together(
     n_set += calibration.intercept_rev_s
     scale = DcScale(value=1.0, std=0.0, findings=())
     if not thesis:
-        slope_std = float(calibration.covariance[0, 0]) ** 0.5 / abs(calibration.slope_rev_s_per_v)
         working_point = with_load_of_test(
-            working_point,
-            quiet,
-            campaign,
-            speed_rev_s=speed,
-            torque_nm=torque,
-            rate_hz=rate_hz,
-            start_s=start_s,
+            working_point, quiet, campaign, speed_rev_s=speed, torque_nm=torque, rate_hz=rate_hz, start_s=start_s
         )
-        scale = dc_scale(n_set, speed, campaign, rate_hz=rate_hz, start_s=start_s, slope_std=slope_std)
-        _stretch(n_set, scale.value, about=working_point.engine_speed_rev_s)
+        scale = _rescale(n_set, speed, campaign, clock, calibration, about=working_point.engine_speed_rev_s)
     ship_speed, moored = _ship_speed_signal(sources, vessel, clock, quiet)
     delays, missed = find_step_delays(n_set, speed, campaign, rate_hz=rate_hz, start_s=start_s)
     return Signals(
@@ -251,8 +243,19 @@ def _put_together(
     )
 
 
-def _stretch(values: FloatArray, factor: float, *, about: float) -> None:
-    """Multiply the deviation from a value, in place: the signals of a whole test are large."""
-    values -= about
-    values *= factor
-    values += about
+def _rescale(
+    n_set: FloatArray,
+    speed: FloatArray,
+    campaign: Campaign,
+    clock: Clock,
+    calibration: SetPointCalibration,
+    *,
+    about: float,
+) -> DcScale:
+    """Stretch the set point about a speed, in place since the signals of a whole test are large; return how far."""
+    slope_std = float(calibration.covariance[0, 0]) ** 0.5 / abs(calibration.slope_rev_s_per_v)
+    scale = dc_scale(n_set, speed, campaign, rate_hz=clock.rate_hz, start_s=clock.start_s, slope_std=slope_std)
+    n_set -= about
+    n_set *= scale.value
+    n_set += about
+    return scale
