@@ -1,5 +1,7 @@
 """``shaftprint compare`` on the fingerprint of the short demo and changed copies of it."""
 
+from dataclasses import replace
+
 import pytest
 
 from shaftprint.fingerprint import read_fingerprint, write_fingerprint
@@ -26,6 +28,15 @@ def test_what_has_changed_is_said_and_reported(run, demo, later, tmp_path):
     assert "Has the ship changed? Yes: I_dn by 50.0 %" in result.output
     assert "Not compared, moving with the working point: K_p, K_i, tau_dn, tau_up, k_q." in result.output
     assert (tmp_path / "out" / "index.html").is_file()
+
+
+def test_a_test_that_is_not_trustworthy_tells_nothing(run, demo, later):
+    found = read_fingerprint(later)
+    doubtful = found.model_copy(update={"verdict": replace(found.verdict, trustworthy=False)})
+    write_fingerprint(doubtful, later)
+    result = run("compare", demo[0], later)
+    assert result.exit_code == 0, result.stderr
+    assert "Has the ship changed? It cannot be told: not trustworthy: later." in result.output
 
 
 def test_names_are_asked_for_where_they_are_needed(run, demo, later, tmp_path):

@@ -62,6 +62,16 @@ def test_what_both_were_told_alike_cannot_make_a_difference(fingerprint):
     assert found.outcome == "no difference seen"
 
 
+def test_where_nothing_can_be_compared_nothing_is_said_of_the_ship(fingerprint):
+    first = with_quantities(
+        fingerprint, quantity(fingerprint, value=10.0, std=1.0, interval_95=(9.0, 10.5), interval_open=(False, True))
+    )
+    other = with_quantities(fingerprint, quantity(fingerprint, value=30.0, std=1.0))
+    for found in (differences(first, other), ()):
+        assert change_in_words(found).startswith("It cannot be told")
+    assert change_in_words(differences(other, other)).startswith("No: one number stands for it")
+
+
 def test_the_sides_that_face_each_other_count(fingerprint):
     """Zou and Donner: of 10 (9 to 14) and 13 (12.5 to 20), the lower end is 3 - sqrt(0.5^2 + 4^2), the upper
     3 + sqrt(7^2 + 1^2)."""

@@ -48,7 +48,12 @@ def command(
         with output_folder(output, force=force) as folder:
             render_comparison(folder, found, structures=structures)
     for name, other in others:
-        _print(first_name, name, differences(first, other))
+        apart = differences(first, other)
+        _print_tables(first_name, name, apart)
+        doubtful = [said for said, one in ((first_name, first), (name, other)) if not one.verdict.trustworthy]
+        answer = f"It cannot be told: not trustworthy: {', '.join(doubtful)}." if doubtful else change_in_words(apart)
+        click.echo(f"Has the ship changed? {answer}")
+        _print_left_out(apart)
     if output is not None:
         click.echo(f"Report: {output / REPORT}")
 
@@ -71,14 +76,17 @@ def _name(place: Path) -> str:
     return whole.parent.name if whole.name == "fingerprint.json" else whole.name.removesuffix(".json")
 
 
-def _print(first: str, name: str, found: tuple[Difference, ...]) -> None:
+def _print_tables(first: str, name: str, found: tuple[Difference, ...]) -> None:
     header = ["quantity", first, name, "difference", "95 % interval", "p-value", "outcome"]
     title = f"{name} compared with {first}"
     print_table(title, header, [_row(one) for one in found if not one.normalised])
     moving = [_row(one) for one in found if one.normalised]
     if moving:
         print_table(f"{title}: normalised numbers, which move with the working point", header, moving)
-    click.echo(f"Has the ship changed? {change_in_words(found)}")
+
+
+def _print_left_out(found: tuple[Difference, ...]) -> None:
+    """Print which numbers were not compared, and why."""
     for reason in dict.fromkeys(_reason(one) for one in found if one.because):
         names = ", ".join(one.first.name for one in found if one.because and _reason(one) == reason)
         click.echo(f"Not compared, {reason}: {names}.")

@@ -45,7 +45,7 @@ def _headline(changes: Sequence[Card], *, usable: bool) -> tuple[State, str]:
     if "look" in states:
         return "look", "Something has changed by more than chance"
     if "open" in states:
-        return "open", "Not all of these tests have a number in common"
+        return "open", "Not all of these tests share a number that can be compared"
     return "fine", "No change is seen"
 
 
@@ -90,11 +90,11 @@ def not_alike(first: "Fingerprint", name: str, other: "Fingerprint") -> list[str
 
 def _changed(name: str, found: "Sequence[Difference]") -> Card:
     question = f"Has anything changed: {name}?"
-    found = [one for one in found if not one.normalised]
-    if not found:
-        return Card(question=question, state="open", sentence="The two have no number in common.")
-    changed = any(one.outcome == "differs" for one in found)
-    return Card(question=question, state="look" if changed else "fine", sentence=change_in_words(found))
+    of_the_ship = [one for one in found if not one.normalised]
+    changed = any(one.outcome == "differs" for one in of_the_ship)
+    told = any(one.p_value is not None for one in of_the_ship)
+    state: State = "look" if changed else "fine" if told else "open"
+    return Card(question=question, state=state, sentence=change_in_words(found))
 
 
 def change_in_words(found: "Sequence[Difference]") -> str:
@@ -110,7 +110,12 @@ def change_in_words(found: "Sequence[Difference]") -> str:
     if differing:
         return f"Yes: {_listed(differing)}."
     compared = sum(one.p_value is not None for one in found)
-    words = f"No: {compared} numbers that stand for the ship agree within chance"
+    if not compared:
+        return "It cannot be told: the two share no number that stands for the ship and can be compared."
+    many = (
+        f"{compared} numbers that stand for the ship agree" if compared > 1 else "one number stands for it, and agrees"
+    )
+    words = f"No: {many} within chance"
     alone = [one for one in found if one.outcome == "perhaps"]
     if not alone:
         return f"{words}."
