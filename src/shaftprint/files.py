@@ -1,4 +1,4 @@
-"""Files that are written whole or not at all, and names for them."""
+"""Files that are written whole or not at all, names for them, and text out of those that may be damaged."""
 
 import contextlib
 import re
@@ -38,6 +38,11 @@ def written_whole(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
 def plain_name(text: str) -> str:
     """Return a text as the stem of a file name: what some system forbids there becomes a hyphen."""
     return re.sub(r'[\\/:*?"<>|\s]+', "-", text)
+
+
+def printable(text: str) -> str:
+    """Return text with a question mark for every character that ends lines, moves the cursor or is not to be seen."""
+    return "".join(letter if letter.isprintable() else "?" for letter in text)
 
 
 def _expect_free(path: Path, *, overwrite: bool) -> None:

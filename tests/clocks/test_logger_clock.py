@@ -8,7 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from shaftprint.cli import shaftprint
-from shaftprint.clocks import Alignment, ClockMap, Stretch, joined, logger_clocks, merged
+from shaftprint.clocks import Alignment, ClockMap, Stretch, clock_attributes, joined, logger_clocks, merged
 from shaftprint.errors import ClockError, RecordingError
 from shaftprint.recording import Samples, read_recording, recording_from_arrays, write_recording
 
@@ -206,6 +206,16 @@ def test_broken_attributes_end_in_one_sentence(tmp_path, change):
     assert str(told.value).isprintable()
     shown = CliRunner().invoke(shaftprint, ["inspect", str(path)])
     assert (shown.exit_code, len(shown.stderr.splitlines())) == (1, 1)
+
+
+def test_names_of_files_that_no_screen_can_show_are_kept_as_far_as_one_can(tmp_path):
+    """A byte that the system cannot decode, and a file that clears the screen."""
+    (clock,) = logger_clocks(merged(log(tmp_path, "bridge", "U"), [(log(tmp_path, "shaft", "M_s"), FOUND)]))
+    written = clock_attributes([replace(clock, logger="sh\udcfft.log")])["clock_maps"]
+    assert json.loads(written)[0]["logger"] == "sh?t.log"
+    hostile = broken(lambda entry: entry.update(logger="\x1b[2Jx", reference="a\nb"))(written)
+    (back,) = logger_clocks(replace(log(tmp_path, "shaft", "M_s"), attributes={"clock_maps": hostile}))
+    assert (back.logger, back.reference) == ("?[2Jx", "a?b")
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, RootModel, ValidationError
 from shaftprint.clocks._alignment import Alignment, Stretch
 from shaftprint.clocks._clock_map import ClockMap
 from shaftprint.errors import ClockError, RecordingError
+from shaftprint.files import printable
 from shaftprint.recording import Recording
 
 ATTRIBUTE = "clock_maps"
@@ -102,9 +103,9 @@ class _Entry(BaseModel):
         alignment = Alignment(map=line, span_s=self.span_s, stretches=tuple(stretches), scatter=self.scatter)
         known = set(there)
         return LoggerClock(
-            logger=self.logger,
+            logger=printable(self.logger),
             sha256=self.sha256,
-            reference=self.reference,
+            reference=printable(self.reference),
             reference_sha256=self.reference_sha256,
             channels=tuple(name for name in self.channels if name in known),
             alignment=alignment,
@@ -119,9 +120,10 @@ def _entry(clock: LoggerClock) -> _Entry:
     alignment = clock.alignment
     (a, b), (c, d) = alignment.map.covariance.tolist()
     return _Entry(
-        logger=clock.logger,
+        # JSON has no room for a name that the system cannot decode
+        logger=printable(clock.logger),
         sha256=clock.sha256,
-        reference=clock.reference,
+        reference=printable(clock.reference),
         reference_sha256=clock.reference_sha256,
         channels=clock.channels,
         offset_s=alignment.map.offset_s,

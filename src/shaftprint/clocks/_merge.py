@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from shaftprint.clocks._alignment import Alignment
 from shaftprint.clocks._logger_clock import ATTRIBUTE, LoggerClock, clock_attributes, logger_clocks
 from shaftprint.errors import ClockError
+from shaftprint.files import printable
 from shaftprint.recording import Channel, Recording
 
 # A part may begin this share of a sample beside the grid of the part before it.
@@ -45,7 +46,7 @@ def merged(reference: Recording, others: Sequence[tuple[Recording, Alignment]]) 
     for other, alignment in others:
         names: dict[str, str] = {}
         for channel in other.channels.values():
-            name = channel.name if channel.name not in channels else f"{channel.name} ({other.path.stem})"
+            name = channel.name if channel.name not in channels else f"{channel.name} ({printable(other.path.stem)})"
             if name in channels:
                 raise ClockError(
                     f'{other.path}: expected a name that is free for channel {channel.name}, found "{name}" taken; '

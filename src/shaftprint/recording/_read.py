@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording._printable import printable
+from shaftprint.files import printable
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers import READERS, Reader, read_outside
 

@@ -6,8 +6,8 @@ from datetime import datetime
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
+from shaftprint.files import printable
 from shaftprint.recording._channel import Channel
-from shaftprint.recording._printable import printable
 from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording.readers._epoch import from_second_zero
 
