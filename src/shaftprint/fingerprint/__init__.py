@@ -26,10 +26,11 @@ from shaftprint.fingerprint._fingerprint import (
 from shaftprint.fingerprint._inertia import inertia_beside
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._model import IdentifiedModel, identified_model
-from shaftprint.fingerprint._physical import physical_quantities
+from shaftprint.fingerprint._physical import GAUGE_ZERO, physical_quantities
 from shaftprint.fingerprint._take import take_fingerprint
 
 __all__ = [
+    "GAUGE_ZERO",
     "NOTABLE_SHIFT",
     "ClockInfluence",
     "Conditions",

@@ -81,24 +81,6 @@ def clock_findings(influences: Sequence[ClockInfluence]) -> tuple[str, ...]:
     )
 
 
-def delay_std(response: "FrequencyResponse", moved: Sequence[str]) -> float:
-    """Return with which standard deviation all used lines together tell one delay common to some outputs [s].
-
-    Parameters
-    ----------
-    response
-        The response from one input.
-    moved
-        Names of those outputs; without any, infinite.
-    """
-    chosen = np.array([name in moved for name in response.outputs])
-    turned = -1j * response.omega_rad_s * response.response[:, 0, :] * chosen[:, None]
-    change = np.concatenate([turned.real, turned.imag]).T[response.used]
-    weighted = np.linalg.solve(response.covariance[response.used], change[:, :, None])[:, :, 0]
-    information = float(np.sum(change * weighted))
-    return information**-0.5 if information > 0.0 else math.inf
-
-
 def _channels(spectra: "Spectra", signals: "Signals", vessel: "Vessel") -> dict[str, str]:
     """Return which channel of the recording each input and output of the response comes from."""
     found = {
@@ -127,5 +109,15 @@ def _influence(clock: "LoggerClock", response: "FrequencyResponse", channels: Ma
         line=response.lines[place],
         frequency_hz=float(response.frequency_hz[place]),
         phase_rad=float(response.omega_rad_s[place]) * std_s if moved else 0.0,
-        delay_std_s=delay_std(response, moved),
+        delay_std_s=_delay_std(response, moved),
     )
+
+
+def _delay_std(response: "FrequencyResponse", moved: Sequence[str]) -> float:
+    """Return with which standard deviation all used lines tell one delay common to some outputs [s]; none: infinite."""
+    chosen = np.array([name in moved for name in response.outputs])
+    turned = -1j * response.omega_rad_s * response.response[:, 0, :] * chosen[:, None]
+    change = np.concatenate([turned.real, turned.imag]).T[response.used]
+    weighted = np.linalg.solve(response.covariance[response.used], change[:, :, None])[:, :, 0]
+    information = float(np.sum(change * weighted))
+    return information**-0.5 if information > 0.0 else math.inf

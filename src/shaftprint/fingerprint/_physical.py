@@ -34,6 +34,8 @@ if TYPE_CHECKING:
 PERCENT = 100.0
 IDEAL_SLOPE = 2.0
 GAUGE_ZERO = "gauge zero share"
+"""Name of the zero offset of the torque gauge over the working-point torque."""
+
 LOAD_WANDER = "wander of the load"
 
 

@@ -23,6 +23,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
+from shaftprint.fingerprint import GAUGE_ZERO
 from shaftprint.normal import NORMAL_95
 from shaftprint.report._fingerprint_tables import limits
 
@@ -36,7 +37,6 @@ UNLIKELY = 0.05
 # Sources that a vessel file states once for all tests; what else a budget has is of one test.
 TOLD = ("TVC", "gauge scale", "telemetry latency")
 TOLD_PRIOR = "prior of "
-GAUGE_ZERO = "gauge zero share"
 # Parameters and combinations in which speed and torque of the working point cancel, or do not stand: they are of the
 # ship like physical values. The load of each window is in the fit, so that its wander is not in ``v K_i / (k_q - g)``.
 OF_THE_SHIP = frozenset(

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from shaftprint.fingerprint import GAUGE_ZERO
 from shaftprint.normal import NORMAL_95
 from shaftprint.report._cover import Card, Cover, State, overall
 from shaftprint.report._fingerprint_tables import expected_text, limits
@@ -128,7 +129,7 @@ def _inertia(fingerprint: "Fingerprint") -> list[Card]:
 
 def _gauge(fingerprint: "Fingerprint") -> list[Card]:
     """Return whether the zero of the torque gauge is in order; nothing where the test cannot tell."""
-    found = [q for q in fingerprint.physical if q.name == "gauge zero share"]
+    found = [q for q in fingerprint.physical if q.name == GAUGE_ZERO]
     if not found:
         return []
     (zero,) = found
