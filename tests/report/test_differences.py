@@ -244,3 +244,10 @@ def test_a_physical_value_is_as_lopsided_as_its_parameter(fingerprint):
     assert found.outcome == "no difference seen"
     (surer,) = differences(first, other)
     assert surer.outcome == "differs"
+    # where the bound of the search ends the interval of K_p, it ends nothing of the action's
+    bounded = gain.model_copy(update={"interval_open": (False, True)})
+    (unknown, *_) = differences(first.model_copy(update={"parameters": (bounded,)}), other)
+    assert unknown.outcome == "cannot be compared"
+    less = with_quantities(fingerprint, actions[0].model_copy(update={"value": 5.0}))
+    (known, *_) = differences(first.model_copy(update={"parameters": (bounded,)}), less)
+    assert known.outcome == "differs"

@@ -142,10 +142,11 @@ def _vessel_file(fingerprint: "Fingerprint") -> str | None:
 def _difference(
     a: "Quantity", b: "Quantity", first: "Fingerprint", other: "Fingerprint", *, told_alike: bool
 ) -> Difference:
-    (low_a, high_a), (low_b, high_b) = _interval(a, first), _interval(b, other)
+    (low_a, high_a), open_a = _interval(a, first)
+    (low_b, high_b), open_b = _interval(b, other)
     apart = b.value - a.value
     rising = apart >= 0.0
-    facing_open = (a.interval_open[1], b.interval_open[0]) if rising else (a.interval_open[0], b.interval_open[1])
+    facing_open = (open_a[1], open_b[0]) if rising else (open_a[0], open_b[1])
     if any(facing_open) or not all(math.isfinite(end) for end in (low_a, high_a, low_b, high_b)):
         because = "without an end of the interval"
         return Difference(
@@ -169,17 +170,18 @@ def _drift(quantity: "Quantity") -> float:
     return (quantity.expected_std or 0.0) ** 2 if quantity.name == GAUGE_ZERO else 0.0
 
 
-def _interval(quantity: "Quantity", fingerprint: "Fingerprint") -> tuple[float, float]:
-    """Return the 95 % interval of a number, as lopsided as that of the parameter that it follows from."""
+def _interval(quantity: "Quantity", fingerprint: "Fingerprint") -> tuple[tuple[float, float], tuple[bool, bool]]:
+    """Return the 95 % interval of a number and which ends are open, as those of the parameter that it follows from."""
     low, high = limits(quantity)
     if quantity.interval_95 is not None or quantity.name not in FOLLOWS_FROM:
-        return low, high
+        return (low, high), quantity.interval_open
     for parameter in fingerprint.parameters:
         if parameter.name == FOLLOWS_FROM[quantity.name] and parameter.value != 0.0:
             scale = quantity.value / parameter.value
-            ends = sorted(scale * end for end in limits(parameter))
-            return min(low, ends[0]), max(high, ends[1])
-    return low, high
+            ends = zip((scale * end for end in limits(parameter)), parameter.interval_open, strict=True)
+            (lowest, open_low), (highest, open_high) = sorted(ends)
+            return (min(low, lowest), max(high, highest)), (open_low, open_high)
+    return (low, high), quantity.interval_open
 
 
 def _told(fingerprint: "Fingerprint", name: str) -> dict[str, float]:
