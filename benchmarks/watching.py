@@ -28,9 +28,10 @@ from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
 from shaftprint.cli._chain import fingerprint_of, fit, known_beforehand, measure  # noqa: E402
 from shaftprint.cli._inputs import load_trial  # noqa: E402
 from shaftprint.cli._progress import Steps  # noqa: E402
-from shaftprint.fingerprint import Fingerprint  # noqa: E402
+from shaftprint.fingerprint import GAUGE_ZERO, Fingerprint  # noqa: E402
 from shaftprint.identify import Settings  # noqa: E402
 from shaftprint.models import structure  # noqa: E402
+from shaftprint.normal import NORMAL_95  # noqa: E402
 from shaftprint.report import Difference, differences  # noqa: E402
 from shaftprint.tug import Noise, Tug, sail  # noqa: E402
 
@@ -240,14 +241,14 @@ def _scatter(unchanged: Sequence[Fingerprint]) -> str:
         for one in of_the_ship(first, other):
             if one.interval_95 is not None and one.p_value is not None:
                 facing = one.interval_95[0] if one.value >= 0.0 else one.interval_95[1]
-                found.setdefault(one.first.name, []).append((one.value, abs(one.value - facing) / 1.96))
+                found.setdefault(one.first.name, []).append((one.value, abs(one.value - facing) / NORMAL_95))
     rows = []
     for name, pairs in found.items():
         value, std = np.array(pairs).T
         size = np.mean([abs(fingerprint.quantity(name).value) for fingerprint in unchanged])
-        share = "–" if name == "gauge zero share" else f"{100.0 * np.median(std) / size:.2g} %"
+        share = "–" if name == GAUGE_ZERO else f"{100.0 * np.median(std) / size:.2g} %"
         z = value / std
-        rows.append((name, share, f"{z.std():.2f}", f"{100.0 * np.mean(np.abs(z) > 1.96):.1f} %"))
+        rows.append((name, share, f"{z.std():.2f}", f"{100.0 * np.mean(np.abs(z) > NORMAL_95):.1f} %"))
     header = (
         "number",
         "stated standard deviation of a difference",

@@ -18,6 +18,8 @@ from numpy.typing import NDArray
 
 SECONDS_PER_MINUTE = 60.0
 M_S_PER_KNOT = 1852.0 / 3600.0
+MILLI, PPM = 1e3, 1e6
+"""How many thousandths and millionths there are in one."""
 
 _Number = TypeVar("_Number", float, NDArray[np.float64])
 

@@ -22,6 +22,7 @@ from shaftprint.cli._numbers import plain, with_uncertainty
         (6.0, 230.0, "6.0 +/- 230"),
         (-1234.6, 230.0, "-1230 +/- 230"),
         (0.0, 230.0, "0 +/- 230"),
+        (math.nan, 230.0, "nan +/- unknown"),
     ],
 )
 def test_value_with_uncertainty(value, std, text):

@@ -277,6 +277,19 @@ def test_an_object_of_version_7_is_named_and_the_rest_is_read(tmp_path, kind, ad
         read_recording(path)
 
 
+def test_a_function_in_version_7_3_is_left_out_with_its_reason(tmp_path):
+    path = tmp_path / "log.mat"
+    _save_v73(path, {"t": TIME, "M_s": TORQUE})
+    with h5py.File(path, "a") as file:
+        file["f"] = np.zeros(3, np.uint8)
+        file["f"].attrs["MATLAB_class"] = np.bytes_("function_handle")
+    with read_recording(path) as recording:
+        assert list(recording.channels) == ["M_s"]
+        assert recording.left_out["f"] == (
+            "expected numbers, found a MATLAB function_handle, which only MATLAB can open."
+        )
+
+
 def test_other_programs_may_write_what_they_like_before_the_version(tmp_path):
     path = tmp_path / "log.mat"
     scipy.io.savemat(path, {"t": TIME, "M_s": TORQUE})

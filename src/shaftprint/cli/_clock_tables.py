@@ -6,8 +6,8 @@ import numpy as np
 
 from shaftprint.cli._tables import print_table
 from shaftprint.clocks import LoggerClock
+from shaftprint.units import MILLI, PPM
 
-MILLI, PPM = 1e3, 1e6
 COLUMNS = ("quantity", "unit", "value", "standard deviation", "remark")
 
 

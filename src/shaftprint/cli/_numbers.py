@@ -11,7 +11,7 @@ def with_uncertainty(value: float, std: float) -> str:
     An infinite standard deviation, which says that nothing is known, is written as ``unknown``. A value keeps two
     digits of its own where a standard deviation of a hundred or more would leave none.
     """
-    if not math.isfinite(std):
+    if not (math.isfinite(std) and math.isfinite(value)):
         return f"{value:.4g} +/- unknown"
     if std == 0.0:
         return f"{value:.6g} +/- 0"

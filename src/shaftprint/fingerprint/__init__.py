@@ -8,8 +8,8 @@ quantity            unit        meaning
 gain margin         -           factor on the loop gain that reaches instability
 phase margin        deg         smallest over all crossovers
 delay margin        s           smallest extra delay in the loop that reaches instability
-gauge zero share    %           zero offset of the torque gauge over the working-point torque; positive where it
-                                shows too much
+gauge zero share    %           zero offset of the torque gauge over the working-point torque without it; positive
+                                where it shows too much
 =================== =========== ==================================================================================
 """
 

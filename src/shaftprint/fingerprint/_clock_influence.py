@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.units import MILLI
+
 if TYPE_CHECKING:
     from shaftprint.clocks import LoggerClock
     from shaftprint.signals import Signals
@@ -22,8 +24,6 @@ if TYPE_CHECKING:
 
 NOTABLE_SHIFT = 0.3
 """Shift that is worth a remark: with it a standard deviation is a twentieth too small."""
-
-MILLI = 1e3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -6,7 +6,7 @@ load of the whole test over that of the working point::
     I      = tau M_s0 / (2 pi n_s0)                     inertia, thesis eq. 2.23
     K_Q    = (k_q / 2) d M_s0 eta_R / (rho n_s0^2 D^5)  thesis eqs 2.9-2.11 at J = 0
     dM/dn  = v K_p M_s0 / n_e0                          proportional governor action on the shaft torque
-    zero   = 2 / k_q - 1                                zero offset of the gauge over M_s0
+    zero   = 2 / k_q - 1                                zero offset of the gauge over M_s0 without it
 
 A gauge that shows ``1 + e`` times the torque makes inertias and governor actions as much too large. The same ``e`` is
 in the prior of ``tau_up``, which divides an inertia in kg m2 by the torque that the gauge shows: both go into the
@@ -145,7 +145,7 @@ def _product(factor: float, *names: str) -> Callable[[Mapping[str, FloatArray]],
 
 
 def _gauge_zero(structure: Structure, working_point: "WorkingPoint", vessel: "Vessel") -> tuple[PhysicalNumber, ...]:
-    """Return the zero offset of the gauge over the working-point torque, where the fit is free to find it."""
+    """Return the zero offset of the gauge over the torque without it, where the fit is free to find it."""
     if not _finds_zero(structure):
         return ()
     number = Combination(

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 from shaftprint.fingerprint import NOTABLE_SHIFT
 from shaftprint.report._numbers import plain, rounded, with_deviation
 from shaftprint.report._table import Cell, Table
+from shaftprint.units import MILLI, PPM
 
 if TYPE_CHECKING:
     from shaftprint.clocks import Alignment, LoggerClock
     from shaftprint.fingerprint import ClockInfluence
 
-MILLI, PPM = 1e3, 1e6
 # Minutes that scatter so many times further than their noise explains lie on no straight line.
 UNEVEN = 2.0
 

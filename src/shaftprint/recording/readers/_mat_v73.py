@@ -33,6 +33,9 @@ _PLAIN = (
     b"double", b"single", b"int8", b"uint8", b"int16", b"uint16", b"int32", b"uint32", b"int64", b"uint64",
     b"logical", b"",
 )  # fmt: skip
+_OBJECTS = (
+    b"timetable", b"table", b"timeseries", b"datetime", b"duration", b"string", b"function_handle", b"FileWrapper__",
+)  # fmt: skip
 _DEEPEST = 4
 _LONGEST_TEXT = 10_000
 
@@ -74,7 +77,7 @@ def _survey(path: Path, group: Any, name: str, opened: Opened, variables: MatVar
         kind = bytes(np.bytes_(item.attrs.get("MATLAB_class", b"")))
         if key.startswith("#") or "MATLAB_empty" in item.attrs:
             continue
-        if "MATLAB_object_decode" in item.attrs or (isinstance(item, h5py.Dataset) and kind in _object_kinds()):
+        if "MATLAB_object_decode" in item.attrs or (isinstance(item, h5py.Dataset) and kind in _OBJECTS):
             variables.left_out[inside] = object_reason(inside.replace("/", "."), kind.decode("utf-8", "replace"))
         elif isinstance(item, h5py.Group):
             if "MATLAB_sparse" in item.attrs:
@@ -83,10 +86,6 @@ def _survey(path: Path, group: Any, name: str, opened: Opened, variables: MatVar
                 _survey(path, item, inside, opened, variables)
         else:
             _keep(path, item, key, name, kind, opened, variables)
-
-
-def _object_kinds() -> tuple[bytes, ...]:
-    return (b"timetable", b"table", b"timeseries", b"datetime", b"duration", b"string", b"FileWrapper__")
 
 
 def _keep(path: Path, item: Any, key: str, group: str, kind: bytes, opened: Opened, variables: MatVariables) -> None:
