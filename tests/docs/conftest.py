@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 from click.testing import CliRunner
-from pages import as_run
+from pages import as_run, berth
 
 from shaftprint.cli import shaftprint
 from shaftprint.fingerprint import read_fingerprint, write_fingerprint
@@ -31,16 +31,16 @@ def harbour(demo, tmp_path_factory):
     """
     folder, voyage = tmp_path_factory.mktemp("harbour"), demo[0]
     for name in ("recording.nc", "tug.nc", "last_year.nc", "thesis.nc"):
-        (folder / name).symlink_to(voyage / "recording.nc")
-    (folder / "mine.toml").symlink_to(voyage / "vessel.toml")
+        berth(voyage / "recording.nc", folder / name)
+    berth(voyage / "vessel.toml", folder / "mine.toml")
     for name in ("test.toml", "campaign.toml", "last_year.toml"):
-        (folder / name).symlink_to(voyage / "campaign.toml")
-    (folder / "demo").symlink_to(voyage, target_is_directory=True)
+        berth(voyage / "campaign.toml", folder / name)
+    berth(voyage, folder / "demo")
     write_loggers(folder)
     write_last_years(folder, voyage)
-    (folder / "my_ship.py").write_text(MY_SHIP)
+    (folder / "my_ship.py").write_text(MY_SHIP, encoding="utf-8")
     rows = "".join(f"{0.1 * i:.1f},{0.0 if i < 10 else 0.02}\n" for i in range(50))
-    (folder / "set_point.csv").write_text(f"time [s],n_set [-]\n{rows}")
+    (folder / "set_point.csv").write_text(f"time [s],n_set [-]\n{rows}", encoding="utf-8")
     return folder
 
 

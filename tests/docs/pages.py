@@ -1,7 +1,9 @@
 """The pages of the documentation, and what stands in them: fenced blocks, lines for a shell, Python."""
 
+import os
 import re
 import shlex
+import shutil
 from functools import cache
 from pathlib import Path
 
@@ -111,3 +113,11 @@ def as_run(words):
 def commands():
     """Return every command in the blocks of all pages as it is run, each once."""
     return list(dict.fromkeys(as_run(words) for page in PAGES for words in commands_of(page) if is_command(words)))
+
+
+def berth(source, place):
+    """Put a file or a folder in a second place without a copy; a symbolic link needs a privilege on Windows."""
+    if source.is_dir():
+        shutil.copytree(source, place, copy_function=os.link)
+    else:
+        os.link(source, place)

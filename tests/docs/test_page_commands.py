@@ -9,7 +9,7 @@ import shlex
 import pytest
 from click.testing import CliRunner
 from expected import EXPECTED
-from pages import commands
+from pages import berth, commands
 
 from shaftprint.cli import shaftprint
 
@@ -28,7 +28,7 @@ def ashore(harbour, tmp_path, monkeypatch):
         written |= {words[-1]} if words[0] == "new" else set()
         for path in harbour.iterdir():
             if path.name not in written:
-                (tmp_path / path.name).symlink_to(path, target_is_directory=path.is_dir())
+                berth(path, tmp_path / path.name)
         monkeypatch.chdir(tmp_path)
         return tmp_path
 
