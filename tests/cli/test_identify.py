@@ -104,7 +104,7 @@ def test_folder_of_others_is_refused_before_any_work(run, recording, tmp_path):
     (tmp_path / "mine.txt").write_text("mine")
     result = run("identify", recording, *GIVEN, "-o", tmp_path)
     assert result.exit_code == 1
-    assert "expected an empty folder or one with results of shaftprint, found mine.txt" in result.stderr
+    assert "expected an empty folder or one with results of shaftprint identify, found mine.txt" in result.stderr
 
 
 def test_place_below_a_file(run, recording, tmp_path):

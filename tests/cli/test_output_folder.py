@@ -8,15 +8,15 @@ import pytest
 from shaftprint.cli._output_folder import output_folder
 
 
-def _write(path, names, *, force=False, text="new"):
-    with output_folder(path, force=force) as folder:
+def _write(path, names, *, of="identify", force=False, text="new"):
+    with output_folder(path, of=of, force=force) as folder:
         for name in names:
             (folder / name).parent.mkdir(parents=True, exist_ok=True)
             (folder / name).write_text(text)
 
 
 def _fail_half_way(path):
-    with output_folder(path, force=False) as folder:
+    with output_folder(path, of="identify", force=False) as folder:
         (folder / "x.txt").write_text("half")
         raise RuntimeError("half way")
 
@@ -68,6 +68,20 @@ def test_folder_of_others_is_refused_unless_forced(tmp_path):
     assert (place / "a.jpg").read_text() == "mine"
 
 
+def test_results_of_another_command_may_be_what_this_one_reads(tmp_path):
+    place = tmp_path / "demo"
+    _write(place, ["recording.nc", "index.html"], of="demo", text="sailed")
+    with pytest.raises(click.ClickException, match=r"results of shaftprint identify, found those of shaftprint demo; "):
+        _write(place, ["index.html"])
+    _write(place, ["index.html", "fingerprint.json"], force=True)
+    assert (place / "recording.nc").read_text() == "sailed"
+    assert (place / "index.html").read_text() == "new"
+    # from now on they are whatever the user makes of them
+    _write(place, ["index.html"])
+    assert (place / "recording.nc").read_text() == "sailed"
+    assert not (place / "fingerprint.json").exists()
+
+
 def test_empty_folder_is_used(tmp_path):
     (tmp_path / "out").mkdir()
     _write(tmp_path / "out", ["x.txt"])
@@ -102,6 +116,6 @@ def test_list_of_files_cannot_reach_outside(tmp_path, line):
     precious.write_text("mine")
     place = tmp_path / "out"
     _write(place, ["x.txt"])
-    (place / ".shaftprint").write_text(line.format(absolute=precious) + "\n")
+    (place / ".shaftprint").write_text(f"# shaftprint identify\n{line.format(absolute=precious)}\n")
     _write(place, ["x.txt"])
     assert precious.read_text() == "mine"

@@ -45,7 +45,7 @@ def command(
     structures = {structure.name: structure for structure in chosen_structures(own)}
     (first_name, first), *others = found.items()
     if output is not None:
-        with output_folder(output, force=force) as folder:
+        with output_folder(output, of="compare", force=force) as folder:
             render_comparison(folder, found, structures=structures)
     for name, other in others:
         apart = differences(first, other)

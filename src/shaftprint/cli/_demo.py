@@ -47,7 +47,7 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
     """
     campaign = SHORT if short else FULL
     trial = load_trial(VESSEL, campaign)
-    with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
+    with output_folder(output, of="demo", force=force) as folder, progress(hidden=no_progress) as steps:
         truth = _sail(folder, trial, campaign, seed=seed, steps=steps)
         found = _identify(folder / RECORDING, trial, seed=seed, steps=steps)
         true = fingerprint_truth(truth, found.fits[0].structure, found.measurement.signals)

@@ -46,7 +46,7 @@ def command(
     by_name = {found.structure.name: found for found in fits}
     explanation = explain_thesis(thesis, by_name, measurement.spectra.response, trial.vessel)
     if output is not None:
-        with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
+        with output_folder(output, of="explain", force=force) as folder, progress(hidden=no_progress) as steps:
             fingerprint = fingerprint_of(fits[0], measurement, trial)
             write_results(folder, recording, trial, measurement, fits, fingerprint, steps=steps, thesis=thesis)
     _print(explanation)

@@ -54,7 +54,7 @@ def command(
     structures = structures_of(names, options)
     trial = load_trial(vessel, campaign)
     trial = replace(trial, sources=(*trial.sources, *structure_sources(names)))
-    with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
+    with output_folder(output, of="identify", force=force) as folder, progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode=options.mode, steps=steps)
         settings = settings_of(structures, measurement, trial, options)
         fits = fit(structures, measurement, settings=settings, seed=options.seed, steps=steps)

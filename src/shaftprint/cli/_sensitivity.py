@@ -62,7 +62,7 @@ def command(name: str, output: Path, suffix: str, span: tuple[float, float], for
     STRUCTURE, the sensitivity figures of the thesis (4.2 to 4.8, B.1 to B.4, D.1).
     """
     drawings = _of_the_thesis() if name.upper() == ALL_OF_THE_THESIS else _of_structure(name, span)
-    with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
+    with output_folder(output, of="sensitivity", force=force) as folder, progress(hidden=no_progress) as steps:
         steps.begin("Drawing", total=float(len(drawings)))
         for stem, draw in drawings.items():
             save_figure(draw(), folder / f"{stem}.{suffix}")

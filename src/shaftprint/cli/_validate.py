@@ -99,7 +99,7 @@ def command(
             validations.append(validated(one, measurement.signals, trial.campaign, rng=rng))
             steps.advance(1.0)
     if output is not None:
-        with output_folder(output, force=force) as folder, progress(hidden=no_progress) as steps:
+        with output_folder(output, of="validate", force=force) as folder, progress(hidden=no_progress) as steps:
             write_validations(folder, validations, steps=steps)
     print_validation(validations[0])
     if thesis_sets:
