@@ -33,6 +33,34 @@ def test_missing_channel_lists_those_that_exist(ship, vessel, campaign):
     refused(nothing, vessel, campaign, "found no channel at all")
 
 
+def with_gauge(vessel, **changes):
+    gauge = vessel.sensors.shaft_torque.model_copy(update=changes)
+    return vessel.model_copy(update={"sensors": vessel.sensors.model_copy(update={"shaft_torque": gauge})})
+
+
+def test_a_gauge_of_the_wrong_sign_or_scale(ship, vessel, campaign):
+    scale = vessel.sensors.shaft_torque.scale_nm_per_unit
+    turned = with_gauge(vessel, scale_nm_per_unit=-scale)
+    refused(
+        ship.recording(), turned, campaign, r"channel M_s: expected a positive mean torque .*, found -1\d\d\d N m; turn"
+    )
+    # so much as 1.5 is not the load of another day
+    found = prepare_signals(ship.recording(), with_gauge(vessel, scale_nm_per_unit=2.0 * scale), campaign)
+    (told,) = [finding for finding in found.findings if "scale_nm_per_unit" in finding]
+    assert "the vessel file expects 1725 N m" in told
+    sound = prepare_signals(ship.recording(), vessel, campaign)
+    assert not [finding for finding in sound.findings if "scale_nm_per_unit" in finding]
+
+
+def test_a_file_without_units_is_told_how_to_get_them(spoiled, vessel, campaign):
+    refused(
+        spoiled(units={"M_s": ""}),
+        vessel,
+        campaign,
+        r'expected the unit "V" for the .*, found a file without it; say it with `shaftprint convert --unit "M_s=V"`',
+    )
+
+
 def test_wrong_unit(spoiled, vessel, campaign):
     refused(
         spoiled(units={"U_setpoint": "mV"}),

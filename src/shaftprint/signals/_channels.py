@@ -50,6 +50,11 @@ def find_channel(
             f"found {', '.join(recording.channels) or 'no channel at all'}; {way_out}."
         )
     channel = recording.channels[name]
+    if not channel.unit:
+        raise SignalError(
+            f'{recording.path}, channel {name}: expected the unit "{unit}" for the {use}, found a file without it; '
+            f'say it with `shaftprint convert --unit "{name}={unit}"`.'
+        )
     if _plain(channel.unit) != _plain(unit):
         raise SignalError(
             f'{recording.path}, channel {name}: expected the unit "{unit}" for the {use}, '

@@ -23,7 +23,7 @@ from shaftprint.signals._sources import Clock, Mode, Sources, common_clock, find
 from shaftprint.signals._steady import SteadyStretch, steady_stretches
 from shaftprint.signals._steps import find_step_delays
 from shaftprint.signals._torque import expect_moving_torque, judge_saturation, torque_limits
-from shaftprint.signals._working_point import find_working_point, stretches_at_working_point
+from shaftprint.signals._working_point import expect_plausible, find_working_point, stretches_at_working_point
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel, Recording
@@ -210,6 +210,7 @@ def _put_together(
     thesis = clock.mode == "thesis"
     calibration = calibrate(stretches, weighted=not thesis, channel=channel)
     working_point = find_working_point(stretches, campaign, channel=channel)
+    strange = expect_plausible(working_point, vessel)
     quiet = stretches_at_working_point(stretches, campaign, channel=channel)
     n_set *= calibration.slope_rev_s_per_v
     n_set += calibration.intercept_rev_s
@@ -235,7 +236,7 @@ def _put_together(
         step_delays=delays,
         repairs=read.repairs,
         mode=clock.mode,
-        findings=(*read.findings, *mismatches, *differences, *scale.findings, *moored, *missed),
+        findings=(*read.findings, *mismatches, *strange, *differences, *scale.findings, *moored, *missed),
         recording_sha256=recording.sha256,
         recording_name=recording.path.name,
         rack=_rack_signal(sources, vessel, clock, read.rack, quiet),

@@ -11,9 +11,12 @@ from shaftprint.signals._signals import WorkingPoint
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
     from shaftprint.signals._steady import SteadyStretch
+    from shaftprint.vessel import Vessel
 
 # Voltages this near to the offset of the campaign are the working voltage.
 _NEAR_V = 0.25
+# A working point further off than this factor is not the load of another day, but a scale.
+_FAR = 1.5
 
 
 def deviation(values: FloatArray, reference: float) -> FloatArray:
@@ -78,6 +81,29 @@ def find_working_point(stretches: "tuple[SteadyStretch, ...]", campaign: "Campai
         engine_speed_std_rev_s=speed_std,
         shaft_torque_std_nm=torque_std,
         set_point_v=volts,
+    )
+
+
+def expect_plausible(point: WorkingPoint, vessel: "Vessel") -> tuple[str, ...]:
+    """Return what is strange about a working point beside the one that the vessel file expects.
+
+    Raises
+    ------
+    SignalError
+        If the torque is not positive: nothing can be taken relative to it.
+    """
+    sensor, expected = vessel.sensors.shaft_torque, vessel.working_point.shaft_torque_nm
+    torque = point.shaft_torque_nm
+    if not torque > 0.0:
+        raise SignalError(
+            f"channel {sensor.channel}: expected a positive mean torque at the working point, found {torque:.4g} N m; "
+            "turn the sign of scale_nm_per_unit in the vessel file, or correct zero_nm there."
+        )
+    if max(torque / expected, expected / torque) < _FAR:
+        return ()
+    return (
+        f"The mean torque of {sensor.channel} at the working point is {torque:.4g} N m; the vessel file expects "
+        f"{expected:.4g} N m. Check scale_nm_per_unit there, or shaft_torque_nm of its working point.",
     )
 
 

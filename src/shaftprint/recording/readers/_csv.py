@@ -93,7 +93,7 @@ def read(path: Path, **hints: object) -> Recording:
             raise
     except (UnicodeError, LookupError) as error:
         raise RecordingError(
-            f"{path}: expected text in {encoding}, found {error}; pass encoding= (--encoding)."
+            f"{path}: expected text in {encoding}, found {error}; pass encoding= (--encoding of shaftprint convert)."
         ) from None
     except (EOFError, zlib.error, gzip.BadGzipFile) as error:
         raise RecordingError(

@@ -94,7 +94,7 @@ def read_header(
     if time is None and not has_rate:
         raise RecordingError(
             f'{where}: expected a column "time [s]", found "{"; ".join(titles)[:80]}"; '
-            "name it so with columns= (--columns), or pass sample_rate_hz= (--sample-rate)."
+            "name it so with columns=, or pass sample_rate_hz= (--columns and --sample-rate of shaftprint convert)."
         )
     if time is not None and len(names) == 1:
         raise RecordingError(f"{where}: expected a channel beside the time, found none.")
@@ -131,7 +131,7 @@ def _layout(path: Path, lines: Sequence[str], delimiter: str | None, width: int)
         found = len(_fields(lines[0], untitled[0]))
         raise RecordingError(
             f'{path}, line 1: expected titles such as "time [s];M_s [N m]" above {found} columns of numbers, found '
-            "none; pass columns= (--columns), such as time,u,y."
+            "none; pass columns= (--columns of shaftprint convert), such as time,u,y."
         )
     title = lines[0] if lines else ""
     marks = [mark for mark in _MARKS if mark in title]
@@ -139,7 +139,7 @@ def _layout(path: Path, lines: Sequence[str], delimiter: str | None, width: int)
         what = "several of them" if marks else "none of them"
         raise RecordingError(
             f"{path}, line 1: expected columns separated by semicolon, tab, comma or white space, found {what} in "
-            f'"{title.strip()[:80]}"; pass delimiter= (--delimiter).'
+            f'"{title.strip()[:80]}"; pass delimiter= (--delimiter of shaftprint convert).'
         )
     return delimiter or marks[0], 1
 
@@ -233,6 +233,6 @@ def _decimal(path: Path, rows: Sequence[str], delimiter: str, dates: int | None)
     if commas and points:
         raise RecordingError(
             f"{path}: expected a decimal point or a decimal comma, found both in the first rows; pass decimal= "
-            "(--decimal)."
+            "(--decimal of shaftprint convert)."
         )
     return "," if commas else "."

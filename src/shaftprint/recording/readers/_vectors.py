@@ -133,7 +133,7 @@ def _clock(
     if not rates:
         raise RecordingError(
             f"{path}: expected a clock, that is a vector time or t of {vector.count} seconds or a scalar "
-            "sample_rate_hz or fs, found none; pass sample_rate_hz= (--sample-rate)."
+            "sample_rate_hz or fs, found none; pass sample_rate_hz= (--sample-rate of shaftprint convert)."
         )
     rate = next(iter(rates.values()))
     if not all(abs(other - rate) <= _RATE_AGREEMENT * abs(rate) for other in rates.values()):
