@@ -69,7 +69,8 @@ def _weakest(inputs: Inputs) -> str:
     """Return the used line and channel with the lowest signal-to-noise ratio."""
     ratios, response = inputs.spectra.signal_to_noise, inputs.spectra.response
     used = {line for line, is_used in zip(response.lines, response.used, strict=True) if is_used}
-    wanted = {*response.inputs, *response.outputs, inputs.signals.engine_speed.channel}
+    # the output n of the response is the speed of the pick-up that was identified
+    wanted = {*response.inputs, *response.outputs, inputs.spectra.speed}
     found = [
         (float(value), line, channel)
         for line, values in zip(ratios.lines, ratios.local_db, strict=True)

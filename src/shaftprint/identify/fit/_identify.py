@@ -172,7 +172,8 @@ def _judged(
             winner = cluster
     if winner is None:
         raise IdentificationError(
-            f"structure {objective.name}: none of {settings.starts} starts reached a stable model; the "
-            f"lowest cost is {clusters[0].cost:.4g}. Check the data and bounds, or allow unstable models."
+            f"structure {objective.name}: none of {settings.starts} starts reached a stable model; the lowest cost is "
+            f"{clusters[0].cost:.4g}. Check the frequencies of the campaign, the data and the bounds, or allow unstable "
+            "models."
         )
     return tuple(clusters), winner
