@@ -197,7 +197,7 @@ def test_the_switch_changes_the_page_and_its_plots(opened):
     opened.page.locator("#look").click()
     opened.wait_for(f"{line} !== '{before}'")
     assert opened.page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(21, 25, 28)"
-    assert opened.page.locator("#look").get_attribute("aria-pressed") == "true"
+    assert opened.page.locator("#look").inner_text() == "Light look"
     assert opened.messages == []
 
 

@@ -173,7 +173,7 @@ def _judged(
     if winner is None:
         raise IdentificationError(
             f"structure {objective.name}: none of {settings.starts} starts reached a stable model; the lowest cost is "
-            f"{clusters[0].cost:.4g}. Check the frequencies of the campaign, the data and the bounds, or allow unstable "
-            "models."
+            f"{clusters[0].cost:.4g}. Check the frequencies of the campaign, the data and the bounds, or allow "
+            "unstable models."
         )
     return tuple(clusters), winner

@@ -220,7 +220,7 @@
   function prepareLook() {
     const chosen = document.getElementById("look");
     const say = () => {
-      chosen.setAttribute("aria-pressed", String(look() === "dark"));
+      chosen.textContent = look() === "dark" ? "Light look" : "Dark look";
       for (const [name, { place }] of figures) if (place.dataset.state === "drawn") draw(name);
     };
     chosen.hidden = false;
