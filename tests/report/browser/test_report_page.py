@@ -285,3 +285,19 @@ def test_narrow_and_wide_screens_need_no_scrolling_sideways(visit, report, width
     with visit(report, viewport={"width": width, "height": 900}) as found:
         found.wait_for("document.getElementById('plot-fit').dataset.state === 'drawn'")
         assert found.page.evaluate("document.documentElement.scrollWidth") <= width
+
+
+def test_on_a_narrow_screen_numbers_stand_beside_the_panel_to_their_left(visit, report):
+    with visit(report, viewport={"width": 390, "height": 900}) as found:
+        found.show("fit")
+        apart = found.page.evaluate(
+            "(() => { const chart = document.getElementById('plot-fit');"
+            " const right = [...chart.querySelectorAll('.ytick text, .y2tick text, .y3tick text, .y4tick text')]"
+            " .map(number => number.getBoundingClientRect())"
+            " .filter(box => box.left > chart.getBoundingClientRect().left + 150);"
+            " const panel = chart._fullLayout.xaxis; const start = chart.getBoundingClientRect().left;"
+            " const end = start + panel._offset + panel._length;"
+            " return [right.length, Math.min(...right.map(box => box.left - end))]; })()"
+        )
+        assert apart[0] >= 4
+        assert apart[1] >= 0.0

@@ -4,6 +4,8 @@
 (() => {
   const NEAR = "500px 0px";
   const NARROW = 600;
+  const NARROW_NUMBERS_PX = 10;
+  const NARROW_GAP = 0.05;
   const PAN = 0.15;
   const ZOOM = 0.6;
   const CONFIG = {
@@ -70,6 +72,15 @@
 
   const isAxis = (key) => /^[xy]axis\d*$/.test(key);
 
+  // Numbers at 2 and 5 of each decade would overlap, and those of one panel would stand in the panel beside it.
+  function fitOnNarrow(axis, key) {
+    if (axis.type === "log") axis.dtick = 1;
+    axis.tickfont = { size: NARROW_NUMBERS_PX };
+    if (key[0] !== "x" || !axis.domain) return;
+    const [from, to] = axis.domain;
+    axis.domain = [from > 0 ? from + NARROW_GAP : from, to < 1 ? to - NARROW_GAP : to];
+  }
+
   function layoutOf(figure, colours, narrow) {
     const layout = coloured(figure.layout, colours);
     layout.paper_bgcolor = "rgba(0,0,0,0)";
@@ -83,8 +94,7 @@
       layout[key].gridcolor = colours["@grid"];
       layout[key].linecolor = colours["@reference"];
       layout[key].tickcolor = colours["@reference"];
-      // Numbers at 2 and 5 of each decade would overlap.
-      if (narrow && layout[key].type === "log") layout[key].dtick = 1;
+      if (narrow) fitOnNarrow(layout[key], key);
     }
     return layout;
   }
