@@ -41,7 +41,7 @@ def test_links_of_the_template_can_be_switched_on(tmp_path):
     write_template("vessel", path)
     assert load_vessel(path).links == ()
     text = path.read_text(encoding="utf-8")
-    block = text[text.index("# [[links]]") : text.index("[[sensors.speed]]")]
+    block = text[text.index("# [[links]]") : text.index("# Speed pick-ups")]
     path.write_text(text.replace(block, block.replace("\n# ", "\n").removeprefix("# ")), encoding="utf-8")
     found = load_vessel(path).links
     assert [item.between for item in found] == [(ENGINE, GEAR), (GEAR, PROPELLER), (PROPELLER, WATER)]
