@@ -82,6 +82,15 @@ def test_results_of_another_command_may_be_what_this_one_reads(tmp_path):
     assert not (place / "fingerprint.json").exists()
 
 
+def test_a_list_that_is_empty_names_no_command(tmp_path):
+    place = tmp_path / "out"
+    _write(place, ["x.txt"], text="old")
+    (place / ".shaftprint").write_text("")
+    with pytest.raises(click.ClickException, match=r"found x\.txt; "):
+        _write(place, ["x.txt"])
+    assert (place / "x.txt").read_text() == "old"
+
+
 def test_empty_folder_is_used(tmp_path):
     (tmp_path / "out").mkdir()
     _write(tmp_path / "out", ["x.txt"])

@@ -59,11 +59,13 @@ def _expect_ours(path: Path, of: str, *, force: bool) -> None:
         raise click.ClickException(f"{path}: expected a folder below the root of the disk; add a name.")
     if path.exists() and not path.is_dir():
         raise click.ClickException(f"{path}: expected a folder for the results, found a file; choose another name.")
-    if force or not path.is_dir() or _command(path) == of:
+    if force or not path.is_dir():
+        return
+    other, _ = _earlier(path)
+    if other == of:
         return
     names = sorted(entry.name for entry in path.iterdir() if entry.name != MARKER)
     if names:
-        other = _command(path)
         found = f"{names[0]}{f' and {len(names) - 1} more' if len(names) > 1 else ''}"
         raise click.ClickException(
             f"{path}: expected an empty folder or one with results of shaftprint {of}, found "
@@ -73,30 +75,25 @@ def _expect_ours(path: Path, of: str, *, force: bool) -> None:
 
 
 def _move_in(part: Path, path: Path, of: str) -> None:
-    earlier = _listed(path) if _command(path) == of else []
+    command, earlier = _earlier(path)
     written = sorted(file.relative_to(part) for file in part.rglob("*") if file.is_file())
     path.mkdir(exist_ok=True)
     for name in written:
         (path / name).parent.mkdir(parents=True, exist_ok=True)
         (part / name).replace(path / name)
     for old in earlier:
-        if old not in written:
+        if command == of and old not in written:
             (path / old).unlink(missing_ok=True)
     marker = "".join(f"{name.as_posix()}\n" for name in written)
     (path / MARKER).write_text(f"{_NAMED}{of}\n{marker}", encoding="utf-8")
 
 
-def _command(path: Path) -> str | None:
-    """Return the name of the command that wrote the results in a folder."""
+def _earlier(path: Path) -> tuple[str | None, list[Path]]:
+    """Return which command wrote the results in a folder, and its files; none that would lie outside of the folder."""
     marker = path / MARKER
-    first = marker.read_text(encoding="utf-8", errors="replace").partition("\n")[0] if marker.is_file() else ""
-    return first.removeprefix(_NAMED) if first.startswith(_NAMED) else None
-
-
-def _listed(path: Path) -> list[Path]:
-    """Return the files that an earlier run wrote; none that would lie outside of the folder."""
-    marker = path / MARKER
-    if not marker.is_file():
-        return []
-    names = [Path(line) for line in marker.read_text(encoding="utf-8").splitlines() if not line.startswith(_NAMED)]
-    return [name for name in names if not name.is_absolute() and ".." not in name.parts]
+    text = marker.read_text(encoding="utf-8", errors="replace") if marker.is_file() else ""
+    first, *lines = text.splitlines() or [""]
+    if not first.startswith(_NAMED):
+        return None, []
+    names = [Path(line) for line in lines]
+    return first.removeprefix(_NAMED), [name for name in names if not name.is_absolute() and ".." not in name.parts]
