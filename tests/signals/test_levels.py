@@ -14,7 +14,7 @@ from shaftprint.signals._match import expect_campaign
 from shaftprint.signals._steady import SteadyStretch, steady_stretches
 from shaftprint.signals._steps import find_step_delays
 from shaftprint.signals._torque import expect_moving_torque
-from shaftprint.signals._working_point import find_working_point
+from shaftprint.signals._working_point import find_working_point, stretches_at_working_point
 
 RATE_HZ = 50.0
 
@@ -189,7 +189,7 @@ def test_working_point_is_the_mean_between_the_tests(steps):
         stretch(-5.0, 19.8, start_s=395.0, length_s=50.0, torque=1800.0),
     ]
     inside = stretch(-5.0, 25.0, start_s=190.0, length_s=60.0)
-    found = find_working_point((*quiet, inside, stretch(-3.0, 11.0)), steps, channel="U")
+    found = find_working_point(stretches_at_working_point((*quiet, inside, stretch(-3.0, 11.0)), steps, channel="U"))
     assert found.engine_speed_rev_s == pytest.approx(19.75)
     assert found.shaft_torque_nm == pytest.approx(1750.0)
     # standard error of two equal shares: half their difference
@@ -198,7 +198,9 @@ def test_working_point_is_the_mean_between_the_tests(steps):
 
 
 def test_working_point_from_a_level_where_nothing_else_is_quiet(steps):
-    found = find_working_point((stretch(-4.9, 19.6, start_s=190.0, std=0.02),), steps, channel="U")
+    found = find_working_point(
+        stretches_at_working_point((stretch(-4.9, 19.6, start_s=190.0, std=0.02),), steps, channel="U")
+    )
     assert (found.engine_speed_rev_s, found.engine_speed_std_rev_s) == (19.6, 0.02)
     assert (found.shaft_torque_std_nm, found.set_point_v) == (5.0, -4.9)
 
@@ -207,9 +209,9 @@ def test_no_working_point(steps):
     with pytest.raises(
         SignalError, match=r"channel U: expected a quiet stretch .* near the working voltage of -5 V, .* -3\.00 V"
     ):
-        find_working_point((stretch(-3.0, 11.0),), steps, channel="U")
+        stretches_at_working_point((stretch(-3.0, 11.0),), steps, channel="U")
     with pytest.raises(SignalError, match="found steady levels at none"):
-        find_working_point((), steps, channel="U")
+        stretches_at_working_point((), steps, channel="U")
 
 
 def test_deviation_is_relative_to_its_reference():

@@ -209,9 +209,9 @@ def _put_together(
     stretches = steady_stretches(n_set, speed, torque, campaign, rate_hz=rate_hz, start_s=start_s)
     thesis = clock.mode == "thesis"
     calibration = calibrate(stretches, weighted=not thesis, channel=channel)
-    working_point = find_working_point(stretches, campaign, channel=channel)
-    strange = expect_plausible(working_point, vessel)
     quiet = stretches_at_working_point(stretches, campaign, channel=channel)
+    working_point = find_working_point(quiet)
+    strange = expect_plausible(working_point, vessel)
     n_set *= calibration.slope_rev_s_per_v
     n_set += calibration.intercept_rev_s
     scale = DcScale(value=1.0, std=0.0, findings=())

@@ -56,13 +56,12 @@ def stretches_at_working_point(
     return tuple(stretch for stretch in near if _between_tests(stretch, campaign)) or tuple(near)
 
 
-def find_working_point(stretches: "tuple[SteadyStretch, ...]", campaign: "Campaign", *, channel: str) -> WorkingPoint:
-    """Return the mean of the quiet stretches at the working point.
+def find_working_point(used: "tuple[SteadyStretch, ...]") -> WorkingPoint:
+    """Return the mean of the stretches at the working point (see ``stretches_at_working_point``).
 
     The standard deviations are those of the means, from the scatter between stretches; with a single stretch from the
-    scatter within it. Parameters and errors are those of `stretches_at_working_point`.
+    scatter within it.
     """
-    used = stretches_at_working_point(stretches, campaign, channel=channel)
     weight = np.array([stretch.duration_s for stretch in used])
     speed, speed_std = mean_of_stretches(
         [stretch.speed_rev_s for stretch in used],
