@@ -54,6 +54,33 @@ def test_the_shipped_structures_agree_with_themselves(name):
     check_structure(structure(name))
 
 
+def between_other_bounds(shipped, rng):
+    """The structure with each free parameter between bounds drawn inside the shipped ones."""
+    free = [p for p in shipped.free if np.isfinite([p.lower, p.upper]).all()]
+    shares = 0.2 * rng.uniform(size=(len(free), 2))
+    widths = (p.upper - p.lower for p in free)
+    return shipped.free_between(
+        **{p.name: (p.lower + a * w, p.upper - b * w) for p, w, (a, b) in zip(free, widths, shares, strict=True)}
+    )
+
+
+@pytest.mark.parametrize("name", STRUCTURES)
+def test_the_shipped_structures_agree_with_themselves_between_any_bounds(name):
+    """Where a response no longer feels a parameter, its numerical derivative is rounding and proves nothing."""
+    rng = np.random.default_rng(0)
+    for _ in range(30):
+        check_structure(between_other_bounds(structure(name), rng))
+
+
+def test_a_wrong_derivative_is_found_between_any_bounds():
+    """One part in a hundred is ten times what may be off."""
+    rng = np.random.default_rng(0)
+    wrong = alone(Lag(T, slope=lambda s, h, t: (-1.01 * s * h**2,)))
+    for _ in range(30):
+        with pytest.raises(StructureError, match="its derivative to T is"):
+            check_structure(between_other_bounds(wrong, rng))
+
+
 def test_right_blocks_of_every_kind_pass():
     gain, late = Parameter("k", "-", -5.0, 5.0, 0.0, "k"), Parameter("t", "s", 0.0, 50.0, 20.0, "delay")
     check_structure(alone(Lag(T) * Gain(gain) * Integrator() * Delay(late)))

@@ -5,15 +5,18 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
+from shaftprint.models._parameter import Parameter
 from shaftprint.models._structure import Structure
 
 # Half a decade apart and off round numbers, where a user's resonance may lie.
 OMEGA_RAD_S = np.geomspace(0.0123, 1230.0, 21)
 # Where between its bounds a free parameter is tried, beside its value.
 PLACES = (0.37, 0.71)
-# Two numerical derivatives, with steps of these shares of a value, must agree before they are held against a formula.
+# Two numerical derivatives, with steps of these shares of a value, must agree before they are held against a formula,
+# and the rounding of the response must be as small a share of them: two that have lost all digits may agree by chance.
 STEPS = (1e-4, 1e-5)
 AGREEMENT = 1e-5
+ROUNDING = float(np.finfo(np.float64).eps)
 # A formula is wrong when it is off by more than this share.
 WRONG = 1e-3
 SAME = 1e-9
@@ -121,8 +124,10 @@ def _check_derivatives(
     if len(found) != len(values):
         raise StructureError(f"{where}: derivatives() gives {len(found)} arrays for {len(values)} parameters.")
     for place, parameter in enumerate(block.parameters):
-        one, two = (_difference(block, s, values, place, step) for step in STEPS)
+        one, two = (_difference(block, s, values, place, share) for share in STEPS)
+        smallest = _step(parameter, values[place], min(STEPS))
         sure = np.abs(one - two) <= AGREEMENT * np.abs(one)
+        sure &= ROUNDING * np.abs(response) <= AGREEMENT * smallest * np.abs(one)
         formula = np.broadcast_to(found[place], response.shape)
         if not _agree(formula[sure], one[sure], WRONG):
             own, other, omega = _furthest(np.where(sure, formula, one), one)
@@ -135,12 +140,17 @@ def _check_derivatives(
 def _difference(
     block: Block, s: ComplexArray, values: tuple[FloatArray, ...], place: int, share: float
 ) -> ComplexArray:
-    parameter, value = block.parameters[place], values[place]
-    width = parameter.upper - parameter.lower
-    step = share * np.maximum(np.abs(value), 1e-2 * width if np.isfinite(width) else 1e-2)
+    value = values[place]
+    step = _step(block.parameters[place], value, share)
     ahead = block.transfer(s, *values[:place], value + step, *values[place + 1 :])
     behind = block.transfer(s, *values[:place], value - step, *values[place + 1 :])
     return np.asarray((ahead - behind) / (2.0 * step))
+
+
+def _step(parameter: Parameter, value: FloatArray, share: float) -> FloatArray:
+    """Return the step of a numerical derivative in the parameter's unit, shape of the value."""
+    width = parameter.upper - parameter.lower
+    return np.asarray(share * np.maximum(np.abs(value), 1e-2 * width if np.isfinite(width) else 1e-2))
 
 
 def _agree(found: ComplexArray, expected: ComplexArray, share: float) -> bool:
