@@ -31,3 +31,9 @@ def test_ends():
     assert chi_square_tail(-1.0, 3.0) == 1.0
     assert chi_square_tail(math.inf, 3.0) == 0.0
     assert chi_square_tail(1e5, 3.0) == 0.0
+
+
+def test_without_a_degree_of_freedom_it_is_zero():
+    """A sum of no squares."""
+    assert chi_square_tail(0.0, 0.0) == 1.0
+    assert chi_square_tail(1e-9, 0.0) == 0.0

@@ -8,7 +8,7 @@ import pytest
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Foretold, Prior, Settings, Unweighted, compare_fits, compare_structures, identify
 from shaftprint.identify.comparison._comparison_words import comparison_words
-from shaftprint.models import structure
+from shaftprint.models import Gain, Parameter, PIGovernor, Structure, structure
 
 CL3 = {"tau_n": 0.35, "K_p": 1.6, "K_i": 4.4, "omega_n": 9.8, "zeta": 0.5}
 SETTINGS = Settings(starts=12)
@@ -53,6 +53,19 @@ def test_a_parameter_too_many_is_not_needed(make_response):
     # ln 52 for the parameter, less what it gained
     gap = found.candidates[1].criteria.bic - found.best.criteria.bic
     assert gap == pytest.approx(np.log(52.0) - ratio.statistic, abs=1e-6)
+
+
+def test_a_parameter_that_no_data_could_find_is_named_so(make_response):
+    """A gain beside the governor's own two does nothing that they cannot do: its likelihood ratio has no freedom."""
+    k_p, k_i = structure("OL2").parameters
+    gain = Parameter("b", "-", 0.5, 2.0, 1.0, "test")
+    more = Structure(name="PI+gain", title="", input="e", outputs={"M_s": PIGovernor(k_p, k_i) * Gain(gain)})
+    response = make_response("OL2", noise=0.02, rng=np.random.default_rng(5))
+    found = compare_structures(
+        [structure("OL2"), more], response, rng=np.random.default_rng(1), settings=SETTINGS, folds=0
+    )
+    assert found.best.name == "OL2"
+    assert "PI+gain holds OL2 as a special case: no parameter more that the data can find (p = 1)." in found.sentences
 
 
 def test_structures_that_explain_alike_are_not_told_apart(make_response):

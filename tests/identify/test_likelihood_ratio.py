@@ -7,7 +7,7 @@ import scipy.stats
 from shaftprint.identify import Prior, Settings, Unweighted, identify, refit
 from shaftprint.identify.comparison._likelihood_ratio import likelihood_ratio
 from shaftprint.identify.comparison._nesting import Nesting, nesting
-from shaftprint.models import Parameter, PIGovernor, RationalBlock, Structure, structure
+from shaftprint.models import Gain, Parameter, PIGovernor, RationalBlock, Structure, structure
 
 LAGGED = {"tau_n": 0.35, "K_p": 1.6, "K_i": 4.4, "t_d": 0.0, "omega_n": 10.0, "zeta": 0.6}
 SETTINGS = Settings(starts=10)
@@ -123,3 +123,29 @@ def test_law_of_two_parameters_more(at_bound, weights):
     law = Nesting(values=np.zeros(3), extra=2, at_bound=at_bound, meaningless=())
     for d in (0.5, 3.0, 20.0):
         assert law.p_value(d) == pytest.approx(weights[1] * scipy.stats.chi2.sf(d, 1) + weights[2] * np.exp(-d / 2.0))
+
+
+def redundant(upper):
+    """``b (K_p + K_i / s)``: a PI governor with a gain that does nothing which its own gains cannot do."""
+    k_p, k_i = structure("OL2").parameters
+    b = Parameter("b", "-", 0.5, upper, 1.0, "test")
+    return Structure(name="PI+gain", title="", input="e", outputs={"M_s": PIGovernor(k_p, k_i) * Gain(b)})
+
+
+def test_a_redundant_parameter_is_worth_nothing(make_response):
+    """Both reach the same responses: no degree of freedom more, no gain, and nothing to be drawn."""
+    response = make_response("OL2", GOVERNOR, noise=0.05, rng=np.random.default_rng(3))
+    small, large, nested = pair(response, structure("OL2"), redundant(2.0))
+    assert nested.extra == 0
+    found = likelihood_ratio(small, large, nested, rng=np.random.default_rng(1))
+    assert (found.extra, found.p_value, found.draws) == (0, 1.0, 0)
+
+
+def test_a_redundant_parameter_that_widens_the_bounds_is_not_taken_for_a_law(make_response):
+    """With K_i held below the truth of 4.3 the gain reaches it all the same: the bounds, not a parameter, are worth."""
+    response = make_response("OL2", GOVERNOR, noise=0.02, rng=np.random.default_rng(3))
+    small, large, nested = pair(response, *(s.free_between(K_i=(1.0, 4.0)) for s in (structure("OL2"), redundant(2.0))))
+    assert nested.extra == 0
+    found = likelihood_ratio(small, large, nested, rng=np.random.default_rng(1), draws=59)
+    assert found.reason == "the data find no parameter more"
+    assert found.p_value < 0.02

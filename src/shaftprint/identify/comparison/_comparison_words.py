@@ -66,12 +66,15 @@ def _explanation(candidate: Candidate) -> str:
 def _ratio(ratio: LikelihoodRatio) -> str:
     drawn = f" from {ratio.draws} drawn tests, since {ratio.reason}" if ratio.draws else ""
     needed = "needed" if ratio.p_value < NEEDED else "not needed"
-    more = (
-        f"one more parameter lowers the deviance by {ratio.statistic:.1f} and is {needed}"
-        if ratio.extra == 1
-        else f"{ratio.extra} more parameters lower the deviance by {ratio.statistic:.1f} and are {needed}"
-    )
-    return f"{ratio.large} holds {ratio.small} as a special case: {more} ({probability(ratio.p_value)}{drawn})."
+    more = f"lower the deviance by {ratio.statistic:.1f} and are {needed}"
+    if ratio.extra == 0:
+        worth = "no parameter more that the data can find"
+        worth += f"; its other bounds or priors {more}" if ratio.p_value < NEEDED else ""
+    elif ratio.extra == 1:
+        worth = f"one more parameter lowers the deviance by {ratio.statistic:.1f} and is {needed}"
+    else:
+        worth = f"{ratio.extra} more parameters {more}"
+    return f"{ratio.large} holds {ratio.small} as a special case: {worth} ({probability(ratio.p_value)}{drawn})."
 
 
 def _foretelling(candidates: Sequence[Candidate]) -> list[str]:

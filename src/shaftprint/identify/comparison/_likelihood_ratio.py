@@ -5,8 +5,8 @@ parameters more (Wilks, The large-sample distribution of the likelihood ratio, 1
 bound, such as a delay of 0, half of its weight lies on one degree less (Self and Liang, Asymptotic properties of
 maximum likelihood estimators under nonstandard conditions, 1987, case 5). Where a parameter means nothing in the
 smaller structure (Davies, Hypothesis testing when a nuisance parameter is present only under the alternative, 1977),
-several stand at bounds, or the cost is not that of maximum likelihood, no law is at hand: then tests are drawn from the
-smaller structure and both are fitted to each.
+several stand at bounds, what the larger one has more is redundant, or the cost is not that of maximum likelihood, no
+law is at hand: then tests are drawn from the smaller structure and both are fitted to each.
 """
 
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify.comparison._nesting import Nesting
+from shaftprint.identify.comparison._nesting import NO_GAIN, Nesting
 from shaftprint.identify.fit import Identification, refit
 from shaftprint.identify.likelihood import MaximumLikelihood, chi_square_tail
 from shaftprint.identify.search import spread
@@ -70,7 +70,7 @@ def likelihood_ratio(
     statistic = float(np.maximum(fall, 0.0))
     reason = _no_law(small, large, nested)
     at_most = _at_most(large, nested, statistic)
-    if not reason:
+    if not reason or (nested.extra == 0 and statistic <= NO_GAIN):
         p_value, drawn = nested.p_value(statistic), 0
     elif at_most < FAR / (draws + 1.0):
         p_value, drawn = at_most, 0
@@ -94,6 +94,8 @@ def _no_law(small: Identification, large: Identification, nested: Nesting) -> st
         return "the fits are not weighted by maximum likelihood"
     if nested.meaningless:
         return f"{', '.join(nested.meaningless)} means nothing in {small.structure.name}"
+    if nested.extra == 0:
+        return "the data find no parameter more"
     own = {p.name for p in small.structure.free}
     known = [name for name in large.settings.priors if name not in own]
     if known:
@@ -114,6 +116,8 @@ def _at_most(large: Identification, nested: Nesting, statistic: float) -> float:
         return 1.0
     known = sum(1 for name in large.settings.priors if name in {p.name for p in large.objective.free_parameters})
     freedom = nested.extra + len(nested.at_bound) + len(nested.meaningless) + known
+    if freedom == 0:
+        return 1.0
     tail = chi_square_tail(statistic, freedom)
     return tail * float(VALUES ** len(nested.meaningless))
 

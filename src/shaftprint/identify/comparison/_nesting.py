@@ -36,7 +36,7 @@ class Nesting:
     values: FloatArray
     """Free parameters of the larger structure that imitate the optimum of the smaller one, shape (free,)."""
     extra: int
-    """How many parameters more the data could find."""
+    """How many parameters more the data could find; 0 where all that the larger structure has more is redundant."""
     at_bound: tuple[str, ...]
     """Parameters of the larger structure that end at a bound."""
     meaningless: tuple[str, ...]
@@ -77,10 +77,12 @@ def nesting(small: Identification, large: Identification, *, rng: np.random.Gene
         objective.upper - objective.lower
     )
     own = large.values[list(objective.free)]
-    rank, lost = _rank(objective, own), _lost(objective, found, own)
+    lost = _lost(objective, found, own)
+    # at a special place, such as a bound, fewer parameters have influence than elsewhere
+    rank = max(_rank(objective, own), _rank(objective, found))
     return Nesting(
         values=frozen_float(found),
-        extra=rank - _rank(small.objective, small.values[list(small.objective.free)]),
+        extra=max(rank - _rank(small.objective, small.values[list(small.objective.free)]), 0),
         at_bound=tuple(p.name for p, there in zip(parameters, at_bound, strict=True) if there),
         meaningless=tuple(p.name for p, gone in zip(parameters, lost, strict=True) if gone),
     )

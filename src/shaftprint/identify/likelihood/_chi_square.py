@@ -18,12 +18,12 @@ def chi_square_tail(value: float, degrees_of_freedom: float) -> float:
     value
         The chi-square.
     degrees_of_freedom
-        Their number, positive, not necessarily whole.
+        Their number, not negative, not necessarily whole; without any the chi-square is 0.
     """
     half, shape = 0.5 * value, 0.5 * degrees_of_freedom
     if half <= 0.0:
         return 1.0
-    if math.isinf(half):
+    if math.isinf(half) or shape == 0.0:
         return 0.0
     front = math.exp(shape * math.log(half) - half - math.lgamma(shape))
     if half < shape + 1.0:
