@@ -6,7 +6,7 @@ import click
 
 from shaftprint.cli._numbers import plain
 from shaftprint.cli._output_folder import force_option, output_folder
-from shaftprint.cli._own_structure import OWN_FILE_HELP, chosen_structures
+from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._tables import print_table
 from shaftprint.fingerprint import Fingerprint, read_fingerprint
 from shaftprint.report import Difference, change_in_words, differences, render_comparison
@@ -34,7 +34,7 @@ REPORT = "index.html"
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for a report on the comparison.")
 @force_option
 def command(
-    fingerprints: tuple[Path, ...], names: tuple[str, ...], own: tuple[str, ...], output: Path | None, force: bool
+    fingerprints: tuple[Path, ...], names: tuple[str, ...], own: tuple[TypedName, ...], output: Path | None, force: bool
 ) -> None:
     """Say what differs between fingerprints, and whether it is more than chance.
 

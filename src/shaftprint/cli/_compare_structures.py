@@ -9,7 +9,7 @@ from shaftprint.cli._chain import measure, response_of
 from shaftprint.cli._comparison_tables import print_comparison
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
 from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
-from shaftprint.cli._own_structure import OWN_FILE_HELP
+from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.identify import compare_structures, expect_comparable
 
@@ -39,7 +39,7 @@ def command(
     recording: Path,
     vessel: str,
     campaign: str,
-    names: tuple[str, ...],
+    names: tuple[TypedName, ...],
     folds: int,
     options: FitOptions,
     no_progress: bool,

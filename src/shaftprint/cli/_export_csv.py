@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._exported import file_to_write, fingerprint_argument, force_option
-from shaftprint.cli._own_structure import OWN_FILE_HELP, chosen_structures
+from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
 from shaftprint.cli._simulated_model import fingerprint_at
 from shaftprint.errors import FingerprintError
 from shaftprint.export import exported_model, write_csv
@@ -23,7 +23,7 @@ from shaftprint.export import exported_model, write_csv
     help="Beginning of the names, as in tug.csv; named after the vessel by default.",
 )
 @force_option
-def command(fingerprint: Path, structure: str | None, output: Path | None, force: bool) -> None:
+def command(fingerprint: Path, structure: TypedName | None, output: Path | None, force: bool) -> None:
     """Write tables of parameters, combinations and the frequency response with its band.
 
     FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. Columns are set apart
@@ -32,7 +32,7 @@ def command(fingerprint: Path, structure: str | None, output: Path | None, force
     found = fingerprint_at(fingerprint)
     if found is None:
         raise FingerprintError(f"{fingerprint}: expected a fingerprint, found none.")
-    chosen = chosen_structures([structure or found.structure])[0]
+    chosen = structure_to_use(structure, found)
     path = file_to_write(output, exported_model(found, of=chosen), ".csv", force=force)
     written = write_csv(found, path, of=chosen, overwrite=force)
     for table in (written.parameters, written.combinations, written.response):

@@ -14,6 +14,7 @@ from shaftprint.cli._exported import (
     set_option,
     structure_option,
 )
+from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.export import PLATFORMS, WrittenFmu, write_fmu
 
@@ -50,7 +51,7 @@ from shaftprint.export import PLATFORMS, WrittenFmu, write_fmu
 @no_progress_option
 def command(
     fingerprint: Path,
-    structure: str | None,
+    structure: TypedName | None,
     given: tuple[tuple[str, float], ...],
     version: str,
     platforms: tuple[str, ...],

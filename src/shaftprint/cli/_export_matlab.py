@@ -14,6 +14,7 @@ from shaftprint.cli._exported import (
     structure_option,
 )
 from shaftprint.cli._inputs import NAMES, load_trial
+from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._simulated_model import fingerprint_at
 from shaftprint.export import write_matlab
@@ -40,7 +41,7 @@ from shaftprint.spectra import FrequencyResponse
 @no_progress_option
 def command(
     fingerprint: Path,
-    structure: str | None,
+    structure: TypedName | None,
     given: tuple[tuple[str, float], ...],
     recording: Path | None,
     vessel: str | None,

@@ -12,6 +12,7 @@ from shaftprint.cli._exported import (
     set_option,
     structure_option,
 )
+from shaftprint.cli._own_structure import TypedName
 from shaftprint.export import write_ssv
 
 
@@ -24,7 +25,11 @@ from shaftprint.export import write_ssv
 )
 @force_option
 def command(
-    fingerprint: Path, structure: str | None, given: tuple[tuple[str, float], ...], output: Path | None, force: bool
+    fingerprint: Path,
+    structure: TypedName | None,
+    given: tuple[tuple[str, float], ...],
+    output: Path | None,
+    force: bool,
 ) -> None:
     """Write the parameters as an SSP parameter set (.ssv).
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._known_values import named_value
-from shaftprint.cli._own_structure import OWN_FILE_HELP
+from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._simulated_model import LIMITED_HELP, fingerprint_at, simulated_model
 from shaftprint.errors import FingerprintError
 from shaftprint.export import ExportedModel
@@ -29,13 +29,13 @@ set_option = click.option(
 force_option = click.option("--force", is_flag=True, help="Replace an earlier file.")
 
 
-def model_to_export(fingerprint: Path, structure: str | None, given: Mapping[str, float]) -> ExportedModel:
+def model_to_export(fingerprint: Path, structure: TypedName | None, given: Mapping[str, float]) -> ExportedModel:
     """Return the model of a fingerprint file, or of the folder with it.
 
     Raises
     ------
     FingerprintError
-        If there is none, or it has a parameter that the structure lacks.
+        If there is none, it names no shipped structure, or it has a parameter that the structure lacks.
     StructureError
         If there is no such structure or parameter, or a value is missing.
     """

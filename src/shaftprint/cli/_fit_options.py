@@ -10,7 +10,7 @@ import click
 from shaftprint.cli._chain import Measurement, known_beforehand, response_of
 from shaftprint.cli._inputs import Trial
 from shaftprint.cli._known_values import hold_option, prior_option
-from shaftprint.cli._own_structure import chosen_structures
+from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.errors import StructureError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted
 from shaftprint.models import Structure
@@ -73,15 +73,25 @@ def fit_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return reduce(lambda wrapped, option: option(wrapped), reversed(_OPTIONS), gathered)
 
 
-def structures_of(names: Sequence[str], options: FitOptions) -> tuple[Structure, ...]:
-    """Return the structures with what is held in those that have it; each name given must be of use in one.
+def structures_of(names: Sequence[TypedName], options: FitOptions) -> tuple[Structure, ...]:
+    """Return the structures that the user names, with what is held in them.
 
     Raises
     ------
     StructureError
         If there is no such structure, or a parameter that is held or freed is in none of them.
     """
-    chosen = chosen_structures(names)
+    return held_structures(chosen_structures(names), options)
+
+
+def held_structures(chosen: Sequence[Structure], options: FitOptions) -> tuple[Structure, ...]:
+    """Return structures with what is held in those that have it; each name given must be of use in one.
+
+    Raises
+    ------
+    StructureError
+        If a parameter that is held or freed is in none of them.
+    """
     held = dict(options.held)
     unused = [name for name in held if not any(name in found.names for found in chosen)]
     if unused:

@@ -13,7 +13,7 @@ from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, st
 from shaftprint.cli._fit_tables import print_fits
 from shaftprint.cli._inputs import campaign_option, load_trial, structure_sources, vessel_option
 from shaftprint.cli._output_folder import force_option, output_folder
-from shaftprint.cli._own_structure import OWN_FILE_HELP
+from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._results import where, write_results
 from shaftprint.cli._validations import validations_of
@@ -40,7 +40,7 @@ def command(
     recording: Path,
     vessel: str,
     campaign: str,
-    names: tuple[str, ...],
+    names: tuple[TypedName, ...],
     options: FitOptions,
     output: Path,
     force: bool,

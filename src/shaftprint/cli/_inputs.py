@@ -10,7 +10,7 @@ from typing import Any, Literal
 import click
 
 from shaftprint.campaign import Campaign, load_campaign
-from shaftprint.cli._own_structure import own_file
+from shaftprint.cli._own_structure import TypedName, own_file
 from shaftprint.fingerprint import SourceFile
 from shaftprint.settings import shipped_names
 from shaftprint.vessel import Vessel, load_vessel
@@ -45,7 +45,7 @@ def load_trial(vessel: str, campaign: str) -> Trial:
     )
 
 
-def structure_sources(names: Sequence[str]) -> tuple[SourceFile, ...]:
+def structure_sources(names: Sequence[TypedName]) -> tuple[SourceFile, ...]:
     """Return the user's files that structures were taken from, each once, with their hashes."""
     own = (own_file(name) for name in names)
     paths = {found[0].resolve() for found in own if found is not None}

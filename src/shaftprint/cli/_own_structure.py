@@ -1,4 +1,4 @@
-"""Structures by name: shipped ones, and those of a user's own file, as in ``my_ship.py:my_loop``."""
+"""Structures that a user names: shipped ones, and those of a file of the user's own, as in ``my_ship.py:my_loop``."""
 
 import inspect
 import sys
@@ -9,16 +9,33 @@ from importlib.machinery import SourceFileLoader
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import CodeType, ModuleType
+from typing import NewType
 
-from shaftprint.cli._limited_structure import limited_structure
 from shaftprint.errors import ShaftprintError, StructureError
-from shaftprint.models import STRUCTURES, Structure, check_structure, structure
+from shaftprint.fingerprint import Fingerprint, named_structure
+from shaftprint.models import STRUCTURES, Structure, check_structure, shipped_structure
 
 SUFFIX = ".py"
 OWN_FILE_HELP = "a shipped one, or my_ship.py:my_loop for one of your own file, which is Python and is run"
 
+TypedName = NewType("TypedName", str)
+"""The name of a structure as the user typed it, which may be that of a file to run; a text out of a file is no such."""
 
-def chosen_structures(texts: Sequence[str]) -> tuple[Structure, ...]:
+
+def structure_to_use(name: TypedName | None, fingerprint: Fingerprint) -> Structure:
+    """Return the structure that the user names, otherwise the shipped one of a fingerprint.
+
+    Raises
+    ------
+    StructureError
+        If there is no such structure, or its file fails.
+    FingerprintError
+        If the user names none, and the fingerprint none that is shipped.
+    """
+    return named_structure(fingerprint) if name is None else chosen_structures([name])[0]
+
+
+def chosen_structures(texts: Sequence[TypedName]) -> tuple[Structure, ...]:
     """Return structures by their shipped names, in capitals or not, or from files; one that is named twice only once.
 
     A file is run once, however many structures are taken from it. Each of its structures is tried out before anything
@@ -34,7 +51,7 @@ def chosen_structures(texts: Sequence[str]) -> tuple[Structure, ...]:
     for text in texts:
         own = own_file(text)
         if own is None:
-            found.setdefault(text.upper(), limited_structure(text) or structure(text))
+            found.setdefault(text.upper(), shipped_structure(text))
             continue
         path, name = own
         key = f"{path.resolve()}:{name}"
@@ -46,7 +63,7 @@ def chosen_structures(texts: Sequence[str]) -> tuple[Structure, ...]:
     return tuple(found.values())
 
 
-def own_file(text: str) -> tuple[Path, str] | None:
+def own_file(text: TypedName) -> tuple[Path, str] | None:
     """Return the file and the name of ``my_ship.py:my_loop``; None for the name of a shipped structure.
 
     The name is empty where there is none. A colon after the letter of a drive is part of the path.

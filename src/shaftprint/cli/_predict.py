@@ -11,7 +11,7 @@ from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.cli._chain import known_beforehand, measure
 from shaftprint.cli._inputs import NAMES, campaign_option, load_trial
 from shaftprint.cli._known_values import hold_option, named_value, prior_option
-from shaftprint.cli._own_structure import OWN_FILE_HELP, chosen_structures
+from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._prediction_tables import print_prediction
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.errors import StructureError
@@ -81,7 +81,7 @@ class _Ship:
 @no_progress_option
 def command(
     campaign: str,
-    name: str,
+    name: TypedName,
     vessel: str | None,
     recording: Path | None,
     recorded: str | None,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import click
 
 from shaftprint.cli._output_folder import force_option, output_folder
-from shaftprint.cli._own_structure import chosen_structures
+from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.files import plain_name
 from shaftprint.report import plot_sensitivity, save_figure, thesis_families
@@ -54,7 +54,9 @@ def ascending(context: click.Context, parameter: click.Parameter, span: tuple[fl
 )
 @force_option
 @no_progress_option
-def command(name: str, output: Path, suffix: str, span: tuple[float, float], force: bool, no_progress: bool) -> None:
+def command(
+    name: TypedName, output: Path, suffix: str, span: tuple[float, float], force: bool, no_progress: bool
+) -> None:
     """Draw what each parameter of a structure does to its response.
 
     One figure an output and input: the Bode families of STRUCTURE with each free parameter varied between its bounds. A
@@ -71,12 +73,12 @@ def command(name: str, output: Path, suffix: str, span: tuple[float, float], for
         click.echo(output / f"{stem}.{suffix}")
 
 
-def _of_structure(name: str, span: tuple[float, float]) -> "Drawings":
+def _of_structure(name: TypedName, span: tuple[float, float]) -> "Drawings":
     (chosen,) = chosen_structures([name])
     found = {}
     for output, cause in chosen.channels:
-        name = f"{chosen.name}_{output}" + (f"_{cause}" if len(chosen.inputs) > 1 else "")
-        found[plain_name(name)] = partial(plot_sensitivity, chosen, output=output, cause=cause, span_rad_s=span)
+        stem = f"{chosen.name}_{output}" + (f"_{cause}" if len(chosen.inputs) > 1 else "")
+        found[plain_name(stem)] = partial(plot_sensitivity, chosen, output=output, cause=cause, span_rad_s=span)
     return found
 
 

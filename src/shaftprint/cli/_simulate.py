@@ -9,7 +9,7 @@ import numpy as np
 from shaftprint.cli._inertia import picture
 from shaftprint.cli._inputs import NAMES
 from shaftprint.cli._known_values import named_value
-from shaftprint.cli._own_structure import OWN_FILE_HELP
+from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._simulated_model import LIMITED_HELP, fingerprint_at, simulated_model
 from shaftprint.cli._simulated_set_point import Drive, Place, campaign_drive, file_drive, place_of
@@ -82,7 +82,7 @@ def span_of_time(
 @no_progress_option
 def command(
     fingerprint: Path | None,
-    structure: str | None,
+    structure: TypedName | None,
     given: tuple[tuple[str, float], ...],
     campaign: str | None,
     table: Path | None,

@@ -8,7 +8,7 @@ import click
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.cli._own_structure import chosen_structures
+from shaftprint.cli._own_structure import TypedName, chosen_structures, structure_to_use
 from shaftprint.errors import FingerprintError, StructureError
 from shaftprint.fingerprint import Fingerprint, read_fingerprint
 from shaftprint.models import Structure
@@ -41,7 +41,9 @@ def fingerprint_at(path: Path | None) -> Fingerprint | None:
     return read_fingerprint(path / "fingerprint.json" if path.is_dir() else path)
 
 
-def simulated_model(name: str | None, fingerprint: Fingerprint | None, given: Mapping[str, float]) -> SimulatedModel:
+def simulated_model(
+    name: TypedName | None, fingerprint: Fingerprint | None, given: Mapping[str, float]
+) -> SimulatedModel:
     """Return the model to simulate.
 
     Parameters
@@ -58,13 +60,16 @@ def simulated_model(name: str | None, fingerprint: Fingerprint | None, given: Ma
     click.UsageError
         If there is neither a name nor a fingerprint.
     FingerprintError
-        If the fingerprint has a parameter that the structure lacks.
+        If the fingerprint has a parameter that the structure lacks, or its structure is not shipped and none is named.
     StructureError
         If there is no such structure or parameter, or a value is missing.
     """
-    if name is None and fingerprint is None:
+    if fingerprint is not None:
+        chosen = structure_to_use(name, fingerprint)
+    elif name is not None:
+        (chosen,) = chosen_structures([name])
+    else:
         raise click.UsageError("expected a model: give --fingerprint, or --structure with --set.")
-    (chosen,) = chosen_structures([name or ("" if fingerprint is None else fingerprint.structure)])
     unknown = [parameter for parameter in given if parameter not in chosen.names]
     if unknown:
         raise StructureError(

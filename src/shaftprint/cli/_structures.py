@@ -2,20 +2,20 @@
 
 import click
 
-from shaftprint.cli._own_structure import chosen_structures
+from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.cli._tables import print_table
 from shaftprint.models import STRUCTURES, Parameter, Structure
 
 
 @click.command("structures")
 @click.argument("names", metavar="[NAME]...", nargs=-1)
-def command(names: tuple[str, ...]) -> None:
+def command(names: tuple[TypedName, ...]) -> None:
     """List the model structures with their parameters and bounds.
 
     With one or more NAMEs only those. A NAME such as my_ship.py:my_loop is a structure in a file of your
     own, which is Python and is run. Held parameters keep their value unless they are freed.
     """
-    for chosen in chosen_structures(names or tuple(STRUCTURES)):
+    for chosen in chosen_structures(names or tuple(map(TypedName, STRUCTURES))):
         print_table(
             f"{chosen.name}: {chosen.title}, {', '.join(chosen.inputs)} -> {', '.join(chosen.outputs)}",
             ("parameter", "unit", "lower", "upper", "value", "meaning"),

@@ -8,10 +8,10 @@ import numpy as np
 
 from shaftprint.cli._chain import Measurement, fit, measure
 from shaftprint.cli._fingerprint_model import fingerprint_model
-from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
+from shaftprint.cli._fit_options import FitOptions, fit_options, held_structures, settings_of, structures_of
 from shaftprint.cli._inputs import Trial, campaign_option, load_trial, vessel_option
 from shaftprint.cli._output_folder import force_option, output_folder
-from shaftprint.cli._own_structure import OWN_FILE_HELP
+from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
 from shaftprint.cli._progress import Steps, no_progress_option, progress
 from shaftprint.cli._validation_results import write_validations
 from shaftprint.cli._validation_tables import print_compared_models, print_validation
@@ -19,7 +19,7 @@ from shaftprint.fingerprint import Fingerprint, read_fingerprint
 from shaftprint.models import Structure
 from shaftprint.validation import Model, identified_model, thesis_models, validate
 
-DEFAULT_STRUCTURE = "GAUGE-CLOSED"
+DEFAULT_STRUCTURE = TypedName("GAUGE-CLOSED")
 
 
 @click.command("validate")
@@ -60,7 +60,7 @@ def command(
     vessel: str,
     campaign: str,
     fingerprint: Path | None,
-    structure: str | None,
+    structure: TypedName | None,
     records: tuple[str, ...],
     used: tuple[str, ...],
     allow_in_sample: bool,
@@ -79,8 +79,10 @@ def command(
     """
     trial = load_trial(vessel, campaign)
     kept = None if fingerprint is None else read_fingerprint(_file(fingerprint))
-    names = (structure or (DEFAULT_STRUCTURE if kept is None else kept.structure),)
-    structures = structures_of(names, options)
+    if kept is None:
+        structures = structures_of([structure or DEFAULT_STRUCTURE], options)
+    else:
+        structures = held_structures([structure_to_use(structure, kept)], options)
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode=options.mode, steps=steps)
         model = _model(kept, structures, measurement, trial, options, steps=steps)

@@ -6,8 +6,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import ExportError
-from shaftprint.fingerprint import Fingerprint, identified_model
-from shaftprint.models import Structure, structure
+from shaftprint.fingerprint import Fingerprint, identified_model, named_structure
+from shaftprint.models import Structure
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -79,12 +79,10 @@ def exported_model(fingerprint: Fingerprint, *, of: Structure | None = None) -> 
 
     Raises
     ------
-    StructureError
-        If there is no shipped structure of that name.
     FingerprintError
-        If the structure has other parameters than the fingerprint.
+        If there is no shipped structure of that name, or it has other parameters than the fingerprint.
     """
-    found = identified_model(fingerprint, structure(fingerprint.structure) if of is None else of)
+    found = identified_model(fingerprint, named_structure(fingerprint) if of is None else of)
     std = {quantity.name: quantity.std for quantity in fingerprint.parameters}
     uncertain = tuple(name for name in std if np.isfinite(std[name]) and std[name] > 0.0)
     return ExportedModel(

@@ -25,7 +25,7 @@ from shaftprint.fingerprint._fingerprint import (
 )
 from shaftprint.fingerprint._inertia import inertia_beside
 from shaftprint.fingerprint._margins import margin_quantities
-from shaftprint.fingerprint._model import IdentifiedModel, identified_model
+from shaftprint.fingerprint._model import IdentifiedModel, identified_model, named_structure
 from shaftprint.fingerprint._physical import GAUGE_ZERO, physical_quantities
 from shaftprint.fingerprint._take import take_fingerprint
 
@@ -44,6 +44,7 @@ __all__ = [
     "identified_model",
     "inertia_beside",
     "margin_quantities",
+    "named_structure",
     "physical_quantities",
     "read_fingerprint",
     "take_fingerprint",

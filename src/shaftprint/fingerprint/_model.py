@@ -5,9 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.errors import FingerprintError
+from shaftprint.errors import FingerprintError, StructureError
+from shaftprint.files import printable
 from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.models import Structure
+from shaftprint.models import Structure, shipped_structure
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -61,3 +62,27 @@ def identified_model(fingerprint: Fingerprint, structure: Structure) -> Identifi
         values=frozen_float([named[name] for name in identified.names]),
         covariance=frozen_float(fingerprint.covariance_of([parameter.name for parameter in identified.free])),
     )
+
+
+def named_structure(fingerprint: Fingerprint) -> Structure:
+    """Return the structure that a fingerprint names, which is a shipped one.
+
+    The name is text out of a file that anybody may have written: it is looked up, and never a path to code. A structure
+    of the user's own comes from the user, by the command line or the call.
+
+    Raises
+    ------
+    FingerprintError
+        If it is none of the shipped ones.
+    """
+    try:
+        return shipped_structure(fingerprint.structure)
+    except StructureError:
+        files = [printable(source.name) for source in fingerprint.sources if source.role == "structure"]
+        place = files[0] if files else "my_ship.py"
+        raise FingerprintError(
+            f"fingerprint of {printable(fingerprint.conditions.vessel)}: expected the name of a shipped structure, "
+            f"found {printable(fingerprint.structure)!r}, a structure of somebody's own. A fingerprint is data, and no "
+            f"file that it names is run: read {place}, then give it with --structure {place}:NAME, or as a Structure "
+            "to the Python call."
+        ) from None

@@ -61,6 +61,7 @@ from shaftprint.models._quantity import Quantity, choose, clip, maximum, minimum
 from shaftprint.models._sailing_at_large import pitch_actuator, sailing_at_large
 from shaftprint.models._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
 from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
+from shaftprint.models._shipped import shipped_structure
 from shaftprint.models._small_signal import SmallSignal
 from shaftprint.models._step_response import step_response
 from shaftprint.models._structure import Structure
@@ -141,6 +142,7 @@ __all__ = [
     "replaced",
     "sailing_at_large",
     "second_order_lag",
+    "shipped_structure",
     "stable_rows",
     "step_response",
     "structure",

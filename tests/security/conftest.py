@@ -1,0 +1,42 @@
+"""A way to call the program, and a fingerprint whose texts another person has written."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner, Result
+
+from shaftprint.cli import shaftprint
+
+Run = Callable[..., Result]
+
+
+@pytest.fixture
+def run() -> Run:
+    """Call the program with arguments; errors that are not foreseen come through."""
+
+    def call(*arguments: object) -> Result:
+        return CliRunner().invoke(shaftprint, [str(argument) for argument in arguments], catch_exceptions=False)
+
+    return call
+
+
+@pytest.fixture(scope="session")
+def fingerprint_text(demo: tuple[Path, Result]) -> str:
+    """The fingerprint of the short demo, as JSON."""
+    return (demo[0] / "fingerprint.json").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def forged(fingerprint_text: str, tmp_path: Path) -> Callable[[Callable[[dict], None]], Path]:
+    """Write a fingerprint whose JSON was changed by a function."""
+
+    def write(change: Callable[[dict], None]) -> Path:
+        content = json.loads(fingerprint_text)
+        change(content)
+        path = tmp_path / "fingerprint.json"
+        path.write_text(json.dumps(content), encoding="utf-8")
+        return path
+
+    return write
