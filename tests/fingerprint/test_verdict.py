@@ -17,8 +17,11 @@ def test_a_trustworthy_fit_says_which_numbers_may_be_used(fingerprint):
     assert verdict.loop == "small"
     assert {"tau_dn", "k_q", "t_d + t_sp", "K_p / K_i"} <= set(verdict.trusted)
     assert verdict.sentences[0] == verdict.reason
-    names = {quantity.name for quantity in (*fingerprint.parameters, *fingerprint.combinations)}
+    where = fingerprint.conditions
+    every = (*fingerprint.parameters, *fingerprint.combinations, *fingerprint.physical, *fingerprint.margins)
+    names = {quantity.name for quantity in (*every, where.engine_speed, where.shaft_torque)}
     assert set(verdict.trusted) | set(verdict.not_trusted) == names
+    assert "I_dn" in verdict.trusted
 
 
 def test_a_fit_that_fails_keeps_where_and_what_may_be_missing(fit, take, tmp_path):

@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Prior, Requirements, Settings, identify, profile
-from shaftprint.identify.judgement._trust import trusted_numbers
+from shaftprint.identify.judgement._trust import doubts_of
 from shaftprint.models import Combination, Gain, Parameter, PIGovernor, Structure, structure
 from shaftprint.spectra import FrequencyResponse
 
@@ -15,7 +15,9 @@ def fitted(response, made_of, **settings):
 
 
 def trusted(fit, *, profiled=False, **requirements):
-    return trusted_numbers(fit, profile(fit) if profiled else None, Requirements(**requirements))
+    numbers = (*fit.parameters, *fit.combinations)
+    doubts = doubts_of(fit, numbers, profile(fit) if profiled else None, Requirements(**requirements))
+    return tuple(number.name for number in numbers if number.name not in doubts), doubts
 
 
 @pytest.mark.parametrize("profiled", [False, True])
@@ -79,7 +81,7 @@ def test_a_number_that_was_known_beforehand_is_not_measured(make_response):
     fit = fitted(response, own, priors={"v": Prior(1.0, 0.01)})
     with np.errstate(all="ignore"):
         names, doubts = trusted(fit)
-    assert doubts["v"] == "it was known beforehand and hardly measured: 100 % of that deviation is left"
+    assert doubts["v"] == "it is assumed, not found: 100 % of the deviation known before the test remains"
     assert {"K_p", "K_i", "v K_p"} <= set(names)
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import shaftprint
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._calibration import calibration_quantities
+from shaftprint.fingerprint._contradictions import contradictions
 from shaftprint.fingerprint._findings import findings_of
 from shaftprint.fingerprint._fingerprint import (
     Conditions,
@@ -68,6 +69,15 @@ def take_fingerprint(
     meanings = _meanings(identification)
     profiled = profile(identification, margins) if identification.is_likelihood else None
     intervals = {} if profiled is None else profiled.intervals
+    conditions = _conditions(identification, signals, vessel, campaign, left_out)
+    margin = margin_quantities(identification, profiled, stated)
+    verdict = assess(
+        identification,
+        profile=profiled,
+        signal_to_noise=signal_to_noise,
+        reasons=contradictions(physical, signals.working_point, vessel),
+        further=[_estimate(q) for q in (*physical, *margin, conditions.engine_speed, conditions.shaft_torque)],
+    )
     return Fingerprint(
         shaftprint_version=shaftprint.__version__,
         created=now,
@@ -75,7 +85,7 @@ def take_fingerprint(
             SourceFile(role="recording", name=signals.recording_name, sha256=signals.recording_sha256),
             *settings_files,
         ),
-        conditions=_conditions(identification, signals, vessel, campaign, left_out),
+        conditions=conditions,
         structure=identification.structure.name,
         parameters=tuple(_quantity(e, meanings, intervals) for e in identification.parameters),
         held={p.name: p.value for p in identification.structure.parameters if p.held},
@@ -83,12 +93,19 @@ def take_fingerprint(
         covariance=tuple(tuple(row) for row in identification.covariance.tolist()),
         combinations=tuple(_quantity(e, meanings, intervals) for e in identification.combinations),
         physical=physical,
-        margins=margin_quantities(identification, profiled, stated),
+        margins=margin,
         budget=Budget(sources=stated.sources, rows=tuple(row for row in stated.rows if row.variances)),
         calibration=calibration_quantities(signals),
         quality=_quality(identification, signals, signal_to_noise),
-        verdict=assess(identification, profile=profiled, signal_to_noise=signal_to_noise),
+        verdict=verdict,
         findings=findings_of(identification, physical, stated, left_out),
+    )
+
+
+def _estimate(quantity: Quantity) -> Estimate:
+    """Return a number of the fingerprint as the verdict takes it."""
+    return Estimate(
+        name=quantity.name, unit=quantity.unit, value=quantity.value, std=quantity.std, at_bound=quantity.at_bound
     )
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from shaftprint.arrays import FloatArray
+from shaftprint.reasons import Reason
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -211,6 +212,8 @@ class Signals:
     """Whether each step was done shaftprint's way or the thesis' way."""
     findings: tuple[str, ...] = ()
     """What the reader should know before trusting the signals, one sentence each."""
+    reasons: tuple[Reason, ...] = ()
+    """What speaks against numbers that are made of these signals; each is a finding too."""
     recording_sha256: str
     """SHA-256 of the raw file."""
     recording_name: str

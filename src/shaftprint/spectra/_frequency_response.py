@@ -15,6 +15,7 @@ from shaftprint.arrays import (
     frozen_float,
 )
 from shaftprint.errors import ResponseError
+from shaftprint.reasons import Reason
 from shaftprint.spectra._response_covariance import weight_change
 
 
@@ -62,6 +63,8 @@ class FrequencyResponse:
     """Time for which a speed value is held [s]."""
     pick_up_delay_s: float = 0.0
     """Delay of the speed output behind the true speed [s]."""
+    reasons: tuple[Reason, ...] = ()
+    """What speaks against the response: what was found on the signals and lines that it was made of."""
 
     def __post_init__(self) -> None:
         """Check shapes and make all arrays read-only.

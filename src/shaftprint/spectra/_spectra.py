@@ -133,6 +133,7 @@ def estimate_spectra(
             averaging_s=sensor.averaging_s,
             hold_s=sensor.hold_s,
             pick_up_delay_s=sensor.delay_s,
+            reasons=signals.reasons,
         ),
         windows=tuple(line.window for line in measurements),
         signal_to_noise=ratios,

@@ -31,8 +31,9 @@ class Requirements:
     largest_std: float = 0.1
     """A number is trusted where its standard deviation is at most this share of its value, or of the width between its
     bounds where it may have either sign."""
-    largest_prior_share: float = 0.9
-    """A number with a larger share of the standard deviation that it had before the test was not measured by it."""
+    largest_prior_share: float = 0.7
+    """A number with a larger share of the standard deviation that it had before the test is assumed, not found: at 0.7
+    half of what is known of it, counted in reciprocal variances, is from before."""
 
     def __post_init__(self) -> None:
         """Check the limits.

@@ -1,7 +1,7 @@
-"""Which numbers of a fit may be trusted, and why the others may not."""
+"""Which numbers of a fit are known well enough to be used, and why the others are not: the one rule."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from shaftprint.identify.fit import Estimate, Identification
 from shaftprint.identify.judgement._phrases import number
@@ -9,26 +9,33 @@ from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.identify.uncertainty import Interval, Profile
 from shaftprint.normal import NORMAL_95
 
+WHOLE_PERCENT = 100.0
+# Physical values that are a parameter times a factor of the working point: what was assumed of one is of the other.
+MULTIPLES = {"I_up": "tau_up", "I_dn": "tau_dn", "I": "tau_n"}
 
-def trusted_numbers(
-    identification: Identification, profile: Profile | None, requirements: Requirements
-) -> tuple[tuple[str, ...], dict[str, str]]:
-    """Return the names of the parameters and combinations that may be trusted, and of the others why they may not.
+
+def doubts_of(
+    identification: Identification,
+    numbers: Sequence[Estimate],
+    profile: Profile | None,
+    requirements: Requirements,
+) -> dict[str, str]:
+    """Return, by name, why numbers are not known well enough to be used; nothing of those that are.
 
     Parameters
     ----------
+    numbers
+        Parameters, combinations and what else was made of them.
     profile
         Profile likelihood of the fit; its intervals are then asked instead of the standard deviations.
     """
     intervals = {} if profile is None else profile.intervals
-    reasons = {
+    doubts = {
         estimate.name: _doubt(identification, estimate, intervals.get(estimate.name), requirements)
-        for estimate in (*identification.parameters, *identification.combinations)
+        for estimate in numbers
     }
-    return (
-        tuple(name for name, reason in reasons.items() if not reason),
-        {name: reason for name, reason in reasons.items() if reason},
-    )
+    doubts |= {name: doubts.get(of, "") for name, of in MULTIPLES.items() if name in doubts and not doubts[name]}
+    return {name: doubt for name, doubt in doubts.items() if doubt}
 
 
 def _doubt(
@@ -46,8 +53,8 @@ def _doubt(
         return "the data say nothing about it"
     prior = identification.settings.priors.get(estimate.name)
     if prior is not None and std > requirements.largest_prior_share * prior.std:
-        left = min(100.0 * std / prior.std, 100.0)
-        return f"it was known beforehand and hardly measured: {left:.0f} % of that deviation is left"
+        rest = min(100.0 * std / prior.std, 100.0)
+        return f"it is assumed, not found: {rest:.0f} % of the deviation known before the test remains"
     size = _size(identification, estimate)
     if std > requirements.largest_std * size:
         return f"it is known to {100.0 * std / size:.0f} % only" if size > 0.0 else "it cannot be told from 0"
@@ -68,7 +75,12 @@ def _deviation(estimate: Estimate, interval: Interval | None) -> float:
 
 
 def _size(identification: Identification, estimate: Estimate) -> float:
-    """Return what a deviation is compared with: the value, or the range of a parameter that may have either sign."""
+    """Return what a deviation is compared with.
+
+    That is the value, the range of a parameter that may have either sign, or the whole of which a number is a share.
+    """
+    if estimate.unit == "%":
+        return WHOLE_PERCENT
     bounds: Mapping[str, tuple[float, float]] = {
         parameter.name: (parameter.lower, parameter.upper) for parameter in identification.objective.free_parameters
     }

@@ -1,22 +1,24 @@
-"""The verdict: may the numbers of a fit be used, and which of them.
+"""The verdict: which numbers of a fit may be used, and why the others may not.
 
-``assess`` is the whole rule. It asks in turn, and the first no decides:
+``assess`` is the whole rule. Every doubt is a ``Reason``: what the signals and responses bring with them, what the fit
+contradicts of the vessel file, and what it asks of the fit itself, where the first no decides:
 
 1. Are there enough good lines, and is there no gap where the loop decides on its stability?
 2. Does the structure explain the data within their noise?
 3. Is no unstable model better, and is the optimum the only one?
 4. Is the identified loop stable?
-5. Is any number known well enough to be used?
 
-What is yes but close is a caution, such as a small margin.
+A number is trusted where it hangs on none of the reasons and is itself known well enough. What is yes but close is a
+caution, such as a small margin.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit import Estimate, Identification
 from shaftprint.identify.judgement._cautions import cautions_of
+from shaftprint.identify.judgement._contradictions import contradicted_priors
 from shaftprint.identify.judgement._doubts import (
     better_when_unstable,
     gap_where_it_matters,
@@ -26,30 +28,41 @@ from shaftprint.identify.judgement._doubts import (
     unstable,
 )
 from shaftprint.identify.judgement._evidence import Evidence
+from shaftprint.identify.judgement._hanging import by_weight, clause_of
 from shaftprint.identify.judgement._phrases import listed, probability
 from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.identify.judgement._suspects import Suspect, suspects_of
-from shaftprint.identify.judgement._trust import trusted_numbers
+from shaftprint.identify.judgement._trust import doubts_of
 from shaftprint.identify.uncertainty import Profile
+from shaftprint.identify.uncertainty import profile as find_profile
+from shaftprint.reasons import Reason, ReasonKind
 
 if TYPE_CHECKING:
     from shaftprint.spectra import SignalToNoise
 
-NOT_BEFORE = "the fit as a whole is not trustworthy"
+# What is asked of a fit, in this order; what comes after the first no would only follow from it.
+QUESTIONS: tuple[tuple[ReasonKind, Callable[[Evidence], str]], ...] = (
+    ("too few data", too_few_good_data),
+    ("gap", gap_where_it_matters),
+    ("misfit", not_explained),
+    ("unstable", better_when_unstable),
+    ("not unique", not_unique),
+    ("unstable", unstable),
+)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Verdict:
-    """Whether the numbers of a fit may be used, and which."""
+    """Which numbers of a fit may be used, and why the others may not."""
 
     trustworthy: bool
-    """Whether the trusted numbers may be used."""
+    """Whether the trusted numbers may be used; there is one at least."""
     reason: str
     """Why or why not, in one sentence."""
     sentences: tuple[str, ...]
     """The whole verdict in words, the reason first."""
     trusted: tuple[str, ...]
-    """Names of the parameters and combinations that may be used."""
+    """Names of the numbers that may be used."""
     not_trusted: Mapping[str, str]
     """Why the others may not, by name."""
     loop: Literal["ample", "small", "unstable"] | None
@@ -58,6 +71,10 @@ class Verdict:
     """What a structure that does not explain the data may be missing."""
     cautions: tuple[str, ...] = field(default=())
     """What is no reason against the numbers, but close to one."""
+    reasons: tuple[Reason, ...] = ()
+    """What speaks against numbers, the most important first; empty where nothing but their own deviation does."""
+    assumptions: tuple[str, ...] = ()
+    """What the numbers rest on and no recording can show, in sentences."""
 
 
 def assess(
@@ -66,78 +83,98 @@ def assess(
     profile: Profile | None = None,
     signal_to_noise: "SignalToNoise | None" = None,
     requirements: Requirements | None = None,
+    reasons: Sequence[Reason] = (),
+    further: Sequence[Estimate] = (),
+    assumptions: Sequence[str] = (),
 ) -> Verdict:
-    """Return whether the numbers of a fit may be used, which of them, and why.
+    """Return which numbers of a fit may be used, and why the others may not.
 
     Parameters
     ----------
     identification
         The fit.
     profile
-        Its profile likelihood: its intervals are then asked instead of standard deviations, and whether all parameter
-        sets that the data allow are stable.
+        Its profile likelihood, whose intervals are asked; made here where it is not given and the fit is a likelihood.
     signal_to_noise
         Signal-to-noise ratios of the recording; without them a line is judged by its covariance alone.
     requirements
         What a fit must satisfy.
+    reasons
+        What else speaks against its numbers, such as a contradiction with the vessel file; what speaks against the
+        signals and responses comes with the responses.
+    further
+        Numbers that were made of the parameters, such as physical values, to be judged with them.
+    assumptions
+        What the numbers rest on and no recording can show.
     """
     evidence = Evidence.of(identification, profile, signal_to_noise, requirements or Requirements())
-    if reason := too_few_good_data(evidence):
-        return _refused(evidence, reason)
-    if reason := gap_where_it_matters(evidence):
-        return _refused(evidence, reason)
-    if reason := not_explained(evidence):
-        suspects = suspects_of(identification, rejected=evidence.requirements.lowest_p_value)
-        return _refused(evidence, reason, suspects=suspects)
-    if reason := better_when_unstable(evidence):
-        return _refused(evidence, reason)
-    if reason := not_unique(evidence):
-        return _refused(evidence, reason)
-    if reason := unstable(evidence):
-        return _refused(evidence, reason)
-    trusted, doubts = trusted_numbers(identification, profile, evidence.requirements)
-    if not trusted:
-        return _refused(evidence, f"No number is known well enough: {_worded(doubts)}.", doubts=doubts)
-    return _accepted(evidence, trusted, doubts)
-
-
-def _refused(
-    evidence: Evidence,
-    reason: str,
-    *,
-    suspects: tuple[Suspect, ...] = (),
-    doubts: Mapping[str, str] | None = None,
-) -> Verdict:
-    fit = evidence.identification
-    names = [estimate.name for estimate in (*fit.parameters, *fit.combinations)]
+    of_fit = _of_fit(evidence)
+    if not of_fit and profile is None and identification.is_likelihood:
+        evidence = replace(evidence, profile=find_profile(identification))
+    rejected = any(reason.kind == "misfit" for reason in of_fit)
+    suspects = suspects_of(identification, rejected=evidence.requirements.lowest_p_value) if rejected else ()
+    hints = tuple(Reason(kind="suspect", sentence=suspect.sentence) for suspect in suspects)
+    every = by_weight((*_of_data(identification), *reasons, *contradicted_priors(identification), *of_fit, *hints))
+    numbers = (*identification.parameters, *identification.combinations, *further)
+    own = doubts_of(identification, numbers, evidence.profile, evidence.requirements)
+    doubts = {number.name: clause_of(number.name, every) or own.get(number.name, "") for number in numbers}
+    trusted = tuple(name for name, doubt in doubts.items() if not doubt)
+    not_trusted = {name: doubt for name, doubt in doubts.items() if doubt}
+    usable = bool(trusted) and not of_fit
+    cautions = cautions_of(evidence) if usable else ()
+    headline = _headline(evidence, every, trusted=trusted, not_trusted=not_trusted, usable=usable)
     return Verdict(
-        trustworthy=False,
-        reason=reason,
-        sentences=(reason, *(suspect.sentence for suspect in suspects)),
-        trusted=(),
-        not_trusted=dict.fromkeys(names, NOT_BEFORE) if doubts is None else doubts,
-        loop=evidence.loop,
-        suspects=suspects,
-    )
-
-
-def _accepted(evidence: Evidence, trusted: tuple[str, ...], doubts: Mapping[str, str]) -> Verdict:
-    cautions = cautions_of(evidence)
-    reason = _why_trusted(evidence)
-    return Verdict(
-        trustworthy=True,
-        reason=reason,
-        sentences=(
-            reason,
-            f"Trusted: {listed(trusted)}.",
-            *([f"Not trusted: {_worded(doubts)}."] if doubts else []),
-            *cautions,
+        trustworthy=usable,
+        reason=headline,
+        sentences=tuple(
+            dict.fromkeys(
+                (
+                    headline,
+                    *(reason.sentence for reason in every),
+                    *_lists(trusted, not_trusted, whole=not usable and bool(of_fit)),
+                    *cautions,
+                )
+            )
         ),
         trusted=trusted,
-        not_trusted=doubts,
+        not_trusted=not_trusted,
         loop=evidence.loop,
+        suspects=suspects,
         cautions=cautions,
+        reasons=every,
+        assumptions=tuple(assumptions),
     )
+
+
+def _of_fit(evidence: Evidence) -> tuple[Reason, ...]:
+    """Return the first thing that speaks against a fit as a whole."""
+    for kind, question in QUESTIONS:
+        if sentence := question(evidence):
+            return (Reason(kind=kind, sentence=sentence),)
+    return ()
+
+
+def _of_data(identification: Identification) -> tuple[Reason, ...]:
+    """Return what speaks against the responses that were fitted."""
+    return tuple(reason for part in identification.experiments for reason in part.response.reasons)
+
+
+def _headline(
+    evidence: Evidence,
+    reasons: tuple[Reason, ...],
+    *,
+    trusted: tuple[str, ...],
+    not_trusted: Mapping[str, str],
+    usable: bool,
+) -> str:
+    """Return whether the numbers may be used, and why or why not."""
+    if reasons and not usable:
+        return reasons[0].sentence
+    if not trusted:
+        return f"No number is known well enough: {_worded(not_trusted)}."
+    if reasons:
+        return f"Part of the numbers can be trusted. {reasons[0].sentence}"
+    return _why_trusted(evidence)
 
 
 def _why_trusted(evidence: Evidence) -> str:
@@ -152,5 +189,16 @@ def _why_trusted(evidence: Evidence) -> str:
     return f"The fit can be trusted: {fit.objective.name} explains {evidence.good_lines} good lines {explains}{rest}."
 
 
+def _lists(trusted: tuple[str, ...], not_trusted: Mapping[str, str], *, whole: bool) -> list[str]:
+    """Return which numbers are trusted and which are not; nothing where the fit as a whole is not."""
+    if whole or not trusted:
+        return []
+    return [f"Trusted: {listed(trusted)}.", *([f"Not trusted: {_worded(not_trusted)}."] if not_trusted else [])]
+
+
 def _worded(doubts: Mapping[str, str]) -> str:
-    return "; ".join(f"{name}: {reason}" for name, reason in doubts.items())
+    """Return the names that share a doubt together, each doubt once."""
+    names: dict[str, list[str]] = {}
+    for name, doubt in doubts.items():
+        names.setdefault(doubt, []).append(name)
+    return "; ".join(f"{listed(group)}: {doubt}" for doubt, group in names.items())

@@ -1,0 +1,77 @@
+"""What a test contradicts of the vessel file, and whether that speaks against the test or tells of the ship.
+
+A torque gauge that shows ``f`` times the torque makes the inertia behind it and the torque coefficient ``f`` times too
+large, both alike. A propeller that is fouled or bent changes the torque coefficient and not the inertia. So a torque
+coefficient that is off alone is a finding about the ship; off by the same factor as the inertia, it is the gauge.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from shaftprint.fingerprint._fingerprint import Quantity
+from shaftprint.reasons import Reason
+
+if TYPE_CHECKING:
+    from shaftprint.signals import WorkingPoint
+    from shaftprint.vessel import Vessel
+
+# So many standard deviations of all that is stated, the scale of the gauge included, are no chance.
+FAR = 3.5
+# The inertia agrees with the factor of the torque coefficient within so many standard deviations.
+ALIKE = 2.5
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Factor:
+    """What was found over what the vessel file expects."""
+
+    log: float
+    """Natural logarithm of the factor."""
+    std: float
+    """Its standard deviation: that of the measurement and of the expected value."""
+
+
+def contradictions(
+    physical: tuple[Quantity, ...], working_point: "WorkingPoint", vessel: "Vessel"
+) -> tuple[Reason, ...]:
+    """Return what a test contradicts of the vessel file so that its numbers are in doubt.
+
+    Parameters
+    ----------
+    physical
+        Physical values beside those of the vessel file.
+    working_point, vessel
+        Where the test was made, and what was tested.
+    """
+    named = {quantity.name: quantity for quantity in physical}
+    coefficient, inertia = (_factor(named.get(name)) for name in ("K_Q", "I_dn"))
+    if coefficient is None or inertia is None or abs(coefficient.log) <= FAR * coefficient.std:
+        return ()
+    apart = abs(inertia.log - coefficient.log)
+    nearer_to_it = apart < abs(inertia.log) and apart < ALIKE * math.hypot(inertia.std, coefficient.std)
+    if not nearer_to_it:
+        return ()
+    torque = working_point.shaft_torque_nm / vessel.working_point.shaft_torque_nm
+    return (
+        Reason(
+            kind="gauge scale",
+            where=vessel.sensors.shaft_torque.channel,
+            sentence=(
+                f"The scale of the torque gauge is in doubt: mean torque, K_Q and I_dn are {torque:.2f}, "
+                f"{math.exp(coefficient.log):.2f} and {math.exp(inertia.log):.2f} times what the vessel file expects; "
+                f"check scale_nm_per_unit of {vessel.sensors.shaft_torque.channel}. Another propeller changes both "
+                "too, fouling K_Q alone."
+            ),
+        ),
+    )
+
+
+def _factor(quantity: Quantity | None) -> _Factor | None:
+    """Return how far a number is from what was expected; None where nothing was, or it is not known."""
+    if quantity is None or not quantity.expected or not quantity.value > 0.0 or not math.isfinite(quantity.std):
+        return None
+    return _Factor(
+        log=math.log(quantity.value / quantity.expected),
+        std=math.hypot(quantity.std / quantity.value, (quantity.expected_std or 0.0) / quantity.expected),
+    )

@@ -1,0 +1,55 @@
+"""What was known before the test and the data contradict.
+
+With a prior ``m +/- p`` the estimate ``x +/- s`` lies between the prior and what the data alone say. Its distance from
+the prior has the variance ``p^2 - s^2`` where both are right, since ``x`` is the best mean of both.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from shaftprint.identify.fit import Estimate, Identification
+from shaftprint.identify.judgement._phrases import number
+from shaftprint.reasons import Reason, ReasonKind
+
+# So many standard deviations from what was known are no chance: once in 2000 tests.
+PULLED = 3.5
+# A prior that the data hardly sharpen leaves nothing to divide by: the rest is rounding and curvature.
+LEAST_SHARE = 0.1
+# Parameters that say what a sensor is off by; without a prior they are expected at their nominal value, exactly.
+NOMINAL = {"c_set": 1.0}
+KINDS: dict[str, ReasonKind] = {"t_gauge": "gauge latency", "c_set": "set-point scale"}
+
+
+def contradicted_priors(identification: Identification) -> tuple[Reason, ...]:
+    """Return a reason for each parameter that the data pull from what was known of it by more than 3.5 deviations."""
+    return tuple(_pulled(identification))
+
+
+def _pulled(identification: Identification) -> Iterator[Reason]:
+    priors = identification.settings.priors
+    for estimate in identification.parameters:
+        if estimate.name in priors:
+            prior = priors[estimate.name]
+            spread = np.sqrt(max(prior.std**2 - estimate.std**2, (LEAST_SHARE * prior.std) ** 2))
+            known = f"{number(prior.mean, estimate.unit)} +/- {number(prior.std, estimate.unit, digits=2)}"
+            distance = abs(estimate.value - prior.mean) / spread
+        elif estimate.name in NOMINAL and estimate.std > 0.0:
+            known = number(NOMINAL[estimate.name], estimate.unit)
+            distance = abs(estimate.value - NOMINAL[estimate.name]) / estimate.std
+        else:
+            continue
+        if distance > PULLED:
+            yield _reason(estimate, known, float(distance))
+
+
+def _reason(estimate: Estimate, known: str, distance: float) -> Reason:
+    return Reason(
+        kind=KINDS.get(estimate.name, "prior"),
+        where=estimate.name,
+        sentence=(
+            f"The data contradict what was known of {estimate.name}: {known} was expected, "
+            f"{number(estimate.value, estimate.unit)} +/- {number(estimate.std, estimate.unit, digits=2)} is the "
+            f"compromise, {distance:.1f} standard deviations away; check it in the vessel file, and what else moves it."
+        ),
+    )

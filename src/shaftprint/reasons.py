@@ -1,0 +1,36 @@
+"""Why numbers may not be trusted: one noun that every room can give, from the raw channel to the fit."""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+ReasonKind: TypeAlias = Literal[
+    "recording clock",
+    "channel clock",
+    "clipping",
+    "gauge steadiness",
+    "gauge scale",
+    "set-point scale",
+    "gauge latency",
+    "prior",
+    "gear ratio",
+    "misfit",
+    "suspect",
+    "too few data",
+    "gap",
+    "unstable",
+    "not unique",
+    "lines left out",
+]
+"""What is in doubt. Which numbers hang on it says the table of the room ``identify``."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Reason:
+    """Why some numbers may not be trusted."""
+
+    kind: ReasonKind
+    """What is in doubt."""
+    sentence: str
+    """What was expected, what was found and what to do, in one sentence."""
+    where: str = ""
+    """Channel, line or parameter concerned; empty where it is the whole recording or fit."""
