@@ -220,6 +220,9 @@ def test_offset_and_gap_leave_the_estimates_where_they_are(lag):
     assert found.value("k") == pytest.approx(K, rel=0.1)
     with pytest.raises(IdentificationError, match="to no frequency response"):
         _ = found.response
+    verdict = assess(found)
+    assert f"LAG explains 1 record of 294 s (FitPercent {found.fit_percent['y']:.1f} %) within" in verdict.reason
+    assert "lines" not in verdict.reason
 
 
 def test_stated_uncertainty_is_the_scatter_of_two_hundred_tests(lag):
@@ -384,6 +387,7 @@ def test_all_machinery_of_a_fit_takes_mixed_terms(lag, mixed):
     verdict = assess(found, profile=profile(found))
     assert verdict.trustworthy
     assert set(verdict.trusted) == {"k", "T"}
+    assert "explains 6 good lines and 2 records of 200 s (FitPercent " in verdict.reason
     intervals = profile(found).intervals
     for estimate in found.parameters:
         interval = intervals[estimate.name]

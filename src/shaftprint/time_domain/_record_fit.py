@@ -37,6 +37,11 @@ class RecordFit(FittedTerm):
         """What messages call the data."""
         return f"record {self.record.name}"
 
+    @property
+    def seconds(self) -> float:
+        """Length of the used samples [s]."""
+        return int(self.record.used.sum()) / self.record.rate_hz
+
 
 def record_fit(
     structure: Structure,

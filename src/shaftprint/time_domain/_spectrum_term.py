@@ -58,6 +58,11 @@ class FittedSpectrum(FittedTerm):
         """What messages call the data."""
         return f"lines of record {self.spectrum.record.name}"
 
+    @property
+    def seconds(self) -> float:
+        """Length of the used samples [s]."""
+        return int(self.spectrum.record.used.sum()) / self.spectrum.record.rate_hz
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SpectrumTerm(Term):

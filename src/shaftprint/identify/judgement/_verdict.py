@@ -186,7 +186,22 @@ def _why_trusted(evidence: Evidence) -> str:
         if evidence.loop is None
         else f", the optimum is the only one, and the loop is stable with {evidence.loop} margins"
     )
-    return f"The fit can be trusted: {fit.objective.name} explains {evidence.good_lines} good lines {explains}{rest}."
+    return f"The fit can be trusted: {fit.objective.name} explains {_data_words(evidence)} {explains}{rest}."
+
+
+def _data_words(evidence: Evidence) -> str:
+    """Return what was fitted: good lines, and records with their length and how well they are met."""
+    records = [part for part in evidence.identification.parts if part.seconds > 0.0]
+    percents = [percent for part in records for percent in part.fit_percent.values()]
+    words = []
+    if evidence.good_lines or not records:
+        words.append(f"{evidence.good_lines} good lines")
+    if records:
+        count = "1 record" if len(records) == 1 else f"{len(records)} records"
+        low, high = min(percents), max(percents)
+        percent = f"{low:.1f}" if low == high else f"{low:.1f} to {high:.1f}"
+        words.append(f"{count} of {sum(part.seconds for part in records):.0f} s (FitPercent {percent} %)")
+    return listed(words)
 
 
 def _lists(trusted: tuple[str, ...], not_trusted: Mapping[str, str], *, whole: bool) -> list[str]:

@@ -32,6 +32,11 @@ class Part(FittedTerm):
         """What messages call the data."""
         return f"response of {', '.join(self.structure.outputs)}"
 
+    @property
+    def seconds(self) -> float:
+        """Length of a record; 0 of a frequency response."""
+        return 0.0
+
 
 def channels_of(response: FrequencyResponse) -> ComplexArray:
     """Return the response of every channel, outputs slowest, shape (channels, lines)."""

@@ -44,6 +44,11 @@ class FittedTerm(ABC):
     def name(self) -> str:
         """What messages call the data."""
 
+    @property
+    @abstractmethod
+    def seconds(self) -> float:
+        """Length of a record, gaps apart [s]; 0 of a frequency response."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class TermTest:
