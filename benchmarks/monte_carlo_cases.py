@@ -165,7 +165,7 @@ def cases() -> dict[str, Case]:
     found += [_case(name, FIVE, TUG, held={"v": 1.0}) for name in ("INITIAL", "BENCHMARK")]
     found.append(_case("GAUGE-CORE", GAUGE, TUG, known=KNOWN))
     found += [_case(name, GAUGE, TUG, known=WELL_KNOWN, label=WELL) for name in ("GAUGE-CLOSED", "GAUGE-INFLOW")]
-    found += [_case(name, GAUGE, TUG, known=KNOWN) for name in ("GAUGE-ECU", "GOVERNOR")]
+    found.append(_case("GAUGE-ECU", GAUGE, TUG, known=KNOWN))
     # Without the set point only the difference of t_d and t_rack is seen.
     found.append(_case("ENGINE", GAUGE, TUG, known=KNOWN, held={"t_rack": 0.0}))
     return {case.name: case for case in found}

@@ -36,7 +36,6 @@ def test_which_structures_are_without_delays(exported):
         "INITIAL",
         "BENCHMARK",
         "GAUGE-CORE",
-        "GOVERNOR",
         "FREE-CORE",
         "FREE-SHIP",
     }

@@ -12,7 +12,7 @@ from shaftprint.cli._progress import Steps
 from shaftprint.clocks import logger_clocks
 from shaftprint.errors import StructureError
 from shaftprint.fingerprint import Fingerprint, clock_findings, clock_influences, take_fingerprint
-from shaftprint.identify import Identification, Prior, Settings, identify, priors_from_vessel
+from shaftprint.identify import Identification, Prior, Settings, has_measured_inputs, identify, priors_from_vessel
 from shaftprint.models import Structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import Mode, Signals, prepare_signals
@@ -82,7 +82,9 @@ def responses_of(response: FrequencyResponse, *, set_point_latency_s: float = 0.
 
 
 def response_of(structure: Structure, responses: Sequence[FrequencyResponse]) -> FrequencyResponse:
-    """Return the response that a structure describes, by the names of its input and outputs.
+    """Return the response that a structure describes, by the names of its inputs and outputs.
+
+    Further inputs of a structure may have been measured as outputs of the response, such as the speed of GOVERNOR.
 
     Raises
     ------
@@ -90,7 +92,8 @@ def response_of(structure: Structure, responses: Sequence[FrequencyResponse]) ->
         If there is none.
     """
     for response in responses:
-        if structure.inputs == response.inputs and set(structure.outputs) <= set(response.outputs):
+        alike = structure.inputs == response.inputs and set(structure.outputs) <= set(response.outputs)
+        if alike or has_measured_inputs(structure, response):
             return response
     there = "; ".join(f"{', '.join(r.inputs)} to {', '.join(r.outputs)}" for r in responses)
     raise StructureError(

@@ -65,6 +65,7 @@ from shaftprint.models._shipped import shipped_structure
 from shaftprint.models._small_signal import SmallSignal
 from shaftprint.models._step_response import step_response
 from shaftprint.models._structure import Structure
+from shaftprint.models._tabulated import Tabulated
 from shaftprint.models._tie import Tie
 from shaftprint.models._two_masses import two_mass_line
 
@@ -110,6 +111,7 @@ __all__ = [
     "SmallSignal",
     "SpeedSensor",
     "Structure",
+    "Tabulated",
     "Tie",
     "TorqueBalance",
     "ZeroOrderHold",

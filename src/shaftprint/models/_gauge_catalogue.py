@@ -127,9 +127,18 @@ def gauge_ecu() -> Structure:
 
 
 def governor() -> Structure:
-    """Return the governor alone, ``X / e = C exp(-s t_rack)``, with ``e`` formed from the set point that it has."""
+    """Return the governor alone, ``X`` from ``n_set`` and ``n``.
+
+    ``X = C exp(-s t_rack) (c_set exp(-s t_sp) n_set - n)``: the set point reaches it late, the speed does not. Engine
+    and line are not in it; a fit takes the speed that was measured.
+    """
     rack = PIGovernor(GAUGE_K_P, GAUGE_K_I) * Delay(T_RACK)
-    return Structure(name="GOVERNOR", title="governor alone, fuel rack logged", input="e", outputs={"X": rack})
+    return Structure(
+        name="GOVERNOR",
+        title="governor alone, fuel rack logged",
+        inputs=("n_set", "n"),
+        outputs={"X": {"n_set": rack * Delay(T_SP) * Gain(C_SET), "n": -rack}},
+    )
 
 
 def engine() -> Structure:

@@ -30,6 +30,7 @@ from shaftprint.spectra._harmonics import Harmonics
 from shaftprint.spectra._line_fit import LineFit, SineMethod, WindowSamples
 from shaftprint.spectra._line_responses import NOT_MEASURED_STD, measured
 from shaftprint.spectra._load_drift import LoadDrift
+from shaftprint.spectra._measured_inputs import with_measured_inputs
 from shaftprint.spectra._open_loop import governor_and_engine, open_loop
 from shaftprint.spectra._periodic import Periodic
 from shaftprint.spectra._plain_covariance import circular_covariance, coherence_covariance
@@ -66,4 +67,5 @@ __all__ = [
     "plant_from_closed_loop",
     "response_from_arrays",
     "whole_period_window",
+    "with_measured_inputs",
 ]

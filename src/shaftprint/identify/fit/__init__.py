@@ -4,6 +4,7 @@ from shaftprint.identify.fit._covariance import estimate_covariance, known_covar
 from shaftprint.identify.fit._fit_test import FitTest
 from shaftprint.identify.fit._identification import Cluster, Estimate, Identification
 from shaftprint.identify.fit._identify import identify, identify_jointly
+from shaftprint.identify.fit._measured_inputs import has_measured_inputs
 from shaftprint.identify.fit._optima import SAME_COST, SAME_PLACE, WITHIN, Optimum, is_passed_over, is_rival, optima_of
 from shaftprint.identify.fit._pseudo_inverse import LOST_SHARE, PseudoInverse
 from shaftprint.identify.fit._refit import Refits, refit, refit_redrawn
@@ -26,6 +27,7 @@ __all__ = [
     "Refits",
     "Scan",
     "estimate_covariance",
+    "has_measured_inputs",
     "identify",
     "identify_jointly",
     "is_passed_over",

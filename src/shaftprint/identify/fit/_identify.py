@@ -9,6 +9,7 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._covariance import estimate_covariance
 from shaftprint.identify.fit._fit_test import tested_fit
 from shaftprint.identify.fit._identification import Cluster, Identification
+from shaftprint.identify.fit._measured_inputs import along_the_test, has_measured_inputs
 from shaftprint.identify.fit._sensor import with_sensor
 from shaftprint.identify.likelihood import Objective, Source, Term, build_joint_objective
 from shaftprint.identify.search import Descent, Settings, polish, search
@@ -21,6 +22,10 @@ SAME_COST = 1e-3
 SAME_COST_OF_NOTHING = 1e-9
 # ... and no parameter differs by more than this share of the width between its bounds.
 SAME_PLACE = 0.02
+# The noise of measured inputs is carried through the fit before, until no parameter moves by more than this share of
+# its standard deviation; the weights change little, so that a few fits are enough.
+STAYS = 0.02
+MOST_FITS = 8
 
 
 def identify(
@@ -37,6 +42,8 @@ def identify(
     ----------
     structure
         Structure with the response's input and outputs. Held parameters of a speed sensor take the response's values.
+        Further inputs of the structure may be outputs of the response: they are taken as measured, such as the speed
+        that a governor has.
     response
         Data with covariance.
     rng
@@ -51,7 +58,28 @@ def identify(
     IdentificationError
         If structure and response do not fit together, there are too few data, or no start reached a stable model.
     """
-    return _identified([(structure, response)], rng, settings or Settings(), lines)
+    chosen = settings or Settings()
+    if has_measured_inputs(structure, response):
+        return _identified_along(structure, response, rng, chosen, lines)
+    return _identified([(structure, response)], rng, chosen, lines)
+
+
+def _identified_along(
+    structure: Structure,
+    response: FrequencyResponse,
+    rng: np.random.Generator,
+    settings: Settings,
+    lines: Sequence[str] | None,
+) -> Identification:
+    """Fit a structure of which some inputs were measured, with their noise through the model that comes out."""
+    values = structure.vector({})
+    for _ in range(MOST_FITS):
+        fit = _identified([along_the_test(structure, response, values)], rng, settings, lines)
+        moved = np.abs(fit.values - values)[list(fit.objective.free)]
+        values = fit.values
+        if np.all(moved <= STAYS * np.sqrt(np.diagonal(fit.covariance))):
+            break
+    return fit
 
 
 def identify_jointly(
