@@ -45,6 +45,7 @@ _ROOMS = (
     "nonlinearity",
     "normal",
     "propeller",
+    "publication",
     "recording",
     "report",
     "settings",

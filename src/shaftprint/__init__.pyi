@@ -11,6 +11,7 @@ from shaftprint import models as models
 from shaftprint import nonlinearity as nonlinearity
 from shaftprint import normal as normal
 from shaftprint import propeller as propeller
+from shaftprint import publication as publication
 from shaftprint import recording as recording
 from shaftprint import report as report
 from shaftprint import settings as settings

@@ -13,6 +13,7 @@
     ├── IdentificationError   a fit that cannot be set up or has no acceptable result
     ├── ValidationError       a model that cannot be held against a record
     ├── FingerprintError      a fingerprint file that cannot be read or compared
+    ├── PublicationError      a folder into which results cannot be put, or not as a whole
     ├── ReportError           a report that cannot be written
     └── ExportError           a model that cannot be written for another program
 
@@ -62,6 +63,10 @@ class ValidationError(ShaftprintError):
 
 class FingerprintError(ShaftprintError):
     """A fingerprint file cannot be read or compared."""
+
+
+class PublicationError(ShaftprintError):
+    """Results cannot be put into a folder, or not as a whole."""
 
 
 class ReportError(ShaftprintError):

@@ -1,17 +1,24 @@
 """Files that are written whole or not at all, names for them, and text out of those that may be damaged."""
 
 import contextlib
+import errno
+import os
 import re
 import secrets
 from collections.abc import Iterator
 from pathlib import Path
+
+# Names may have 255 bytes, a letter up to four.
+_LONGEST_BEGINNING = 32
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 @contextlib.contextmanager
 def written_whole(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
     """Give a temporary path beside ``path``; rename it to ``path`` when the block ends without error.
 
-    When the block raises, the temporary file is deleted and ``path`` is left as it was.
+    When the block raises, the temporary file is deleted and ``path`` is left as it was. The content is on the disk
+    before the name is.
 
     Parameters
     ----------
@@ -24,15 +31,31 @@ def written_whole(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
     ------
     FileExistsError
         If ``path`` exists, before or after the block, and ``overwrite`` is false.
+    OSError
+        If the file cannot be written; the error names ``path``.
     """
-    _expect_free(path, overwrite=overwrite)
-    part = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
-    try:
-        yield part
+    part = path.with_name(f".{path.name[:_LONGEST_BEGINNING]}.{secrets.token_hex(4)}.part")
+    with naming(path, instead_of=part):
         _expect_free(path, overwrite=overwrite)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
+        try:
+            yield part
+            _expect_free(path, overwrite=overwrite)
+            _sync(part)
+            part.replace(path)
+        finally:
+            part.unlink(missing_ok=True)
+
+
+@contextlib.contextmanager
+def naming(path: Path, *, instead_of: Path | None = None) -> Iterator[None]:
+    """Let errors of the system name ``path``: those of a full disk, which name nothing, and of a temporary file."""
+    try:
+        yield
+    except OSError as error:
+        is_full = error.errno in _FULL and error.filename is None
+        if is_full or (error.filename is not None and error.filename in _spellings(instead_of)):
+            error.filename, error.filename2 = str(path), None
+        raise
 
 
 def plain_name(text: str) -> str:
@@ -43,6 +66,16 @@ def plain_name(text: str) -> str:
 def printable(text: str) -> str:
     """Return text with a question mark for every character that ends lines, moves the cursor or is not to be seen."""
     return "".join(letter if letter.isprintable() else "?" for letter in text)
+
+
+def _spellings(path: Path | None) -> tuple[object, ...]:
+    return () if path is None else (path, str(path), os.fsencode(path))
+
+
+def _sync(path: Path) -> None:
+    # Windows syncs only what is open for writing
+    with path.open("r+b") as file:
+        os.fsync(file.fileno())
 
 
 def _expect_free(path: Path, *, overwrite: bool) -> None:

@@ -17,6 +17,7 @@ from pydantic_core import ErrorDetails
 
 from shaftprint.errors import SettingsError
 from shaftprint.files import written_whole
+from shaftprint.publication import complete
 
 # Larger than anything on a ship in any unit, and small enough that products and squares stay numbers.
 _LARGEST = 1e30
@@ -72,6 +73,7 @@ def read_settings(path: str | Path, model_class: type[_Model]) -> _Model:
         and what was found.
     """
     path = Path(path)
+    complete(path.parent)
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:

@@ -4,15 +4,15 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._fingerprint_file import FINGERPRINT, REPORT, fingerprint_at
 from shaftprint.cli._numbers import plain
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._tables import print_table
-from shaftprint.fingerprint import Fingerprint, read_fingerprint
+from shaftprint.fingerprint import Fingerprint
 from shaftprint.report import Difference, change_in_words, differences, render_comparison
 
 FEWEST = 2
-REPORT = "index.html"
 
 
 @click.command("compare")
@@ -66,14 +66,13 @@ def _named(places: tuple[Path, ...], names: tuple[str, ...]) -> dict[str, Finger
     called = names or tuple(_name(place) for place in places)
     if len(set(called)) < len(called):
         raise click.UsageError(f"expected different names, found {', '.join(called)}; tell them apart with --name.")
-    files = (place / "fingerprint.json" if place.is_dir() else place for place in places)
-    return {name: read_fingerprint(file) for name, file in zip(called, files, strict=True)}
+    return {name: fingerprint_at(place) for name, place in zip(called, places, strict=True)}
 
 
 def _name(place: Path) -> str:
     """Return the name of a folder, or that of a file; of ``fingerprint.json`` that of the folder around it."""
     whole = place.resolve()
-    return whole.parent.name if whole.name == "fingerprint.json" else whole.name.removesuffix(".json")
+    return whole.parent.name if whole.name == FINGERPRINT else whole.name.removesuffix(".json")
 
 
 def _print_tables(first: str, name: str, found: tuple[Difference, ...]) -> None:

@@ -5,9 +5,8 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._exported import file_to_write, fingerprint_argument, force_option
+from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
-from shaftprint.cli._simulated_model import fingerprint_at
-from shaftprint.errors import FingerprintError
 from shaftprint.export import exported_model, write_json
 
 
@@ -27,8 +26,6 @@ def command(fingerprint: Path, structure: TypedName | None, output: Path | None,
     programs that know nothing of shaftprint; what is not known is null.
     """
     found = fingerprint_at(fingerprint)
-    if found is None:
-        raise FingerprintError(f"{fingerprint}: expected a fingerprint, found none.")
     chosen = structure_to_use(structure, found)
     path = file_to_write(output, exported_model(found, of=chosen), ".model.json", force=force)
     click.echo(write_json(found, path, of=chosen, overwrite=force))

@@ -13,10 +13,10 @@ from shaftprint.cli._exported import (
     set_option,
     structure_option,
 )
+from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._inputs import NAMES, load_trial
 from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.cli._simulated_model import fingerprint_at
 from shaftprint.export import write_matlab
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
@@ -74,8 +74,7 @@ def _measured(
     fingerprint: Path, structure: Structure, recording: Path, *, vessel: str, campaign: str, no_progress: bool
 ) -> FrequencyResponse:
     """Return the measured response that the structure describes, prepared as for the fingerprint."""
-    found = fingerprint_at(fingerprint)
-    mode = "shaftprint" if found is None else found.conditions.mode
+    mode = fingerprint_at(fingerprint).conditions.mode
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, load_trial(vessel, campaign), mode=mode, steps=steps)
     return response_of(structure, measurement.responses)

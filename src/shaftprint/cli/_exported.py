@@ -5,10 +5,10 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._known_values import named_value
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
-from shaftprint.cli._simulated_model import LIMITED_HELP, fingerprint_at, simulated_model
-from shaftprint.errors import FingerprintError
+from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
 from shaftprint.export import ExportedModel
 from shaftprint.files import plain_name
 
@@ -40,8 +40,6 @@ def model_to_export(fingerprint: Path, structure: TypedName | None, given: Mappi
         If there is no such structure or parameter, or a value is missing.
     """
     found = fingerprint_at(fingerprint)
-    if found is None:
-        raise FingerprintError(f"{fingerprint}: expected a fingerprint, found none.")
     model = simulated_model(structure, found, given)
     return ExportedModel(
         title=found.conditions.vessel,

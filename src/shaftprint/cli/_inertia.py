@@ -5,8 +5,9 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._report_tables import on_terminal, print_report_table
-from shaftprint.fingerprint import inertia_beside, read_fingerprint
+from shaftprint.fingerprint import inertia_beside
 from shaftprint.report import (
     expected_inertia_table,
     inertia_budget_table,
@@ -72,7 +73,7 @@ def command(vessel: str, found: Path | None, drawing: Path | None, force: bool) 
 def _expected(ship: Vessel, found: Path | None) -> tuple[ExpectedInertia, tuple[Beside, ...]]:
     if found is None:
         return expected_inertia(ship), ()
-    fingerprint = read_fingerprint(found / "fingerprint.json" if found.is_dir() else found)
+    fingerprint = fingerprint_at(found)
     if fingerprint.conditions.vessel != ship.name:
         click.echo(f"Mind: the fingerprint is of {fingerprint.conditions.vessel}, the vessel file of {ship.name}.\n")
     return inertia_beside(fingerprint, ship)

@@ -1,12 +1,12 @@
 """A folder of results that is written whole or not at all."""
 
 import contextlib
-import secrets
-import shutil
 from collections.abc import Iterator
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 import click
+
+from shaftprint.publication import CONTROL_NAMES, is_inner, publish, staged
 
 force_option = click.option(
     "--force",
@@ -22,7 +22,7 @@ _NAMED = "# shaftprint "
 
 @contextlib.contextmanager
 def output_folder(path: Path, *, of: str, force: bool) -> Iterator[Path]:
-    """Give a temporary folder beside ``path``; move its files into ``path`` when the block ends without error.
+    """Give a hidden folder in ``path``; when the block ends without error, its files appear in ``path`` as a whole.
 
     Files of an earlier run of the same command are replaced, or deleted where this run has none of the name; files of
     others and of other commands, which may be what this one reads, are left alone. When the block raises, ``path``
@@ -41,30 +41,26 @@ def output_folder(path: Path, *, of: str, force: bool) -> Iterator[Path]:
     ------
     click.ClickException
         If ``path`` is a file, or a folder with files that are not of this command and ``force`` is false.
+    PublicationError
+        If another command writes there, or the results cannot be put in place.
     """
-    _expect_ours(path, of, force=force)
-    path = path.resolve()
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
-    part.mkdir()
-    try:
-        yield part
-        _move_in(part, path, of)
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
-
-
-def _expect_ours(path: Path, of: str, *, force: bool) -> None:
     if not path.resolve().name:
         raise click.ClickException(f"{path}: expected a folder below the root of the disk; add a name.")
     if path.exists() and not path.is_dir():
         raise click.ClickException(f"{path}: expected a folder for the results, found a file; choose another name.")
-    if force or not path.is_dir():
-        return
+    with staged(path) as staging:
+        _expect_ours(path, of, force=force)
+        yield staging
+        _mark(staging, of)
+        command, earlier = _earlier(path)
+        publish(staging, discards=earlier if command == of else ())
+
+
+def _expect_ours(path: Path, of: str, *, force: bool) -> None:
     other, _ = _earlier(path)
-    if other == of:
+    if force or other == of:
         return
-    names = sorted(entry.name for entry in path.iterdir() if entry.name != MARKER)
+    names = sorted(entry.name for entry in path.iterdir() if entry.name not in (MARKER, *CONTROL_NAMES))
     if names:
         found = f"{names[0]}{f' and {len(names) - 1} more' if len(names) > 1 else ''}"
         raise click.ClickException(
@@ -74,26 +70,18 @@ def _expect_ours(path: Path, of: str, *, force: bool) -> None:
         )
 
 
-def _move_in(part: Path, path: Path, of: str) -> None:
-    command, earlier = _earlier(path)
-    written = sorted(file.relative_to(part) for file in part.rglob("*") if file.is_file())
-    path.mkdir(exist_ok=True)
-    for name in written:
-        (path / name).parent.mkdir(parents=True, exist_ok=True)
-        (part / name).replace(path / name)
-    for old in earlier:
-        if command == of and old not in written:
-            (path / old).unlink(missing_ok=True)
-    marker = "".join(f"{name.as_posix()}\n" for name in written)
-    (path / MARKER).write_text(f"{_NAMED}{of}\n{marker}", encoding="utf-8")
+def _mark(staging: Path, of: str) -> None:
+    """Write the list of the results and the name of their command, which appears with them."""
+    written = sorted(file.relative_to(staging).as_posix() for file in staging.rglob("*") if file.is_file())
+    names = "".join(f"{name}\n" for name in written)
+    (staging / MARKER).write_text(f"{_NAMED}{of}\n{names}", encoding="utf-8")
 
 
-def _earlier(path: Path) -> tuple[str | None, list[Path]]:
+def _earlier(path: Path) -> tuple[str | None, list[PurePosixPath]]:
     """Return which command wrote the results in a folder, and its files; none that would lie outside of the folder."""
     marker = path / MARKER
     text = marker.read_text(encoding="utf-8", errors="replace") if marker.is_file() else ""
     first, *lines = text.splitlines() or [""]
     if not first.startswith(_NAMED):
         return None, []
-    names = [Path(line) for line in lines]
-    return first.removeprefix(_NAMED), [name for name in names if not name.is_absolute() and ".." not in name.parts]
+    return first.removeprefix(_NAMED), [PurePosixPath(line) for line in lines if is_inner(line)]

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from shaftprint.cli._chain import Measurement
+from shaftprint.cli._fingerprint_file import FINGERPRINT, REPORT
 from shaftprint.cli._inputs import Trial
 from shaftprint.cli._progress import Steps
 from shaftprint.fingerprint import Fingerprint, write_fingerprint
@@ -12,9 +13,6 @@ from shaftprint.recording import read_recording
 from shaftprint.report import ThesisMode, render_report
 from shaftprint.spectra import ExactBin, FrequencyResponse, HighestPeak, estimate_response
 from shaftprint.validation import Validation
-
-FINGERPRINT = "fingerprint.json"
-REPORT = "index.html"
 
 
 def write_results(

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._fingerprint_tables import print_fingerprint
-from shaftprint.fingerprint import read_fingerprint
 
 
 @click.command("show")
@@ -15,5 +15,4 @@ def command(fingerprint: Path) -> None:
 
     FINGERPRINT is the JSON file, or the folder in which identify or demo has put it.
     """
-    place = fingerprint / "fingerprint.json" if fingerprint.is_dir() else fingerprint
-    print_fingerprint(read_fingerprint(place))
+    print_fingerprint(fingerprint_at(fingerprint))

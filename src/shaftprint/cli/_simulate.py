@@ -6,12 +6,13 @@ from pathlib import Path
 import click
 import numpy as np
 
+from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._inertia import picture
 from shaftprint.cli._inputs import NAMES
 from shaftprint.cli._known_values import named_value
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.cli._simulated_model import LIMITED_HELP, fingerprint_at, simulated_model
+from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
 from shaftprint.cli._simulated_set_point import Drive, Place, campaign_drive, file_drive, place_of
 from shaftprint.cli._simulation_run import Prediction, predicted, signals_of, write_signals
 from shaftprint.cli._simulation_tables import print_simulation
@@ -102,7 +103,7 @@ def command(
     parameters. A working point, of the fingerprint or a vessel file, turns deviations into rpm and N m.
     """
     _expect_free(output, figure, force=force)
-    found = fingerprint_at(fingerprint)
+    found = None if fingerprint is None else fingerprint_at(fingerprint)
     model = simulated_model(structure, found, dict(given))
     place = place_of(found, vessel, rpm_per_volt)
     drive = _drive(campaign, table, model.structure, place, hold=hold, span=span, rate_hz=rate_hz)

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 import click
 import numpy as np
@@ -10,7 +9,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.cli._own_structure import TypedName, chosen_structures, structure_to_use
 from shaftprint.errors import FingerprintError, StructureError
-from shaftprint.fingerprint import Fingerprint, read_fingerprint
+from shaftprint.fingerprint import Fingerprint
 from shaftprint.models import Structure
 
 LIMITED_HELP = "GAUGE-QUADRATIC, GAUGE-TORQUE, GAUGE-TORQUE-RATE and so on: GAUGE-CLOSED at large, with limits"
@@ -32,13 +31,6 @@ class SimulatedModel:
     """Their covariance, shape (uncertain, uncertain)."""
     not_known: tuple[str, ...]
     """Parameters of which the test said nothing: no band holds them."""
-
-
-def fingerprint_at(path: Path | None) -> Fingerprint | None:
-    """Return the fingerprint of a file, or of the folder with it; None where no path is given."""
-    if path is None:
-        return None
-    return read_fingerprint(path / "fingerprint.json" if path.is_dir() else path)
 
 
 def simulated_model(

@@ -7,6 +7,7 @@ import click
 import numpy as np
 
 from shaftprint.cli._chain import Measurement, fit, measure
+from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._fingerprint_model import fingerprint_model
 from shaftprint.cli._fit_options import FitOptions, fit_options, held_structures, settings_of, structures_of
 from shaftprint.cli._inputs import Trial, campaign_option, load_trial, vessel_option
@@ -15,7 +16,7 @@ from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to
 from shaftprint.cli._progress import Steps, no_progress_option, progress
 from shaftprint.cli._validation_results import write_validations
 from shaftprint.cli._validation_tables import print_compared_models, print_validation
-from shaftprint.fingerprint import Fingerprint, read_fingerprint
+from shaftprint.fingerprint import Fingerprint
 from shaftprint.models import Structure
 from shaftprint.validation import Model, identified_model, thesis_models, validate
 
@@ -78,7 +79,7 @@ def command(
     --record, --used, --prior, --free and --hold may be repeated.
     """
     trial = load_trial(vessel, campaign)
-    kept = None if fingerprint is None else read_fingerprint(_file(fingerprint))
+    kept = None if fingerprint is None else fingerprint_at(fingerprint)
     if kept is None:
         structures = structures_of([structure or DEFAULT_STRUCTURE], options)
     else:
@@ -124,7 +125,3 @@ def _model(
         return fingerprint_model(kept, structures[0], measurement.signals)
     settings = settings_of(structures, measurement, trial, options)
     return identified_model(fit(structures, measurement, settings=settings, seed=options.seed, steps=steps)[0])
-
-
-def _file(fingerprint: Path) -> Path:
-    return fingerprint / "fingerprint.json" if fingerprint.is_dir() else fingerprint

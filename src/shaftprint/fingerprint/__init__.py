@@ -20,6 +20,7 @@ from shaftprint.fingerprint._fingerprint import (
     Quality,
     Quantity,
     SourceFile,
+    fingerprint_sha256,
     read_fingerprint,
     write_fingerprint,
 )
@@ -41,6 +42,7 @@ __all__ = [
     "SourceFile",
     "clock_findings",
     "clock_influences",
+    "fingerprint_sha256",
     "identified_model",
     "inertia_beside",
     "margin_quantities",

@@ -1,5 +1,6 @@
 """The noun of the room: what is kept of one test, as a JSON record."""
 
+import hashlib
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,6 +13,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import FingerprintError
 from shaftprint.files import written_whole
 from shaftprint.identify import Budget, Prior, Verdict
+from shaftprint.publication import complete
 
 SCHEMA_VERSION: Final = 1
 
@@ -196,9 +198,19 @@ def write_fingerprint(fingerprint: Fingerprint, path: str | Path) -> None:
     place = Path(path)
     try:
         with written_whole(place, overwrite=True) as part:
-            part.write_text(fingerprint.model_dump_json(indent=2) + "\n", encoding="utf-8")
+            part.write_bytes(_content(fingerprint))
     except OSError as error:
         raise FingerprintError(f"{place}: the fingerprint cannot be written: {error}.") from None
+
+
+def fingerprint_sha256(fingerprint: Fingerprint) -> str:
+    """Return the SHA-256 of the file that ``write_fingerprint`` writes, hexadecimal."""
+    return hashlib.sha256(_content(fingerprint)).hexdigest()
+
+
+def _content(fingerprint: Fingerprint) -> bytes:
+    # bytes, not text: the same on every system
+    return (fingerprint.model_dump_json(indent=2) + "\n").encode()
 
 
 def read_fingerprint(path: str | Path) -> Fingerprint:
@@ -209,8 +221,11 @@ def read_fingerprint(path: str | Path) -> Fingerprint:
     FingerprintError
         If the file is missing, is no fingerprint, is of another schema, or has fields that are wrong; all of them are
         listed.
+    PublicationError
+        If its folder holds new results that cannot be put in place.
     """
     place = Path(path)
+    complete(place.parent)
     text = _fingerprint_text(place)
     try:
         return Fingerprint.model_validate_json(text)

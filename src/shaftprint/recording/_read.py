@@ -5,6 +5,7 @@ from pathlib import Path
 
 from shaftprint.errors import RecordingError
 from shaftprint.files import printable
+from shaftprint.publication import complete
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers import READERS, Reader, read_outside
 
@@ -29,6 +30,7 @@ def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **h
         read.
     """
     path = Path(path)
+    complete(path.parent)
     if path.is_dir():
         raise RecordingError(f"{path}: expected a logger file, found a folder; name the file in it.")
     if not path.is_file():

@@ -1,10 +1,10 @@
 """Page, figures and plots of a report, written whole or not at all."""
 
 import contextlib
-import secrets
-import shutil
 from collections.abc import Iterator
-from pathlib import Path
+from pathlib import Path, PurePosixPath
+
+from shaftprint.publication import publish, staged
 
 PAGE = "index.html"
 FIGURES = "figures"
@@ -14,10 +14,9 @@ FOLDERS = (FIGURES, PLOTS)
 
 @contextlib.contextmanager
 def report_written_whole(directory: Path, *, overwrite: bool) -> Iterator[Path]:
-    """Give a temporary folder; its page, figures and plots move into ``directory`` when the block ends without error.
+    """Give a hidden folder; its page, figures and plots become those of ``directory`` as a whole when the block ends.
 
-    Other files in ``directory`` are left alone. When the block raises, ``directory`` stays as it was. The page moves
-    last, so that there is never a page without its figures.
+    Other files in ``directory`` are left alone. When the block raises, ``directory`` stays as it was.
 
     Parameters
     ----------
@@ -30,28 +29,22 @@ def report_written_whole(directory: Path, *, overwrite: bool) -> Iterator[Path]:
     ------
     FileExistsError
         If there is a page or a folder of figures or plots and ``overwrite`` is false.
+    PublicationError
+        If another command writes there, or the report cannot be put in place.
     """
-    _expect_free(directory, overwrite=overwrite)
-    part = directory.with_name(f".{directory.name}.{secrets.token_hex(4)}.part")
-    for name in FOLDERS:
-        (part / name).mkdir(parents=True)
-    try:
+    with staged(directory) as part:
+        _expect_free(directory, overwrite=overwrite)
+        for name in FOLDERS:
+            (part / name).mkdir()
         yield part
         _expect_free(directory, overwrite=overwrite)
-        directory.mkdir(exist_ok=True)
-        for name in FOLDERS:
-            _replace_folder(part, directory, name)
-        (part / PAGE).replace(directory / PAGE)
-    finally:
-        shutil.rmtree(part, ignore_errors=True)
+        publish(part, discards=_drawn_earlier(directory))
 
 
-def _replace_folder(part: Path, directory: Path, name: str) -> None:
-    """Put a folder in place of the earlier one; a folder without plots is not kept."""
-    if (directory / name).exists():
-        (directory / name).replace(part / f"old {name}")
-    if name == FIGURES or any((part / name).iterdir()):
-        (part / name).replace(directory / name)
+def _drawn_earlier(directory: Path) -> list[PurePosixPath]:
+    """Return all files in the folders of figures and plots, which are the report's."""
+    files = (path for name in FOLDERS for path in (directory / name).rglob("*") if not path.is_dir())
+    return [PurePosixPath(path.relative_to(directory).as_posix()) for path in files]
 
 
 def _expect_free(directory: Path, *, overwrite: bool) -> None:

@@ -53,6 +53,8 @@ class Page:
     """Files that went into the report."""
     ending: str
     """Last line of the page."""
+    fingerprint_sha256: str | None = None
+    """SHA-256 of the file of the fingerprint that the page shows; None for a page on several."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -186,6 +188,7 @@ def _html(
         subtitle=page.subtitle,
         created=page.created,
         version=page.version,
+        fingerprint_sha256=page.fingerprint_sha256,
         cover=page.cover,
         sections=page.sections,
         files=page.files,

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shaftprint.clocks import logger_clocks
+from shaftprint.fingerprint import fingerprint_sha256
 from shaftprint.report._inertia_sections import inertia_section
 from shaftprint.report._measurement_sections import response_section, signal_section, time_section
 from shaftprint.report._model_sections import (
@@ -157,10 +158,15 @@ def _logs(inputs: Inputs) -> list[tuple[str, str, str]]:
 def _page(inputs: Inputs, sections: Sequence[Section]) -> Page:
     fingerprint = inputs.fingerprint
     conditions = fingerprint.conditions
+    sha256 = fingerprint_sha256(fingerprint)
     files = Table(
         caption="Files that went into this report",
         header=("file", "what it is", "SHA-256"),
-        rows=(*((source.name, source.role, source.sha256) for source in fingerprint.sources), *_logs(inputs)),
+        rows=(
+            *((source.name, source.role, source.sha256) for source in fingerprint.sources),
+            *_logs(inputs),
+            ("fingerprint.json", "what this page shows", sha256),
+        ),
     )
     ending = (
         f"shaftprint {fingerprint.shaftprint_version}, fingerprint schema {fingerprint.schema_version}, signals "
@@ -176,4 +182,5 @@ def _page(inputs: Inputs, sections: Sequence[Section]) -> Page:
         sections=sections,
         files=files,
         ending=ending,
+        fingerprint_sha256=sha256,
     )
