@@ -1,8 +1,9 @@
 """Whether a comparison of two tests cries wolf, and which change it sees: the tables of docs/watching.md.
 
 Simulated ships are tested, a raw recording each, and their fingerprints compared as ``shaftprint compare`` does. No two
-tests are made on the same day: strength of the wandering inflow, surge, combustion noise and hunting, the zero of the
-torque gauge and the set point are drawn anew for each. Run ``python benchmarks/watching.py``; with ``--write`` the
+tests are made on the same day: strength of the wandering inflow, surge, combustion noise and hunting, the torque of the
+propeller, the zero of the gauge, how well that was taken anew for the vessel file, and the set point are drawn for
+each. So no two tests have the same vessel file. Run ``python benchmarks/watching.py``; with ``--write`` the
 tables go into the document. A test takes 2 s of a processor, all of them 11 minutes.
 """
 
@@ -26,7 +27,7 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
 from shaftprint.cli._chain import fingerprint_of, fit, known_beforehand, measure  # noqa: E402
-from shaftprint.cli._inputs import load_trial  # noqa: E402
+from shaftprint.cli._inputs import Trial, load_trial  # noqa: E402
 from shaftprint.cli._progress import Steps  # noqa: E402
 from shaftprint.fingerprint import GAUGE_ZERO, Fingerprint  # noqa: E402
 from shaftprint.identify import Settings  # noqa: E402
@@ -34,6 +35,7 @@ from shaftprint.models import structure  # noqa: E402
 from shaftprint.normal import NORMAL_95  # noqa: E402
 from shaftprint.report import Difference, differences  # noqa: E402
 from shaftprint.tug import Noise, Tug, sail  # noqa: E402
+from shaftprint.vessel import Vessel  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "watching.md"
 BEGIN, END = ("<!-- tables of benchmarks/watching.py: begin -->", "<!-- tables of benchmarks/watching.py: end -->")
@@ -42,6 +44,8 @@ SEED, POWER = 29, 0.8
 REFERENCE = Tug.stan_tug_1205()
 TORQUE_NM = 1725.0
 WATER_KG_M2 = 17.0 / 100.0
+# From test to test: the torque of the propeller as a share, the zero of the gauge [N m], the set point [V: 5 rpm].
+LOAD, ZERO_NM, SET_POINT_V = 0.005, 60.0, 0.02
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -80,12 +84,16 @@ def longer_delay(tug: Tug, milliseconds: float) -> Tug:
 
 def fouled_propeller(tug: Tug, percent: float) -> Tug:
     """Return a ship whose propeller takes more torque at the same speed; gains are normalised with that torque."""
-    more = 1.0 + percent / 100.0
+    return with_load(tug, 1.0 + percent / 100.0)
+
+
+def with_load(tug: Tug, factor: float) -> Tug:
+    """Return a ship whose propeller takes so many times the torque at the same speed."""
     return replace(
         tug,
-        shaft_torque_nm=more * TORQUE_NM,
-        proportional_gain=tug.proportional_gain / more,
-        integral_gain_per_s=tug.integral_gain_per_s / more,
+        shaft_torque_nm=factor * (tug.shaft_torque_nm or TORQUE_NM),
+        proportional_gain=tug.proportional_gain / factor,
+        integral_gain_per_s=tug.integral_gain_per_s / factor,
     )
 
 
@@ -121,7 +129,7 @@ CHANGES = (
     Change(
         name="fouled propeller: more torque at the same speed",
         unit="%",
-        sizes=(2.5, 4.0, 5.0, 7.5),
+        sizes=(2.5, 4.0, 6.0, 8.0),
         tug=fouled_propeller,
         right=("K_Q",),
     ),
@@ -138,6 +146,7 @@ CHANGES = (
 def other_day(tug: Tug, rng: np.random.Generator) -> Tug:
     """Return a ship on another day: other water, another zero of the gauge, the helm not quite where it was."""
     noise = Noise()
+    tug = with_load(tug, 1.0 + rng.normal(0.0, LOAD))
     return replace(
         tug,
         noise=replace(
@@ -147,19 +156,32 @@ def other_day(tug: Tug, rng: np.random.Generator) -> Tug:
             combustion_rms=noise.combustion_rms * rng.uniform(0.8, 1.2),
             hunting_rms=noise.hunting_rms * rng.uniform(0.7, 1.3),
         ),
-        # the vessel file states the zero to 25 N m; 0.02 V are 5 rpm
-        torque_zero_offset_nm=float(rng.normal(0.0, 25.0)),
-        set_point_offset_v=tug.set_point_offset_v + float(rng.normal(0.0, 0.02)),
+        torque_zero_offset_nm=float(rng.normal(0.0, ZERO_NM)),
+        set_point_offset_v=tug.set_point_offset_v + float(rng.normal(0.0, SET_POINT_V)),
     )
+
+
+def zero_taken(trial: Trial, tug: Tug, rng: np.random.Generator, seed: int) -> Trial:
+    """Return the trial with the zero of that day in its vessel file, as well as that file says it can be taken."""
+    gauge = trial.vessel.sensors.shaft_torque
+    # what the channel shows without torque, in the sign of the vessel file: it is subtracted
+    zero_nm = gauge.zero_nm + tug.torque_zero_offset_nm + float(rng.normal(0.0, gauge.zero_std_nm or 0.0))
+    content = trial.vessel.model_dump()
+    content["sensors"]["shaft_torque"]["zero_nm"] = zero_nm
+    another = {"sha256": f"{seed:064x}"}
+    sources = tuple(one.model_copy(update=another) if one.role == "vessel" else one for one in trial.sources)
+    return replace(trial, vessel=Vessel.model_validate(content), sources=sources)
 
 
 def tested(tug: Tug, campaign: str, seed: int) -> Fingerprint:
     """Return the fingerprint of one test of a ship, as ``shaftprint identify`` makes it."""
     trial, chosen, steps = load_trial("stan-tug-1205", campaign), structure(STRUCTURE), Steps(bars=None)
-    tug = other_day(tug, np.random.default_rng([SEED, seed]))
+    rng = np.random.default_rng([SEED, seed])
+    tug = other_day(tug, rng)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "recording.nc"
         sail(trial.vessel, trial.campaign, path, tug=tug, seed=seed)
+        trial = zero_taken(trial, tug, rng, seed)
         measured = measure(path, trial, mode="shaftprint", steps=steps)
     settings = {STRUCTURE: Settings(priors=known_beforehand(chosen, trial.vessel, measured.signals, {}))}
     (found,) = fit([chosen], measured, settings=settings, seed=seed, steps=steps)

@@ -30,6 +30,48 @@ def test_what_has_changed_is_said_and_reported(run, demo, later, tmp_path):
     assert (tmp_path / "out" / "index.html").is_file()
 
 
+def test_whether_the_ship_has_changed_is_said_first(run, demo, later):
+    first, *_ = run("compare", demo[0], later).output.splitlines()
+    assert first.startswith("Has the ship changed? Yes: I_dn by 50.0 %")
+    result = run("compare", demo[0], later, demo[0], "--name", "2024", "--name", "2025", "--name", "2026")
+    one, two, *_ = result.output.splitlines()
+    assert one.startswith("Has the ship changed, 2025? Yes: I_dn by 50.0 %")
+    assert two.startswith("Has the ship changed, 2026? No: ")
+
+
+def test_what_the_vessel_files_state_alike_is_said(run, demo, later):
+    """The copy was made with the same file, to which the scale of the gauge and the inertia table are common."""
+    output = run("compare", demo[0], later).output
+    assert "Both vessel files state the same." in output
+    (common,) = [line for line in output.splitlines() if line.startswith("Stated alike for both tests")]
+    assert "TVC" in common
+    assert "gauge scale" in common
+
+
+def test_folders_of_one_name_are_told_apart_by_their_path(run, demo, later, tmp_path):
+    for year in ("2025", "2026"):
+        (tmp_path / year / "result").mkdir(parents=True)
+    first, other = (tmp_path / year / "result" / "fingerprint.json" for year in ("2025", "2026"))
+    first.write_bytes((demo[0] / "fingerprint.json").read_bytes())
+    other.write_bytes(later.read_bytes())
+    result = run("compare", first.parent, other.parent)
+    assert result.exit_code == 0, result.stderr
+    assert "2026/result compared with 2025/result" in result.output
+    result = run("compare", first, other, later)
+    assert "2026/result compared with 2025/result" in result.output
+    assert "later compared with 2025/result" in result.output
+
+
+def test_more_load_from_day_to_day_hides_more(run, demo, tmp_path):
+    """A torque coefficient 8 % up is more than chance; not where loads of one ship scatter by 10 %."""
+    first = read_fingerprint(demo[0] / "fingerprint.json")
+    physical = tuple(q.model_copy(update={"value": 1.08 * q.value}) if q.name == "K_Q" else q for q in first.physical)
+    write_fingerprint(first.model_copy(update={"physical": physical}), tmp_path / "fouled.json")
+    assert "changed? Yes: K_Q by 8.0 %" in run("compare", demo[0], tmp_path / "fouled.json").output
+    result = run("compare", demo[0], tmp_path / "fouled.json", "--load-repeatability", "10")
+    assert "Has the ship changed? No: " in result.output
+
+
 def test_a_test_that_is_not_trustworthy_tells_nothing(run, demo, later):
     found = read_fingerprint(later)
     doubtful = found.model_copy(update={"verdict": replace(found.verdict, trustworthy=False)})

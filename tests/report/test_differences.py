@@ -16,7 +16,16 @@ def quantity(fingerprint, **changes):
     )
 
 
-def with_quantities(fingerprint, *quantities, variances=None, vessel="ab"):
+SCALE, STD = "sensors.shaft_torque.scale_nm_per_unit", "sensors.shaft_torque.scale_std_fraction"
+GAUGE = {SCALE: 300.0, STD: 0.02}
+
+
+def deviation(difference):
+    """Standard deviation of a difference, from its interval."""
+    return (difference.interval_95[1] - difference.interval_95[0]) / 2.0 / 1.95996
+
+
+def with_quantities(fingerprint, *quantities, variances=None, vessel="ab", stated=GAUGE):
     """A fingerprint with nothing but the given physical values."""
     rows = tuple(
         BudgetRow(
@@ -31,8 +40,9 @@ def with_quantities(fingerprint, *quantities, variances=None, vessel="ab"):
             "parameters": (),
             "combinations": (),
             "margins": (),
-            "budget": Budget(sources=("noise of n", "gauge scale"), rows=rows),
+            "budget": Budget(sources=("noise of n", "gauge scale", "TVC"), rows=rows),
             "sources": sources,
+            "vessel_fields": stated,
         }
     )
 
@@ -54,12 +64,64 @@ def test_what_both_were_told_alike_cannot_make_a_difference(fingerprint):
     values = [quantity(fingerprint, value=value, std=math.sqrt(1.01)) for value in (10.0, 10.5)]
     same = [with_quantities(fingerprint, q, variances=variances) for q in values]
     (found,) = differences(*same)
-    assert (found.interval_95[1] - found.interval_95[0]) / 2.0 / 1.96 == pytest.approx(0.1 * math.sqrt(2.0), rel=1e-3)
+    assert deviation(found) == pytest.approx(0.1 * math.sqrt(2.0), rel=1e-3)
     assert found.outcome == "differs"
-    recalibrated = with_quantities(fingerprint, values[1], variances=variances, vessel="cd")
+    recalibrated = with_quantities(
+        fingerprint, values[1], variances=variances, vessel="cd", stated={SCALE: 301.0, STD: 0.02}
+    )
     (found,) = differences(same[0], recalibrated)
-    assert (found.interval_95[1] - found.interval_95[0]) / 2.0 / 1.96 == pytest.approx(math.sqrt(2.02), rel=1e-3)
+    assert deviation(found) == pytest.approx(math.sqrt(2.02), rel=1e-3)
     assert found.outcome == "no difference seen"
+
+
+@pytest.mark.parametrize(
+    "change", [{"sensors.shaft_torque.zero_nm": 12.0}, {"name": "another name"}, {"water_density_kg_m3": 1000.0}]
+)
+def test_another_zero_or_name_is_no_other_gauge(fingerprint, change):
+    """The hash of the vessel file is another, the scale of the gauge is the same: its error cancels all the same."""
+    variances = {"I_dn": {"noise of n": 0.01, "gauge scale": 1.0}}
+    first, other = (
+        with_quantities(
+            fingerprint,
+            quantity(fingerprint, value=value, std=math.sqrt(1.01)),
+            variances=variances,
+            vessel=vessel,
+            stated=GAUGE | more,
+        )
+        for value, vessel, more in ((10.0, "ab", {}), (10.5, "cd", change))
+    )
+    (found,) = differences(first, other)
+    assert deviation(found) == pytest.approx(0.1 * math.sqrt(2.0), rel=1e-3)
+    assert found.outcome == "differs"
+
+
+@pytest.mark.parametrize(("second", "std"), [("ab", 0.1 * math.sqrt(2.0)), ("cd", math.sqrt(2.02))])
+def test_of_a_file_without_fields_the_hash_decides(fingerprint, second, std):
+    """A fingerprint of an earlier version: alike where the hash is, in full where it is not."""
+    variances = {"I_dn": {"noise of n": 0.01, "gauge scale": 1.0}}
+    first, other = (
+        with_quantities(
+            fingerprint,
+            quantity(fingerprint, value=10.0, std=math.sqrt(1.01)),
+            variances=variances,
+            vessel=file,
+            stated=stated,
+        )
+        for file, stated in (("ab", {}), (second, GAUGE))
+    )
+    assert deviation(differences(first, other)[0]) == pytest.approx(std, rel=1e-3)
+
+
+def test_the_load_of_another_day_is_in_the_torque_coefficient_alone(fingerprint):
+    """0.0500 +/- 0.0003 twice: with 1 % from day to day sqrt(2) times the root of 0.0003^2 + 0.0005^2."""
+    names = ("K_Q", "I_dn")
+    pair = [
+        with_quantities(fingerprint, *(quantity(fingerprint, name=n, value=0.05, std=0.0003) for n in names))
+        for _ in range(2)
+    ]
+    found = differences(*pair, load_repeatability=0.01)
+    expected = [math.sqrt(2.0 * (9e-8 + 25e-8)), math.sqrt(2.0) * 3e-4]
+    assert [deviation(one) for one in found] == pytest.approx(expected, rel=1e-3)
 
 
 def test_where_nothing_can_be_compared_nothing_is_said_of_the_ship(fingerprint):

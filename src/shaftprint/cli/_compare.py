@@ -10,9 +10,17 @@ from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._tables import print_table
 from shaftprint.fingerprint import Fingerprint
-from shaftprint.report import Difference, change_in_words, differences, render_comparison
+from shaftprint.report import (
+    LOAD_REPEATABILITY,
+    Difference,
+    change_in_words,
+    differences,
+    render_comparison,
+    vessel_file_sentences,
+)
 
 FEWEST = 2
+PERCENT = 100.0
 
 
 @click.command("compare")
@@ -22,7 +30,7 @@ FEWEST = 2
     "names",
     multiple=True,
     metavar="NAME",
-    help="What to call a fingerprint, in their order; by default its file or folder.",
+    help="What to call a fingerprint, in their order; by default its file or folder, and of those alike the path too.",
 )
 @click.option(
     "--structure",
@@ -31,29 +39,49 @@ FEWEST = 2
     metavar="NAME",
     help=f"Structure of a fingerprint that is not a shipped one: {OWN_FILE_HELP}.",
 )
+@click.option(
+    "--load-repeatability",
+    "load_percent",
+    type=click.FloatRange(min=0.0),
+    default=PERCENT * LOAD_REPEATABILITY,
+    show_default=True,
+    metavar="PERCENT",
+    help="Standard deviation of the propeller's torque at one speed from day to day.",
+)
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for a report on the comparison.")
 @force_option
 def command(
-    fingerprints: tuple[Path, ...], names: tuple[str, ...], own: tuple[TypedName, ...], output: Path | None, force: bool
+    fingerprints: tuple[Path, ...],
+    names: tuple[str, ...],
+    own: tuple[TypedName, ...],
+    load_percent: float,
+    output: Path | None,
+    force: bool,
 ) -> None:
     """Say what differs between fingerprints, and whether it is more than chance.
 
     FINGERPRINTS are two or more JSON files, or the folders in which identify or demo has put them. All are
     compared with the first. --name and --structure may be repeated.
     """
-    found = _named(fingerprints, names)
+    named = _named(fingerprints, names)
     structures = {structure.name: structure for structure in chosen_structures(own)}
-    (first_name, first), *others = found.items()
+    load = load_percent / PERCENT
+    (first_name, first), *others = named.items()
     if output is not None:
         with output_folder(output, of="compare", force=force) as folder:
-            render_comparison(folder, found, structures=structures)
+            render_comparison(folder, named, structures=structures, load_repeatability=load)
+    apart = {name: differences(first, other, load_repeatability=load) for name, other in others}
     for name, other in others:
-        apart = differences(first, other)
-        _print_tables(first_name, name, apart)
         doubtful = [said for said, one in ((first_name, first), (name, other)) if not one.verdict.trustworthy]
-        answer = f"It cannot be told: not trustworthy: {', '.join(doubtful)}." if doubtful else change_in_words(apart)
-        click.echo(f"Has the ship changed? {answer}")
-        _print_left_out(apart)
+        answer = change_in_words(apart[name])
+        if doubtful:
+            answer = f"It cannot be told: not trustworthy: {', '.join(doubtful)}."
+        click.echo(f"Has the ship changed{f', {name}' if len(others) > 1 else ''}? {answer}")
+    for name, other in others:
+        _print_tables(first_name, name, apart[name])
+        for sentence in vessel_file_sentences(first, other):
+            click.echo(sentence)
+        _print_left_out(apart[name])
     if output is not None:
         click.echo(f"Report: {output / REPORT}")
 
@@ -63,16 +91,32 @@ def _named(places: tuple[Path, ...], names: tuple[str, ...]) -> dict[str, Finger
         raise click.UsageError(f"expected two or more fingerprints, found {len(places)}; name another one.")
     if names and len(names) != len(places):
         raise click.UsageError(f"expected a --name for each of {len(places)} fingerprints, found {len(names)}.")
-    called = names or tuple(_name(place) for place in places)
+    called = names or _short_names(places)
     if len(set(called)) < len(called):
         raise click.UsageError(f"expected different names, found {', '.join(called)}; tell them apart with --name.")
     return {name: fingerprint_at(place) for name, place in zip(called, places, strict=True)}
 
 
-def _name(place: Path) -> str:
-    """Return the name of a folder, or that of a file; of ``fingerprint.json`` that of the folder around it."""
+def _short_names(places: tuple[Path, ...]) -> tuple[str, ...]:
+    """Return the names of the folders or files, and where they are alike so much of the path that they are not.
+
+    ``fingerprint.json`` is called by the folder around it.
+    """
+    parts = [_parts(place) for place in places]
+    taken = [1] * len(parts)
+    while True:
+        names = ["/".join(own[-count:]) for own, count in zip(parts, taken, strict=True)]
+        known = zip(names, parts, taken, strict=True)
+        alike = [names.count(name) > 1 and count < len(own) for name, own, count in known]
+        if not any(alike):
+            return tuple(names)
+        taken = [count + more for count, more in zip(taken, alike, strict=True)]
+
+
+def _parts(place: Path) -> tuple[str, ...]:
     whole = place.resolve()
-    return whole.parent.name if whole.name == FINGERPRINT else whole.name.removesuffix(".json")
+    folder = whole.parent if whole.name == FINGERPRINT else whole.with_name(whole.name.removesuffix(".json"))
+    return folder.parts
 
 
 def _print_tables(first: str, name: str, found: tuple[Difference, ...]) -> None:

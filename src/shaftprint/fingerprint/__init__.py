@@ -29,12 +29,16 @@ from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._model import IdentifiedModel, identified_model, named_structure
 from shaftprint.fingerprint._physical import GAUGE_ZERO, physical_quantities
 from shaftprint.fingerprint._take import take_fingerprint
+from shaftprint.fingerprint._vessel_fields import BEHIND, TVC, FieldValue, stated_behind, vessel_fields
 
 __all__ = [
+    "BEHIND",
     "GAUGE_ZERO",
     "NOTABLE_SHIFT",
+    "TVC",
     "ClockInfluence",
     "Conditions",
+    "FieldValue",
     "Fingerprint",
     "IdentifiedModel",
     "Quality",
@@ -49,6 +53,8 @@ __all__ = [
     "named_structure",
     "physical_quantities",
     "read_fingerprint",
+    "stated_behind",
     "take_fingerprint",
+    "vessel_fields",
     "write_fingerprint",
 ]

@@ -12,6 +12,7 @@ from pydantic import AwareDatetime, BaseModel, ConfigDict, ValidationError
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import FingerprintError
 from shaftprint.files import written_whole
+from shaftprint.fingerprint._vessel_fields import FieldValue
 from shaftprint.identify import Budget, Prior, Verdict
 from shaftprint.publication import complete
 
@@ -146,6 +147,9 @@ class Fingerprint(_Record):
     budget: Budget
     """Which source contributes how much to the variance of parameters, combinations, physical values and margins; a
     number of which the test says nothing is left out."""
+    vessel_fields: dict[str, FieldValue] = {}
+    """What the vessel file states, field by field, so that two tests know which errors they share; empty in the file of
+    an earlier version."""
     calibration: tuple[Quantity, ...]
     """What the recording itself told of its sensors: the set-point line and the angles of the strips."""
     quality: Quality

@@ -20,6 +20,7 @@ from shaftprint.fingerprint._fingerprint import (
 from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._physical import physical_numbers, physical_quantities
+from shaftprint.fingerprint._vessel_fields import vessel_fields
 from shaftprint.identify import Budget, Estimate, Identification, Interval, assess, budget, profile
 from shaftprint.models import Combination
 from shaftprint.units import SECONDS_PER_MINUTE
@@ -95,6 +96,7 @@ def take_fingerprint(
         physical=physical,
         margins=margin,
         budget=Budget(sources=stated.sources, rows=tuple(row for row in stated.rows if row.variances)),
+        vessel_fields=vessel_fields(vessel),
         calibration=calibration_quantities(signals),
         quality=_quality(identification, signals, signal_to_noise),
         verdict=verdict,

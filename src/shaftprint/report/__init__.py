@@ -25,7 +25,7 @@ from shaftprint.report._comparison_tables import difference_table
 from shaftprint.report._correlation_figure import plot_correlation
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
 from shaftprint.report._difference_figure import plot_differences
-from shaftprint.report._differences import Difference, differences
+from shaftprint.report._differences import LOAD_REPEATABILITY, Difference, differences
 from shaftprint.report._explanation import Explanation, explain_thesis
 from shaftprint.report._explanation_figure import plot_missing_damping
 from shaftprint.report._explanation_words import damping_table, explanation_sentences, gain_table, inertia_table
@@ -68,8 +68,10 @@ from shaftprint.report._thesis_mode import ThesisMode
 from shaftprint.report._time_series import plot_chirp, plot_excitation, plot_staircase
 from shaftprint.report._validation_figure import plot_validation
 from shaftprint.report._validation_summary_figure import plot_validation_summary
+from shaftprint.report._vessel_file_words import vessel_file_sentences
 
 __all__ = [
+    "LOAD_REPEATABILITY",
     "Curve",
     "Difference",
     "Explanation",
@@ -126,5 +128,6 @@ __all__ = [
     "save_figure",
     "thesis_families",
     "two_mass_sentence",
+    "vessel_file_sentences",
     "water_table",
 ]

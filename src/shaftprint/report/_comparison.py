@@ -11,11 +11,12 @@ from shaftprint.report._bode import plot_bode
 from shaftprint.report._comparison_cover import comparison_cover, not_alike
 from shaftprint.report._comparison_tables import beside_table, condition_table, difference_table
 from shaftprint.report._difference_figure import plot_differences, shown_names
-from shaftprint.report._differences import Difference, differences
+from shaftprint.report._differences import LOAD_REPEATABILITY, Difference, differences
 from shaftprint.report._fingerprint_curve import fingerprint_curve
 from shaftprint.report._page import Page, write_page
 from shaftprint.report._sections import Picture, Section
 from shaftprint.report._table import Table
+from shaftprint.report._vessel_file_words import vessel_file_sentences, vessel_file_table
 from shaftprint.report.plots import bode_plot, difference_plot
 
 if TYPE_CHECKING:
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from shaftprint.report._curve import Curve
 
 FEWEST = 2
+PERCENT = 100.0
 
 
 def render_comparison(
@@ -31,6 +33,7 @@ def render_comparison(
     fingerprints: "Mapping[str, Fingerprint]",
     *,
     structures: "Mapping[str, Structure] | None" = None,
+    load_repeatability: float = LOAD_REPEATABILITY,
     interactive: bool = True,
     overwrite: bool = False,
 ) -> Path:
@@ -44,6 +47,8 @@ def render_comparison(
         Fingerprints by the name that the report gives them; the first is the one that others are compared with.
     structures
         Structures of one's own by name; those that are shipped are known.
+    load_repeatability
+        As in ``differences``.
     interactive
         Whether figures can be zoomed; without it the page runs no script.
     overwrite
@@ -61,14 +66,14 @@ def render_comparison(
             f"comparison: expected two or more fingerprints, found {len(fingerprints)}; name another one."
         )
     (first_name, first), *others = fingerprints.items()
-    found = {name: differences(first, other) for name, other in others}
+    found = {name: differences(first, other, load_repeatability=load_repeatability) for name, other in others}
     page = Page(
         title="Fingerprints compared",
         subtitle=f"{', '.join(name for name, _ in others)} compared with {first_name}",
         created=max(fingerprint.created for fingerprint in fingerprints.values()),
         version=first.shaftprint_version,
         cover=comparison_cover(fingerprints, found),
-        sections=_sections(fingerprints, found, structures or {}),
+        sections=_sections(fingerprints, found, structures or {}, load_repeatability),
         files=_files(fingerprints),
         ending="± is one standard deviation throughout; bands, intervals and error bars hold 95 %.",
     )
@@ -79,6 +84,7 @@ def _sections(
     fingerprints: "Mapping[str, Fingerprint]",
     found: Mapping[str, Sequence[Difference]],
     structures: "Mapping[str, Structure]",
+    load_repeatability: float,
 ) -> list[Section]:
     first = next(iter(fingerprints))
     changed = Section(
@@ -87,8 +93,10 @@ def _sections(
         paragraphs=(
             "A number differs where the difference is more than chance makes in one of twenty comparisons, all numbers "
             "of the comparison considered; perhaps, where that holds for the number alone, which among so many numbers "
-            "is common. What both were told alike by the same vessel file counts only as far as it moves the two "
-            "unequally.",
+            "is common. An error that both tests share, since both vessel files state the same, counts only as far as "
+            "it moves the two unequally. From day to day the torque of the propeller varies by "
+            f"{PERCENT * load_repeatability:g} %, one standard deviation, beside what a test itself shows.",
+            *_vessel_files(fingerprints),
         ),
         tables=_difference_tables(first, found, normalised=False),
         pictures=_difference_pictures(found),
@@ -109,7 +117,12 @@ def _sections(
         paragraphs=_warnings(fingerprints),
         tables=beside_table(fingerprints),
     )
-    conditions = Section(key="conditions", title="Under which conditions", tables=(condition_table(fingerprints),))
+    files = vessel_file_table(fingerprints)
+    conditions = Section(
+        key="conditions",
+        title="Under which conditions",
+        tables=(condition_table(fingerprints), *((files,) if files.rows else ())),
+    )
     return [changed, *_responses(fingerprints, structures), moving, beside, conditions]
 
 
@@ -135,6 +148,16 @@ def _difference_pictures(found: Mapping[str, Sequence[Difference]]) -> list[Pict
 def _warnings(fingerprints: "Mapping[str, Fingerprint]") -> tuple[str, ...]:
     (_, first), *others = fingerprints.items()
     return tuple(sentence for name, other in others for sentence in not_alike(first, name, other))
+
+
+def _vessel_files(fingerprints: "Mapping[str, Fingerprint]") -> tuple[str, ...]:
+    (_, first), *others = fingerprints.items()
+    return tuple(
+        f"{name}: {' '.join(vessel_file_sentences(first, other))}"
+        if len(others) > 1
+        else " ".join(vessel_file_sentences(first, other))
+        for name, other in others
+    )
 
 
 def _responses(fingerprints: "Mapping[str, Fingerprint]", structures: "Mapping[str, Structure]") -> list[Section]:

@@ -6,13 +6,14 @@ A. Donner, "Construction of confidence limits about effect measures: a general a
 
     lower = b - a - sqrt((b - l_b)^2 + (u_a - a)^2),    upper = b - a + sqrt((u_b - b)^2 + (a - l_a)^2)
 
-What both fits were told alike errs in both alike. Where both used the same vessel file, byte by byte, the error of its
-inertias, of the gauge's scale and of what else it states counts in the difference only as far as it moves the two
-numbers unequally: ``(s_a - s_b)^2`` in place of ``s_a^2 + s_b^2`` for each such source. A gauge that was calibrated
-anew has another vessel file, and counts in full.
+What both fits were told alike errs in both alike. Where both vessel files state the same, the error of the inertias, of
+the gauge's scale or of a latency counts in the difference only as far as it moves the two numbers unequally:
+``(s_a - s_b)^2`` in place of ``s_a^2 + s_b^2`` for each such source (``_shared_errors``). The scale of a gauge that was
+calibrated anew is another one, and counts in full.
 
 The zero of the gauge is none of these: it drifts, and each test finds its own. It has changed only where it moved
-further than two zeros, each as uncertain as the vessel file says.
+further than two zeros, each as uncertain as the vessel file says. The load of the propeller is none either: on another
+day the same ship takes another torque, by draught, trim, current and the water under the keel.
 
 Numbers that are normalised with speed over torque of the working point move with it by more than they are known to.
 They are not compared: physical values say the same without it.
@@ -26,6 +27,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 from shaftprint.fingerprint import GAUGE_ZERO
 from shaftprint.normal import NORMAL_95
 from shaftprint.report._fingerprint_tables import limits
+from shaftprint.report._shared_errors import shared_errors
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quantity
@@ -34,14 +36,15 @@ Outcome: TypeAlias = Literal["differs", "perhaps", "no difference seen", "cannot
 
 # A difference that chance makes in fewer than this share of pairs counts.
 UNLIKELY = 0.05
-# Sources that a vessel file states once for all tests; what else a budget has is of one test.
-TOLD = ("TVC", "gauge scale", "telemetry latency")
-TOLD_PRIOR = "prior of "
+# Standard deviation of the torque that one propeller takes at one speed from day to day, as a share, beside what the
+# windows of a test show of it. No test of one day tells it; see docs/watching.md.
+LOAD_REPEATABILITY = 0.005
 # Parameters and combinations in which speed and torque of the working point cancel, or do not stand: they are of the
 # ship like physical values. The load of each window is in the fit, so that its wander is not in ``v K_i / (k_q - g)``.
 OF_THE_SHIP = frozenset(
     ("t_d", "t_sp", "t_d + t_sp", "omega_n", "zeta", "K_p / K_i", "v K_i / (k_q - g)", "v K_p / (tau_up + tau_dn)")
 )
+TORQUE_COEFFICIENT = "K_Q"
 # Normalised numbers by the physical value that tells the same without the working point.
 TOLD_BY = {
     "tau_dn": "I_dn",
@@ -88,7 +91,9 @@ class Difference:
         return self.other.value - self.first.value
 
 
-def differences(first: "Fingerprint", other: "Fingerprint") -> tuple[Difference, ...]:
+def differences(
+    first: "Fingerprint", other: "Fingerprint", *, load_repeatability: float = LOAD_REPEATABILITY
+) -> tuple[Difference, ...]:
     """Return the differences of all numbers that two fingerprints share, those of the ship first, with significance.
 
     Many numbers make it likely that chance alone moves one of them: a number differs where it does so after Holm's
@@ -104,9 +109,13 @@ def differences(first: "Fingerprint", other: "Fingerprint") -> tuple[Difference,
         The fingerprint that the other is compared with.
     other
         The other fingerprint, of the same or another ship.
+    load_repeatability
+        Standard deviation of the torque that a propeller takes at one speed from day to day, as a share: of a ship that
+        was tested three times or more the scatter of its ``K_Q``.
     """
-    kept = _shared(first, other, ("physical", "margins"))
-    rest = _shared(first, other, ("combinations", "parameters"))
+    pair = _Pair(first=first, other=other, common=shared_errors(first, other).common, load=load_repeatability)
+    kept = _shared(pair, ("physical", "margins"))
+    rest = _shared(pair, ("combinations", "parameters"))
     kept += [found for found in rest if found.first.name in OF_THE_SHIP]
     there = {found.first.name for found in kept}
     moving = [_moving(found, there) for found in rest if found.first.name not in OF_THE_SHIP]
@@ -123,27 +132,32 @@ def _moving(found: Difference, there: Collection[str]) -> Difference:
     return replace(found, interval_95=None, p_value=None, outcome="cannot be compared", because=because)
 
 
-def _shared(first: "Fingerprint", other: "Fingerprint", groups: Sequence[str]) -> list[Difference]:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Pair:
+    """Two fingerprints, and what is assumed of what they have in common."""
+
+    first: "Fingerprint"
+    other: "Fingerprint"
+    common: tuple[str, ...]
+    """Sources of error that are the same in both."""
+    load: float
+    """Standard deviation of the propeller's torque from day to day, as a share."""
+
+
+def _shared(pair: _Pair, groups: Sequence[str]) -> list[Difference]:
     """Return the differences of all numbers of some groups that both have in the same unit."""
-    told_alike = _vessel_file(first) is not None and _vessel_file(first) == _vessel_file(other)
-    there = {quantity.name: quantity for group in groups for quantity in getattr(other, group)}
+    there = {quantity.name: quantity for group in groups for quantity in getattr(pair.other, group)}
     return [
-        _difference(quantity, there[quantity.name], first, other, told_alike=told_alike)
+        _difference(quantity, there[quantity.name], pair)
         for group in groups
-        for quantity in getattr(first, group)
+        for quantity in getattr(pair.first, group)
         if quantity.name in there and there[quantity.name].unit == quantity.unit
     ]
 
 
-def _vessel_file(fingerprint: "Fingerprint") -> str | None:
-    return next((source.sha256 for source in fingerprint.sources if source.role == "vessel"), None)
-
-
-def _difference(
-    a: "Quantity", b: "Quantity", first: "Fingerprint", other: "Fingerprint", *, told_alike: bool
-) -> Difference:
-    (low_a, high_a), open_a = _interval(a, first)
-    (low_b, high_b), open_b = _interval(b, other)
+def _difference(a: "Quantity", b: "Quantity", pair: _Pair) -> Difference:
+    (low_a, high_a), open_a = _interval(a, pair.first)
+    (low_b, high_b), open_b = _interval(b, pair.other)
     apart = b.value - a.value
     rising = apart >= 0.0
     facing_open = (open_a[1], open_b[0]) if rising else (open_a[0], open_b[1])
@@ -152,12 +166,12 @@ def _difference(
         return Difference(
             first=a, other=b, interval_95=None, p_value=None, outcome="cannot be compared", because=because
         )
-    told_a, told_b = (_told(f, a.name) if told_alike else {} for f in (first, other))
-    left = sum((told_a.get(k, 0.0) - told_b.get(k, 0.0)) ** 2 for k in {*told_a, *told_b}) + _drift(a) + _drift(b)
-    left *= NORMAL_95**2
-    own_a, own_b = _own_share(first, a.name, told_a), _own_share(other, b.name, told_b)
-    below = math.sqrt(own_b * (b.value - low_b) ** 2 + own_a * (high_a - a.value) ** 2 + left)
-    above = math.sqrt(own_b * (high_b - b.value) ** 2 + own_a * (a.value - low_a) ** 2 + left)
+    told_a, told_b = (_told(f, a.name, pair.common) for f in (pair.first, pair.other))
+    unequal = sum((told_a.get(k, 0.0) - told_b.get(k, 0.0)) ** 2 for k in {*told_a, *told_b})
+    more = NORMAL_95**2 * (unequal + _between_tests(a, pair.load) + _between_tests(b, pair.load))
+    own_a, own_b = _own_share(pair.first, a.name, told_a), _own_share(pair.other, b.name, told_b)
+    below = math.sqrt(own_b * (b.value - low_b) ** 2 + own_a * (high_a - a.value) ** 2 + more)
+    above = math.sqrt(own_b * (high_b - b.value) ** 2 + own_a * (a.value - low_a) ** 2 + more)
     facing = below if rising else above
     p_value = math.erfc(abs(apart) / (facing / NORMAL_95) / math.sqrt(2.0)) if facing > 0.0 else float(apart == 0.0)
     return Difference(
@@ -165,9 +179,11 @@ def _difference(
     )
 
 
-def _drift(quantity: "Quantity") -> float:
-    """Return the variance with which a number is another in each test without a change, as the vessel file says."""
-    return (quantity.expected_std or 0.0) ** 2 if quantity.name == GAUGE_ZERO else 0.0
+def _between_tests(quantity: "Quantity", load: float) -> float:
+    """Return the variance with which a number is another in each test without a change of the ship."""
+    if quantity.name == GAUGE_ZERO:
+        return (quantity.expected_std or 0.0) ** 2
+    return (load * quantity.value) ** 2 if quantity.name == TORQUE_COEFFICIENT else 0.0
 
 
 def _interval(quantity: "Quantity", fingerprint: "Fingerprint") -> tuple[tuple[float, float], tuple[bool, bool]]:
@@ -184,14 +200,10 @@ def _interval(quantity: "Quantity", fingerprint: "Fingerprint") -> tuple[tuple[f
     return (low, high), quantity.interval_open
 
 
-def _told(fingerprint: "Fingerprint", name: str) -> dict[str, float]:
-    """Return the standard deviation by each source that a vessel file states, of one number."""
+def _told(fingerprint: "Fingerprint", name: str, common: Collection[str]) -> dict[str, float]:
+    """Return the standard deviation by each source that both tests have in common, of one number."""
     variances = _variances(fingerprint, name)
-    return {
-        source: math.sqrt(max(variance, 0.0))
-        for source, variance in variances.items()
-        if source in TOLD or source.startswith(TOLD_PRIOR)
-    }
+    return {source: math.sqrt(max(variances[source], 0.0)) for source in common if source in variances}
 
 
 def _own_share(fingerprint: "Fingerprint", name: str, told: dict[str, float]) -> float:

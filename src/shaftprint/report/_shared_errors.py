@@ -1,0 +1,85 @@
+"""Which errors two tests have in common, because both vessel files state the same, and where the files differ."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from shaftprint.fingerprint import BEHIND, TVC, FieldValue, stated_behind
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint
+
+PRIOR = "prior of "
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class FieldChange:
+    """A field of the vessel file that two fingerprints were made with different values of."""
+
+    field: str
+    """Path of the field, such as ``sensors.shaft_torque.zero_nm``."""
+    first: FieldValue | None
+    """Its value in the fingerprint that others are compared with; None where the file does not have it."""
+    other: FieldValue | None
+    """Its value in the other."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SharedErrors:
+    """Sources of error of two tests, and what their vessel files state."""
+
+    common: tuple[str, ...]
+    """Sources of the budget whose error is the same in both tests, so that it cancels where it moves both alike."""
+    apart: tuple[str, ...]
+    """Sources that a vessel file states and whose error is not the same, so that it counts in full."""
+    changes: tuple[FieldChange, ...] | None
+    """Fields in which the vessel files differ; None where a fingerprint does not have them, being of an earlier
+    version: then the hash of the file decides."""
+
+
+def shared_errors(first: "Fingerprint", other: "Fingerprint") -> SharedErrors:
+    """Return which errors two tests share.
+
+    The error of a calibration, an inertia table or an assumption is one and the same in both tests if both were given
+    the same figures for it. Of what a vessel file does not state nothing is shared: noise, the wander of the load, and
+    the zero of the gauge, which drifts.
+
+    Parameters
+    ----------
+    first, other
+        Two fingerprints.
+    """
+    sources = [source for source in first.budget.sources if source in other.budget.sources and _is_stated(source)]
+    common = tuple(source for source in sources if _is_common(source, first, other))
+    return SharedErrors(
+        common=common, apart=tuple(source for source in sources if source not in common), changes=_changes(first, other)
+    )
+
+
+def _is_stated(source: str) -> bool:
+    return source in BEHIND or source == TVC or source.startswith(PRIOR)
+
+
+def _is_common(source: str, first: "Fingerprint", other: "Fingerprint") -> bool:
+    if _vessel_file(first) is not None and _vessel_file(first) == _vessel_file(other):
+        return True
+    if source.startswith(PRIOR):
+        name = source.removeprefix(PRIOR)
+        one, two = first.priors.get(name), other.priors.get(name)
+        return one is not None and two is not None and (one.mean, one.std) == (two.mean, two.std)
+    stated = stated_behind(source, first.vessel_fields)
+    return bool(stated) and stated == stated_behind(source, other.vessel_fields)
+
+
+def _vessel_file(fingerprint: "Fingerprint") -> str | None:
+    return next((source.sha256 for source in fingerprint.sources if source.role == "vessel"), None)
+
+
+def _changes(first: "Fingerprint", other: "Fingerprint") -> tuple[FieldChange, ...] | None:
+    before, after = first.vessel_fields, other.vessel_fields
+    if not before or not after:
+        return () if _vessel_file(first) is not None and _vessel_file(first) == _vessel_file(other) else None
+    return tuple(
+        FieldChange(field=name, first=before.get(name), other=after.get(name))
+        for name in dict.fromkeys((*before, *after))
+        if before.get(name) != after.get(name)
+    )

@@ -1,0 +1,67 @@
+"""What two vessel files have in common and where they differ, in sentences and as a table."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from shaftprint.report._shared_errors import shared_errors
+from shaftprint.report._table import Cell, Table
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import FieldValue, Fingerprint
+    from shaftprint.report._shared_errors import FieldChange
+
+MOST_NAMED = 4
+NOT_STATED = "not stated"
+
+
+def vessel_file_sentences(first: "Fingerprint", other: "Fingerprint") -> tuple[str, ...]:
+    """Return in sentences where the vessel files of two tests differ, and which errors the tests have in common.
+
+    Parameters
+    ----------
+    first, other
+        Two fingerprints.
+    """
+    shared = shared_errors(first, other)
+    sentences = [_files(shared.changes)]
+    if shared.common:
+        sentences.append(f"Stated alike for both tests, so that their error cancels: {', '.join(shared.common)}.")
+    if shared.apart:
+        sentences.append(f"Not the same in both tests, so that the error counts in full: {', '.join(shared.apart)}.")
+    return tuple(sentences)
+
+
+def _files(changes: "Sequence[FieldChange] | None") -> str:
+    if changes is None:
+        return "The vessel files are not the same; a fingerprint of an earlier version does not say where they differ."
+    if not changes:
+        return "Both vessel files state the same."
+    named = [f"{one.field} ({_words(one.first)}, then {_words(one.other)})" for one in changes[:MOST_NAMED]]
+    more = len(changes) - MOST_NAMED
+    return f"The vessel files differ in {'; '.join(named)}{f'; and {more} more' if more > 0 else ''}."
+
+
+def vessel_file_table(fingerprints: "Mapping[str, Fingerprint]") -> Table:
+    """Return all fields in which the vessel files of some fingerprints are not all the same; no row where none is.
+
+    Parameters
+    ----------
+    fingerprints
+        Fingerprints by name; those of an earlier version, which do not hold the fields, are left out.
+    """
+    known = {name: f.vessel_fields for name, f in fingerprints.items() if f.vessel_fields}
+    fields = dict.fromkeys(field for stated in known.values() for field in stated)
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
+        (field, *(_words(stated.get(field)) for stated in known.values()))
+        for field in fields
+        if len({stated.get(field) for stated in known.values()}) > 1
+    )
+    return Table(caption="Where the vessel files differ", header=("field", *known), rows=rows)
+
+
+def _words(value: "FieldValue | None") -> str:
+    if value is None:
+        return NOT_STATED
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return value if isinstance(value, str) else f"{value:.10g}"
