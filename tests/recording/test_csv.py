@@ -87,8 +87,11 @@ def test_hints_settle_what_the_file_leaves_open(tmp_path):
 @pytest.mark.parametrize(
     ("text", "expected"),
     [
-        ("time [s],a [V]\n0,1\n1,2\n3,3\n4,4\n", "column time: expected a step of 1 s, found 2 s before row 3"),
-        ("time [s],a [V]\n0,1\n1,2\n1,3\n2,4\n3,4\n", "expected a step of 1 s, found 0 s before row 3"),
+        (
+            "time [s],a [V]\n0,1\n1,1\n2,1\n4,1\n5,1\n7,1\n8,1\n10,1\n11,1\n13,1\n",
+            "column time: expected a step of 1 s, found 2 s before row 4",
+        ),
+        ("time [s],a [V]\n0,1\n1,2\n9,3\n10,4\n", "expected a step of 1 s, found 8 s before row 3"),
         ("time [s],a [V]\n0,1\n1,2\nnan,3\n3,4\n4,4\n5,5\n", "found nan s before row 3"),
         ("time [s],a [V]\n2,1\n1,2\n0,2\n", "expected ascending times, found a step of -1 s"),
         ("time [s],a [V]\n0,1\n", "expected at least 2 rows of times, found 1"),

@@ -81,22 +81,22 @@ def test_empty_channel(ship, vessel, campaign):
     )
 
 
-def test_recording_shorter_than_the_campaign(spoiled, vessel, campaign):
+def test_recording_shorter_than_all_of_the_campaign(spoiled, vessel, campaign):
     refused(
-        spoiled(M_s=lambda counts: counts[:400_000]),
+        spoiled(M_s=lambda counts: counts[:40_000]),
         vessel,
         campaign,
-        r"expected a recording up to 230\.0 s, where .* ends S3, found 200\.0 s: 30\.0 s too short; leave S3 out",
+        r"ship\.nc: expected at least one whole test .* 34\.7 and 230\.0 s, found a recording from 0\.0 to 20\.0",
     )
 
 
-def test_not_a_number(spoiled, vessel, campaign):
-    def gap(counts):
-        values = counts.astype(float)
-        values[123_456] = np.nan
-        return values
-
-    refused(spoiled(U_setpoint=gap), vessel, campaign, r"channel U_setpoint: expected numbers, found nan at 61\.728 s")
+def test_channel_without_numbers(spoiled, vessel, campaign):
+    refused(
+        spoiled(U_setpoint=lambda counts: np.full(counts.size, np.nan)),
+        vessel,
+        campaign,
+        r"channel U_setpoint: expected numbers, found none in 4 stretches of 32\.8 s",
+    )
 
 
 def test_values_in_float_are_as_good_as_counts(spoiled, vessel, campaign):
@@ -138,17 +138,12 @@ def test_one_test_at_another_time_is_a_finding(ship, vessel, campaign):
 
 
 def test_dead_and_saturated_gauge(spoiled, vessel, campaign):
-    def dies(counts):
-        counts[300_000:] = 321
-        return counts
-
     def stands(counts):
         return np.full_like(counts, 321)
 
     def clips(counts):
         return np.minimum(counts, 13_504)
 
-    refused(spoiled(M_s=dies), vessel, campaign, r"channel M_s: .* dead for more than 2 s from 150\.0 s on")
     refused(
         spoiled(M_s=stands),
         vessel,
@@ -190,19 +185,6 @@ def test_first_pick_up_dead_is_an_error_another_a_finding(spoiled, vessel, campa
     found = prepare_signals(spoiled(PTM_1=dead), vessel, campaign)
     assert list(found.speeds) == ["n_e", "n_e4"]
     assert found.findings[0].startswith("n_e1 was left out: channel PTM_1: expected pulses between two levels")
-
-
-@pytest.mark.parametrize(
-    ("first", "stop", "said"), [(200_000, 206_000, "99.9"), (0, 6000, "0.0"), (494_000, 500_000, "24")]
-)
-def test_gap_in_the_pulses(spoiled, vessel, campaign, first, stop, said):
-    def gap(counts):
-        counts[first:stop] = 1000
-        return counts
-
-    refused(
-        spoiled(PTM_e=gap), vessel, campaign, rf"channel PTM_e: expected pulses all the time, found none from {said}"
-    )
 
 
 def test_wrong_gear_ratio(ship, vessel, campaign):

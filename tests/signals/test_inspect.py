@@ -36,10 +36,16 @@ def test_problems_are_told_channel_by_channel(spoiled, vessel):
     assert reports["PTM_1"].problem.startswith("channel PTM_1: expected pulses between two levels")
     assert reports["PTM_1"].lowest == reports["PTM_1"].highest == pytest.approx(0.2)
     assert reports["PTM_1"].pulses is None
-    assert "found none from 99.9" in reports["PTM_e"].problem
     assert reports["PTM_e"].pulses is not None
-    assert "dead for more than 2 s from 100.0 s on" in reports["M_s"].problem
-    assert reports["U_setpoint"].problem is None
+    (gap,) = reports["PTM_e"].gaps
+    assert (gap.reason, gap.start_s, gap.stop_s) == (
+        "has no pulses",
+        pytest.approx(100, abs=0.1),
+        pytest.approx(105, abs=0.1),
+    )
+    (gap,) = reports["M_s"].gaps
+    assert gap.sentence == "channel M_s stands still from 100.00 to 105.00 s"
+    assert [reports[name].problem for name in ("PTM_e", "M_s", "U_setpoint")] == [None, None, None]
 
 
 def test_faults_are_listed(spoiled, vessel):

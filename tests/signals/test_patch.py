@@ -3,7 +3,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from shaftprint.errors import SignalError
 from shaftprint.signals._outliers import FaultLimits, flagged
 from shaftprint.signals._patch import Patcher
 
@@ -104,13 +103,45 @@ def test_cut_into_blocks_does_not_matter(make_channel, cut, size):
     assert len(listed) > 15
 
 
-@pytest.mark.parametrize(("stuck", "word"), [(17, "dead"), (3100, "at full scale")])
-@pytest.mark.parametrize("size", [1000, 100_000])
-def test_long_silence_is_an_error(make_channel, cut, stuck, word, size):
-    values = (100.0 * np.random.default_rng(2).standard_normal(20_000)).astype(np.int16)
+@pytest.mark.parametrize(
+    ("stuck", "word"), [(17.0, "stands still"), (3100.0, "stays at full scale"), (np.nan, "has no values")]
+)
+@pytest.mark.parametrize("size", [37, 1000, 100_000])
+def test_long_silence_is_a_gap(make_channel, cut, stuck, word, size):
+    values = 10.0 * np.random.default_rng(2).standard_normal(20_000)
     values[6000:11_000] = stuck
-    with pytest.raises(SignalError, match=f"channel M_s: .* found it {word} for more than 2 s from 3.0 s on"):
-        patched(make_channel(values, name="M_s"), cut(values, size))
+    channel = make_channel(values, name="M_s")
+    repairs, gaps = [], []
+    patcher = Patcher(channel=channel, limits=LIMITS, repairs=repairs, gaps=gaps)
+    found = np.concatenate(list(patcher.patched(flagged(cut(values, size), LIMITS))))
+    assert [(gap.channel, gap.start_s, gap.stop_s, gap.reason) for gap in gaps] == [("M_s", 3.0, 5.5, word)]
+    assert repairs == []
+    # outside nothing has changed, inside the last good value goes on
+    outside = np.r_[0:6000, 11_000:20_000]
+    assert np.array_equal(found[outside], values[outside])
+    assert np.all(found[6000:11_000] == values[5999])
+
+
+@pytest.mark.parametrize(("first", "stop"), [(0, 300), (3700, 4000), (0, 4000)])
+@pytest.mark.parametrize("size", [50, 5000])
+def test_gap_at_an_end(make_channel, cut, first, stop, size):
+    values = ramp().astype(float)
+    values[first:stop] = np.nan
+    gaps = []
+    patcher = Patcher(channel=make_channel(values), limits=LIMITS, repairs=[], gaps=gaps)
+    found = np.concatenate(list(patcher.patched(flagged(cut(values, size), LIMITS))))
+    assert [(gap.start_s, gap.stop_s) for gap in gaps] == [(first / 2000.0, stop / 2000.0)]
+    assert np.all(np.isfinite(found))
+    assert found.size == 4000
+
+
+def test_short_silence_is_the_straight_line(make_channel):
+    """Up to a twentieth of a second."""
+    values = ramp().astype(float)
+    values[1000:1100] = np.nan
+    found, repairs = patched(make_channel(values), [values])
+    assert found == pytest.approx(ramp().astype(float), abs=1e-9)
+    assert told(repairs) == [("dropout", 0.5, 100)]
 
 
 def test_channel_that_is_at_its_rail_all_the_time(make_channel):

@@ -49,7 +49,7 @@ def stretch(start_s, stop_s):
 def test_latency_and_unit_are_taken_off():
     """A ship that gains 0.02 kn a second; the log shows at 9 s what was there at 8.7 s."""
     time = 9.0 + np.arange(230) / 5.0
-    speed = read_ship_speed(log(5.0 + 0.02 * (time - 0.3)), sensor(unit="kn"), CLOCK, latency_s=0.3)
+    speed = read_ship_speed(log(5.0 + 0.02 * (time - 0.3)), sensor(unit="kn"), CLOCK, latency_s=0.3).values
     grid = 10.0 + np.arange(2000) / 50.0
     assert speed == pytest.approx((5.0 + 0.02 * grid) * 1852.0 / 3600.0, rel=1e-12)
 
@@ -62,7 +62,7 @@ def test_gain_is_what_joining_or_holding_makes_of_a_sine(held):
     fine = log(np.repeat(values, 1000), rate_hz=5000.0) if held else log(values)
     # a fine grid: its own step would be seen as half of it in delay where the steps of the log fall on it
     clock = replace(CLOCK, rate_hz=2000.0, count=80_000)
-    speed = read_ship_speed(fine, sensor(), clock, latency_s=0.3)
+    speed = read_ship_speed(fine, sensor(), clock, latency_s=0.3).values
     signal = ship_speed_signal(speed, fine, sensor(), clock, (stretch(10.0, 30.0),))
     grid = 10.0 + np.arange(80_000) / 2000.0
     found = 2.0 * np.mean((speed - 4.0) * np.exp(-2j * np.pi * frequency_hz * grid)) / 0.1
@@ -74,7 +74,7 @@ def test_gain_is_what_joining_or_holding_makes_of_a_sine(held):
 def test_working_point_and_its_scatter():
     rng = np.random.default_rng(1)
     values = 4.0 + 0.05 * rng.standard_normal(230)
-    speed = read_ship_speed(log(values), sensor(), CLOCK, latency_s=0.3)
+    speed = read_ship_speed(log(values), sensor(), CLOCK, latency_s=0.3).values
     found = ship_speed_signal(speed, log(values), sensor(), CLOCK, (stretch(12.0, 28.0), stretch(30.0, 46.0)))
     # 160 values in all
     assert found.working_point_m_s == pytest.approx(4.0, abs=4.0 * 0.05 / np.sqrt(160.0))
@@ -83,7 +83,7 @@ def test_working_point_and_its_scatter():
 
 def test_a_moored_ship_has_no_speed():
     values = np.full(230, 0.1)
-    speed = read_ship_speed(log(values), sensor(), CLOCK, latency_s=0.3)
+    speed = read_ship_speed(log(values), sensor(), CLOCK, latency_s=0.3).values
     assert ship_speed_signal(speed, log(values), sensor(), CLOCK, (stretch(12.0, 28.0),)) is None
 
 
@@ -92,10 +92,22 @@ def test_a_moored_ship_has_no_speed():
     [
         (log(np.full(50, 4.0), rate_hz=1.0), "expected 5 values a second or more, .* found 1"),
         (log(np.full(100, 4.0)), r"expected the speed of the ship from 10.0 to 50.0 s, found it from 8.7 to 28.5 s"),
-        (log(np.full(230, np.nan)), "expected numbers, found nan"),
+        (log(np.full(230, np.nan)), "expected numbers, found none"),
     ],
     ids=["slow", "short", "not a number"],
 )
 def test_what_cannot_be_used_is_refused(channel, words):
     with pytest.raises(SignalError, match=words):
         read_ship_speed(channel, sensor(), CLOCK, latency_s=0.3)
+
+
+def test_what_the_log_did_not_give_is_a_gap():
+    values = 4.0 + 0.01 * np.arange(230)
+    values[100:120] = np.nan
+    values[50] = np.nan
+    found = read_ship_speed(log(values), sensor(), CLOCK, latency_s=0.3)
+    (gap,) = found.gaps
+    assert (gap.start_s, gap.stop_s) == pytest.approx((9.0 + 20.0 - 0.3, 9.0 + 24.0 - 0.3))
+    # a ship that gains speed evenly is on the straight line all the same
+    grid = 10.0 + np.arange(2000) / 50.0
+    assert found.values == pytest.approx(4.0 + 0.05 * (grid - 9.0 + 0.3), rel=1e-12)

@@ -9,6 +9,7 @@ from shaftprint.campaign import load_campaign, setpoint
 from shaftprint.errors import ValidationError
 from shaftprint.identify import Prior, Settings, identify
 from shaftprint.models import structure
+from shaftprint.signals import Gap
 from shaftprint.spectra import estimate_response
 from shaftprint.tug import Noise, Tug, simulate_signals
 from shaftprint.validation import ValidationSettings, linear_prediction, model_of, simulated_prediction, validate
@@ -278,16 +279,55 @@ def test_a_pick_up_of_the_signals_is_in_the_model(made, campaign):
     assert (named["t_pickup"], named["T_average"], named["T_hold"]) == (0.05, 0.02, 0.01)
 
 
+def first(signals, signals_from, samples):
+    """Return the beginning of signals."""
+    return signals_from(
+        signals.set_point_rev_s[:samples] / 20.0 - 1.0,
+        signals.engine_speed.speed_rev_s[:samples] / 20.0 - 1.0,
+        signals.shaft_torque_nm[:samples] / 1700.0 - 1.0,
+    )
+
+
 def test_a_recording_that_ends_too_early(made, campaign, signals_from):
     signals, _ = made
-    half = 60_000
-    short = signals_from(
-        signals.set_point_rev_s[:half] / 20.0 - 1.0,
-        signals.engine_speed.speed_rev_s[:half] / 20.0 - 1.0,
-        signals.shaft_torque_nm[:half] / 1700.0 - 1.0,
+    # the sweep of 200 s passes 1 rad/s in its first 100 s, after which the recording ends
+    found = validate(
+        structure("CL4"),
+        first(signals, signals_from, 60_000),
+        campaign,
+        rng=np.random.default_rng(6),
+        records=("C11",),
     )
+    assert [comparison.excerpt.title for comparison in found.comparisons] == ["up to 1 rad/s"]
+    assert len([f for f in found.findings if "left out: the recording lasts from 0.0 to 600.0 s" in f]) == 4
     with pytest.raises(ValidationError, match=r"record C11: expected it in the recording, from 500\.0 to 700\.0 s"):
-        validate(structure("CL4"), short, campaign, rng=np.random.default_rng(6), records=("C11",))
+        validate(
+            structure("CL4"),
+            first(signals, signals_from, 40_000),
+            campaign,
+            rng=np.random.default_rng(6),
+            records=("C11",),
+        )
+
+
+def test_a_gap_costs_the_steps_that_it_touches(made, campaign):
+    """What stands in a gap is never looked at: it is made as wrong as can be."""
+    signals, _ = made
+    gap = Gap(channel="M_s", start_s=300.0, stop_s=304.0, reason="has no values", reach_s=0.05)
+    torque = signals.shaft_torque_nm.copy()
+    torque[30_000:30_400] = 1e5
+    spoilt = replace(signals, shaft_torque_nm=torque, gaps=(gap,))
+    both = [
+        validate(structure("CL4"), one, campaign, rng=np.random.default_rng(6), records=("St1",))
+        for one in (signals, spoilt)
+    ]
+    titles = [{c.excerpt.title: c.misfits[1] for c in found.comparisons} for found in both]
+    lost = set(titles[0]) - set(titles[1])
+    # steps at 200, 240, 280 and 320 s, of which the third is shown from 278 to 292 s
+    assert lost == {"whole staircase"}
+    assert [f for f in both[1].findings if f.startswith("St1, whole staircase, was left out: channel M_s")]
+    for title, misfit in titles[1].items():
+        assert misfit.fit_percent == pytest.approx(titles[0][title].fit_percent, abs=1.0)
 
 
 def test_without_a_quiet_stretch_nothing_can_be_said(made, campaign):

@@ -29,6 +29,7 @@ FEWEST_LINES = 5
 # Where governed lines of this size cross over: there delay, lag and proportional gain show.
 CROSSOVER_RAD_S = (1.0, 12.0)
 FEWEST_AT_CROSSOVER = 2
+_MOST_GAPS = 20
 
 
 @click.command("inspect")
@@ -87,6 +88,10 @@ def _print_sensors(opened: Recording, ship: Vessel, *, hidden: bool) -> None:
         reports = inspect_channels(opened, ship)
     columns = ("channel", "used for", "levels", "pulses [1/s]", "strip angles [deg]", "faults")
     print_table("Sensors of the vessel file", columns, [_sensor_row(report) for report in reports], numbers=(3,))
+    gaps = [gap.sentence for report in reports for gap in report.gaps]
+    if gaps:
+        more = [f"{len(gaps) - _MOST_GAPS} more"] if len(gaps) > _MOST_GAPS else []
+        print_findings("Gaps, which cost the windows that they touch", [*gaps[:_MOST_GAPS], *more])
     print_findings("Problems", [report.problem for report in reports if report.problem is not None])
 
 

@@ -98,6 +98,8 @@ def _measured(sine: "Sine", signals: "Signals") -> tuple[ComplexArray, FloatArra
     if max(ORDERS) * sine.frequency_hz > min(_HIGHEST_HZ, 0.4 * signals.rate_hz) or sine.periods < _FEWEST_BINS:
         return None
     window = whole_period_window(sine)
+    if signals.coverage.missing(window.start_s, window.stop_s):
+        return None
     first = int(np.ceil((window.start_s - signals.start_s) * signals.rate_hz - 1e-6))
     last = int(np.ceil((window.stop_s - signals.start_s) * signals.rate_hz - 1e-6))
     if first < 0 or last > signals.samples:

@@ -62,7 +62,8 @@ def limit_evidence(record: Record, found: Fit, signals: "Signals") -> LimitEvide
     rows = []
     for limit in (high, low):
         for first, last in _runs(np.abs(engine - limit) < _TOUCHES * (1.0 + np.abs(limit))):
-            if (last - first) * record.step_s >= _SHORTEST_S:
+            span = float(record.time_s[first]), float(record.time_s[last - 1])
+            if (last - first) * record.step_s >= _SHORTEST_S and not signals.coverage.missing(*span):
                 rows.append(_stretch(record, engine, limit, first, last, signals))
     table = np.array(sorted(rows)).reshape(-1, 7)
     # a curve that was taken from the vessel file is not one that was found

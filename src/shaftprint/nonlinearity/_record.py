@@ -22,6 +22,8 @@ RESIDUAL_RATE_HZ = 25.0
 """Rate at which torques are compared [Hz]: above half of it no governor acts, and only the engine's orders are seen."""
 
 _MARGIN_S = 5.0
+# The replay forgets with a time constant of 10 s; the steps of the set point inside a gap are not known to it.
+_SETTLED_S = 30.0
 _LEAST_SPEED = 0.1
 
 
@@ -44,7 +46,8 @@ class Record:
     engine_torque: FloatArray
     """``M_s / M_s0 + tau_up dn*/dt``: brake torque over that of the working point [-], shape (steps,)."""
     load: FloatArray
-    """Load of the propeller over that of the working point, ``(1 + n*)^2`` [-], shape (values,)."""
+    """Load of the propeller over that of the working point, ``(1 + n*)^2`` [-], infinite where a gap of the recording
+    is felt: the residual is then 0; shape (values,)."""
     smooth: BoolArray
     """Where the set point is a sine or a chirp and does not jump, shape (values,)."""
     upstream_s: float
@@ -124,6 +127,7 @@ def make_record(signals: "Signals", campaign: "Campaign", vessel: "Vessel") -> R
     brake = torque_0 / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
     thinning = round(STEP_RATE_HZ / RESIDUAL_RATE_HZ)
     slopes = _map_slopes(vessel, speed_0, brake)
+    lost = _lost(block_means(block_means(time, length), thinning), signals)
     return Record(
         time_s=block_means(time, length),
         step_s=step_s,
@@ -132,7 +136,7 @@ def make_record(signals: "Signals", campaign: "Campaign", vessel: "Vessel") -> R
         speed=speed,
         shaft_torque=torque,
         engine_torque=torque + upstream * np.gradient(speed, step_s),
-        load=np.maximum(1.0 + block_means(speed, thinning), _LEAST_SPEED) ** 2,
+        load=np.where(lost, np.inf, np.maximum(1.0 + block_means(speed, thinning), _LEAST_SPEED) ** 2),
         smooth=_smooth(block_means(block_means(time, length), thinning), campaign),
         upstream_s=upstream,
         downstream_s=per_inertia * vessel.inertia_downstream_kg_m2,
@@ -154,6 +158,14 @@ def _smooth(time_s: FloatArray, campaign: "Campaign") -> BoolArray:
     for start_s, stop_s in spans:
         inside |= (time_s >= start_s) & (time_s < stop_s)
     return frozen_bool(inside)
+
+
+def _lost(time_s: FloatArray, signals: "Signals") -> BoolArray:
+    """Return which values lie in a gap or so shortly behind it that the replay has not come back, shape (values,)."""
+    lost = signals.coverage.lost(time_s)
+    for gap in signals.gaps:
+        lost |= (time_s >= gap.last_s) & (time_s < gap.last_s + _SETTLED_S)
+    return lost
 
 
 def _span(signals: "Signals", campaign: "Campaign") -> slice:

@@ -76,11 +76,12 @@ def step_evidence(record: Record, found: Fit, campaign: "Campaign") -> StepEvide
     traces = [np.stack([block_means(row, length) for row in pair]) for pair in pairs]
     time, asked = block_means(record.time_s, length), block_means(record.set_point, length)
     noise = traces[0] - traces[1]
+    lost = np.interp(time, record.value_time_s, np.isinf(record.load).astype(np.float64)) > 0.0
     span = _span_s(campaign)
     names, rows = [], []
     for stairs in campaign.staircases:
         for number in range(1, len(stairs.levels_v)):
-            row = _one_step(stairs, number, span, time, asked, traces, noise)
+            row = _one_step(stairs, number, span, time, asked, traces, noise, lost)
             if row is not None:
                 names.append(f"{stairs.name}/{number}")
                 rows.append(row)
@@ -100,13 +101,17 @@ def _one_step(
     asked: FloatArray,
     traces: list[FloatArray],
     noise: FloatArray,
+    lost: BoolArray,
 ) -> tuple[float, FloatArray, FloatArray, FloatArray, FloatArray] | None:
-    """Return size, measured and expected numbers, their std and the four curves; nothing for a step too small."""
+    """Return size, measured and expected numbers, their std and the four curves.
+
+    Nothing is returned for a step that is too small or touched by a gap.
+    """
     step_s = float(time[1] - time[0])
     jump_s = stairs.start_s + number * stairs.dwell_s
     jump = int(np.searchsorted(time, jump_s))
     before, after = round(_BEFORE_S / step_s), round(span_s / step_s)
-    if jump < before + 2 or jump + after > time.size:
+    if jump < before + 2 or jump + after > time.size or lost[jump - before : jump + after].any():
         return None
     levels = float(asked[jump - before : jump - 1].mean()), float(asked[jump + after // 2 : jump + after - 1].mean())
     size = levels[1] - levels[0]
@@ -116,7 +121,8 @@ def _one_step(
     start = np.array([levels[0], (1.0 + levels[0]) ** 2])[:, np.newaxis]
     here = slice(jump - before, jump + after)
     curves = [(trace[:, here] - start) / change for trace in traces]
-    quiet = [noise[:, k - after - before : k] / change for k in _quiet_places(stairs, time, before + after)]
+    ends = [k for k in _quiet_places(stairs, time, before + after) if not lost[k - after - before : k].any()]
+    quiet = [noise[:, k - after - before : k] / change for k in ends]
     shaken = np.array([_numbers(curves[1] + one, before, step_s) for one in quiet[:_MOST_NOISE]])
     std = shaken.std(axis=0, ddof=1) if len(shaken) > 2 else np.full(len(NUMBERS), np.nan)
     measured, expected = (_numbers(curve, before, step_s) for curve in curves)

@@ -12,7 +12,7 @@ rate                  Hz       samples a second of one channel
 Files are opened read-only. Values that are not numbers are passed on as they are.
 """
 
-from shaftprint.recording._channel import Channel
+from shaftprint.recording._channel import Channel, ClockJump
 from shaftprint.recording._from_arrays import Samples, recording_from_arrays
 from shaftprint.recording._levels import Levels
 from shaftprint.recording._read import read_recording
@@ -35,6 +35,7 @@ __all__ = [
     "NATIVE_ENDINGS",
     "READERS",
     "Channel",
+    "ClockJump",
     "Levels",
     "Reader",
     "ReaderFunction",

@@ -14,6 +14,16 @@ Counts: TypeAlias = NDArray[np.int16] | NDArray[np.float64]
 Source: TypeAlias = Callable[[int, int], NDArray[Any]]
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ClockJump:
+    """A place where the times of a file jump by other than whole samples: what follows is on another clock."""
+
+    sample: int
+    """Number of the first sample after it."""
+    jump_s: float
+    """How far the times jump beyond the step from one sample to the next and what is missing between [s]."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Channel:
     """One channel of a recording, on its own clock; ``value = counts * scale + offset``."""
@@ -36,6 +46,8 @@ class Channel:
     """Value at count zero [unit]; 0 where the file holds values."""
     long_name: str = ""
     """What the channel is, in words."""
+    clock_jumps: tuple[ClockJump, ...] = ()
+    """Where its clock jumps, in order of time; samples that are missing in the file are not numbers."""
 
     def __post_init__(self) -> None:
         """Check that the channel can be placed in time.

@@ -16,6 +16,7 @@ deviation             1        ``(x - x_0) / x_0`` from the working point
 """
 
 from shaftprint.signals._content import Content, content_of
+from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._inspect import ChannelReport, PulseReport, inspect_channels
 from shaftprint.signals._prepare import prepare_signals
 from shaftprint.signals._signals import (
@@ -35,6 +36,8 @@ from shaftprint.signals._working_point import deviation
 __all__ = [
     "ChannelReport",
     "Content",
+    "Coverage",
+    "Gap",
     "Mode",
     "PulseReport",
     "RackSignal",

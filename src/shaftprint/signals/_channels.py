@@ -66,7 +66,7 @@ def find_channel(
 
 
 def blocks(channel: "Channel", block_samples: int, advance: Advance | None = None) -> Iterator[Counts]:
-    """Yield the raw counts of a channel, in order, as int16 or float64.
+    """Yield the raw counts of a channel, in order, as int16 or float64; nan where there is no finite value.
 
     Parameters
     ----------
@@ -76,26 +76,36 @@ def blocks(channel: "Channel", block_samples: int, advance: Advance | None = Non
         Samples of one block; results do not depend on it.
     advance
         Is told the number of samples after each block.
-
-    Raises
-    ------
-    SignalError
-        If a value is not a number; the message says when.
     """
     for first in range(0, channel.count, block_samples):
         last = min(first + block_samples, channel.count)
-        yield _checked(channel, first, last)
+        yield _counts(channel, first, last)
         if advance is not None:
             advance(last - first)
 
 
 def spots(channel: "Channel") -> list[Counts]:
-    """Return a few stretches of raw counts from all over a channel, the same for any block size."""
+    """Return a few stretches of raw counts from all over a channel, the same for any block size.
+
+    Samples that are not numbers are left out.
+
+    Raises
+    ------
+    SignalError
+        If there is no number in any of them.
+    """
     length = min(_SPOT_SAMPLES, channel.count)
     starts = np.linspace(0, channel.count - length, _SPOTS).astype(int)
     # on block borders where the channel is long enough, so that no block is unpacked twice
     starts -= starts % length
-    return [_checked(channel, int(start), int(start) + length) for start in np.unique(starts)]
+    found = [_finite(_counts(channel, int(start), int(start) + length)) for start in np.unique(starts)]
+    numbers = [counts for counts in found if counts.size]
+    if not numbers:
+        raise SignalError(
+            f"channel {channel.name}: expected numbers, found none in {len(found)} stretches of "
+            f"{length / channel.rate_hz:.3g} s all over the recording; check the export of the logger."
+        )
+    return numbers
 
 
 def time_of(channel: "Channel", sample: float) -> float:
@@ -103,19 +113,20 @@ def time_of(channel: "Channel", sample: float) -> float:
     return channel.start_s + sample / channel.rate_hz
 
 
-def _checked(channel: "Channel", first: int, last: int) -> Counts:
+def _counts(channel: "Channel", first: int, last: int) -> Counts:
     counts: NDArray[Any] = channel.read(first, last)
     if counts.dtype == np.int16:
         return counts
     values: NDArray[np.float64] = np.ascontiguousarray(counts, dtype=np.float64)
-    bad = np.flatnonzero(~np.isfinite(values))
-    if bad.size:
-        raise SignalError(
-            f"channel {channel.name}: expected numbers, found {values[bad[0]]} "
-            f"at {time_of(channel, first + int(bad[0])):.3f} s; "
-            "export the recording again without gaps."
-        )
-    return values
+    finite = np.isfinite(values)
+    return values if finite.all() else np.where(finite, values, np.nan)
+
+
+def _finite(counts: Counts) -> Counts:
+    if counts.dtype == np.int16:
+        return counts
+    missing = np.isnan(counts)
+    return counts[~missing] if missing.any() else counts
 
 
 def _plain(unit: str) -> str:

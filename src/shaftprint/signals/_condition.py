@@ -1,10 +1,12 @@
 """A continuous channel from raw counts to its unit on the grid: faults replaced, rate lowered."""
 
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from shaftprint.arrays import FloatArray
 from shaftprint.signals._channels import Advance, blocks
-from shaftprint.signals._decimate import Grid, decimated
+from shaftprint.signals._decimate import Grid, decimated, reach_samples
+from shaftprint.signals._gaps import Gap, bridge, clock_gaps
 from shaftprint.signals._outliers import FaultLimits, flagged
 from shaftprint.signals._patch import Patcher
 from shaftprint.signals._signals import Repair
@@ -12,6 +14,18 @@ from shaftprint.signals._thesis import previous_neighbours
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Conditioned:
+    """A channel on the grid."""
+
+    values: FloatArray
+    """Values in the unit of the channel, straight lines in gaps, shape (grid.count,)."""
+    repairs: list[Repair]
+    """What was replaced, in order of time."""
+    gaps: tuple[Gap, ...]
+    """What is missing, in order of time."""
 
 
 def conditioned(
@@ -22,8 +36,8 @@ def conditioned(
     mode: Literal["shaftprint", "thesis"],
     block_samples: int,
     advance: Advance | None = None,
-) -> tuple[FloatArray, list[Repair]]:
-    """Return a channel on the grid, in its own unit, and what was replaced.
+) -> Conditioned:
+    """Return a channel on the grid, in its own unit, with what was replaced and what is missing.
 
     Parameters
     ----------
@@ -41,17 +55,10 @@ def conditioned(
     advance
         Is told the number of samples after each block.
 
-    Returns
-    -------
-    values
-        Shape (grid.count,), in the unit of the channel.
-    repairs
-        In order of time.
-
     Raises
     ------
     SignalError
-        If a value is not a number or the grid is finer than the samples.
+        If the grid is finer than the samples.
     """
     thesis = mode == "thesis"
     repairs: list[Repair] = []
@@ -60,4 +67,10 @@ def conditioned(
     values = previous_neighbours(samples, grid) if thesis else decimated(samples, grid, channel=channel.name)
     values *= channel.scale
     values += channel.offset
-    return values, repairs
+    gaps = [*patcher.gaps, *clock_gaps(channel)]
+    # what lies one step of the grid beyond the filter may be an instant of the gap by rounding
+    reach_s = (reach_samples(grid.step) + grid.step) / channel.rate_hz
+    reaching = sorted((replace(gap, reach_s=reach_s) for gap in gaps), key=lambda gap: gap.start_s)
+    rate_hz = channel.rate_hz / grid.step
+    bridge(values, reaching, start_s=channel.start_s + grid.first / channel.rate_hz, rate_hz=rate_hz)
+    return Conditioned(values=values, repairs=repairs, gaps=tuple(reaching))

@@ -10,6 +10,7 @@ from shaftprint.errors import SignalError
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, blocks
 from shaftprint.signals._condition import conditioned
 from shaftprint.signals._decimate import Grid
+from shaftprint.signals._gaps import joined
 from shaftprint.signals._outliers import fault_limits
 from shaftprint.signals._pick_up import read_pick_up
 
@@ -52,18 +53,18 @@ def content_of(channel: "Channel", sensor: "SpeedSensor | None" = None, *, rate_
     Raises
     ------
     SignalError
-        If the channel has no samples, a value is not a number, or pulses cannot be told.
+        If the channel has no samples, no number among them, or pulses cannot be told.
     """
     if channel.count == 0:
         raise SignalError(f"channel {channel.name}: expected samples, found none.")
     if sensor is None and channel.rate_hz <= rate_hz:
         counts = np.concatenate(list(blocks(channel, DEFAULT_BLOCK_SAMPLES))).astype(np.float64)
-        values, rate_hz = counts * channel.scale + channel.offset, channel.rate_hz
+        values, rate_hz = joined(counts) * channel.scale + channel.offset, channel.rate_hz
     elif sensor is None:
         step = channel.rate_hz / rate_hz
         grid = Grid(first=0.0, step=step, count=int((channel.count - 1) / step) + 1)
         limits = fault_limits(channel, holds=False)
-        values, _ = conditioned(channel, limits, grid, mode="shaftprint", block_samples=DEFAULT_BLOCK_SAMPLES)
+        values = conditioned(channel, limits, grid, mode="shaftprint", block_samples=DEFAULT_BLOCK_SAMPLES).values
     else:
         values = read_pick_up(
             channel,

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.campaign import Campaign, Sine
+from shaftprint.signals._gaps import EVERYTHING, Coverage
 
 # Lines whose ratio is further from 1 are beyond the reach of the low-order form: up to here the delays
 # of the reference ship turn into an error of 2e-4, up to 0.3 into 1e-3.
@@ -65,6 +66,7 @@ def dc_scale(
     rate_hz: float,
     start_s: float,
     slope_std: float,
+    coverage: Coverage = EVERYTHING,
 ) -> DcScale:
     """Return the factor on the set point, from the low lines and the steady levels together.
 
@@ -82,8 +84,10 @@ def dc_scale(
         The grid.
     slope_std
         Standard deviation of the slope of the line over its slope.
+    coverage
+        Says where the gaps are.
     """
-    lines = low_lines(set_point_rev_s, speed_rev_s, campaign, rate_hz=rate_hz, start_s=start_s)
+    lines = low_lines(set_point_rev_s, speed_rev_s, campaign, rate_hz=rate_hz, start_s=start_s, coverage=coverage)
     if lines.omega_rad_s.size < _FEWEST_LINES:
         return DcScale(
             value=1.0,
@@ -119,11 +123,12 @@ def low_lines(
     *,
     rate_hz: float,
     start_s: float,
+    coverage: Coverage = EVERYTHING,
 ) -> LowLines:
     """Return the ratio of speed to set point at the slow sines, from the lowest on while it is near 1."""
     omega, ratio, variance, length_s, periods = [], [], [], [], []
     for sine in sorted(campaign.sines, key=lambda sine: sine.frequency_hz)[:_MOST_LINES]:
-        if sine.periods < 2 or sine.settled_s < start_s:
+        if sine.periods < 2 or sine.settled_s < start_s or coverage.missing(sine.settled_s, sine.window_stop_s):
             continue
         pair = [_period_amplitudes(values, sine, rate_hz, start_s) for values in (set_point_rev_s, speed_rev_s)]
         asked = float(np.sum(np.abs(pair[0]) ** 2))

@@ -47,6 +47,12 @@ class Grid:
         )
 
 
+def reach_samples(step: float) -> int:
+    """Return how many incoming samples on either side one outgoing value depends on."""
+    width = 2.0 * math.pi * (STOP_SHARE - PASS_SHARE) / step
+    return math.ceil((_ATTENUATION_DB - 7.95) / (2.285 * width) / 2.0)
+
+
 def low_pass_taps(step: float, phases: int) -> FloatArray:
     """Return the taps of the filter, shape (phases, taps); each row adds up to 1.
 
@@ -58,8 +64,7 @@ def low_pass_taps(step: float, phases: int) -> FloatArray:
         Row ``k`` gives the value ``k / phases`` of a sample after the sample in the middle,
         which is column ``(taps - 1) // 2``.
     """
-    width = 2.0 * math.pi * (STOP_SHARE - PASS_SHARE) / step
-    half = math.ceil((_ATTENUATION_DB - 7.95) / (2.285 * width) / 2.0)
+    half = reach_samples(step)
     beta = 0.1102 * (_ATTENUATION_DB - 8.7)
     cutoff = (PASS_SHARE + STOP_SHARE) / step
     last = half if phases == 1 else half + 1

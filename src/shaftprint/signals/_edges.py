@@ -84,7 +84,7 @@ def find_edges(samples: Iterable[Counts], levels: PulseLevels) -> FloatArray:
     Parameters
     ----------
     samples
-        Consecutive blocks of raw counts; the result is the same for any cut into blocks.
+        Consecutive blocks of raw counts, nan where there are none; the result is the same for any cut into blocks.
     levels
         From ``pulse_levels``.
     """
@@ -123,6 +123,9 @@ def scan_edges(  # type: ignore[no-untyped-def]
             if value >= fire:
                 edges[found] = crossing
                 found += 1
+                armed = False
+            elif np.isnan(value):
+                # a pulse that began before a gap must not be timed behind it
                 armed = False
         elif value <= arm:
             armed = True

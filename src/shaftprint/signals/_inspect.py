@@ -9,9 +9,10 @@ import numpy as np
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, Counts, blocks
 from shaftprint.signals._edges import find_edges, pulse_levels
+from shaftprint.signals._gaps import Gap, clock_gaps
 from shaftprint.signals._outliers import FaultLimits, fault_limits, flagged
 from shaftprint.signals._patch import Patcher
-from shaftprint.signals._pick_up import expect_no_gap, numbered_strips, pulse_repairs
+from shaftprint.signals._pick_up import numbered_strips, pulse_gaps, pulse_repairs
 from shaftprint.signals._rack import read_rack
 from shaftprint.signals._signals import Repair
 from shaftprint.signals._sources import find_sources
@@ -48,6 +49,8 @@ class ChannelReport:
     """What the pulses say; nothing for other channels and for pulses that cannot be used."""
     faults: tuple[Repair, ...]
     """Missing and doubled pulses, outliers and dropouts, in order of time."""
+    gaps: tuple[Gap, ...]
+    """Stretches in which it says nothing, in order of time."""
     problem: str | None
     """Why the channel cannot be used, in one sentence; nothing if it can."""
 
@@ -82,7 +85,7 @@ def inspect_channels(recording: "Recording", vessel: "Vessel") -> tuple[ChannelR
     Raises
     ------
     SignalError
-        If a channel is missing, empty, in another unit, or holds something that is not a number.
+        If a channel is missing, empty, in another unit, or holds no numbers.
     """
     sources = find_sources(recording, vessel)
     sensors = vessel.sensors
@@ -102,18 +105,22 @@ class _Extremes:
 
     def watched(self, channel: "Channel") -> Iterator[Counts]:
         for block in blocks(channel, DEFAULT_BLOCK_SAMPLES):
-            self.lowest = min(self.lowest, float(block.min()))
-            self.highest = max(self.highest, float(block.max()))
+            # fmin and fmax pass over what is not a number
+            self.lowest = min(self.lowest, float(np.fmin.reduce(block)))
+            self.highest = max(self.highest, float(np.fmax.reduce(block)))
             yield block
 
 
 def _inspect_pulses(channel: "Channel", sensor: "SpeedSensor") -> ChannelReport:
     extremes = _Extremes()
-    pulses, faults, problem = None, None, None
+    pulses, problem = None, None
+    faults: tuple[Repair, ...] = ()
+    gaps: tuple[Gap, ...] = ()
     try:
         levels = pulse_levels(channel, edge=sensor.edge)
         train, strips = numbered_strips(find_edges(extremes.watched(channel), levels), sensor)
-        faults = pulse_repairs(channel, train)
+        gaps = pulse_gaps(channel, train, sensor.pulses_per_revolution)
+        faults = pulse_repairs(channel, train, gaps)
         rate = train.number[-1] / (train.position[-1] - train.position[0]) * channel.rate_hz
         pulses = PulseReport(
             low=levels.low * channel.scale + channel.offset,
@@ -121,25 +128,25 @@ def _inspect_pulses(channel: "Channel", sensor: "SpeedSensor") -> ChannelReport:
             per_second=float(rate),
             strip_angles_deg=((360.0,) if strips is None else tuple((strips.angle_rev * 360.0).tolist())),
         )
-        expect_no_gap(channel, train)
     except SignalError as error:
         problem = str(error)
         _exhaust(extremes.watched(channel))
-    return _report(channel, "speed", extremes, pulses, faults or (), problem)
+    return _report(channel, "speed", extremes, pulses, faults, gaps, problem)
 
 
 def _inspect_values(channel: "Channel", use: Use, limits: FaultLimits) -> ChannelReport:
     extremes = _Extremes()
     repairs: list[Repair] = []
+    gaps = clock_gaps(channel)
     problem = None
     try:
-        patcher = Patcher(channel=channel, limits=limits, repairs=repairs)
+        patcher = Patcher(channel=channel, limits=limits, repairs=repairs, gaps=gaps)
         _exhaust(patcher.patched(flagged(extremes.watched(channel), limits)))
         judge_saturation(channel, repairs)
     except SignalError as error:
         problem = str(error)
         _exhaust(extremes.watched(channel))
-    return _report(channel, use, extremes, None, tuple(repairs), problem)
+    return _report(channel, use, extremes, None, tuple(repairs), tuple(gaps), problem)
 
 
 def _inspect_rack(channel: "Channel | None", sensor: "RackSensor | None") -> tuple[ChannelReport, ...]:
@@ -147,13 +154,11 @@ def _inspect_rack(channel: "Channel | None", sensor: "RackSensor | None") -> tup
         return ()
     extremes = _Extremes()
     _exhaust(extremes.watched(channel))
-    repairs: list[Repair] = []
-    problem = None
     try:
-        _, repairs = read_rack(channel, sensor, block_samples=DEFAULT_BLOCK_SAMPLES)
+        read = read_rack(channel, sensor, block_samples=DEFAULT_BLOCK_SAMPLES)
     except SignalError as error:
-        problem = str(error)
-    return (_report(channel, "fuel rack", extremes, None, tuple(repairs), problem),)
+        return (_report(channel, "fuel rack", extremes, None, (), (), str(error)),)
+    return (_report(channel, "fuel rack", extremes, None, tuple(read.repairs), read.gaps, None),)
 
 
 def _exhaust(passing: Iterable[object]) -> None:
@@ -167,6 +172,7 @@ def _report(
     extremes: _Extremes,
     pulses: PulseReport | None,
     faults: tuple[Repair, ...],
+    gaps: tuple[Gap, ...],
     problem: str | None,
 ) -> ChannelReport:
     ends = [count * channel.scale + channel.offset for count in (extremes.lowest, extremes.highest)]
@@ -181,5 +187,6 @@ def _report(
         highest=max(ends),
         pulses=pulses,
         faults=faults,
+        gaps=tuple(sorted(gaps, key=lambda gap: gap.start_s)),
         problem=problem,
     )

@@ -17,6 +17,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign, Chirp, Sine
+from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals._signals import WorkingPoint
 from shaftprint.signals._steady import SteadyStretch
 
@@ -35,6 +36,7 @@ def with_load_of_test(
     torque_nm: FloatArray,
     rate_hz: float,
     start_s: float,
+    coverage: Coverage = EVERYTHING,
 ) -> WorkingPoint:
     """Return the working point with the mean load of the whole test over its own, where there are four windows.
 
@@ -50,11 +52,14 @@ def with_load_of_test(
         Signals on the grid, shape (samples,).
     rate_hz, start_s
         The grid.
+    coverage
+        Says where the gaps are.
     """
     planned = [*((stretch.start_s, stretch.stop_s) for stretch in quiet), *_waves(campaign)]
     # half a sample on either side is what rounding leaves of an end
     first_s, last_s = start_s - 0.5 / rate_hz, start_s + (torque_nm.size + 0.5) / rate_hz
-    windows = _apart([(begin, end) for begin, end in planned if begin >= first_s and end <= last_s])
+    recorded = [(begin, end) for begin, end in planned if begin >= first_s and end <= last_s]
+    windows = _apart([window for window in recorded if not coverage.missing(*window)])
     if len(windows) < FEWEST_WINDOWS:
         return point
     own = point.shaft_torque_nm / point.engine_speed_rev_s**2

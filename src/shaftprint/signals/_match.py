@@ -1,10 +1,14 @@
 """Whether a recording and a campaign belong together, judged by the set point."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign, Excitation, Sine, Staircase, setpoint
 from shaftprint.errors import SignalError
+from shaftprint.signals._gaps import EVERYTHING, Coverage, gap_findings
+from shaftprint.signals._steps import step_window
 
 # Slow excitations only: a second of clock error must not look like another campaign.
 _SLOW_HZ = 0.2
@@ -13,23 +17,49 @@ _LEAST_EXPLAINED = 0.5
 _LOOKS_PER_S = 10.0
 
 
-def expect_length(duration_s: float, campaign: Campaign, *, name: str) -> None:
-    """Check that the recording reaches to the end of the last excitation.
+def measured_windows(campaign: Campaign) -> tuple[tuple[str, float, float], ...]:
+    """Return name, begin and end [s] of everything that is measured, in order of time."""
+    found = [(sine.name, sine.settled_s, sine.window_stop_s) for sine in campaign.sines]
+    found += [(chirp.name, chirp.start_s, chirp.stop_s) for chirp in campaign.chirps]
+    for stairs in campaign.staircases:
+        found += [(f"step {k} of {stairs.name}", *step_window(stairs, k)) for k in range(1, len(stairs.levels_v))]
+    return tuple(sorted(found, key=lambda window: window[1]))
+
+
+def left_out(campaign: Campaign, coverage: Coverage, *, name: str) -> tuple[str, ...]:
+    """Return what a recording does not hold of a campaign: one sentence for its ends and one for each gap.
+
+    Parameters
+    ----------
+    campaign
+        What was asked of the ship.
+    coverage
+        What the recording covers.
+    name
+        The recording, for messages.
 
     Raises
     ------
     SignalError
-        If it is shorter; the message says by how much.
+        If it holds nothing whole.
     """
-    last = max(campaign.excitations, key=lambda excitation: excitation.stop_s)
-    missing = last.stop_s - duration_s
-    if missing > 0.0:
-        lost = [item.name for item in campaign.excitations if item.stop_s > duration_s]
+    windows = measured_windows(campaign)
+    ends = replace(coverage, gaps=())
+    outside = [window for window in windows if ends.missing(*window[1:])]
+    if all(coverage.missing(*window[1:]) for window in windows):
+        gaps = f" with {len(coverage.gaps)} gaps" if coverage.gaps else ""
         raise SignalError(
-            f"{name}: expected a recording up to {last.stop_s:.1f} s, where the campaign "
-            f'"{campaign.name}" ends {last.name}, found {duration_s:.1f} s: {missing:.1f} s too short; '
-            f"leave {', '.join(lost)} out of the campaign file or use the whole recording."
+            f'{name}: expected at least one whole test of the campaign "{campaign.name}" between {windows[0][1]:.1f} '
+            f"and {windows[-1][2]:.1f} s, found a recording from {coverage.start_s:.1f} to {coverage.stop_s:.1f} s"
+            f"{gaps}; use the whole recording, or the campaign file that belongs to it."
         )
+    inside = [window for window in windows if window not in outside]
+    findings = gap_findings(coverage.gaps, inside)
+    if not outside:
+        return findings
+    span = f"the recording lasts from {coverage.start_s:.1f} to {coverage.stop_s:.1f} s"
+    names = ", ".join(window[0] for window in outside)
+    return (f"{span}, the campaign to {max(w[2] for w in windows):.1f} s; left out for that: {names}", *findings)
 
 
 def expect_campaign(
@@ -39,8 +69,11 @@ def expect_campaign(
     rate_hz: float,
     start_s: float,
     channel: str,
+    coverage: Coverage = EVERYTHING,
 ) -> tuple[str, ...]:
     """Check that the set point moves as the campaign says; return a finding for each test that does not.
+
+    Only tests that the recording holds whole are judged.
 
     Raises
     ------
@@ -56,7 +89,8 @@ def expect_campaign(
             f"{lowest:.4g} and {highest:.4g} V from start to end; check that the channel is the set "
             "point and that the test was made."
         )
-    slow = [item for item in campaign.excitations if not _is_fast(item)] or list(campaign.excitations)
+    held = [item for item in campaign.excitations if not coverage.missing(item.start_s, item.stop_s)]
+    slow = [item for item in held if not _is_fast(item)] or held
     foreign = [
         item.name for item in slow if _explained(set_point_v, item, campaign, rate_hz, start_s) < _LEAST_EXPLAINED
     ]

@@ -1,4 +1,4 @@
-"""Samples that cannot be true: spikes, short holds and rail values, found as the blocks go by.
+"""Samples that cannot be true: spikes, holds, rail values and what is no number, found as the blocks go by.
 
 A spike is found by the Hampel identifier (Hampel, "The influence curve and its role in robust
 estimation", 1974) with a floor: a sample is suspect when it lies further from the median of its window
@@ -20,7 +20,7 @@ from shaftprint.signals._channels import Counts, spots
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
 
-GOOD, SPIKE, HOLD, RAIL = range(4)
+GOOD, SPIKE, HOLD, RAIL, MISSING = range(5)
 """Codes of samples, from least to most certain fault."""
 
 SIGMA_PER_MAD = 1.4826
@@ -132,6 +132,8 @@ def sample_codes(values: Counts, limits: FaultLimits) -> NDArray[np.uint8]:
     if np.isfinite(limits.lowest) or np.isfinite(limits.highest):
         middle = values[margin : values.size - margin]
         codes[(middle <= limits.lowest) | (middle >= limits.highest)] = RAIL
+    if values.dtype != np.int16:
+        codes[np.isnan(values[margin : values.size - margin])] = MISSING
     return codes
 
 

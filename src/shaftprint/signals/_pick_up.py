@@ -1,18 +1,19 @@
 """From one pulse channel to one speed signal."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.errors import SignalError
 from shaftprint.signals._channels import Advance, blocks, time_of
 from shaftprint.signals._edges import find_edges, pulse_levels
+from shaftprint.signals._gaps import Gap, bridge, clock_gaps
 from shaftprint.signals._pulses import PulseTrain, number_pulses
 from shaftprint.signals._signals import Repair, SpeedSignal, StripAngles
 from shaftprint.signals._speed import spline_speed
-from shaftprint.signals._strips import find_strips, renumbered, revolutions
+from shaftprint.signals._strips import find_strips, renumbered, revolutions, unplaced_stretches
 from shaftprint.signals._thesis import pulse_period_speed
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 # Over a gap longer than this the speed cannot be told from the pulses around it.
 _LONGEST_GAP_S, _LONGEST_GAP_PULSES = 1.0, 8
+# The end of a spline is felt so many pulses further on: by half a per cent.
+_REACH_PULSES = 4
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -33,6 +36,8 @@ class PickUp:
     """Angles between the strips, where there are several."""
     repairs: tuple[Repair, ...]
     """Pulses that were missing or doubled."""
+    gaps: tuple[Gap, ...]
+    """Stretches without pulses, in order of time."""
     findings: tuple[str, ...]
     """What the reader should know."""
 
@@ -69,16 +74,16 @@ def read_pick_up(
     Raises
     ------
     SignalError
-        If there are no pulses, too few, too many faults, or a gap of more than a second.
+        If there are no pulses, too few or too many faults.
     """
     levels = pulse_levels(channel, edge=sensor.edge)
     edges = find_edges(blocks(channel, block_samples, advance), levels)
     train, strips = numbered_strips(edges, sensor)
-    expect_no_gap(channel, train)
+    gaps = pulse_gaps(channel, train, sensor.pulses_per_revolution)
     ratio = gear_ratio if sensor.shaft == "propeller" else 1.0
     time_s = time_of_edges(channel, train.position)
-    turns = float(train.number[-1]) / sensor.pulses_per_revolution
-    turn_s = float(time_s[-1] - time_s[0]) / turns
+    seconds, pulses = _counted(train, time_s, gaps)
+    turn_s = seconds / (pulses / sensor.pulses_per_revolution)
     if mode == "thesis":
         speed = pulse_period_speed(
             train, sensor.pulses_per_revolution, channel, start_s=start_s, step_s=1.0 / rate_hz, count=count
@@ -88,6 +93,7 @@ def read_pick_up(
         angle = train.number.astype(np.float64) if strips is None else revolutions(train, strips.angle_rev)
         speed = spline_speed(time_s, angle, start_s=start_s, step_s=1.0 / rate_hz, count=count)
         period = 0.0
+    bridge(speed, gaps, start_s=start_s, rate_hz=rate_hz)
     speed *= ratio
     return PickUp(
         speed=SpeedSignal(
@@ -100,7 +106,8 @@ def read_pick_up(
             delay_s=period,
         ),
         strips=strips,
-        repairs=pulse_repairs(channel, train),
+        repairs=pulse_repairs(channel, train, gaps),
+        gaps=gaps,
         findings=_upside_down(sensor, levels.duty),
     )
 
@@ -126,9 +133,9 @@ def time_of_edges(channel: "Channel", position: FloatArray) -> FloatArray:
     return channel.start_s + position / channel.rate_hz
 
 
-def pulse_repairs(channel: "Channel", train: PulseTrain) -> tuple[Repair, ...]:
-    """Return the faults of a pulse train as repairs, in order of time."""
-    return tuple(
+def pulse_repairs(channel: "Channel", train: PulseTrain, gaps: Sequence[Gap]) -> tuple[Repair, ...]:
+    """Return the faults of a pulse train outside of its gaps as repairs, in order of time."""
+    repairs = (
         Repair(
             channel=channel.name,
             kind=fault.kind,
@@ -137,26 +144,44 @@ def pulse_repairs(channel: "Channel", train: PulseTrain) -> tuple[Repair, ...]:
         )
         for fault in train.faults
     )
+    return tuple(repair for repair in repairs if not any(gap.start_s < repair.time_s < gap.stop_s for gap in gaps))
 
 
-def expect_no_gap(channel: "Channel", train: PulseTrain) -> None:
-    """Check that pulses come from the first to the last second.
+def pulse_gaps(channel: "Channel", train: PulseTrain, strips: int) -> tuple[Gap, ...]:
+    """Return the stretches of more than a second and eight pulses in which there are none, in order of time.
 
-    Raises
-    ------
-    SignalError
-        If there is a gap of more than a second and eight pulses; the message says when.
+    With several strips a stretch behind a gap that is too short to show at which strip it begins belongs to the gap.
     """
-    ends = np.concatenate([[0.0], train.position, [float(channel.count)]])
-    gap = np.diff(ends)
     mean = (train.position[-1] - train.position[0]) / train.number[-1]
-    longest = int(np.argmax(gap))
-    if gap[longest] > max(_LONGEST_GAP_S * channel.rate_hz, _LONGEST_GAP_PULSES * mean):
-        raise SignalError(
-            f"channel {channel.name}: expected pulses all the time, found none from "
-            f"{time_of(channel, ends[longest]):.2f} to {time_of(channel, ends[longest + 1]):.2f} s; "
-            "check the pick-up, or use a part of the recording without the gap."
+    ends = np.concatenate([[0.0], train.position, [float(channel.count)]])
+    long = np.flatnonzero(np.diff(ends) > max(_LONGEST_GAP_S * channel.rate_hz, _LONGEST_GAP_PULSES * mean))
+    stretches = [(float(ends[place]), float(ends[place + 1])) for place in long]
+    inner = long[(long > 0) & (long < train.position.size)] - 1
+    if strips > 1 and inner.size:
+        stretches += unplaced_stretches(train, strips, inner)
+    silent = [
+        Gap(
+            channel=channel.name,
+            start_s=time_of(channel, first),
+            stop_s=time_of(channel, last),
+            reason="has no pulses" if (first, last) in stretches[: long.size] else "has too few pulses between gaps",
         )
+        for first, last in sorted(stretches)
+    ]
+    reach_s = _REACH_PULSES * float(mean) / channel.rate_hz
+    found = [replace(gap, reach_s=reach_s) for gap in (*silent, *clock_gaps(channel))]
+    return tuple(sorted(found, key=lambda gap: gap.start_s))
+
+
+def _counted(train: PulseTrain, time_s: FloatArray, gaps: Sequence[Gap]) -> tuple[float, float]:
+    """Return the time outside of gaps [s] and the number of pulses in it."""
+    seconds, pulses = float(time_s[-1] - time_s[0]), float(train.number[-1])
+    for gap in gaps:
+        inside = np.flatnonzero((time_s >= gap.start_s) & (time_s <= gap.stop_s))
+        if inside.size > 1:
+            seconds -= float(time_s[inside[-1]] - time_s[inside[0]])
+            pulses -= float(train.number[inside[-1]] - train.number[inside[0]])
+    return seconds, pulses
 
 
 def _upside_down(sensor: "SpeedSensor", duty: float) -> tuple[str, ...]:

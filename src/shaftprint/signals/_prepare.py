@@ -1,8 +1,8 @@
 """The verb of the room: from a raw recording to signals in physical units."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from shaftprint.arrays import FloatArray, frozen_float
@@ -10,10 +10,11 @@ from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
 from shaftprint.signals._calibrate import calibrate
 from shaftprint.signals._compare import compare_speeds
-from shaftprint.signals._condition import conditioned
+from shaftprint.signals._condition import Conditioned, conditioned
 from shaftprint.signals._dc_scale import DcScale, dc_scale
+from shaftprint.signals._gaps import Coverage, Gap, within
 from shaftprint.signals._load import with_load_of_test
-from shaftprint.signals._match import expect_campaign, expect_length
+from shaftprint.signals._match import expect_campaign, left_out
 from shaftprint.signals._outliers import fault_limits
 from shaftprint.signals._pick_up import PickUp, read_pick_up
 from shaftprint.signals._rack import rack_signal, read_rack
@@ -40,8 +41,10 @@ class _Read:
     volts: FloatArray
     torque_nm: FloatArray
     pick_ups: tuple[PickUp, ...]
-    rack: FloatArray | None
+    rack: Conditioned | None
+    ship_speed: Conditioned | None
     repairs: tuple[Repair, ...]
+    gaps: tuple[Gap, ...]
     findings: tuple[str, ...]
 
 
@@ -78,14 +81,13 @@ def prepare_signals(
     Raises
     ------
     SignalError
-        If a channel is missing, dead, saturated, in another unit or too short, or if the recording
-        does not show what the campaign asked.
+        If a channel is missing, dead, saturated or in another unit, or if the recording does not show what
+        the campaign asked, or no test of it whole. What it lacks in gaps or at its ends is in the findings.
     """
     if mode not in ("shaftprint", "thesis"):
         raise SignalError(f'mode: expected "shaftprint" or "thesis", found "{mode}".')
     sources = find_sources(recording, vessel)
     clock = common_clock(sources, mode=mode, rate_hz=rate_hz, chunk_s=chunk_s, progress=progress)
-    expect_length(clock.start_s + clock.count / rate_hz, campaign, name=str(recording.path))
     return _put_together(recording, vessel, campaign, clock, sources, _read_all(vessel, sources, clock))
 
 
@@ -100,34 +102,51 @@ def _read_all(vessel: "Vessel", sources: Sources, clock: Clock) -> _Read:
             pool.submit(_read_speed, channel, sensor, vessel, clock)
             for channel, sensor in zip(sources.speed, sensors, strict=True)
         ]
-        torque, torque_repairs = torque_job.result()
-        volts, volts_repairs = volts_job.result()
-        rack, rack_repairs = _read_rack(sources, vessel, clock)
+        torque, volts = torque_job.result(), volts_job.result()
+        rack = _read_rack(sources, vessel, clock)
+        ship_speed = _read_ship_speed(sources, vessel, clock)
         pick_ups = [speed_jobs[0].result()]
-        findings = list(judge_saturation(sources.torque, torque_repairs))
+        gaps = [*torque.gaps, *volts.gaps, *pick_ups[0].gaps, *(() if ship_speed is None else ship_speed.gaps)]
+        findings = list(judge_saturation(sources.torque, torque.repairs))
         for sensor, job in zip(sensors[1:], speed_jobs[1:], strict=True):
             try:
-                pick_ups.append(job.result())
+                pick_ups.append(_expect_whole(job.result(), gaps))
             except SignalError as error:
                 findings.append(f"{sensor.name} was left out: {error}")
     finally:
         pool.shutdown(cancel_futures=True)
-    repairs = [*torque_repairs, *volts_repairs, *rack_repairs]
+    repairs = [*torque.repairs, *volts.repairs, *(() if rack is None else rack.repairs)]
     repairs += [repair for pick_up in pick_ups for repair in pick_up.repairs]
     return _Read(
-        volts=volts,
-        torque_nm=torque,
+        volts=volts.values,
+        torque_nm=torque.values,
         pick_ups=tuple(pick_ups),
         rack=rack,
+        ship_speed=ship_speed,
         repairs=tuple(sorted(repairs, key=lambda repair: repair.time_s)),
+        gaps=tuple(sorted((gap for gap in gaps if gap.last_s > clock.start_s), key=lambda gap: gap.start_s)),
         findings=(*findings, *(finding for pick_up in pick_ups for finding in pick_up.findings)),
     )
 
 
-def _read_torque(channel: "Channel", vessel: "Vessel", clock: Clock) -> tuple[FloatArray, list[Repair]]:
+def _expect_whole(pick_up: PickUp, gaps: Sequence[Gap]) -> PickUp:
+    """Return a further pick-up if it misses nothing but what the other channels miss too.
+
+    Raises
+    ------
+    SignalError
+        If it has a gap of its own: that must not cost the windows of the first pick-up.
+    """
+    for gap in pick_up.gaps:
+        if not within(gap, gaps):
+            raise SignalError(f"{gap.sentence}; check the pick-up.")
+    return pick_up
+
+
+def _read_torque(channel: "Channel", vessel: "Vessel", clock: Clock) -> Conditioned:
     sensor = vessel.sensors.shaft_torque
     latency_s = 0.0 if clock.mode == "thesis" else sensor.latency_s
-    reading, repairs = conditioned(
+    found = conditioned(
         channel,
         torque_limits(channel, sensor),
         clock.grid(channel, latency_s),
@@ -135,10 +154,11 @@ def _read_torque(channel: "Channel", vessel: "Vessel", clock: Clock) -> tuple[Fl
         block_samples=clock.block_samples(channel),
         advance=clock.advance,
     )
-    return sensor.torque_nm(reading), repairs
+    gaps = (replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in found.gaps)
+    return Conditioned(values=sensor.torque_nm(found.values), repairs=found.repairs, gaps=tuple(gaps))
 
 
-def _read_set_point(channel: "Channel", clock: Clock) -> tuple[FloatArray, list[Repair]]:
+def _read_set_point(channel: "Channel", clock: Clock) -> Conditioned:
     return conditioned(
         channel,
         fault_limits(channel, holds=False),
@@ -149,33 +169,39 @@ def _read_set_point(channel: "Channel", clock: Clock) -> tuple[FloatArray, list[
     )
 
 
-def _read_rack(sources: Sources, vessel: "Vessel", clock: Clock) -> tuple[FloatArray | None, list[Repair]]:
+def _read_rack(sources: Sources, vessel: "Vessel", clock: Clock) -> Conditioned | None:
     sensor = vessel.sensors.rack
     if sources.rack is None or sensor is None:
-        return None, []
+        return None
     return read_rack(sources.rack, sensor, block_samples=clock.block_samples(sources.rack))
 
 
-def _rack_signal(
-    sources: Sources, vessel: "Vessel", clock: Clock, fraction: FloatArray | None, stretches: tuple[SteadyStretch, ...]
-) -> RackSignal | None:
-    sensor = vessel.sensors.rack
-    if sources.rack is None or sensor is None or fraction is None:
+def _read_ship_speed(sources: Sources, vessel: "Vessel", clock: Clock) -> Conditioned | None:
+    channel, sensor = sources.ship_speed, vessel.sensors.ship_speed
+    if channel is None or sensor is None:
         return None
     latency_s = 0.0 if clock.mode == "thesis" else sensor.latency_s
-    return rack_signal(fraction, sources.rack, sensor, stretches, latency_s=latency_s)
+    return read_ship_speed(channel, sensor, clock, latency_s=latency_s)
+
+
+def _rack_signal(
+    sources: Sources, vessel: "Vessel", clock: Clock, read: Conditioned | None, stretches: tuple[SteadyStretch, ...]
+) -> RackSignal | None:
+    sensor = vessel.sensors.rack
+    if sources.rack is None or sensor is None or read is None:
+        return None
+    latency_s = 0.0 if clock.mode == "thesis" else sensor.latency_s
+    return rack_signal(read.values, sources.rack, sensor, stretches, latency_s=latency_s, gaps=read.gaps)
 
 
 def _ship_speed_signal(
-    sources: Sources, vessel: "Vessel", clock: Clock, stretches: tuple[SteadyStretch, ...]
+    sources: Sources, vessel: "Vessel", clock: Clock, read: Conditioned | None, stretches: tuple[SteadyStretch, ...]
 ) -> tuple[ShipSpeedSignal | None, tuple[str, ...]]:
     """Return the speed of the ship, and a finding where its log says that the ship had no way on."""
     channel, sensor = sources.ship_speed, vessel.sensors.ship_speed
-    if channel is None or sensor is None:
+    if channel is None or sensor is None or read is None:
         return None, ()
-    latency_s = 0.0 if clock.mode == "thesis" else sensor.latency_s
-    speed = read_ship_speed(channel, sensor, clock, latency_s=latency_s)
-    found = ship_speed_signal(speed, channel, sensor, clock, stretches)
+    found = ship_speed_signal(read.values, channel, sensor, clock, stretches)
     if found is None:
         return None, (f"the speed of the ship in channel {channel.name} was left out: the ship had no way on",)
     return found, ()
@@ -203,10 +229,13 @@ def _put_together(
     rate_hz, start_s = clock.rate_hz, clock.start_s
     speeds = tuple(pick_up.speed for pick_up in read.pick_ups)
     speed, torque, n_set = speeds[0].speed_rev_s, read.torque_nm, read.volts
-    mismatches = expect_campaign(n_set, campaign, rate_hz=rate_hz, start_s=start_s, channel=channel)
-    expect_moving_torque(torque, campaign, vessel.sensors.shaft_torque, rate_hz=rate_hz, start_s=start_s)
+    coverage = Coverage(start_s=start_s, stop_s=start_s + clock.count / rate_hz, step_s=1.0 / rate_hz, gaps=read.gaps)
+    lost = left_out(campaign, coverage, name=str(recording.path))
+    grid = {"rate_hz": rate_hz, "start_s": start_s}
+    mismatches = expect_campaign(n_set, campaign, **grid, channel=channel, coverage=coverage)
+    expect_moving_torque(torque, campaign, vessel.sensors.shaft_torque, **grid, coverage=coverage)
     differences = compare_speeds(speeds, vessel)
-    stretches = steady_stretches(n_set, speed, torque, campaign, rate_hz=rate_hz, start_s=start_s)
+    stretches = steady_stretches(n_set, speed, torque, campaign, **grid, coverage=coverage)
     thesis = clock.mode == "thesis"
     calibration = calibrate(stretches, weighted=not thesis, channel=channel)
     quiet = stretches_at_working_point(stretches, campaign, channel=channel)
@@ -217,11 +246,11 @@ def _put_together(
     scale = DcScale(value=1.0, std=0.0, findings=())
     if not thesis:
         working_point = with_load_of_test(
-            working_point, quiet, campaign, speed_rev_s=speed, torque_nm=torque, rate_hz=rate_hz, start_s=start_s
+            working_point, quiet, campaign, speed_rev_s=speed, torque_nm=torque, **grid, coverage=coverage
         )
-        scale = _rescale(n_set, speed, campaign, clock, calibration, about=working_point.engine_speed_rev_s)
-    ship_speed, moored = _ship_speed_signal(sources, vessel, clock, quiet)
-    delays, missed = find_step_delays(n_set, speed, campaign, rate_hz=rate_hz, start_s=start_s)
+        scale = _rescale(n_set, speed, campaign, coverage, calibration, **grid, about=working_point.engine_speed_rev_s)
+    ship_speed, moored = _ship_speed_signal(sources, vessel, clock, read.ship_speed, quiet)
+    delays, missed = find_step_delays(n_set, speed, campaign, **grid, coverage=coverage)
     return Signals(
         rate_hz=rate_hz,
         start_s=start_s,
@@ -235,10 +264,12 @@ def _put_together(
         strips=tuple(pick_up.strips for pick_up in read.pick_ups if pick_up.strips is not None),
         step_delays=delays,
         repairs=read.repairs,
+        gaps=read.gaps,
         mode=clock.mode,
-        findings=(*read.findings, *mismatches, *strange, *differences, *scale.findings, *moored, *missed),
+        findings=(*lost, *read.findings, *mismatches, *strange, *differences, *scale.findings, *moored, *missed),
         recording_sha256=recording.sha256,
         recording_name=recording.path.name,
+        set_point_channel=channel,
         rack=_rack_signal(sources, vessel, clock, read.rack, quiet),
         ship_speed=ship_speed,
     )
@@ -248,14 +279,16 @@ def _rescale(
     n_set: FloatArray,
     speed: FloatArray,
     campaign: Campaign,
-    clock: Clock,
+    coverage: Coverage,
     calibration: SetPointCalibration,
     *,
+    rate_hz: float,
+    start_s: float,
     about: float,
 ) -> DcScale:
     """Stretch the set point about a speed, in place since the signals of a whole test are large; return how far."""
     slope_std = float(calibration.covariance[0, 0]) ** 0.5 / abs(calibration.slope_rev_s_per_v)
-    scale = dc_scale(n_set, speed, campaign, rate_hz=clock.rate_hz, start_s=clock.start_s, slope_std=slope_std)
+    scale = dc_scale(n_set, speed, campaign, rate_hz=rate_hz, start_s=start_s, slope_std=slope_std, coverage=coverage)
     n_set -= about
     n_set *= scale.value
     n_set += about

@@ -5,6 +5,7 @@ interpolation put there would bend the response. Spectra are measured on the cha
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,6 +13,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import blocks, time_of
+from shaftprint.signals._condition import Conditioned
+from shaftprint.signals._gaps import Coverage, Gap, clock_gaps, joined, runs_of
 from shaftprint.signals._signals import RackSignal, Repair
 from shaftprint.signals._steady import SteadyStretch
 from shaftprint.signals._working_point import mean_of_stretches
@@ -31,8 +34,8 @@ _BLOCK_S = 1.0
 _PERCENT = 0.01
 
 
-def read_rack(channel: "Channel", sensor: "RackSensor", *, block_samples: int) -> tuple[FloatArray, list[Repair]]:
-    """Return the fuel rack [fraction], one value a message or a part of one, and what was repaired.
+def read_rack(channel: "Channel", sensor: "RackSensor", *, block_samples: int) -> Conditioned:
+    """Return the fuel rack [fraction], one value a message or a part of one, with what was repaired and is missing.
 
     Parameters
     ----------
@@ -46,18 +49,17 @@ def read_rack(channel: "Channel", sensor: "RackSensor", *, block_samples: int) -
     Raises
     ------
     SignalError
-        If the rate is not that of the messages, a value is not a number, no torque is available for more than 2 s, or
-        the channel never moves.
+        If the rate is not that of the messages, no torque is ever available, or the channel never moves.
     """
     group = _samples_together(channel, sensor)
     percent = np.concatenate(list(_means(channel, group, block_samples)))
-    repairs = _bridge(percent, channel, group)
+    repairs, gaps = _bridge(percent, channel, group)
     if np.ptp(percent) == 0.0:
         raise SignalError(
             f"channel {channel.name}: expected a percent torque that moves, found {percent[0]:g} % from beginning to "
             "end; check the message it was taken from, or take [sensors.rack] out of the vessel file."
         )
-    return _PERCENT * percent, repairs
+    return Conditioned(values=_PERCENT * percent, repairs=repairs, gaps=tuple(gaps))
 
 
 def rack_signal(
@@ -67,6 +69,7 @@ def rack_signal(
     stretches: tuple[SteadyStretch, ...],
     *,
     latency_s: float,
+    gaps: tuple[Gap, ...] = (),
 ) -> RackSignal:
     """Return the fuel rack with its clock, its sampling and its working point.
 
@@ -80,6 +83,8 @@ def rack_signal(
         Where the line stands still at the working point.
     latency_s
         Time by which the channel is taken to be late [s].
+    gaps
+        Where no torque was available.
 
     Raises
     ------
@@ -90,7 +95,9 @@ def rack_signal(
     held = channel.rate_hz * sensor.cycle_s >= _HELD_RATE
     rate_hz, start_s = channel.rate_hz / group, time_of(channel, 0.5 * (group - 1)) - latency_s
     resolution = _PERCENT * sensor.resolution_percent
-    inside = [_between(fraction, rate_hz, start_s, stretch) for stretch in stretches]
+    covered = Coverage(gaps=gaps)
+    whole = [stretch for stretch in stretches if not covered.missing(stretch.start_s, stretch.stop_s)]
+    inside = [_between(fraction, rate_hz, start_s, stretch) for stretch in whole]
     mean, std = _working_point(inside, rate_hz, resolution)
     if not mean > 0.0:
         found = "none there" if np.isnan(mean) else f"{mean / _PERCENT:.3g} %"
@@ -109,6 +116,7 @@ def rack_signal(
         hold_s=sensor.cycle_s if held else 0.0,
         working_point=mean,
         working_point_std=std,
+        gaps=tuple(replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in gaps),
     )
 
 
@@ -140,25 +148,24 @@ def _means(channel: "Channel", group: int, block_samples: int) -> Iterator[Float
         yield np.where(number > 0, mean, np.nan)
 
 
-def _bridge(percent: FloatArray, channel: "Channel", group: int) -> list[Repair]:
-    """Put straight lines where no torque was available."""
+def _bridge(percent: FloatArray, channel: "Channel", group: int) -> tuple[list[Repair], list[Gap]]:
+    """Put straight lines where no torque was available; what is longer than 2 s is a gap."""
     missing = np.isnan(percent)
-    if not missing.any():
-        return []
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], missing, [False]])))
-    repairs = []
-    for first, stop in edges.reshape(-1, 2).tolist():
-        start_s = time_of(channel, first * group)
-        if (stop - first) * group > _LONGEST_GAP_S * channel.rate_hz:
-            raise SignalError(
-                f"channel {channel.name}: expected percent torque all the time, found values above "
-                f"{_HIGHEST_PERCENT:g} %, which mean that none is available, for more than {_LONGEST_GAP_S:g} s from "
-                f"{start_s:.1f} s on; use another recording, or take [sensors.rack] out of the vessel file."
-            )
-        repairs.append(Repair(channel=channel.name, kind="dropout", time_s=start_s, count=(stop - first) * group))
-    place = np.arange(percent.size)
-    percent[missing] = np.interp(place[missing], place[~missing], percent[~missing])
-    return repairs
+    if missing.all():
+        raise SignalError(
+            f"channel {channel.name}: expected percent torque, found only values above {_HIGHEST_PERCENT:g} %, which "
+            "mean that none is available, or no numbers; use another recording, or take [sensors.rack] out of the "
+            "vessel file."
+        )
+    repairs, gaps = [], []
+    for first, stop in runs_of(missing):
+        start_s, stop_s = time_of(channel, first * group), time_of(channel, stop * group)
+        if stop_s - start_s > _LONGEST_GAP_S:
+            gaps.append(Gap(channel=channel.name, start_s=start_s, stop_s=stop_s, reason="has no torque available"))
+        else:
+            repairs.append(Repair(channel=channel.name, kind="dropout", time_s=start_s, count=(stop - first) * group))
+    percent[:] = joined(percent)
+    return repairs, [*gaps, *clock_gaps(channel)]
 
 
 def _between(fraction: FloatArray, rate_hz: float, start_s: float, stretch: SteadyStretch) -> FloatArray:

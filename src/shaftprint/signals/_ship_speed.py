@@ -10,7 +10,9 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
-from shaftprint.signals._channels import blocks
+from shaftprint.signals._channels import blocks, time_of
+from shaftprint.signals._condition import Conditioned
+from shaftprint.signals._gaps import Gap, clock_gaps, joined, runs_of
 from shaftprint.signals._signals import ShipSpeedSignal
 from shaftprint.signals._steady import SteadyStretch
 from shaftprint.signals._working_point import mean_of_stretches
@@ -24,10 +26,12 @@ if TYPE_CHECKING:
 _NO_WAY_M_S = 0.2
 
 _HELD_RATE = 2.0
+# A ship gains little speed in so short a time.
+_LONGEST_GAP_S = 2.0
 
 
-def read_ship_speed(channel: "Channel", sensor: "ShipSpeedSensor", clock: "Clock", *, latency_s: float) -> FloatArray:
-    """Return the speed of the ship [m/s] on the common grid, shape (samples,).
+def read_ship_speed(channel: "Channel", sensor: "ShipSpeedSensor", clock: "Clock", *, latency_s: float) -> Conditioned:
+    """Return the speed of the ship [m/s] on the common grid, with what is missing.
 
     Parameters
     ----------
@@ -52,6 +56,10 @@ def read_ship_speed(channel: "Channel", sensor: "ShipSpeedSensor", clock: "Clock
         )
     counts = np.concatenate([part.astype(np.float64) for part in blocks(channel, clock.block_samples(channel))])
     speed = sensor.m_s_per_unit * (counts * channel.scale + channel.offset)
+    if np.isnan(speed).all():
+        raise SignalError(
+            f"channel {channel.name}: expected numbers, found none; take [sensors.ship_speed] out of the vessel file."
+        )
     time = channel.start_s - latency_s + np.arange(speed.size) / channel.rate_hz
     grid = clock.start_s + np.arange(clock.count) / clock.rate_hz
     margin = latency_s + 2.0 * sensor.cycle_s
@@ -60,7 +68,19 @@ def read_ship_speed(channel: "Channel", sensor: "ShipSpeedSensor", clock: "Clock
             f"channel {channel.name}: expected the speed of the ship from {grid[0]:.1f} to {grid[-1]:.1f} s, found it "
             f"from {time[0]:.1f} to {time[-1]:.1f} s; take [sensors.ship_speed] out where it was not logged throughout."
         )
-    return np.interp(grid, time, speed)
+    gaps = [
+        Gap(
+            channel=channel.name,
+            start_s=time_of(channel, first) - latency_s,
+            stop_s=time_of(channel, stop) - latency_s,
+            reason="has no values",
+            reach_s=sensor.cycle_s,
+        )
+        for first, stop in runs_of(np.isnan(speed))
+        if stop - first > _LONGEST_GAP_S * channel.rate_hz
+    ]
+    values = np.interp(grid, time, joined(speed))
+    return Conditioned(values=values, repairs=[], gaps=(*gaps, *clock_gaps(channel)))
 
 
 def ship_speed_signal(

@@ -6,6 +6,7 @@ from typing import Literal
 
 from shaftprint.arrays import FloatArray
 from shaftprint.reasons import Reason
+from shaftprint.signals._gaps import Coverage, Gap
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -143,11 +144,18 @@ class RackSignal:
     """Mean rack ``X_0`` of the steady state for normalisation [fraction]."""
     working_point_std: float
     """Standard deviation of ``X_0`` [fraction]; it holds the steps of the channel."""
+    gaps: tuple[Gap, ...] = ()
+    """Where no torque was available for long, in order of time; straight lines there."""
 
     @property
     def nyquist_hz(self) -> float:
         """Highest frequency that the messages show without aliasing [Hz]."""
         return 0.5 / self.cycle_s
+
+    @property
+    def coverage(self) -> Coverage:
+        """Where torque was available."""
+        return Coverage(gaps=self.gaps)
 
     @property
     def stop_s(self) -> float:
@@ -182,7 +190,10 @@ class ShipSpeedSignal:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Signals:
-    """A recording in physical units on one uniform time grid, with every repair and calibration listed."""
+    """A recording in physical units on one uniform time grid, with every repair and calibration listed.
+
+    In a gap the signals are straight lines: nothing may be measured there (``coverage`` says where).
+    """
 
     rate_hz: float
     """Sample rate of the grid [Hz]."""
@@ -208,6 +219,8 @@ class Signals:
     """Delay of each step of the staircases."""
     repairs: tuple[Repair, ...]
     """What was repaired, in order of time."""
+    gaps: tuple[Gap, ...] = ()
+    """Where set point, torque, a speed or the ship's log say nothing, in order of time."""
     mode: Literal["shaftprint", "thesis"]
     """Whether each step was done shaftprint's way or the thesis' way."""
     findings: tuple[str, ...] = ()
@@ -218,6 +231,8 @@ class Signals:
     """SHA-256 of the raw file."""
     recording_name: str
     """File name of the raw recording."""
+    set_point_channel: str = ""
+    """Name of the set-point channel in the recording."""
     rack: RackSignal | None = None
     """Fuel rack, where the vessel file names the percent torque of the engine's control unit."""
     ship_speed: ShipSpeedSignal | None = None
@@ -227,6 +242,12 @@ class Signals:
     def engine_speed(self) -> SpeedSignal:
         """The speed channel that is identified: the first of the vessel file."""
         return next(iter(self.speeds.values()))
+
+    @property
+    def coverage(self) -> Coverage:
+        """What the signals cover: ask it before a window of the recording is used."""
+        stop_s = self.start_s + self.samples / self.rate_hz
+        return Coverage(start_s=self.start_s, stop_s=stop_s, step_s=1.0 / self.rate_hz, gaps=self.gaps)
 
     @property
     def samples(self) -> int:

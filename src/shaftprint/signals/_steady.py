@@ -6,6 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.campaign import Campaign, Chirp, Sine
+from shaftprint.signals._gaps import EVERYTHING, Coverage
 
 _BLOCK_S = 1.0
 _SHORTEST_S = 15
@@ -52,6 +53,7 @@ def steady_stretches(
     *,
     rate_hz: float,
     start_s: float,
+    coverage: Coverage = EVERYTHING,
 ) -> tuple[SteadyStretch, ...]:
     """Return every stretch of at least 15 s in which the set point stands still, in order of time.
 
@@ -66,12 +68,15 @@ def steady_stretches(
         Says where the sines and chirps are.
     rate_hz, start_s
         The grid.
+    coverage
+        Says where the gaps are.
     """
     length = round(_BLOCK_S * rate_hz)
     means = [_block_means(values, length) for values in (set_point_v, speed_rev_s, torque_nm)]
     starts = start_s + np.arange(means[0].size) * length / rate_hz
-    tolerance = _TOLERANCE * float(np.ptp(means[0]))
-    still = _block_spread(set_point_v, length) <= tolerance
+    whole = _without_gaps(starts, length / rate_hz, coverage)
+    tolerance = _TOLERANCE * float(np.ptp(means[0][whole])) if whole.any() else 0.0
+    still = (_block_spread(set_point_v, length) <= tolerance) & whole
     still &= _outside_waves(starts, length / rate_hz, campaign)
     moved = np.abs(np.diff(means[0], prepend=means[0][:1])) > tolerance
     settled = [_settled(run, means[1]) for run in _runs(still, moved)]
@@ -119,6 +124,13 @@ def _outside_waves(starts: FloatArray, length_s: float, campaign: Campaign) -> B
         if isinstance(wave, Sine | Chirp):
             outside &= (starts + length_s <= wave.start_s) | (starts >= wave.stop_s)
     return outside
+
+
+def _without_gaps(starts: FloatArray, length_s: float, coverage: Coverage) -> BoolArray:
+    whole = np.ones(starts.size, dtype=np.bool_)
+    for gap in coverage.gaps:
+        whole &= (starts + length_s <= gap.first_s) | (starts >= gap.last_s)
+    return whole
 
 
 def _runs(still: BoolArray, moved: BoolArray) -> list[tuple[int, int]]:

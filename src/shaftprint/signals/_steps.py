@@ -8,6 +8,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign, Staircase
+from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals._signals import StepDelay
 
 # The levels before and after are taken from the last third of their dwell.
@@ -22,6 +23,7 @@ def find_step_delays(
     *,
     rate_hz: float,
     start_s: float,
+    coverage: Coverage = EVERYTHING,
 ) -> tuple[tuple[StepDelay, ...], tuple[str, ...]]:
     """Return the delay of each step inside the staircases, and which steps were not found.
 
@@ -33,6 +35,8 @@ def find_step_delays(
         Says where the staircases are.
     rate_hz, start_s
         The grid.
+    coverage
+        Says where the gaps are; steps that they touch are passed over.
 
     Returns
     -------
@@ -45,7 +49,7 @@ def find_step_delays(
     for staircase in campaign.staircases:
         levels = staircase.levels_v
         for k in range(1, len(levels)):
-            if abs(levels[k] - levels[k - 1]) < _LEAST_STEP_V:
+            if abs(levels[k] - levels[k - 1]) < _LEAST_STEP_V or coverage.missing(*step_window(staircase, k)):
                 continue
             crossings = [_crossing(values, staircase, k, rate_hz, start_s) for values in (set_point_rev_s, speed_rev_s)]
             asked, followed = crossings
@@ -66,6 +70,12 @@ def find_step_delays(
             )
     delays.sort(key=lambda delay: delay.set_point_time_s)
     return tuple(delays), tuple(findings)
+
+
+def step_window(staircase: Staircase, step: int) -> tuple[float, float]:
+    """Return the stretch that the delay of a step is found from [s]."""
+    instant = staircase.start_s + step * staircase.dwell_s
+    return instant - _REST_SHARE * staircase.dwell_s, instant + staircase.dwell_s
 
 
 def _crossing(

@@ -102,6 +102,37 @@ def renumbered(train: "PulseTrain", strips: int) -> tuple[IntArray, tuple[float,
     return number - number[0], tuple(sorted(mended))
 
 
+def unplaced_stretches(train: "PulseTrain", strips: int, gaps: IntArray) -> list[tuple[float, float]]:
+    """Return the stretches behind gaps that are too short to show at which strip they begin.
+
+    Parameters
+    ----------
+    train
+        Numbered pulses.
+    strips
+        Pulses a revolution.
+    gaps
+        Numbers of the intervals over which the count is a guess, shape (gaps,), ascending.
+
+    Returns
+    -------
+    First and last pulse of each [samples].
+    """
+    share, steady = _interval_shares(train, strips)
+    borders = np.flatnonzero(np.diff(train.number) > 1)
+    starts, ends = np.concatenate([[0], borders + 1]), np.concatenate([borders, [train.number.size - 1]])
+    longest = int(np.argmax(ends - starts))
+    found = []
+    for gap in gaps.tolist():
+        behind = int(np.searchsorted(starts, gap, side="right"))
+        # behind, as seen from the longest stretch, at which the count begins
+        stretch = behind if behind > longest else behind - 1
+        inside = slice(starts[stretch], ends[stretch])
+        if not np.all(np.isfinite(_pattern(share, steady, train.number, inside, strips))):
+            found.append((float(train.position[starts[stretch]]), float(train.position[ends[stretch]])))
+    return found
+
+
 def _interval_shares(train: "PulseTrain", strips: int) -> tuple[FloatArray, BoolArray]:
     """Return each interval as a share of the revolution around it, and where that is steady."""
     interval = np.diff(train.position)

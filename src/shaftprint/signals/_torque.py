@@ -7,6 +7,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign, Sine
 from shaftprint.errors import SignalError
+from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals._outliers import FaultLimits, fault_limits
 from shaftprint.signals._signals import Repair
 
@@ -63,6 +64,7 @@ def expect_moving_torque(
     *,
     rate_hz: float,
     start_s: float,
+    coverage: Coverage = EVERYTHING,
 ) -> None:
     """Check that the torque moves during every slow excitation.
 
@@ -73,6 +75,8 @@ def expect_moving_torque(
     """
     for excitation in campaign.excitations:
         if isinstance(excitation, Sine) and excitation.frequency_hz > _SLOW_HZ:
+            continue
+        if coverage.missing(excitation.start_s, excitation.stop_s):
             continue
         first = max(round((excitation.start_s - start_s) * rate_hz), 0)
         stop = round((excitation.stop_s - start_s) * rate_hz)

@@ -87,6 +87,9 @@ def cut_rack(rack: "RackSignal", window: "Window") -> RackWindow:
         return replace(
             result, remark=f"X is not measured: {frequency:g} Hz is above {highest:g} Hz, what messages show"
         )
+    missing = rack.coverage.missing(window.start_s, window.stop_s)
+    if missing:
+        return replace(result, remark=f"X is not measured: {missing}")
     cut = cut_window(window, (rack.fraction / rack.working_point,), rate_hz=rack.rate_hz, start_s=rack.start_s)
     if cut is None:
         span = f"{rack.start_s:.1f} to {rack.stop_s:.1f} s"

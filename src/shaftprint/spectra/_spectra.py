@@ -174,6 +174,10 @@ def _cut_windows(signals: "Signals", campaign: "Campaign") -> tuple[list[WindowS
                 f"{signals.rate_hz:g} Hz show"
             )
             continue
+        missing = signals.coverage.missing(window.start_s, window.stop_s)
+        if missing:
+            left_out[window.line] = f"left out: {missing}"
+            continue
         cut = cut_window(window, channels, rate_hz=signals.rate_hz, start_s=signals.start_s)
         if cut is None:
             left_out[window.line] = (

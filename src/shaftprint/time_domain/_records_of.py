@@ -37,7 +37,8 @@ def records_of(
 ) -> tuple[Record, ...]:
     """Cut excitations out of prepared signals, each as a record.
 
-    Dropouts, saturated stretches and repairs longer than a sample of the record are gaps in it.
+    Dropouts, saturated stretches and repairs longer than a sample of the record are gaps in it, as are those of the
+    signals; what drives the model must be whole.
 
     Parameters
     ----------
@@ -111,7 +112,12 @@ def _record(
     torque = deviation(signals.shaft_torque_nm[fine], point.shaft_torque_nm)
     start_s = signals.start_s + first / rate
     time = start_s + np.arange(count) * every / rate
-    used = ~_gaps(signals, sensor, time, every) & _finite(decimator, n) & _finite(decimator, torque)
+    used = (
+        ~_repaired(signals, sensor, time, every)
+        & ~_lost(signals, name, time, every)
+        & _finite(decimator, n)
+        & _finite(decimator, torque)
+    )
     if settled:
         used &= _settled(time, excitations)
     outputs = {"n": decimator.filtered(np.nan_to_num(n)), "M_s": decimator.filtered(np.nan_to_num(torque))}
@@ -154,7 +160,7 @@ def _finite(decimator: Decimator, values: FloatArray) -> BoolArray:
     return np.asarray(sums[begin + 2 * decimator.half + 1] == sums[begin])
 
 
-def _gaps(signals: Signals, sensor: SpeedSignal, time_s: FloatArray, every: int) -> BoolArray:
+def _repaired(signals: Signals, sensor: SpeedSignal, time_s: FloatArray, every: int) -> BoolArray:
     """Return which samples a repair reaches through the filter; shorter ones than a sample are as good as measured.
 
     The length of a repair of samples is counted at the rate of the signals: rather too long than too short, for the
@@ -169,6 +175,27 @@ def _gaps(signals: Signals, sensor: SpeedSignal, time_s: FloatArray, every: int)
         whole = repair.kind in ("dropout", "saturated") or length > every / signals.rate_hz
         if repair.channel not in others and whole:
             lost |= (time_s > repair.time_s - reach) & (time_s < repair.time_s + length + reach)
+    return lost
+
+
+def _lost(signals: Signals, name: str, time_s: FloatArray, every: int) -> BoolArray:
+    """Return which samples a gap of the signals reaches through the filter.
+
+    Raises
+    ------
+    SignalError
+        If the set point has a gap: what drove the ship is not known.
+    """
+    reach_s = Decimator(every=every).half / signals.rate_hz
+    begin, end = float(time_s[0]) - reach_s, float(time_s[-1]) + reach_s
+    lost = np.zeros(time_s.size, dtype=np.bool_)
+    for gap in signals.coverage.touching(begin, end):
+        if gap.channel == signals.set_point_channel:
+            raise SignalError(
+                f"record {name}: expected the set point from {begin:.1f} to {end:.1f} s, but {gap.sentence}; leave "
+                "this excitation out."
+            )
+        lost |= (time_s > gap.first_s - reach_s) & (time_s < gap.last_s + reach_s)
     return lost
 
 

@@ -13,7 +13,10 @@ from typing import Literal
 
 from shaftprint.campaign import Campaign, Chirp, Staircase
 from shaftprint.errors import ValidationError
+from shaftprint.signals import Coverage
 from shaftprint.validation._settings import ValidationSettings
+
+_LOOKS_BEHIND_S = 2.0
 
 Kind = Literal["chirp band", "staircase", "step"]
 
@@ -92,6 +95,39 @@ def excerpts_of(
         cut = _chirp(record, settings) if isinstance(record, Chirp) else _staircase(record, campaign, settings)
         found += [replace(excerpt, in_sample=name in used) for excerpt in cut]
     return tuple(found)
+
+
+def whole_excerpts(
+    excerpts: Sequence[Excerpt], coverage: Coverage, settings: ValidationSettings
+) -> tuple[tuple[Excerpt, ...], tuple[str, ...]]:
+    """Return the excerpts that the recording holds without a gap, and why the others are left out.
+
+    A gap counts also shortly before an excerpt, where the model did not know the set point, and shortly behind it,
+    where the low-pass and the search for a delay look.
+
+    Raises
+    ------
+    ValidationError
+        If none is left.
+    """
+    whole, lost = [], []
+    gaps = Coverage(gaps=coverage.gaps)
+    for excerpt in excerpts:
+        reason = coverage.missing(excerpt.start_s, excerpt.stop_s) or gaps.missing(
+            excerpt.start_s - settings.rest_s, excerpt.stop_s + _LOOKS_BEHIND_S
+        )
+        if reason:
+            lost.append(f"{excerpt.record}, {excerpt.title}, was left out: {reason}")
+        else:
+            whole.append(excerpt)
+    if not whole:
+        records = ", ".join(dict.fromkeys(excerpt.record for excerpt in excerpts))
+        begin, end = min(e.start_s for e in excerpts), max(e.stop_s for e in excerpts)
+        raise ValidationError(
+            f"record {records}: expected it in the recording, from {begin:.1f} to {end:.1f} s, but "
+            f"{lost[0].split(': ', 1)[1]}; check the start_s of the campaign file, or choose another record."
+        )
+    return tuple(whole), tuple(lost)
 
 
 def _sweep(chirp: Chirp) -> float:

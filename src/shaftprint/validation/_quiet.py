@@ -23,6 +23,7 @@ from scipy.fft import next_fast_len
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign import Campaign, Staircase
 from shaftprint.errors import ValidationError
+from shaftprint.signals import Coverage
 
 # What the low-pass shows of a step before it happens.
 _AHEAD_S = 1.0
@@ -113,7 +114,7 @@ def correlated(one: FloatArray, other: FloatArray) -> FloatArray:
 
 
 def quiet_noise(
-    outputs: FloatArray, campaign: Campaign, *, rate_hz: float, start_s: float, rest_s: float
+    outputs: FloatArray, campaign: Campaign, coverage: Coverage, *, rate_hz: float, start_s: float, rest_s: float
 ) -> QuietNoise:
     """Return the noise in the quiet stretches of a recording.
 
@@ -123,6 +124,8 @@ def quiet_noise(
         Deviations of speed and torque from the working point, shape (2, samples).
     campaign
         Says where the set point stands still.
+    coverage
+        Says where the gaps are.
     rate_hz, start_s
         The grid.
     rest_s
@@ -138,7 +141,7 @@ def quiet_noise(
     for begin, end, between in _still(campaign, end_s):
         first = max(round((begin + rest_s - start_s) * rate_hz), 0)
         last = min(round((end - _AHEAD_S - start_s) * rate_hz), outputs.shape[1])
-        if last - first < _SHORTEST_S * rate_hz:
+        if last - first < _SHORTEST_S * rate_hz or coverage.touching(begin, end):
             continue
         stretch = outputs[:, first:last]
         mean = stretch.mean(axis=1, keepdims=True)

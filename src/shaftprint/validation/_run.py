@@ -7,7 +7,6 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign
-from shaftprint.errors import ValidationError
 from shaftprint.signals import Signals, deviation
 from shaftprint.validation._excerpts import Excerpt
 from shaftprint.validation._low_pass import low_pass
@@ -57,8 +56,9 @@ class Data:
             ]
         )
         smooth = low_pass(raw, signals.rate_hz, settings.highest_hz)
+        grid = {"rate_hz": signals.rate_hz, "start_s": signals.start_s}
         raw_noise, noise = (
-            quiet_noise(outputs, campaign, rate_hz=signals.rate_hz, start_s=signals.start_s, rest_s=settings.rest_s)
+            quiet_noise(outputs, campaign, signals.coverage, **grid, rest_s=settings.rest_s)
             for outputs in (raw, smooth)
         )
         return cls(
@@ -139,15 +139,9 @@ def run_model(
     Raises
     ------
     ValidationError
-        If the recording does not hold the record, or the structure is not from ``n_set`` to ``n`` and ``M_s``.
+        If the structure is not from ``n_set`` to ``n`` and ``M_s``.
     """
     begin, end = min(e.start_s for e in excerpts), max(e.stop_s for e in excerpts)
-    last_s = data.start_s + data.raw.shape[1] / data.rate_hz
-    if begin < data.start_s or end > last_s + 1.0 / data.rate_hz:
-        raise ValidationError(
-            f"record {excerpts[0].record}: expected it in the recording, from {begin:.1f} to {end:.1f} s, found a "
-            f"recording from {data.start_s:.1f} to {last_s:.1f} s; check the start_s of the campaign file."
-        )
     there = data.places(begin - settings.lead_s, end + _BEHIND_S)
     raw, slopes = predict(
         model.structure,

@@ -11,7 +11,7 @@ from shaftprint.identify import Identification
 from shaftprint.models import Structure
 from shaftprint.signals import Signals
 from shaftprint.validation._delay import LONGEST_S, RemainingDelay, remaining_delay
-from shaftprint.validation._excerpts import Excerpt, default_records, excerpts_of
+from shaftprint.validation._excerpts import Excerpt, default_records, excerpts_of, whole_excerpts
 from shaftprint.validation._misfit import Compared, Outcome, misfit_of
 from shaftprint.validation._model import Model, identified_model, model_of
 from shaftprint.validation._prediction import Predict, linear_prediction
@@ -70,12 +70,15 @@ def validate(
     settings = settings or ValidationSettings()
     chosen = _with_sensor(_as_model(model, used), signals)
     names = default_records(campaign, chosen.used) if records is None else tuple(dict.fromkeys(records))
-    excerpts = excerpts_of(campaign, names, used=chosen.used, allow_in_sample=allow_in_sample, settings=settings)
+    planned = excerpts_of(campaign, names, used=chosen.used, allow_in_sample=allow_in_sample, settings=settings)
+    excerpts, lost = whole_excerpts(planned, signals.coverage, settings)
     linear = predict is linear_prediction
     data = Data.of(signals, campaign, settings)
     comparisons: list[Comparison] = []
     for name in names:
         own = [excerpt for excerpt in excerpts if excerpt.record == name]
+        if not own:
+            continue
         run = run_model(chosen, data, own, settings, predict=predict, quadratic_propeller=quadratic_propeller)
         comparisons += (_compared(excerpt, run, chosen, settings, rng) for excerpt in own)
     return Validation(
@@ -84,7 +87,10 @@ def validate(
         comparisons=tuple(comparisons),
         outcome=_outcome(comparisons),
         sentences=outcome_sentences(chosen, comparisons, settings, linear=linear),
-        findings=findings_of(chosen, comparisons, data.noise, quadratic_propeller=quadratic_propeller, linear=linear),
+        findings=(
+            *lost,
+            *findings_of(chosen, comparisons, data.noise, quadratic_propeller=quadratic_propeller, linear=linear),
+        ),
     )
 
 

@@ -17,7 +17,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording._spool import Spool
-from shaftprint.recording.readers._clock import Clock, uniform_clock
+from shaftprint.recording.readers._clock import Clock, on_clock, uniform_clock
 from shaftprint.recording.readers._csv_dates import dates, seconds_from
 from shaftprint.recording.readers._csv_header import (
     WHITE_SPACE,
@@ -222,13 +222,16 @@ def _recording(
 ) -> Recording:
     clock = _clock(path, header, spool, count, rate_hz)
     channels = {
-        name: Channel(
-            name=name,
-            unit=unit,
-            rate_hz=clock.rate_hz,
-            start_s=clock.start_s,
-            count=count,
-            source=spool.source(number),
+        name: on_clock(
+            Channel(
+                name=name,
+                unit=unit,
+                rate_hz=clock.rate_hz,
+                start_s=clock.start_s,
+                count=count,
+                source=spool.source(number),
+            ),
+            clock,
         )
         for number, (name, unit) in enumerate(zip(header.names, header.units, strict=True))
         if number != header.time_column

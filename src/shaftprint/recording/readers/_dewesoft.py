@@ -15,7 +15,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Source
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers._clock import Clock, uniform_clock
+from shaftprint.recording.readers._clock import Clock, on_clock, uniform_clock
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._dewesoft_index import INDEX, UnpackedChannel
 from shaftprint.recording.readers._extra import expect_library
@@ -81,7 +81,7 @@ def _channel(path: Path, unpacked: UnpackedChannel, folder: Path, opened: Opened
     if unpacked.rate_hz == 0.0:
         times = _floats(folder / f"{unpacked.number}.times", opened, unpacked.name)
         clock = uniform_clock(path, f"times of {unpacked.name}", unpacked.count, times)
-    return Channel(
+    channel = Channel(
         name=unpacked.name,
         unit=plain_unit(unpacked.unit),
         rate_hz=clock.rate_hz,
@@ -90,6 +90,7 @@ def _channel(path: Path, unpacked: UnpackedChannel, folder: Path, opened: Opened
         source=values,
         long_name=unpacked.description,
     )
+    return on_clock(channel, clock)
 
 
 def _floats(file: Path, opened: Opened, name: str) -> Source:

@@ -14,7 +14,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers._clock import Clock, uniform_clock
+from shaftprint.recording.readers._clock import Clock, on_clock, uniform_clock
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
@@ -192,7 +192,7 @@ def _channel(
             return numbers
 
     source(0, min(count, 2))
-    return Channel(
+    channel = Channel(
         name=name,
         unit=plain_unit(_unit(described)),
         rate_hz=clock.rate_hz,
@@ -203,6 +203,7 @@ def _channel(
         offset=offset,
         long_name=str(getattr(described, "comment", "") or "")[:200],
     )
+    return on_clock(channel, clock)
 
 
 def _is_v4(file: Any) -> bool:

@@ -1,6 +1,7 @@
 """NI TDMS files of LabVIEW and DAQmx: each channel with its waveform properties or a channel of times."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers._clock import Clock, uniform_clock
+from shaftprint.recording.readers._clock import Clock, on_clock, uniform_clock
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
@@ -89,7 +90,7 @@ def _channel(path: Path, name: str, channel: Any, clock: Clock, opened: Opened) 
                 raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are missing; is the file cut?")
             return np.ascontiguousarray(values, dtype=np.int16 if is_counts else np.float64)
 
-    return Channel(
+    found = Channel(
         name=name,
         unit=plain_unit(_unit(channel.properties)),
         rate_hz=clock.rate_hz,
@@ -98,6 +99,7 @@ def _channel(path: Path, name: str, channel: Any, clock: Clock, opened: Opened) 
         source=source,
         long_name=str(channel.properties.get("description", "")),
     )
+    return on_clock(found, clock)
 
 
 def _expect_samples(path: Path, name: str, channel: Any) -> None:
@@ -122,7 +124,7 @@ def _clock(path: Path, channel: Any, time: Any, rate_hz: float | None, began: np
     if time is not None and len(time) == len(channel):
         clock = uniform_clock(path, f"channel {time.name}", len(time), lambda start, stop: _times(time, start, stop))
         is_date = np.dtype(time.dtype).kind == "M"
-        return Clock(rate_hz=clock.rate_hz, start_s=0.0) if is_date else clock
+        return replace(clock, start_s=0.0) if is_date else clock
     if rate_hz is not None:
         return Clock(rate_hz=rate_hz, start_s=0.0)
     raise RecordingError(

@@ -10,7 +10,7 @@ import numpy as np
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Source
-from shaftprint.recording.readers._clock import Clock, uniform_clock
+from shaftprint.recording.readers._clock import Clock, on_clock, uniform_clock
 from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._units import plain_unit, seconds_in
 
@@ -84,7 +84,7 @@ def gather_vectors(
 
     def make(vector: Vector, name: str) -> Channel:
         clock = _clock(path, vector, vectors, scalars, rate_hz, clocks)
-        return Channel(
+        channel = Channel(
             name=name,
             unit=plain_unit(_text(vector.attributes, _UNITS)),
             rate_hz=clock.rate_hz,
@@ -95,6 +95,7 @@ def gather_vectors(
             offset=vector.offset,
             long_name=_text(vector.attributes, ("long_name", "description")),
         )
+        return on_clock(channel, clock)
 
     for vector, name in zip(found, names, strict=True):
         gathered.add(name, partial(make, vector, name))
@@ -140,7 +141,8 @@ def _clock(
         listed = ", ".join(f"{name} {value:g} Hz" for name, value in rates.items())
         raise RecordingError(f"{path}: expected one sample rate, found {listed}.")
     starts += [float(group[key]) for group in (scalars.get("", {}),) for key in _STARTS if key in group]
-    return Clock(rate_hz=rate, start_s=starts[0] if starts else 0.0)
+    holes = () if time is None else known[(time.group, time.name)].holes
+    return Clock(rate_hz=rate, start_s=starts[0] if starts else 0.0, holes=holes)
 
 
 def _said(path: Path, source: Mapping[str, object]) -> dict[str, float]:

@@ -1,0 +1,232 @@
+"""Where a recording has no values, and which windows that costs.
+
+A gap is a stretch in which a channel holds no number, no pulse or a value that stands still, or a place where its clock
+jumps. The signals go on through it as a straight line, so that a filter or a mean over the whole recording does not
+break, but nothing may be measured there. Whatever uses a window of the recording asks ``Coverage.missing`` first.
+"""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.signals._channels import time_of
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel
+
+# More gaps than this are listed as one.
+_MOST_LISTED = 8
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Gap:
+    """One stretch in which a channel says nothing."""
+
+    channel: str
+    """Name of the channel in the recording."""
+    start_s: float
+    """When it begins, in seconds of the recording."""
+    stop_s: float
+    """When it ends [s]; the same where the clock jumps and nothing is missing."""
+    reason: str
+    """What is wrong, as it follows the name of the channel: ``"has no values"``."""
+    reach_s: float = 0.0
+    """How far beyond both ends it reaches through filter or pulses [s]."""
+
+    @property
+    def first_s(self) -> float:
+        """Time from which the signal is not to be used [s]."""
+        return self.start_s - self.reach_s
+
+    @property
+    def last_s(self) -> float:
+        """Time until which the signal is not to be used [s]."""
+        return self.stop_s + self.reach_s
+
+    @property
+    def sentence(self) -> str:
+        """What is wrong and when, without a full stop."""
+        if self.stop_s - self.start_s < 0.001:
+            return f"channel {self.channel} {self.reason} at {self.start_s:.2f} s"
+        return f"channel {self.channel} {self.reason} from {self.start_s:.2f} to {self.stop_s:.2f} s"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Coverage:
+    """What a recording covers: its first and last second, and the gaps between."""
+
+    start_s: float = -math.inf
+    """Time of its first sample [s]."""
+    stop_s: float = math.inf
+    """Time after its last sample [s]."""
+    step_s: float = 0.0
+    """Time from one sample to the next [s]: a window may begin or end so much outside by rounding."""
+    gaps: tuple[Gap, ...] = ()
+    """The gaps, in order of time."""
+
+    def missing(self, start_s: float, stop_s: float, *, channel: str | None = None) -> str:
+        """Say why a window cannot be used; nothing where it can.
+
+        Parameters
+        ----------
+        start_s, stop_s
+            The window [s].
+        channel
+            The only channel whose gaps count; by default those of all count.
+
+        Returns
+        -------
+        The reason, to follow a colon and without a full stop; empty where the window is whole.
+        """
+        if start_s < self.start_s - self.step_s or stop_s > self.stop_s + self.step_s:
+            return f"the recording lasts from {self.start_s:.1f} to {self.stop_s:.1f} s"
+        touching = [gap for gap in self.touching(start_s, stop_s) if channel in (None, gap.channel)]
+        if not touching:
+            return ""
+        others = len({gap.channel for gap in touching}) - 1
+        among = f", as {others} more" if others else ""
+        return touching[0].sentence + among
+
+    def touching(self, start_s: float, stop_s: float) -> list[Gap]:
+        """Return the gaps that reach into a window [s]."""
+        return [gap for gap in self.gaps if gap.first_s < stop_s and gap.last_s > start_s]
+
+    def lost(self, time_s: FloatArray, *, channel: str | None = None) -> BoolArray:
+        """Return which instants lie in a gap, shape of ``time_s``.
+
+        Parameters
+        ----------
+        time_s
+            Instants in seconds of the recording.
+        channel
+            The only channel whose gaps count; by default those of all count.
+        """
+        found = np.zeros(time_s.shape, dtype=np.bool_)
+        for gap in self.gaps:
+            if channel in (None, gap.channel):
+                found |= (time_s > gap.first_s) & (time_s < gap.last_s)
+        return found
+
+
+EVERYTHING = Coverage()
+"""All times, without a gap."""
+
+
+def clock_gaps(channel: "Channel") -> list[Gap]:
+    """Return the places where the clock of a channel jumps: nothing is missing, but no window may hold one."""
+    return [
+        Gap(
+            channel=channel.name,
+            start_s=time_of(channel, jump.sample),
+            stop_s=time_of(channel, jump.sample),
+            reason=f"has a clock that jumps by {jump.jump_s:.4g} s",
+        )
+        for jump in channel.clock_jumps
+    ]
+
+
+def merged(gaps: Iterable[Gap], begin_s: float, end_s: float) -> list[tuple[float, float]]:
+    """Return the stretches that gaps take out of a window, without overlap, in order of time [s]."""
+    found: list[tuple[float, float]] = []
+    for gap in sorted(gaps, key=lambda gap: gap.first_s):
+        first, last = max(gap.first_s, begin_s), min(gap.last_s, end_s)
+        if first >= last:
+            continue
+        if found and first <= found[-1][1]:
+            found[-1] = (found[-1][0], max(found[-1][1], last))
+        else:
+            found.append((first, last))
+    return found
+
+
+def joined(values: FloatArray) -> FloatArray:
+    """Return values with straight lines in place of those that are not numbers, shape of ``values``."""
+    known = np.flatnonzero(np.isfinite(values))
+    if known.size in (0, values.size):
+        return values
+    return np.interp(np.arange(values.size), known, values[known])
+
+
+def runs_of(wrong: BoolArray) -> list[tuple[int, int]]:
+    """Return the first place and that after the last of every run that is true, in order."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], wrong, [False]])))
+    return [(int(first), int(stop)) for first, stop in edges.reshape(-1, 2)]
+
+
+def bridge(values: FloatArray, gaps: Iterable[Gap], *, start_s: float, rate_hz: float) -> None:
+    """Put straight lines through the gaps of a signal on the grid, in place; at an end its last value goes on.
+
+    Parameters
+    ----------
+    values
+        The signal, shape (samples,).
+    gaps
+        Its gaps.
+    start_s, rate_hz
+        The grid.
+    """
+    for first_s, last_s in merged(gaps, start_s - 1.0, start_s + values.size / rate_hz + 1.0):
+        first = max(math.ceil((first_s - start_s) * rate_hz), 0)
+        stop = min(math.floor((last_s - start_s) * rate_hz) + 1, values.size)
+        if first == 0 and stop == values.size:
+            values[:] = 0.0
+            continue
+        before = values[first - 1] if first else values[stop]
+        after = values[stop] if stop < values.size else before
+        values[first:stop] = np.linspace(before, after, stop - first + 2)[1:-1]
+
+
+def within(gap: Gap, others: Sequence[Gap]) -> bool:
+    """Return whether gaps of other channels take out all that one gap does, but for its reach."""
+    return any(other.first_s <= gap.start_s and gap.stop_s <= other.last_s for other in others)
+
+
+def gap_findings(gaps: Sequence[Gap], windows: Sequence[tuple[str, float, float]]) -> tuple[str, ...]:
+    """Return one sentence for each gap with the names of the windows that it costs.
+
+    Parameters
+    ----------
+    gaps
+        In order of time.
+    windows
+        Name, start and stop [s] of everything that is measured.
+    """
+    groups = list(_side_by_side(gaps))
+    if len(groups) > _MOST_LISTED:
+        return tuple(_together(channel, gaps, windows) for channel in sorted({gap.channel for gap in gaps}))
+    return tuple(f"{_named(group)}; {_cost(group, windows)}" for group in groups)
+
+
+def _side_by_side(gaps: Sequence[Gap]) -> Iterator[list[Gap]]:
+    """Yield gaps of several channels that overlap together."""
+    group: list[Gap] = []
+    for gap in sorted(gaps, key=lambda gap: gap.first_s):
+        if group and gap.first_s > max(other.last_s for other in group):
+            yield group
+            group = []
+        group.append(gap)
+    if group:
+        yield group
+
+
+def _named(group: Sequence[Gap]) -> str:
+    longest = max(group, key=lambda gap: gap.stop_s - gap.start_s)
+    others = sorted({gap.channel for gap in group} - {longest.channel})
+    return longest.sentence + (f", likewise {', '.join(others)}" if others else "")
+
+
+def _together(channel: str, gaps: Sequence[Gap], windows: Sequence[tuple[str, float, float]]) -> str:
+    chosen = [gap for gap in gaps if gap.channel == channel]
+    seconds = sum(gap.stop_s - gap.start_s for gap in chosen)
+    first, last = min(gap.start_s for gap in chosen), max(gap.stop_s for gap in chosen)
+    one = replace(chosen[0], start_s=first, stop_s=last).sentence
+    return f"{one} in {len(chosen)} places, {seconds:.2f} s together; {_cost(chosen, windows)}"
+
+
+def _cost(gaps: Sequence[Gap], windows: Sequence[tuple[str, float, float]]) -> str:
+    names = [name for name, start, stop in windows if any(gap.first_s < stop and gap.last_s > start for gap in gaps)]
+    return f"left out for that: {', '.join(names)}" if names else "no test is touched"
