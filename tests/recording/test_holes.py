@@ -50,7 +50,7 @@ def test_length_of_a_hole_whatever_the_digits_of_the_times(rate_hz, digits):
 
 @pytest.mark.parametrize(
     ("jump_s", "missing", "rest_s"),
-    [(-7.0, 0, -7.0), (0.0003, 1, -0.0002), (0.0002, 0, 0.0002), (2.5002, 5000, 0.0002)],
+    [(-7.0, 0, -7.0), (0.0003, 1, -0.0002), (2.5002, 5000, 0.0002)],
 )
 def test_clock_that_jumps_is_two_clocks(jump_s, missing, rest_s):
     """A clock that is set back, or on by what is no whole number of samples: time goes on sample by sample."""
