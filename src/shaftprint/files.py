@@ -8,8 +8,8 @@ import secrets
 from collections.abc import Iterator
 from pathlib import Path
 
-# Names may have 255 bytes, a letter up to four.
-_LONGEST_BEGINNING = 32
+# Names may have 255 bytes, a letter up to four: so many letters of the stem and of the ending.
+_LONGEST = 24
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -34,7 +34,8 @@ def written_whole(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
     OSError
         If the file cannot be written; the error names ``path``.
     """
-    part = path.with_name(f".{path.name[:_LONGEST_BEGINNING]}.{secrets.token_hex(4)}.part")
+    # the ending stays: it tells what draws or writes it the format
+    part = path.with_name(f".{path.stem[:_LONGEST]}.{secrets.token_hex(4)}.part{path.suffix[:_LONGEST]}")
     with naming(path, instead_of=part):
         _expect_free(path, overwrite=overwrite)
         try:
@@ -54,7 +55,7 @@ def naming(path: Path, *, instead_of: Path | None = None) -> Iterator[None]:
     except OSError as error:
         is_full = error.errno in _FULL and error.filename is None
         if is_full or (error.filename is not None and error.filename in _spellings(instead_of)):
-            error.filename, error.filename2 = str(path), None
+            error.filename = str(path)
         raise
 
 

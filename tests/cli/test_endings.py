@@ -77,7 +77,9 @@ def test_interrupted_voyage_leaves_nothing_behind(tmp_path):
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )  # fmt: skip
     # a megabyte is written: the kernels are compiled, whose compiler would have words of its own to say
-    while voyage.poll() is None and not any(p.stat().st_size > 1e6 for p in tmp_path.glob(".demo.*/*.part")):
+    while voyage.poll() is None and not any(
+        p.stat().st_size > 1e6 for p in folder.glob(".shaftprint.new/.recording.*")
+    ):
         time.sleep(0.05)
     output, errors = _interrupted(voyage)
     assert voyage.returncode == 130

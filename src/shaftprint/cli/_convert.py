@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._file_to_write import expect_no_input
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._reading import hints_of, reading_options
 from shaftprint.errors import RecordingError
@@ -49,6 +50,8 @@ def command(
     if len(recordings) > 1 and not into_folder:
         raise click.UsageError(f"{output}: expected an existing folder for {len(recordings)} recordings.")
     targets = [output / f"{path.name.removesuffix('.gz')}.nc" if into_folder else output for path in recordings]
+    for target in targets:
+        expect_no_input(target, *recordings)
     given = dict(_unit(text) for text in units)
     with progress(hidden=no_progress) as steps:
         for source, target in zip(recordings, targets, strict=True):

@@ -30,7 +30,7 @@ def command(fingerprint: Path, structure: TypedName | None, output: Path | None,
     """
     found = fingerprint_at(fingerprint)
     chosen = structure_to_use(structure, found)
-    path = file_to_write(output, exported_model(found, of=chosen), ".csv", force=force)
+    path = file_to_write(output, exported_model(found, of=chosen), ".csv", inputs=(fingerprint,), force=force)
     written = write_csv(found, path, of=chosen, overwrite=force)
     for table in (written.parameters, written.combinations, written.response):
         click.echo(table)

@@ -71,7 +71,7 @@ def command(
     if source_only and platforms:
         raise click.UsageError("--source-only compiles nothing: leave --platform out.")
     model = model_to_export(fingerprint, structure, dict(given))
-    path = file_to_write(output, model, ".fmu", force=force)
+    path = file_to_write(output, model, ".fmu", inputs=(fingerprint,), force=force)
     number: Literal[2, 3] = 2 if version == "2" else 3
     with progress(hidden=no_progress) as steps:
         steps.begin("Compiling, the first time for some minutes")

@@ -27,5 +27,5 @@ def command(fingerprint: Path, structure: TypedName | None, output: Path | None,
     """
     found = fingerprint_at(fingerprint)
     chosen = structure_to_use(structure, found)
-    path = file_to_write(output, exported_model(found, of=chosen), ".model.json", force=force)
+    path = file_to_write(output, exported_model(found, of=chosen), ".model.json", inputs=(fingerprint,), force=force)
     click.echo(write_json(found, path, of=chosen, overwrite=force))

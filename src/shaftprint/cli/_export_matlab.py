@@ -57,7 +57,7 @@ def command(
     objects; in bare Octave it computes the response.
     """
     model = model_to_export(fingerprint, structure, dict(given))
-    path = file_to_write(output, model, ".mat", force=force)
+    path = file_to_write(output, model, ".mat", inputs=(fingerprint, recording), force=force)
     measured = None
     if recording is not None:
         if vessel is None or campaign is None:

@@ -38,7 +38,9 @@ def command(
     experiment with it.
     """
     model = model_to_export(fingerprint, structure, dict(given))
-    written = write_modelica(model, file_to_write(output, model, ".mo", force=force), overwrite=force)
+    written = write_modelica(
+        model, file_to_write(output, model, ".mo", inputs=(fingerprint,), force=force), overwrite=force
+    )
     click.echo(f"package {written.package}: block Line, experiment Step")
     for name in written.late_outputs:
         click.echo(f"{name} comes later than its time stamp in the recording, which lies ahead of what can be known")

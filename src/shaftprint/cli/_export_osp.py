@@ -41,4 +41,6 @@ def command(
     """
     model = model_to_export(fingerprint, structure, dict(given))
     # the FMU may be there already: it stays as it is
-    click.echo(write_osp(model, file_to_write(output, model, ".fmu", force=True), overwrite=force))
+    click.echo(
+        write_osp(model, file_to_write(output, model, ".fmu", inputs=(fingerprint,), force=True), overwrite=force)
+    )

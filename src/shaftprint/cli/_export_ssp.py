@@ -37,4 +37,6 @@ def command(
     the FMU's parameters, so that the set can be given to it in a system structure.
     """
     model = model_to_export(fingerprint, structure, dict(given))
-    click.echo(write_ssv(model, file_to_write(output, model, ".ssv", force=force), overwrite=force))
+    click.echo(
+        write_ssv(model, file_to_write(output, model, ".ssv", inputs=(fingerprint,), force=force), overwrite=force)
+    )

@@ -1,11 +1,12 @@
 """The model that ``export`` writes: of a fingerprint, its own structure or one that has limits too."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import click
 
-from shaftprint.cli._fingerprint_file import fingerprint_at
+from shaftprint.cli._file_to_write import expect_free, expect_no_input
+from shaftprint.cli._fingerprint_file import fingerprint_at, fingerprint_file
 from shaftprint.cli._known_values import named_value
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
@@ -53,19 +54,17 @@ def model_to_export(fingerprint: Path, structure: TypedName | None, given: Mappi
     )
 
 
-def file_to_write(output: Path | None, model: ExportedModel, suffix: str, *, force: bool) -> Path:
+def file_to_write(
+    output: Path | None, model: ExportedModel, suffix: str, *, inputs: Sequence[Path | None], force: bool
+) -> Path:
     """Return the file to write: the given one, or one in this folder that is named after vessel and structure.
 
     Raises
     ------
     click.ClickException
-        If it is a folder, its folder does not exist, or it exists and is not to be replaced.
+        If it is a folder or an input, its folder does not exist, or it exists and is not to be replaced.
     """
     path = output or Path(plain_name(f"{model.title}-{model.structure.name}{suffix}"))
-    if path.is_dir():
-        raise click.ClickException(f"{path}: expected a file to write, found a folder; add a file name.")
-    if not path.resolve().parent.is_dir():
-        raise click.ClickException(f"{path}: expected an existing folder, found none; make it first.")
-    if path.exists() and not force:
-        raise click.ClickException(f"{path} exists already; choose another name or replace it with --force.")
+    expect_no_input(path, *(None if place is None else fingerprint_file(place) for place in inputs))
+    expect_free(path, force=force)
     return path

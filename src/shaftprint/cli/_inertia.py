@@ -1,12 +1,13 @@
 """``shaftprint inertia``: inertia and torsional modes by calculation."""
 
-import secrets
 from pathlib import Path
 
 import click
 
-from shaftprint.cli._fingerprint_file import fingerprint_at
+from shaftprint.cli._file_to_write import expect_free, expect_no_input
+from shaftprint.cli._fingerprint_file import fingerprint_at, fingerprint_file
 from shaftprint.cli._report_tables import on_terminal, print_report_table
+from shaftprint.files import written_whole
 from shaftprint.fingerprint import inertia_beside
 from shaftprint.report import (
     expected_inertia_table,
@@ -60,11 +61,14 @@ def command(vessel: str, found: Path | None, drawing: Path | None, force: bool) 
     times with where their uncertainty comes from, the entrained water by several methods and, where VESSEL has links
     between its masses, the torsional modes. VESSEL is a path, or the name of a shipped one such as stan-tug-1205.
     """
+    if drawing is not None:
+        expect_no_input(drawing, Path(vessel), None if found is None else fingerprint_file(found))
+        expect_free(drawing, force=force)
     ship = load_vessel(vessel)
     expected, beside = _expected(ship, found)
     vibrations = modes(torsional_line(ship)) if ship.links or drawing is not None else None
     if drawing is not None and vibrations is not None:
-        _draw(vibrations, drawing, force=force)
+        _draw(vibrations, drawing)
     _print(ship, expected, beside, vibrations)
     if drawing is not None:
         click.echo(drawing)
@@ -79,15 +83,9 @@ def _expected(ship: Vessel, found: Path | None) -> tuple[ExpectedInertia, tuple[
     return inertia_beside(fingerprint, ship)
 
 
-def _draw(vibrations: Modes, path: Path, *, force: bool) -> None:
-    if path.exists() and not force:
-        raise click.ClickException(f"{path} exists already; choose another name or replace it with --force.")
-    part = path.with_name(f".{path.stem}.{secrets.token_hex(4)}{path.suffix}")
-    try:
+def _draw(vibrations: Modes, path: Path) -> None:
+    with written_whole(path, overwrite=True) as part:
         save_figure(plot_modes(vibrations), part)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _print(ship: Vessel, expected: ExpectedInertia, beside: tuple[Beside, ...], vibrations: Modes | None) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._file_to_write import expect_no_input
 from shaftprint.clocks import joined
 from shaftprint.recording import read_recording, write_recording
 
@@ -19,6 +20,7 @@ def command(parts: tuple[Path, ...], output: Path, *, follow_on: bool, force: bo
 
     Every part must begin where the one before it ends.
     """
+    expect_no_input(output, *parts)
     with ExitStack() as stack:
         opened = [stack.enter_context(read_recording(part)) for part in parts]
         whole = joined(opened, follow_on=follow_on)

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._clock_tables import print_clocks
+from shaftprint.cli._file_to_write import expect_no_input
 from shaftprint.cli._inputs import NAMES
 from shaftprint.clocks import align, logger_clocks, merged
 from shaftprint.recording import Recording, read_recording, write_recording
@@ -45,6 +46,7 @@ def command(
     The offset and drift of OTHER's clock are found from a channel that both have logged. Samples are not moved: the
     channels of OTHER get another start and rate in the file that is written.
     """
+    expect_no_input(output, reference, other)
     ship = None if vessel is None else load_vessel(vessel)
     names = _names(shared)
     with read_recording(reference) as still, read_recording(other) as moving:

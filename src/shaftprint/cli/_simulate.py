@@ -1,12 +1,12 @@
 """``shaftprint simulate``: what a model does for a set point."""
 
-import secrets
 from pathlib import Path
 
 import click
 import numpy as np
 
-from shaftprint.cli._fingerprint_file import fingerprint_at
+from shaftprint.cli._file_to_write import expect_free, expect_no_input
+from shaftprint.cli._fingerprint_file import fingerprint_at, fingerprint_file
 from shaftprint.cli._inertia import picture
 from shaftprint.cli._inputs import NAMES
 from shaftprint.cli._known_values import named_value
@@ -16,6 +16,7 @@ from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
 from shaftprint.cli._simulated_set_point import Drive, Place, campaign_drive, file_drive, place_of
 from shaftprint.cli._simulation_run import Prediction, predicted, signals_of, write_signals
 from shaftprint.cli._simulation_tables import print_simulation
+from shaftprint.files import written_whole
 from shaftprint.models import Structure
 from shaftprint.report import SimulatedSignal, plot_simulation, save_figure
 
@@ -102,7 +103,10 @@ def command(
     Delays are exact. With a fingerprint, every output has its standard deviation from the covariance of the
     parameters. A working point, of the fingerprint or a vessel file, turns deviations into rpm and N m.
     """
-    _expect_free(output, figure, force=force)
+    for path in (output, figure):
+        if path is not None:
+            expect_no_input(path, table, None if fingerprint is None else fingerprint_file(fingerprint))
+            expect_free(path, force=force)
     found = None if fingerprint is None else fingerprint_at(fingerprint)
     model = simulated_model(structure, found, dict(given))
     place = place_of(found, vessel, rpm_per_volt)
@@ -119,18 +123,6 @@ def command(
     for path in (output, figure):
         if path is not None:
             click.echo(path)
-
-
-def _expect_free(*paths: Path | None, force: bool) -> None:
-    for path in paths:
-        if path is None:
-            continue
-        if path.is_dir():
-            raise click.ClickException(f"{path}: expected a file to write, found a folder; add a file name.")
-        if not path.resolve().parent.is_dir():
-            raise click.ClickException(f"{path}: expected an existing folder, found none; make it first.")
-        if path.exists() and not force:
-            raise click.ClickException(f"{path} exists already; choose another name or replace it with --force.")
 
 
 def _drive(
@@ -152,12 +144,8 @@ def _drive(
 
 
 def _draw(drive: Drive, signals: tuple[SimulatedSignal, ...], name: str, path: Path) -> None:
-    part = path.with_name(f".{path.stem}.{secrets.token_hex(4)}{path.suffix}")
-    try:
+    with written_whole(path, overwrite=True) as part:
         save_figure(plot_simulation(drive.time_s, signals, name=name), part)
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
 
 
 def _warnings(structure: Structure, drive: Drive, prediction: Prediction) -> list[str]:

@@ -1,12 +1,12 @@
 """Writing the native container as a stream, whole or not at all."""
 
+import contextlib
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Literal, Self
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,6 +15,7 @@ from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._channel_writer import ChannelWriter
 from shaftprint.recording._container import FORMAT, GROUP, VERSION
+from shaftprint.recording._hdf5_output import Hdf5Output
 from shaftprint.recording._seal import add_seal
 
 
@@ -52,7 +53,7 @@ class RecordingWriter:
         self._overwrite = overwrite
         self._stack = ExitStack()
         self._open: dict[str, ChannelWriter] = {}
-        self._file: Any = None
+        self._output: Hdf5Output
         self._part = self._path
 
     def __enter__(self) -> Self:
@@ -63,14 +64,18 @@ class RecordingWriter:
         RecordingError
             If the file exists and may not be replaced, or its folder cannot be written.
         """
+        root = {"Conventions": "CF-1.11", "format": FORMAT, "format_version": VERSION}
         try:
-            self._part = self._stack.enter_context(written_whole(self._path, overwrite=self._overwrite))
-            self._file = self._stack.enter_context(h5py.File(self._part, "w", track_order=True))
+            with ExitStack() as stack:
+                self._part = stack.enter_context(written_whole(self._path, overwrite=self._overwrite))
+                self._output = Hdf5Output(self._part, track_order=True)
+                stack.callback(self._output.close)
+                with self._output.calls():
+                    self._output.file.attrs.update(root | self._attributes)
+                    self._output.file.create_group(GROUP, track_order=True)
+                self._stack = stack.pop_all()
         except OSError as error:
             raise self._cannot_be_written(error) from None
-        root = {"Conventions": "CF-1.11", "format": FORMAT, "format_version": VERSION}
-        self._file.attrs.update(root | self._attributes)
-        self._file.create_group(GROUP, track_order=True)
         return self
 
     def __exit__(
@@ -87,13 +92,16 @@ class RecordingWriter:
             If the last samples cannot be written.
         """
         if error is not None:
-            self._stack.__exit__(kind, error, trace)
+            # what closing says of the same full disk is not said again
+            with contextlib.suppress(OSError):
+                self._stack.__exit__(kind, error, trace)
             return
         try:
             with self._stack:
-                for number, channel in enumerate(self._open.values()):
-                    channel.finish(number)
-                self._file.close()
+                with self._output.calls():
+                    for number, channel in enumerate(self._open.values()):
+                        channel.finish(number)
+                self._output.close()
                 add_seal(self._part)
         except OSError as failure:
             raise self._cannot_be_written(failure) from None
@@ -147,7 +155,11 @@ class RecordingWriter:
             long_name=long_name,
             source=lambda start, stop: np.zeros(0, dtype=dtype),
         )
-        self._open[name] = ChannelWriter(self._file[GROUP], channel, np.dtype(dtype))
+        try:
+            with self._output.calls():
+                self._open[name] = ChannelWriter(self._output.file[GROUP], channel, np.dtype(dtype))
+        except OSError as error:
+            raise self._cannot_be_written(error) from None
 
     def append(self, name: str, counts: NDArray[Any]) -> None:
         """Add samples to a channel.
@@ -175,9 +187,11 @@ class RecordingWriter:
                 f"found {counts.dtype} of shape {counts.shape}."
             )
         try:
-            channel.append(counts)
+            with self._output.calls():
+                channel.append(counts)
         except OSError as error:
             raise self._cannot_be_written(error) from None
 
     def _cannot_be_written(self, error: OSError) -> RecordingError:
-        return RecordingError(f"{self._path}: the recording cannot be written: {error}")
+        advice = f"{error.strerror}; check the path, the permissions and the free space." if error.strerror else error
+        return RecordingError(f"{self._path}: the recording cannot be written: {advice}")

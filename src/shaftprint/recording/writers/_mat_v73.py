@@ -1,10 +1,10 @@
 """MATLAB files of version 7.3: HDF5 behind a MATLAB header of 512 bytes."""
 
+import contextlib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-import h5py
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +12,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
+from shaftprint.recording._hdf5_output import Hdf5Output
 from shaftprint.recording.writers._mat_names import expect_matlab_names
 from shaftprint.recording.writers._shared_clock import on_one_clock
 
@@ -44,12 +45,14 @@ def write_mat_v73(path: str | Path, channels: Iterable[Channel], *, overwrite: b
     expect_matlab_names(path, (channel.name for channel in found))
     try:
         with written_whole(path, overwrite=overwrite) as part:
-            with h5py.File(part, "w", userblock_size=_USERBLOCK_BYTES) as file:
-                _write_scalar(file, "sample_rate_hz", found[0].rate_hz)
-                _write_scalar(file, "start_s", found[0].start_s)
+            with contextlib.closing(Hdf5Output(part, userblock_size=_USERBLOCK_BYTES)) as output:
+                with output.calls():
+                    _write_scalar(output.file, "sample_rate_hz", found[0].rate_hz)
+                    _write_scalar(output.file, "start_s", found[0].start_s)
                 for channel in found:
-                    _write_vector(file, channel)
-                    _write_text(file, f"{channel.name}_unit", channel.unit)
+                    _write_vector(output, channel)
+                    with output.calls():
+                        _write_text(output.file, f"{channel.name}_unit", channel.unit)
             with part.open("r+b") as raw:
                 text = b"MATLAB 7.3 MAT-file, written by shaftprint"
                 raw.write(text.ljust(_TEXT_BYTES) + _HEADER_END)
@@ -61,21 +64,24 @@ def _write_scalar(file: Any, name: str, value: float) -> None:
     _mark(file.create_dataset(name, data=np.full((1, 1), value)), "double")
 
 
-def _write_vector(file: Any, channel: Channel) -> None:
+def _write_vector(output: Hdf5Output, channel: Channel) -> None:
     """Write a column vector: MATLAB counts dimensions the other way round than HDF5."""
-    dataset = file.create_dataset(
-        channel.name,
-        shape=(1, channel.count),
-        dtype=np.float64,
-        chunks=(1, min(CHUNK_SAMPLES, max(channel.count, 1))),
-        compression="gzip",
-        compression_opts=1,
-        shuffle=True,
-    )
+    with output.calls():
+        dataset = output.file.create_dataset(
+            channel.name,
+            shape=(1, channel.count),
+            dtype=np.float64,
+            chunks=(1, min(CHUNK_SAMPLES, max(channel.count, 1))),
+            compression="gzip",
+            compression_opts=1,
+            shuffle=True,
+        )
+        _mark(dataset, "double")
     for start in range(0, channel.count, CHUNK_SAMPLES):
         stop = min(start + CHUNK_SAMPLES, channel.count)
-        dataset[0, start:stop] = channel.values(start, stop)
-    _mark(dataset, "double")
+        values = channel.values(start, stop)
+        with output.calls():
+            dataset[0, start:stop] = values
 
 
 def _write_text(file: Any, name: str, text: str) -> None:

@@ -1,0 +1,37 @@
+"""A file that a command is to write: in a folder that exists, not in the place of another, never that of its input."""
+
+from pathlib import Path
+
+import click
+
+
+def expect_no_input(output: Path, *inputs: Path | None) -> None:
+    """Check that a file to write is none of those that are read: no ``--force`` means the loss of an input.
+
+    Raises
+    ------
+    click.ClickException
+        If it is one of them, by whatever name.
+    """
+    for place in inputs:
+        if place is not None and output.exists() and place.exists() and output.samefile(place):
+            raise click.ClickException(
+                f"{output}: expected another file than the input {place}, which is not to be replaced; choose another "
+                "name."
+            )
+
+
+def expect_free(output: Path, *, force: bool) -> None:
+    """Check that a file can be written where it belongs.
+
+    Raises
+    ------
+    click.ClickException
+        If it is a folder, its folder does not exist, or it exists and is not to be replaced.
+    """
+    if output.is_dir():
+        raise click.ClickException(f"{output}: expected a file to write, found a folder; add a file name.")
+    if not output.resolve().parent.is_dir():
+        raise click.ClickException(f"{output}: expected an existing folder, found none; make it first.")
+    if output.exists() and not force:
+        raise click.ClickException(f"{output} exists already; choose another name or replace it with --force.")
