@@ -10,6 +10,7 @@
     ├── ResponseError         a test line or response that cannot be estimated
     ├── PropellerError        a propeller or speed for which no curve was measured
     ├── StructureError        a model structure or parameter that makes no sense
+    │   └── ExactStepsError   a structure or an input whose jumps cannot all be followed
     ├── IdentificationError   a fit that cannot be set up or has no acceptable result
     ├── ValidationError       a model that cannot be held against a record
     ├── FingerprintError      a fingerprint file that cannot be read or compared
@@ -51,6 +52,10 @@ class PropellerError(ShaftprintError):
 
 class StructureError(ShaftprintError):
     """A model structure or one of its parameters makes no sense."""
+
+
+class ExactStepsError(StructureError):
+    """The jumps of an input cannot all be followed through a structure; approximate steps can."""
 
 
 class IdentificationError(ShaftprintError):

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import math
 
 import numpy as np
 import pytest
@@ -66,6 +67,69 @@ def test_a_step_of_a_lag_by_hand(run, here):
     np.testing.assert_allclose(found["y []"], 2.0 + 4.0 * (1.0 - np.exp(-since / 0.5)), atol=1e-6)
     assert "LAG: a lag" in result.output
     assert result.output.endswith("y.csv\n")
+
+
+LATE = """
+from shaftprint.models import Delay, Gain, Integrator, Parameter, Sensitivity, Structure
+
+k = Parameter("k", "1/s", 0.0, 5.0, 1.0, "gain")
+inside = Parameter("d_in", "s", 0.0, 3.0, 0.3, "delay inside the loop")
+outside = Parameter("d_out", "s", 0.0, 3.0, 0.1, "delay before the loop")
+loop = Integrator() * Gain(k) * Delay(inside)
+late = Structure(
+    name="LATE", title="delayed feedback", input="u", outputs={"x": Delay(outside) * (Integrator() * Sensitivity(loop))}
+)
+"""
+
+
+@pytest.mark.parametrize("rows_a_second", [1000, 200, 100, 20])
+def test_held_values_are_exact_however_far_apart_the_rows(run, here, rows_a_second):
+    """Delays that are no multiple of rows or steps, in a loop and before it, by the method of steps."""
+    (here / "late.py").write_text(LATE)
+    k, inside, outside = 1.5, 0.1234567, 0.0712345
+    time = np.arange(0.0, 3.0, 1.0 / rows_a_second)
+    table(here / "u.csv", ("time [s]", "u [V]"), time, np.where(time > 0.999, 1.0, 0.0))
+    result = run(
+        "simulate", "--structure", "late.py:late", "--set", f"k={k}", "--set", f"d_in={inside}",
+        "--set", f"d_out={outside}", "--input", "u.csv", "--hold", "-o", "x.csv", "--no-progress",
+    )  # fmt: skip
+    assert result.exit_code == 0, result.stderr
+    found = columns(here / "x.csv")
+    since = found["time [s]"] - 1.0 - outside
+    # dx/dt = u(t - d_out) - k x(t - d_in)
+    terms = [
+        (-k) ** j * np.maximum(since - j * inside, 0.0) ** (j + 1) / math.factorial(j + 1)
+        for j in range(int(2.0 / inside) + 1)
+    ]
+    np.testing.assert_allclose(found["x []"], np.sum(terms, axis=0), atol=1e-6)
+    assert "early or late" not in result.output
+
+
+def test_the_step_of_the_governed_line_does_not_hang_on_the_rows(run, here):
+    """A step of 50 rpm at 10 ms rows was 0.3 rpm off what it was at 1 ms rows."""
+    found = {}
+    for rows in (100, 1000):
+        time = np.arange(0.0, 8.0, 1.0 / rows)
+        table(here / "set.csv", ("time [s]", "set point [rpm]"), time, SPEED_RPM + 50.0 * (time > 0.999))
+        result = run(
+            "simulate", "--structure", "GAUGE-CLOSED", *PLAIN, "--vessel", "stan-tug-1205", "--input", "set.csv",
+            "--hold", "-o", f"out{rows}.csv",
+        )  # fmt: skip
+        assert result.exit_code == 0, result.stderr
+        found[rows] = columns(here / f"out{rows}.csv")
+    fine = {name: values[::10] for name, values in found[1000].items()}
+    np.testing.assert_allclose(found[100]["engine speed [rpm]"], fine["engine speed [rpm]"], atol=50.0 * 1e-6)
+    np.testing.assert_allclose(found[100]["shaft torque [N m]"], fine["shaft torque [N m]"], atol=TORQUE_NM * 1e-6)
+
+
+def test_held_values_that_cannot_be_followed_are_said_to_be_near(run, here, monkeypatch):
+    monkeypatch.setattr("shaftprint.simulation._exact_grid.MOST_JUMPS", 3)
+    time = np.arange(0.0, 2.0, 0.01)
+    table(here / "u.csv", ("time [s]", "u [V]"), time, time)
+    result = run("simulate", "--structure", "own.py:lag", "--input", "u.csv", "--hold", "-o", "y.csv", "--no-progress")
+    assert result.exit_code == 0, result.stderr
+    said = " ".join(result.output.split())
+    assert "Outputs may be up to 2.5 ms early or late where a held value jumps: exact steps: expected inputs" in said
 
 
 def test_straight_inputs_between_samples(run, here):

@@ -9,7 +9,7 @@ from shaftprint.cli._file_to_write import expect_free, expect_no_input
 from shaftprint.cli._fingerprint_file import fingerprint_at, fingerprint_file
 from shaftprint.cli._inertia import picture
 from shaftprint.cli._inputs import NAMES
-from shaftprint.cli._known_values import named_value
+from shaftprint.cli._known_values import named_value, rpm_per_volt_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
@@ -60,7 +60,7 @@ def span_of_time(
 )
 @click.option("--hold", is_flag=True, help="Keep each value of --input until the next; straight in between otherwise.")
 @click.option("--vessel", help=f"Vessel file, for a working point without a fingerprint: {NAMES} stan-tug-1205.")
-@click.option("--rpm-per-volt", type=float, help="Engine speed that one volt asks for, with its sign; needs --vessel.")
+@rpm_per_volt_option
 @click.option(
     "--between",
     "span",
@@ -151,6 +151,8 @@ def _draw(drive: Drive, signals: tuple[SimulatedSignal, ...], name: str, path: P
 def _warnings(structure: Structure, drive: Drive, prediction: Prediction) -> list[str]:
     """Return where the set point lies, and what a linear structure leaves out of a propeller's torque."""
     remarks = [drive.remark] if drive.remark else []
+    if prediction.not_exact:
+        remarks.append(f"Outputs may be up to 2.5 ms early or late where a held value jumps: {prediction.not_exact}")
     linear = all(block.is_linear for block in structure.blocks)
     if not linear or structure.input != "n_set" or not {"n", "M_s"} <= set(prediction.outputs):
         return remarks

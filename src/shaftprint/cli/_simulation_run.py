@@ -10,9 +10,10 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.cli._progress import Steps
 from shaftprint.cli._simulated_model import SimulatedModel
 from shaftprint.cli._simulated_set_point import Drive, Place
+from shaftprint.errors import ExactStepsError
 from shaftprint.recording import Channel, write_csv
 from shaftprint.report import SimulatedSignal
-from shaftprint.simulation import simulate
+from shaftprint.simulation import simulate, simulate_exactly
 
 # Derivatives that the simulation takes at a time; more at once would only take more memory.
 AT_ONCE = 8
@@ -27,6 +28,8 @@ class Prediction:
     """Each output, shape (samples,)."""
     std: Mapping[str, FloatArray] | None
     """Standard deviation of each by the covariance of the parameters, shape (samples,); None where none is known."""
+    not_exact: str = ""
+    """Why values that are held are not followed exactly; empty where they are, or none are held."""
 
 
 def predicted(model: SimulatedModel, drive: Drive, *, steps: Steps) -> Prediction:
@@ -53,10 +56,22 @@ def predicted(model: SimulatedModel, drive: Drive, *, steps: Steps) -> Predictio
         for name, rows in trace.derivatives.items():
             slopes[name].append(rows[:, :: drive.every].copy())
         steps.advance(1.0)
+    not_exact = ""
+    if drive.hold:
+        try:
+            outputs = _exact_outputs(model, drive)
+        except ExactStepsError as reason:
+            not_exact = str(reason)
     if not model.uncertain:
-        return Prediction(outputs=outputs, std=None)
+        return Prediction(outputs=outputs, std=None, not_exact=not_exact)
     std = {name: _deviation(np.concatenate(rows), model.covariance) for name, rows in slopes.items()}
-    return Prediction(outputs=outputs, std=std)
+    return Prediction(outputs=outputs, std=std, not_exact=not_exact)
+
+
+def _exact_outputs(model: SimulatedModel, drive: Drive) -> dict[str, FloatArray]:
+    """Return the outputs with steps that end where a jump arrives: others see it up to half a step early or late."""
+    trace = simulate_exactly(model.structure, model.values, drive.fine_time_s, drive.inputs, hold=True)
+    return {name: values[:: drive.every].copy() for name, values in trace.outputs.items()}
 
 
 def _deviation(slopes: FloatArray, covariance: FloatArray) -> FloatArray:

@@ -6,7 +6,7 @@ from typing import Self
 import numpy as np
 
 from shaftprint.arrays import FloatArray, IntArray
-from shaftprint.errors import StructureError
+from shaftprint.errors import ExactStepsError
 from shaftprint.simulation._grid import NODES
 
 # Nodes before the start, on the straight line that late signals were on.
@@ -107,7 +107,7 @@ def jump_times(jumps_s: FloatArray, delay_s: FloatArray, stop_s: float) -> Float
 
     Raises
     ------
-    StructureError
+    ExactStepsError
         If there are more than can be followed.
     """
     found = [jumps_s]
@@ -115,7 +115,7 @@ def jump_times(jumps_s: FloatArray, delay_s: FloatArray, stop_s: float) -> Float
         late = (found[-1][:, None] + delay_s[delay_s > 0.0][None, :]).ravel()
         found.append(np.unique(late[late < stop_s]))
         if sum(times.size for times in found) > MOST_JUMPS:
-            raise StructureError(
+            raise ExactStepsError(
                 f"exact steps: expected inputs whose jumps and corners arrive at up to {MOST_JUMPS} times, found more; "
                 "shorten the record, or use simulate."
             )

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.errors import StructureError
+from shaftprint.errors import ExactStepsError
 from shaftprint.models import Structure
 from shaftprint.simulation._built import Built, build
 from shaftprint.simulation._equilibrium import held_zeros
@@ -47,8 +47,10 @@ def simulate_exactly(
 
     Raises
     ------
+    ExactStepsError
+        If a delay varies, a computer takes values, or jumps are too many to be followed.
     StructureError
-        If a delay varies or a computer takes values, and in the cases of ``simulate``.
+        In the cases of ``simulate``.
     """
     vector = np.asarray(values, dtype=np.float64)
     expect_values(structure, vector, ())
@@ -57,7 +59,7 @@ def simulate_exactly(
     table = input_table(structure, inputs, time.size)
     built = build(structure, held_zeros(structure, vector))
     if built.program.samples or built.hoisted.varying:
-        raise StructureError(
+        raise ExactStepsError(
             f"simulation of {structure.name}: exact steps need constant delays and no computer's period; use simulate."
         )
     outputs = _run(built, vector, time, table, hold=hold, longest_step_s=longest_step_s)
