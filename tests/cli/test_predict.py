@@ -75,6 +75,14 @@ def test_half_the_volts_twice_the_uncertainty(run):
     assert float(half["tau_n"][3]) == pytest.approx(2.0 * float(whole["tau_n"][3]), rel=0.05)
 
 
+def test_the_sign_of_the_slope_is_that_of_simulate(run):
+    """Of every shipped ship less voltage asks for more speed; for what a test finds it is all the same."""
+    options = ("predict", *GIVEN, "--vessel", "stan-tug-1205", "--structure", "CL4", "--rpm-per-volt")
+    falling, rising = (run(*options, rpm) for rpm in ("-250.9", "250.9"))
+    assert falling.exit_code == 0, falling.stderr
+    assert falling.output == rising.output
+
+
 def test_noise_of_a_recording(run, recording):
     """The recording was made with the short campaign, so a prediction for the same campaign is what it gives."""
     given = ("--campaign", "short", "--vessel", "stan-tug-1205", "--no-progress")
@@ -111,7 +119,8 @@ def test_structure_of_ones_own(run, tmp_path):
         (("--structure", "GAUGE-ECU"), 1, "Give a recording of the other channels with --from"),
         (("--from", "log.nc"), 2, "--from needs --vessel"),
         (("--rpm-per-volt", "250"), 2, "--rpm-per-volt needs --vessel"),
-        (("--rpm-per-volt", "0"), 2, "0.0 is not in the range x>0.0"),
+        (("--rpm-per-volt", "0"), 2, "expected a number other than 0, such as -250, found 0"),
+        (("--rpm-per-volt", "nan"), 2, "expected a number other than 0, such as -250, found nan"),
         (("--campaign", "trip.toml"), 1, "trip.toml: expected a settings file, found nothing there"),
     ],
 )

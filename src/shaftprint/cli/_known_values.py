@@ -1,6 +1,8 @@
 """Options such as ``--prior g=0+-0.1`` and ``--hold v=1``: what is known of parameters before a fit."""
 
 import math
+from collections.abc import Callable
+from typing import Any
 
 import click
 
@@ -41,6 +43,22 @@ def named_value(text: str) -> tuple[str, float]:
         return name, _number(number)
     except ValueError:
         raise click.BadParameter(f"expected a parameter and its value such as v=1, found {text!r}.") from None
+
+
+def rpm_per_volt_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the option ``--rpm-per-volt``."""
+    return click.option(
+        "--rpm-per-volt",
+        type=float,
+        callback=_slope,
+        help="Engine speed that one volt of set point asks for, with its sign; needs --vessel.",
+    )(command)
+
+
+def _slope(context: click.Context, parameter: click.Parameter, value: float | None) -> float | None:
+    if value is not None and (value == 0.0 or not math.isfinite(value)):
+        raise click.BadParameter(f"expected a number other than 0, such as -250, found {value:g}.")
+    return value
 
 
 def _split(text: str) -> tuple[str, str]:

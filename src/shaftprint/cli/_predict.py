@@ -10,7 +10,7 @@ import numpy as np
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.cli._chain import known_beforehand, measure
 from shaftprint.cli._inputs import NAMES, campaign_option, load_trial
-from shaftprint.cli._known_values import hold_option, named_value, prior_option
+from shaftprint.cli._known_values import hold_option, named_value, prior_option, rpm_per_volt_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._prediction_tables import print_prediction
 from shaftprint.cli._progress import no_progress_option, progress
@@ -60,11 +60,7 @@ class _Ship:
     help="A recording of the ship, for its noise; without it the noise of the Stan Tug 1205 is assumed.",
 )
 @click.option("--from-campaign", "recorded", help="Campaign of that recording; --campaign when not given.")
-@click.option(
-    "--rpm-per-volt",
-    type=click.FloatRange(min=0.0, min_open=True),
-    help="Engine speed that one volt of set point asks for, without a recording; needs --vessel.",
-)
+@rpm_per_volt_option
 @prior_option
 @click.option(
     "--free", "freed", metavar="NAME", multiple=True, help="Take nothing as known of a parameter, such as tau_up."
@@ -155,7 +151,7 @@ def _assumed(vessel: str | None, rpm_per_volt: float | None, chosen: Structure) 
     ship = load_vessel(vessel)
     noise = STAN_TUG_NOISE
     if rpm_per_volt is not None:
-        noise = replace(noise, set_point_per_v=rpm_per_volt / ship.working_point.engine_speed_rpm)
+        noise = replace(noise, set_point_per_v=abs(rpm_per_volt) / ship.working_point.engine_speed_rpm)
     priors = priors_from_vessel(chosen, ship, _working_point(ship))
     return _Ship(priors=priors, noise=noise, words=f"noise of the Stan Tug 1205 assumed for {ship.name}")
 
