@@ -48,6 +48,18 @@ def test_sensors_with_a_vessel_file(run, recording):
     assert "Signal-to-noise" not in result.output
 
 
+def test_swapped_columns_are_a_problem_without_a_campaign(run, recording, tmp_path):
+    text = (recording.parent / "vessel.toml").read_text(encoding="utf-8")
+    swapped = text.replace('"PTM_e"', '"?"').replace('"PTM_4"', '"PTM_e"').replace('"?"', '"PTM_4"')
+    assert swapped != text
+    (tmp_path / "swapped.toml").write_text(swapped, encoding="utf-8")
+    result = run("inspect", recording, "--vessel", tmp_path / "swapped.toml")
+    assert result.exit_code == 0
+    problems = " ".join(result.output.partition("Problems\n")[2].split())
+    assert problems.startswith("* channels PTM_4 and PTM_e seem to be swapped: expected one engine speed, found ")
+    assert "with n_e = PTM_e, n_e4 = PTM_4 all pick-ups agree" in problems
+
+
 def test_campaign_without_vessel_is_a_usage_error(run, recording):
     result = run("inspect", recording, "--campaign", "short")
     assert result.exit_code == 2

@@ -18,7 +18,7 @@ from shaftprint.clocks import logger_clocks
 from shaftprint.fingerprint import clock_findings, clock_influences
 from shaftprint.nonlinearity import detect
 from shaftprint.recording import Recording, read_recording
-from shaftprint.signals import ChannelReport, inspect_channels, prepare_signals
+from shaftprint.signals import ChannelReport, contradictions, inspect_channels, prepare_signals
 from shaftprint.spectra import Spectra, estimate_spectra
 from shaftprint.vessel import Vessel, load_vessel
 
@@ -92,7 +92,8 @@ def _print_sensors(opened: Recording, ship: Vessel, *, hidden: bool) -> None:
     if gaps:
         more = [f"{len(gaps) - _MOST_GAPS} more"] if len(gaps) > _MOST_GAPS else []
         print_findings("Gaps, which cost the windows that they touch", [*gaps[:_MOST_GAPS], *more])
-    print_findings("Problems", [report.problem for report in reports if report.problem is not None])
+    problems = [report.problem for report in reports if report.problem is not None]
+    print_findings("Problems", [*problems, *contradictions(reports, ship)])
 
 
 def _sensor_row(report: ChannelReport) -> tuple[str, ...]:

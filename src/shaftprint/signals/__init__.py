@@ -16,6 +16,7 @@ deviation             1        ``(x - x_0) / x_0`` from the working point
 """
 
 from shaftprint.signals._content import Content, content_of
+from shaftprint.signals._contradictions import contradictions
 from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._inspect import ChannelReport, PulseReport, inspect_channels
 from shaftprint.signals._prepare import prepare_signals
@@ -50,6 +51,7 @@ __all__ = [
     "StripAngles",
     "WorkingPoint",
     "content_of",
+    "contradictions",
     "deviation",
     "inspect_channels",
     "prepare_signals",

@@ -10,7 +10,10 @@ from shaftprint.signals._signals import SpeedSignal
 if TYPE_CHECKING:
     from shaftprint.vessel import Vessel
 
-_FINDING, _ERROR = 1e-3, 1e-2
+LARGEST_DIFFERENCE = 1e-2
+"""Share by which two pick-ups of one line may differ without an error in the vessel file."""
+
+_FINDING = 1e-3
 
 
 def compare_speeds(speeds: tuple[SpeedSignal, ...], vessel: "Vessel") -> tuple[str, ...]:
@@ -44,7 +47,7 @@ def compare_speeds(speeds: tuple[SpeedSignal, ...], vessel: "Vessel") -> tuple[s
                 f", as with a gear ratio of {vessel.gearbox.ratio * ratio**power:.4f} "
                 f"instead of {vessel.gearbox.ratio:g}"
             )
-        if abs(ratio - 1.0) > _ERROR:
+        if abs(ratio - 1.0) > LARGEST_DIFFERENCE:
             raise SignalError(f"{message}; check gearbox.ratio and pulses_per_revolution in the vessel file.")
         findings.append(message)
     return tuple(findings)

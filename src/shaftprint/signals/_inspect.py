@@ -45,6 +45,8 @@ class ChannelReport:
     """Smallest value [unit]."""
     highest: float
     """Largest value [unit]."""
+    mean: float
+    """Mean of all values [unit]."""
     pulses: "PulseReport | None"
     """What the pulses say; nothing for other channels and for pulses that cannot be used."""
     faults: tuple[Repair, ...]
@@ -98,17 +100,26 @@ def inspect_channels(recording: "Recording", vessel: "Vessel") -> tuple[ChannelR
 
 
 class _Extremes:
-    """Smallest and largest count of the blocks that pass by."""
+    """Smallest and largest count of the blocks that pass by, and their mean."""
 
     def __init__(self) -> None:
         self.lowest, self.highest = np.inf, -np.inf
+        self._total, self._samples = 0.0, 0
 
     def watched(self, channel: "Channel") -> Iterator[Counts]:
+        # a channel that cannot be used is looked at once more, from its beginning
+        self._total, self._samples = 0.0, 0
         for block in blocks(channel, DEFAULT_BLOCK_SAMPLES):
             # fmin and fmax pass over what is not a number
             self.lowest = min(self.lowest, float(np.fmin.reduce(block)))
             self.highest = max(self.highest, float(np.fmax.reduce(block)))
+            self._total += float(np.nansum(block, dtype=np.float64))
+            self._samples += int(np.count_nonzero(np.isfinite(block)))
             yield block
+
+    @property
+    def mean(self) -> float:
+        return self._total / self._samples if self._samples else np.nan
 
 
 def _inspect_pulses(channel: "Channel", sensor: "SpeedSensor") -> ChannelReport:
@@ -185,6 +196,7 @@ def _report(
         duration_s=channel.duration_s,
         lowest=min(ends),
         highest=max(ends),
+        mean=extremes.mean * channel.scale + channel.offset,
         pulses=pulses,
         faults=faults,
         gaps=tuple(sorted(gaps, key=lambda gap: gap.start_s)),

@@ -1,0 +1,113 @@
+"""Channels that cannot be what the vessel file says they are, by their pulses and the sign of the torque."""
+
+from collections.abc import Mapping, Sequence
+from itertools import permutations
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.signals._compare import LARGEST_DIFFERENCE
+from shaftprint.signals._inspect import ChannelReport, PulseReport
+
+if TYPE_CHECKING:
+    from shaftprint.vessel import SpeedSensor, Vessel
+
+# All orders of more are tried no longer.
+_MOST_SENSORS = 7
+# A gauge that reads less than this share of the expected torque, below zero, may be one with a zero that has moved.
+_CLEARLY_NEGATIVE = -0.1
+# The torque of a test is around that of the working point, which the vessel file may know badly.
+_AROUND = (0.3, 3.0)
+
+
+def contradictions(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str, ...]:
+    """Return a sentence for each contradiction between channels and vessel file, with the swap that would end it.
+
+    No campaign is needed: on a rigid line all pick-ups give one engine speed, and the torque of a ship that moves ahead
+    is positive.
+
+    Parameters
+    ----------
+    reports
+        What each channel holds, from ``inspect_channels``.
+    vessel
+        Says which channel carries what.
+    """
+    return (*_of_speeds(reports, vessel), *_of_torque(reports, vessel))
+
+
+def _of_speeds(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str, ...]:
+    pulses = {report.channel: report.pulses for report in reports if report.pulses is not None}
+    sensors = [sensor for sensor in vessel.sensors.speed if sensor.channel in pulses][:_MOST_SENSORS]
+    channels = [sensor.channel for sensor in sensors]
+    if len(sensors) < 2 or _agree(sensors, channels, pulses, vessel):
+        return ()
+    fitting = [order for order in permutations(channels) if _agree(sensors, order, pulses, vessel)]
+    fewest = min((_moved(channels, order) for order in fitting), default=0)
+    likely = [order for order in fitting if _moved(channels, order) == fewest]
+    contradiction = _in_words(sensors, pulses, vessel)
+    if len(likely) != 1:
+        return (f"{contradiction}; check gearbox.ratio and pulses_per_revolution in the vessel file.",)
+    moved = [(sensor.name, order) for sensor, order in zip(sensors, likely[0], strict=True) if sensor.channel != order]
+    names = " and ".join(sensor.channel for sensor in sensors if sensor.name in dict(moved))
+    right = ", ".join(f"{name} = {channel}" for name, channel in moved)
+    return (
+        f"channels {names} seem to be swapped: {contradiction}; with {right} all pick-ups agree. Correct the channels "
+        "in the vessel file or the columns of the recording.",
+    )
+
+
+def _agree(
+    sensors: Sequence["SpeedSensor"], channels: Sequence[str], pulses: Mapping[str, PulseReport], vessel: "Vessel"
+) -> bool:
+    """Return whether all pick-ups give one engine speed when the sensors have these channels."""
+    speeds = [_engine_speed(sensor, pulses[channel], vessel) for sensor, channel in zip(sensors, channels, strict=True)]
+    return max(speeds) <= (1.0 + LARGEST_DIFFERENCE) * min(speeds)
+
+
+def _engine_speed(sensor: "SpeedSensor", pulses: PulseReport, vessel: "Vessel") -> float:
+    """Return the engine speed [rev/s]."""
+    ratio = vessel.gearbox.ratio if sensor.shaft == "propeller" else 1.0
+    return ratio * pulses.per_second / sensor.pulses_per_revolution
+
+
+def _moved(channels: Sequence[str], order: Sequence[str]) -> int:
+    return sum(one != other for one, other in zip(channels, order, strict=True))
+
+
+def _in_words(sensors: Sequence["SpeedSensor"], pulses: Mapping[str, PulseReport], vessel: "Vessel") -> str:
+    """Return how far the two pick-ups that differ most are apart."""
+    speeds = {sensor.name: _engine_speed(sensor, pulses[sensor.channel], vessel) for sensor in sensors}
+    shafts = {sensor.name: sensor.shaft for sensor in sensors}
+    low, high = min(speeds, key=speeds.__getitem__), max(speeds, key=speeds.__getitem__)
+    found = f"expected one engine speed, found {low} = {speeds[low]:.4g} and {high} = {speeds[high]:.4g} rev/s"
+    if shafts[low] == shafts[high]:
+        return found
+    apart = speeds[low] / speeds[high]
+    ratio = vessel.gearbox.ratio * (apart if shafts[high] == "propeller" else 1.0 / apart)
+    return f"{found}, as with a gear ratio of {ratio:.4g} instead of {vessel.gearbox.ratio:g}"
+
+
+def _of_torque(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str, ...]:
+    sensor, expected = vessel.sensors.shaft_torque, vessel.working_point.shaft_torque_nm
+    by_use = {report.use: report for report in reports}
+    torque, set_point = by_use["shaft torque"], by_use["set point"]
+
+    def mean_nm(report: ChannelReport) -> float:
+        return sensor.scale_nm_per_unit * report.mean - sensor.zero_nm
+
+    found = mean_nm(torque)
+    if not np.isfinite(found) or found >= _CLEARLY_NEGATIVE * expected:
+        return ()
+    sentence = f"expected a torque around {expected:.4g} N m, found a mean of {found:.4g} N m"
+    swapped = mean_nm(set_point)
+    if set_point.unit == torque.unit and _AROUND[0] * expected < swapped < _AROUND[1] * expected:
+        return (
+            f"channels {torque.channel} and {set_point.channel} seem to be swapped: {sentence} in {torque.channel}, "
+            f"and {swapped:.4g} N m in {set_point.channel}. Correct the channels in the vessel file or the columns of "
+            "the recording.",
+        )
+    return (
+        f"channel {torque.channel}: {sentence}; check that it is the torque, and the sign of "
+        "sensors.shaft_torque.scale_nm_per_unit.",
+    )

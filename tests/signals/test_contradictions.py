@@ -1,0 +1,74 @@
+"""Channels that were swapped show by their pulses and the sign of the torque, without a campaign."""
+
+import pytest
+
+from shaftprint.signals import contradictions, inspect_channels
+
+PICK_UPS = {"PTM_e": "n_e", "PTM_1": "n_e1", "PTM_4": "n_e4"}
+
+
+@pytest.fixture
+def swapped(ship, spoiled, vessel):
+    """What is said of a recording in which columns took each other's places, as new=old."""
+
+    def said(**columns):
+        changes = {new: (lambda counts, old=old: ship.counts[old].copy()) for new, old in columns.items()}
+        recording = spoiled(**changes)
+        return contradictions(inspect_channels(recording, vessel), vessel)
+
+    return said
+
+
+def test_a_recording_in_order_has_none(swapped):
+    assert swapped() == ()
+
+
+@pytest.mark.parametrize(("one", "other"), [("PTM_e", "PTM_1"), ("PTM_e", "PTM_4"), ("PTM_1", "PTM_4")])
+def test_two_pick_ups(swapped, vessel, one, other):
+    (sentence,) = swapped(**{one: other, other: one})
+    assert sentence.startswith(f"channels {one} and {other} seem to be swapped: expected one engine speed, found ")
+    assert f"with {PICK_UPS[one]} = {other}, {PICK_UPS[other]} = {one} all pick-ups agree" in sentence
+
+
+def test_the_gear_ratio_that_the_swap_looks_like(swapped):
+    """Four strips turn 3.82 times as slowly as the engine's one: 4 / 3.82 pulses of the first to one of the other."""
+    (sentence,) = swapped(PTM_e="PTM_4", PTM_4="PTM_e")
+    # the engine's channel gives 4 / 3.82, the four strips' 3.82 / 4 times the speed, the single strip the right one
+    assert f"as with a gear ratio of {3.82 * (4 / 3.82) ** 2:.4g} instead of 3.82" in sentence
+
+
+def test_all_three_turned_round(swapped):
+    (sentence,) = swapped(PTM_e="PTM_1", PTM_1="PTM_4", PTM_4="PTM_e")
+    assert sentence.startswith("channels PTM_e and PTM_1 and PTM_4 seem to be swapped")
+    assert "with n_e = PTM_4, n_e1 = PTM_e, n_e4 = PTM_1 all pick-ups agree" in sentence
+
+
+def test_torque_and_set_point(swapped):
+    (sentence,) = swapped(M_s="U_setpoint", U_setpoint="M_s")
+    assert sentence.startswith("channels M_s and U_setpoint seem to be swapped: expected a torque around 1725 N m")
+    # 500 N m a volt; the set point is around -5 V
+    found = float(sentence.partition("a mean of ")[2].partition(" N m")[0])
+    assert -2750.0 < found < -2000.0
+
+
+def test_a_gauge_mounted_the_other_way_round(spoiled, vessel):
+    recording = spoiled(M_s=lambda counts: -counts)
+    (sentence,) = contradictions(inspect_channels(recording, vessel), vessel)
+    assert sentence.startswith("channel M_s: expected a torque around 1725 N m, found a mean of -")
+    assert "the sign of sensors.shaft_torque.scale_nm_per_unit" in sentence
+
+
+def test_a_wrong_number_of_strips_is_no_swap(ship, vessel):
+    *others, four = vessel.sensors.speed
+    speed = (*others, four.model_copy(update={"pulses_per_revolution": 3}))
+    wrong = vessel.model_copy(update={"sensors": vessel.sensors.model_copy(update={"speed": speed})})
+    (sentence,) = contradictions(inspect_channels(ship.recording(), wrong), wrong)
+    assert "swapped" not in sentence
+    assert "check gearbox.ratio and pulses_per_revolution in the vessel file" in sentence
+
+
+def test_a_wrong_gear_ratio_is_no_swap(ship, vessel):
+    wrong = vessel.model_copy(update={"gearbox": vessel.gearbox.model_copy(update={"ratio": 4.5})})
+    (sentence,) = contradictions(inspect_channels(ship.recording(), wrong), wrong)
+    assert "swapped" not in sentence
+    assert "as with a gear ratio of 3.82 instead of 4.5; check gearbox.ratio" in sentence
