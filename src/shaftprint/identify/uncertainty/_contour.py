@@ -25,6 +25,9 @@ ROUNDS = 200
 PENALTY = 2.0
 # An end is good when the next step would move it by less than this share of its distance from the estimate, ...
 PRECISION = 2e-3
+# A row climbs again from where its number is further by more than this share of the distance.
+FURTHER = 5e-3
+RESTARTS = 10
 # ... and the root of the rise of the cost, in standard deviations, is right to this share.
 SHARP = 5e-3
 BOUND_PASSES = 24
@@ -54,8 +57,14 @@ class Ends:
     """Whether bounds of the search stopped the number before the cost had risen far enough, shape (rows,)."""
 
 
-def furthest(numbers: Numbers, start: FloatArray, side: FloatArray, distance: FloatArray) -> Ends:
+def furthest(
+    numbers: Numbers, start: FloatArray, side: FloatArray, distance: FloatArray, *, optima: FloatArray | None = None
+) -> Ends:
     """Return where each number is furthest from its estimate while the cost rises no more than allowed.
+
+    A row may stop at an end that is the furthest of its surroundings only. It therefore climbs from every optimum that
+    the data allow. The ends of the other rows are such sets too: a row whose number lies further at one of them climbs
+    again from there, until there is none.
 
     Parameters
     ----------
@@ -67,24 +76,104 @@ def furthest(numbers: Numbers, start: FloatArray, side: FloatArray, distance: Fl
         -1 for the smallest, 1 for the largest value, shape (rows,).
     distance
         Root of twice the rise of the cost that is allowed: standard deviations of a normal estimate, shape (rows,).
+    optima
+        Free parameters of other optima of the search, shape (optima, free); those that cost too much are passed over.
     """
-    lower, upper = numbers.objective.lower, numbers.objective.upper
-    theta = np.broadcast_to(start, (side.size, start.size)).copy()
-    is_open = np.zeros(side.size, dtype=np.bool_)
-    at = _Position.at_estimate(numbers, start, side, distance)
-    for _ in range(ROUNDS):
-        step = _model_step(at, lower, upper)
-        stopped, done = _judged(at, step)
-        if done.any():
-            rows = at.rows[done]
-            theta[rows] = np.minimum(np.maximum(at.theta[done] + step.delta[done], lower), upper)
-            is_open[rows] = stopped[done]
-            at, step = at.chosen(~done), step.chosen(~done)
-            if at.rows.size == 0:
-                break
-        at.advance(numbers, np.minimum(np.maximum(at.theta + step.delta, lower), upper), step)
-    theta[at.rows], is_open[at.rows] = at.theta, at.root < (1.0 - SHARP) * at.distance
-    return Ends(theta=theta, value=numbers.values(theta), is_open=is_open)
+    lowest = float(_parabola(numbers.objective, start[None, :])[0][0])
+    climb = _Climb(numbers=numbers, start=start, side=side, distance=distance, limit=lowest + 0.5 * distance**2)
+    every = np.arange(side.size)
+    first = climb.ends_from(every, np.broadcast_to(start, (side.size, start.size)))
+    ends = first
+    for optimum in np.empty((0, start.size)) if optima is None else optima:
+        rows = climb.allowing(optimum)
+        if rows.size:
+            ends = climb.better(ends, rows, np.broadcast_to(optimum, (rows.size, start.size)))
+    ends = _climbed_further(climb, ends)
+    if np.array_equal(ends.value, first.value):
+        return ends
+    # Where there is more than one furthest point there may be more than two: once more from afar.
+    return _climbed_further(climb, climb.better(ends, every, climb.farthest_starts(ends)))
+
+
+def _climbed_further(climb: "_Climb", ends: Ends) -> Ends:
+    """Return the ends after climbing from those of other rows, until there is no further one."""
+    for _ in range(RESTARTS):
+        rows, theta = climb.further_starts(ends)
+        if rows.size == 0:
+            break
+        ends = climb.better(ends, rows, theta)
+    return ends
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Climb:
+    """The task: which number each row asks for, to which side, and how far the cost may rise."""
+
+    numbers: Numbers
+    start: FloatArray
+    side: FloatArray
+    distance: FloatArray
+    limit: FloatArray
+
+    def ends_from(self, rows: IntArray, theta: FloatArray) -> Ends:
+        """Return the ends of some of the rows, each found from its own parameter set."""
+        numbers = self.numbers.chosen(rows)
+        lower, upper = numbers.objective.lower, numbers.objective.upper
+        at = _Position.at_start(self, rows, theta)
+        theta = theta.copy()
+        is_open = np.zeros(rows.size, dtype=np.bool_)
+        for _ in range(ROUNDS):
+            step = _model_step(at, lower, upper)
+            stopped, done = _judged(at, step)
+            if done.any():
+                places = at.rows[done]
+                theta[places] = np.minimum(np.maximum(at.theta[done] + step.delta[done], lower), upper)
+                is_open[places] = stopped[done]
+                at, step = at.chosen(~done), step.chosen(~done)
+                if at.rows.size == 0:
+                    break
+            at.advance(numbers, np.minimum(np.maximum(at.theta + step.delta, lower), upper), step)
+        theta[at.rows], is_open[at.rows] = at.theta, at.root < (1.0 - SHARP) * at.distance
+        return Ends(theta=theta, value=numbers.values(theta), is_open=is_open)
+
+    def allowing(self, theta: FloatArray) -> IntArray:
+        """Return the rows whose rise of the cost allows a parameter set."""
+        return np.flatnonzero(_parabola(self.numbers.objective, theta[None, :])[0][0] < self.limit)
+
+    def further_starts(self, ends: Ends) -> tuple[IntArray, FloatArray]:
+        """Return the rows whose number lies further at the end of another row, and the parameters there."""
+        count = self.side.size
+        asked, candidate = (part.ravel() for part in np.indices((count, count)))
+        values = self.numbers.chosen(asked).values(ends.theta[candidate]).reshape(count, count)
+        reach = np.where(self._allows(ends) & np.isfinite(values), self.side[:, None] * values, -np.inf)
+        best = np.argmax(reach, axis=1)
+        gain = reach[np.arange(count), best] - self.side * ends.value
+        centre = self.numbers.values(np.broadcast_to(self.start, ends.theta.shape))
+        rows = np.flatnonzero(gain > FURTHER * np.abs(ends.value - centre))
+        return rows, ends.theta[best[rows]]
+
+    def farthest_starts(self, ends: Ends) -> FloatArray:
+        """Return for each row the end of another row that is the farthest from its own, shape (rows, free)."""
+        spread = np.ptp(ends.theta, axis=0)
+        scaled = ends.theta / np.where(spread > 0.0, spread, 1.0)
+        apart = np.linalg.norm(scaled[:, None, :] - scaled[None, :, :], axis=2)
+        return ends.theta[np.argmax(np.where(self._allows(ends), apart, -1.0), axis=1)]
+
+    def better(self, ends: Ends, rows: IntArray, theta: FloatArray) -> Ends:
+        """Return the ends with those of some rows that lie further when climbed to from other parameters."""
+        again = self.ends_from(rows, theta)
+        found, value, is_open = ends.theta.copy(), ends.value.copy(), ends.is_open.copy()
+        further = self.side[rows] * (again.value - value[rows]) > 0.0
+        places = rows[further]
+        found[places], value[places] = again.theta[further], again.value[further]
+        is_open[places] = again.is_open[further]
+        return Ends(theta=found, value=value, is_open=is_open)
+
+    def _allows(self, ends: Ends) -> BoolArray:
+        """Return whether the rise of the cost of each row allows the end of each, shape (rows, rows)."""
+        residuals, _ = self.numbers.objective.residuals(ends.theta)
+        cost = 0.5 * np.vecdot(residuals, residuals)
+        return np.asarray(cost[None, :] <= (self.limit + SHARP * self.distance**2)[:, None])
 
 
 @dataclass(slots=True, eq=False)
@@ -121,27 +210,25 @@ class _Position:
     growth: FloatArray
 
     @classmethod
-    def at_estimate(cls, numbers: Numbers, start: FloatArray, side: FloatArray, distance: FloatArray) -> "_Position":
-        """Return the position of every row before its first step."""
-        count = side.size
-        cost, gradient, hessian = _parabola(numbers.objective, start[None, :])
-        theta = np.broadcast_to(start, (count, start.size))
-        curvature = np.broadcast_to(np.diag(hessian[0]), theta.shape)
-        value = side * numbers.values(theta)
+    def at_start(cls, climb: _Climb, rows: IntArray, theta: FloatArray) -> "_Position":
+        """Return the position of some of the rows before their first step."""
+        numbers, side = climb.numbers.chosen(rows), climb.side[rows]
+        cost, gradient, hessian = _parabola(numbers.objective, theta)
+        estimate = np.broadcast_to(climb.start, theta.shape)
         return cls(
-            rows=np.arange(count),
+            rows=np.arange(rows.size),
             side=side,
-            distance=distance,
-            limit=cost + 0.5 * distance**2,
-            start=value,
+            distance=climb.distance[rows],
+            limit=climb.limit[rows],
+            start=side * numbers.values(estimate),
             theta=theta,
-            cost=np.repeat(cost, count),
-            gradient=np.repeat(gradient, count, axis=0),
-            hessian=np.repeat(hessian, count, axis=0),
-            value=value,
-            slope=side[:, None] * numbers.slopes(theta, curvature),
-            damping=np.full(count, LEAST_DAMPING),
-            growth=np.ones(count),
+            cost=cost,
+            gradient=gradient,
+            hessian=hessian,
+            value=side * numbers.values(theta),
+            slope=side[:, None] * numbers.slopes(theta, _diagonal(hessian)),
+            damping=np.full(rows.size, LEAST_DAMPING),
+            growth=np.ones(rows.size),
         )
 
     @property

@@ -13,11 +13,14 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import Identification
+from shaftprint.identify.fit import SAME_PLACE, Identification
 from shaftprint.identify.uncertainty._contour import furthest
 from shaftprint.identify.uncertainty._numbers import Numbers, all_numbers
 from shaftprint.models import Combination
 from shaftprint.normal import NORMAL_95
+
+# Ends are looked for from so many optima beside the result, those of lowest cost.
+MOST_OPTIMA = 4
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -49,6 +52,23 @@ class Profile:
 def profile_distance(identification: Identification) -> float:
     """Return how far a 95 % interval reaches, as root of twice the rise of the cost: 1.96 for a known covariance."""
     return NORMAL_95
+
+
+def other_optima(identification: Identification) -> FloatArray:
+    """Return the free parameters of the optima of the search beside the result, shape (optima, free).
+
+    Those are left out that are unstable, or no other place than one before.
+    """
+    objective = identification.objective
+    free = list(objective.free)
+    width = objective.upper - objective.lower
+    kept = [identification.values[free]]
+    for cluster in identification.clusters:
+        place = cluster.values[free]
+        new = all(np.any(np.abs(place - one) > SAME_PLACE * width) for one in kept)
+        if new and cluster.stable is not False and cluster.cost >= identification.cost:
+            kept.append(place)
+    return np.array(kept[1 : 1 + MOST_OPTIMA]).reshape(-1, len(free))
 
 
 def profile_intervals(identification: Identification) -> dict[str, Interval]:
@@ -89,7 +109,8 @@ def profile(identification: Identification, numbers: Sequence[Combination] = ())
     finite = np.flatnonzero(np.isfinite(every.values(at_best)) & np.isfinite(slopes).all(axis=1))
     asked = every.chosen(np.repeat(finite, 2))
     side = np.tile([-1.0, 1.0], finite.size)
-    ends = furthest(asked, best, side, np.full(side.size, profile_distance(identification)))
+    distance = np.full(side.size, profile_distance(identification))
+    ends = furthest(asked, best, side, distance, optima=other_optima(identification))
     found = {name: Interval(name=name, lower=-np.inf, upper=np.inf, lower_open=True, upper_open=True) for name in names}
     for i, place in enumerate(finite):
         found[names[place]] = Interval(

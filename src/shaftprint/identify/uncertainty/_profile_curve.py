@@ -9,7 +9,7 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Identification
 from shaftprint.identify.uncertainty._contour import furthest
 from shaftprint.identify.uncertainty._numbers import Numbers, all_numbers
-from shaftprint.identify.uncertainty._profile import expect_likelihood, profile_distance
+from shaftprint.identify.uncertainty._profile import expect_likelihood, other_optima, profile_distance
 from shaftprint.models import Combination
 
 # How far the curve goes beyond the ends of the 95 % interval, in roots of the rise of the cost.
@@ -80,7 +80,7 @@ def profile_curve(identification: Identification, number: str | Combination, *, 
     steps = np.linspace(0.0, REACH * profile_distance(identification), points // 2 + 1)[1:]
     asked = Numbers(objective, combinations, np.full(side.size, len(names) - 1 - names[::-1].index(name)))
     best = identification.values[list(objective.free)]
-    ends = furthest(asked, best, side, np.tile(steps, 2))
+    ends = furthest(asked, best, side, np.tile(steps, 2), optima=other_optima(identification))
     # Of the points that a bound stopped only the first of each side is one: the others are the same.
     repeated = ends.is_open & np.roll(ends.is_open, 1) & (np.roll(side, 1) == side)
     theta = np.concatenate([best[None, :], ends.theta[~repeated]])
