@@ -20,7 +20,7 @@ def summary(title: str, results: Sequence[Result], *, bound: bool) -> str:
     header = ["structure", "tests", "coverage", "farthest off"]
     header += ["variance / bound", "largest", "the same, steady"] if bound else ["error / stated"]
     rows = [_summary_row(result, bound=bound) for result in results]
-    return _table(title, [*header, "KS p", "p < 0.05"], rows)
+    return table(title, [*header, "KS p", "p < 0.05"], rows)
 
 
 def _summary_row(result: Result, *, bound: bool) -> list[str]:
@@ -52,7 +52,7 @@ def every_number(title: str, results: Sequence[Result]) -> str:
         for place, number in enumerate(result.numbers)
     ]
     header = ["structure", "number", "mean error / bound", "variance / bound", "steady", "coverage", "steady coverage"]
-    return _table(title, header, rows)
+    return table(title, header, rows)
 
 
 def of_recordings(title: str, result: Result) -> str:
@@ -70,7 +70,7 @@ def of_recordings(title: str, result: Result) -> str:
     ]
     header = ["number", "coverage", "error / stated, rms", "mean error / rms", "open intervals"]
     note = f"p-values: KS test {result.uniform:.2g}, {100.0 * result.rejected:.1f} % below 0.05."
-    return _table(title, header, rows) + f"\n{note}\n"
+    return table(title, header, rows) + f"\n{note}\n"
 
 
 def write_between_marks(path: Path, text: str, begin_mark: str = BEGIN, end_mark: str = END) -> None:
@@ -95,7 +95,8 @@ def _range(numbers: Sequence[Number], of: Callable[[Number], float], pattern: st
     return first if first == last else f"{first} to {last}"
 
 
-def _table(title: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+def table(title: str, header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """Return a table with its title."""
     lines = [f"\n### {title}\n", "| " + " | ".join(header) + " |", "|" + "---|" * len(header)]
     lines += ["| " + " | ".join(row) + " |" for row in rows]
     return "\n".join(lines) + "\n"

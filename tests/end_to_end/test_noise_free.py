@@ -81,6 +81,7 @@ def sailed(request, vessel, campaign):
             engine_speed_std_rev_s=0.0,
             shaft_torque_std_nm=0.0,
             set_point_v=-5.0495,
+            load_std=0.0,
         ),
         calibration=SetPointCalibration(
             slope_rev_s_per_v=-250.97 / 60.0,

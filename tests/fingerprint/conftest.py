@@ -98,6 +98,7 @@ def working_point():
         engine_speed_std_rev_s=0.01,
         shaft_torque_std_nm=8.0,
         set_point_v=-5.05,
+        load_std=0.005,
     )
 
 

@@ -57,8 +57,8 @@ def test_standard_deviations_are_fit_and_gauge_in_quadrature(core, working_point
     found = {quantity.name: quantity for quantity in physical_quantities(core, working_point, vessel)}
     assert found["I"].value == pytest.approx(17.0096, rel=1e-5)
     assert found["I"].std == pytest.approx(0.02236068 * 17.0096, rel=1e-4)
-    # 2 % of the gauge's scale, 8 / 1725 of the torque, 25 N m of the gauge's zero and twice 0.01 / 19.73 of the speed
-    assert found["K_Q"].std == pytest.approx(0.0251511 * 0.049430, rel=1e-4)
+    # 2 % of the gauge's scale, 25 / 1725 of its zero, 0.5 % of the load
+    assert found["K_Q"].std == pytest.approx(0.0252000 * 0.049430, rel=1e-4)
 
 
 def test_standard_deviation_of_the_governor_action(fit, truth, working_point, vessel):
@@ -66,14 +66,14 @@ def test_standard_deviation_of_the_governor_action(fit, truth, working_point, ve
     governed = known_from_a_prior(fit, "GAUGE-CLOSED", truth, "K_p", 0.057, held=held)
     found = {quantity.name: quantity for quantity in physical_quantities(governed, working_point, vessel)}
     assert found["governor proportional action"].std == pytest.approx(0.02236068 * 8.30588, rel=1e-3)
-    # K_i is held: 2 % of the gauge's scale
-    assert found["governor integral action"].std == pytest.approx(0.02 * 6.22212, rel=1e-4)
+    # K_i is held: 2 % of the gauge's scale, 0.5 % of the load and 0.01 of 19.73 rev/s, by which it is multiplied
+    assert found["governor integral action"].std == pytest.approx(0.0206217 * 6.22212, rel=1e-4)
 
 
 def test_without_stated_accuracy_only_the_fit_counts(core, working_point, vessel):
     sensor = vessel.sensors.shaft_torque.model_copy(update={"scale_std_fraction": None, "zero_std_nm": None})
     plain = vessel.model_copy(update={"sensors": vessel.sensors.model_copy(update={"shaft_torque": sensor})})
-    point = replace(working_point, shaft_torque_std_nm=17.25, engine_speed_std_rev_s=0.0)
+    point = replace(working_point, load_std=0.01)
     found = {quantity.name: quantity for quantity in physical_quantities(core, point, plain)}
     assert found["I"].std == pytest.approx(17.0096 * 0.01, rel=1e-4)
     assert found["K_Q"].std == pytest.approx(0.049430 * 0.01, rel=1e-4)
@@ -101,12 +101,12 @@ def test_values_grow_with_the_torque_of_the_working_point(gauge_fit, working_poi
 
 
 def test_torque_coefficient_is_that_of_the_whole_test(core, working_point, vessel):
-    """The whole test took 2 % more torque than the stretches of the working point, known to 0.6 %."""
-    point = replace(working_point, load=1.02, load_std=0.006)
+    """The mean load is known to 0.6 %."""
+    point = replace(working_point, load_std=0.006, engine_speed_std_rev_s=0.5)
     found = {quantity.name: quantity for quantity in physical_quantities(core, point, vessel)}
-    assert found["K_Q"].value == pytest.approx(1.02 * 0.049430, rel=2e-5)
-    # 2 % of the gauge's scale, 25 / 1725 of its zero, 0.6 / 1.02 % of the load; not the scatter of the working point
-    assert found["K_Q"].std == pytest.approx(0.0253898 * 1.02 * 0.049430, rel=1e-4)
+    assert found["K_Q"].value == pytest.approx(0.049430, rel=2e-5)
+    # 2 % of the gauge's scale, 25 / 1725 of its zero, 0.6 % of the load; not the speed, whose square the torque follows
+    assert found["K_Q"].std == pytest.approx(0.0254172 * 0.049430, rel=1e-4)
 
 
 def test_a_zero_that_the_fit_has_found_is_off_the_torque_coefficient(fit, truth, working_point, vessel):

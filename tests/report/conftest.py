@@ -189,6 +189,7 @@ def signals(volts):
             engine_speed_std_rev_s=0.01,
             shaft_torque_std_nm=8.0,
             set_point_v=-5.0,
+            load_std=0.005,
         ),
         calibration=SetPointCalibration(
             slope_rev_s_per_v=-250.97 / 60.0,

@@ -129,7 +129,6 @@ def test_line_of_table_3_1():
     # domain knowledge: ordinary least squares of the printed table, residuals up to 2.55 rpm, slope +/- 0.60
     found = calibrate(
         tuple(stretch(volts, rpm) for volts, rpm in zip(TABLE_3_1_V, TABLE_3_1_RPM, strict=True)),
-        weighted=False,
         channel="U",
     )
     assert found.slope_rev_s_per_v == pytest.approx(-250.693, abs=1e-3)
@@ -138,49 +137,16 @@ def test_line_of_table_3_1():
     assert found.level_v.tolist() == sorted(TABLE_3_1_V)
 
 
-def test_weights_and_stretches_of_one_level():
-    stretches = (
-        stretch(-5.0, 20.0, length_s=30.0),
-        stretch(-5.001, 20.2, length_s=10.0),
-        stretch(-3.0, 12.0, std=0.02),
-    )
-    found = calibrate(stretches, weighted=True, channel="U")
-    assert found.level_v == pytest.approx([-5.00025, -3.0])
-    assert found.level_rev_s == pytest.approx([20.05, 12.0])
-    # between the stretches: sqrt(0.75 0.05^2 + 0.25 0.15^2) over one degree of freedom
-    assert found.level_std_rev_s == pytest.approx([np.sqrt(0.75 * 0.05**2 + 0.25 * 0.15**2), 0.02])
-    assert found.slope_rev_s_per_v == pytest.approx((12.0 - 20.05) / (5.00025 - 3.0))
-    expected = np.sqrt(float(np.sum(found.level_std_rev_s**2))) / (5.00025 - 3.0)
-    assert np.sqrt(found.covariance[0, 0]) == pytest.approx(expected)
-
-
-def test_covariance_of_the_line_is_its_scatter():
-    rng = np.random.default_rng(2)
-    volts = np.array([-7.0, -6.0, -5.0, -4.0, -3.0])
-    std = np.array([0.02, 0.01, 0.003, 0.01, 0.02])
-    slopes, stated = [], []
-    for _ in range(2000):
-        speed = -4.18 * volts - 1.4 + std * rng.standard_normal(5)
-        found = calibrate(
-            tuple(stretch(u, n, std=s) for u, n, s in zip(volts, speed, std, strict=True)), weighted=True, channel="U"
-        )
-        slopes.append(found.slope_rev_s_per_v)
-        stated.append(found.covariance[0, 0])
-    assert np.mean(slopes) == pytest.approx(-4.18, abs=3 * np.std(slopes) / np.sqrt(2000))
-    # enlarged where a draw scatters more than stated, never made smaller
-    assert 1.0 < np.mean(stated) / np.var(slopes) < 1.5
-
-
 def test_two_levels_unweighted_have_the_deviation_of_their_means():
-    found = calibrate((stretch(-5.0, 20.0, std=0.03), stretch(-3.0, 12.0, std=0.03)), weighted=False, channel="U")
+    found = calibrate((stretch(-5.0, 20.0, std=0.03), stretch(-3.0, 12.0, std=0.03)), channel="U")
     assert np.sqrt(found.covariance[0, 0]) == pytest.approx(0.03 * np.sqrt(2.0) / 2.0)
 
 
 def test_too_few_levels():
     with pytest.raises(SignalError, match=r"channel U: expected at least two steady levels .*, found -5\.00\d V;"):
-        calibrate((stretch(-5.0, 20.0), stretch(-5.001, 20.0)), weighted=True, channel="U")
+        calibrate((stretch(-5.0, 20.0), stretch(-5.001, 20.0)), channel="U")
     with pytest.raises(SignalError, match="found none;"):
-        calibrate((), weighted=True, channel="U")
+        calibrate((), channel="U")
 
 
 def test_working_point_is_the_mean_between_the_tests(steps):

@@ -73,6 +73,7 @@ def make_signals():
                 engine_speed_std_rev_s=0.01,
                 shaft_torque_std_nm=1.0,
                 set_point_v=-5.0,
+                load_std=0.0,
             ),
             "calibration": SetPointCalibration(
                 slope_rev_s_per_v=SLOPE_REV_S_PER_V,

@@ -124,6 +124,7 @@ def test_the_prior_of_the_fit_is_the_same_number(tug, expected):
         engine_speed_std_rev_s=0.0,
         shaft_torque_std_nm=0.0,
         set_point_v=0.0,
+        load_std=0.0,
     )
     prior = priors_from_vessel(structure("GAUGE-CLOSED"), tug, point)["tau_up"]
     assert expected.value("tau_up").value == pytest.approx(prior.mean, rel=1e-12)

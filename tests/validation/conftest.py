@@ -32,6 +32,7 @@ def _signals_from(set_point, speed, torque, *, rate_hz=RATE_HZ, start_s=0.0):
             engine_speed_std_rev_s=0.01,
             shaft_torque_std_nm=5.0,
             set_point_v=-5.0,
+            load_std=0.0,
         ),
         calibration=SetPointCalibration(
             slope_rev_s_per_v=-4.0,

@@ -163,6 +163,7 @@ def _working_point(vessel: Vessel) -> WorkingPoint:
         engine_speed_std_rev_s=0.0,
         shaft_torque_std_nm=0.0,
         set_point_v=0.0,
+        load_std=0.0,
     )
 
 

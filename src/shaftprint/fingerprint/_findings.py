@@ -3,7 +3,8 @@
 import numpy as np
 
 from shaftprint.fingerprint._fingerprint import Quantity
-from shaftprint.fingerprint._physical import GAUGE_ZERO, LOAD_WANDER
+from shaftprint.fingerprint._physical import GAUGE_ZERO
+from shaftprint.fingerprint._working_point_share import LOAD_WANDER
 from shaftprint.identify import Budget, Estimate, Identification
 from shaftprint.models import Parameter
 

@@ -4,6 +4,7 @@ import numpy as np
 
 from shaftprint.fingerprint._fingerprint import Quantity
 from shaftprint.fingerprint._margin_numbers import MEANINGS, margin_numbers, margin_values
+from shaftprint.fingerprint._working_point_share import std_of_working_point, widened
 from shaftprint.identify import Budget, Identification, Profile, budget
 
 UNKNOWN_STD = np.inf
@@ -37,6 +38,8 @@ def margin_quantities(
         if not np.isfinite(value):
             continue
         interval = None if profile is None else profile.intervals.get(name)
+        is_open = (False, False) if interval is None else (interval.lower_open, interval.upper_open)
+        further = std_of_working_point(stated, name) if name in std else 0.0
         unit, meaning = MEANINGS[name]
         quantities.append(
             Quantity(
@@ -44,8 +47,10 @@ def margin_quantities(
                 unit=unit,
                 value=value,
                 std=std.get(name, UNKNOWN_STD),
-                interval_95=None if interval is None else (interval.lower, interval.upper),
-                interval_open=(False, False) if interval is None else (interval.lower_open, interval.upper_open),
+                interval_95=None
+                if interval is None
+                else widened((interval.lower, interval.upper), value, further, is_open),
+                interval_open=is_open,
                 meaning=meaning,
             )
         )

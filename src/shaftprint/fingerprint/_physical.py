@@ -1,18 +1,17 @@
 """From normalised parameters to physical values.
 
-With the working point ``n_s0`` [rev/s] of the propeller shaft and ``M_s0`` [N m] at the gauge, and ``d`` [-], the mean
-load of the whole test over that of the working point::
+With the working point ``n_s0`` [rev/s] of the propeller shaft and ``M_s0`` [N m] at the gauge::
 
     I      = tau M_s0 / (2 pi n_s0)                     inertia, thesis eq. 2.23
-    K_Q    = (k_q / 2) d M_s0 eta_R / (rho n_s0^2 D^5)  thesis eqs 2.9-2.11 at J = 0
+    K_Q    = (k_q / 2) M_s0 eta_R / (rho n_s0^2 D^5)    thesis eqs 2.9-2.11 at J = 0
     dM/dn  = v K_p M_s0 / n_e0                          proportional governor action on the shaft torque
     zero   = 2 / k_q - 1                                zero offset of the gauge over M_s0 without it
 
 A gauge that shows ``1 + e`` times the torque makes inertias and governor actions as much too large. The same ``e`` is
 in the prior of ``tau_up``, which divides an inertia in kg m2 by the torque that the gauge shows: both go into the
-budget with their signs. The scatter of the working point is in neither: ``M_s0`` divides the responses, the load of
-their windows and the prior, and multiplies what is found, whatever the load was when it was taken. ``K_Q`` is made of
-it: the wander of the load counts there or, where the test is too short to tell that, the scatter of the working point.
+budget with their signs. So does the error of the working point: ``M_s0`` divides the responses, the load of their
+windows and the prior, and multiplies what is found, so that it cancels here (``_working_point_share.py``). ``K_Q`` is
+made of it: there the wander of the load counts.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -23,6 +22,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.fingerprint._fingerprint import Quantity
+from shaftprint.fingerprint._working_point_share import LOAD_WANDER, shares_over_torque, shifts_of_working_point
 from shaftprint.identify import Budget, Identification, budget
 from shaftprint.models import Combination, Structure
 from shaftprint.units import SECONDS_PER_MINUTE
@@ -35,8 +35,6 @@ PERCENT = 100.0
 IDEAL_SLOPE = 2.0
 GAUGE_ZERO = "gauge zero share"
 """Name of the zero offset of the torque gauge over the working-point torque."""
-
-LOAD_WANDER = "wander of the load"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -68,7 +66,8 @@ def physical_numbers(
             found.append(
                 PhysicalNumber(
                     number=plan.number,
-                    direct={"gauge scale": value * scale} if scale else {},
+                    direct=({"gauge scale": value * scale} if scale else {})
+                    | {source: -value * share for source, share in shares_over_torque(working_point).items()},
                     expected=plan.expected,
                     expected_std=plan.expected_std,
                 )
@@ -95,7 +94,8 @@ def physical_quantities(
     numbers = physical_numbers(identification, working_point, vessel)
     if stated is None:
         direct = {item.number.name: item.direct for item in numbers}
-        stated = budget(identification, [item.number for item in numbers], direct=direct)
+        shifts = shifts_of_working_point(identification, working_point)
+        stated = budget(identification, [item.number for item in numbers], direct=direct, shifts=shifts)
     found = []
     for item in numbers:
         row = stated.row(item.number.name)
@@ -169,21 +169,19 @@ def _torque_coefficient(slope: float | None, working_point: "WorkingPoint", vess
     """Return the torque coefficient, with the fitted slope ``k_q`` where the fit was free to find it."""
     shaft_rev_s = working_point.engine_speed_rev_s / vessel.gearbox.ratio
     shown = (
-        working_point.load
-        * working_point.shaft_torque_nm
+        working_point.shaft_torque_nm
         * vessel.propeller.relative_rotative_efficiency
         / (vessel.water_density_kg_m3 * shaft_rev_s**2 * vessel.propeller.diameter_m**5)
     )
     finds_zero = slope is not None
     value = shown if slope is None else shown * slope / IDEAL_SLOPE
     shares = _shares_of_coefficient(working_point, vessel, finds_zero=finds_zero)
-    where = "at the working point" if working_point.load_std is None else "mean of the test"
     return PhysicalNumber(
         number=Combination(
             name="K_Q",
             unit="-",
             of=_product(shown / IDEAL_SLOPE, "k_q") if finds_zero else _product(shown),
-            meaning=f"torque coefficient of the propeller, {where}",
+            meaning="torque coefficient of the propeller, mean of the test",
         ),
         direct={source: value * share for source, share in shares.items() if share},
         expected=vessel.propeller.torque_coefficient,
@@ -196,9 +194,4 @@ def _shares_of_coefficient(working_point: "WorkingPoint", vessel: "Vessel", *, f
     shares = {"gauge scale": sensor.scale_std_fraction or 0.0}
     if not finds_zero:
         shares["gauge zero"] = (sensor.zero_std_nm or 0.0) / torque
-    if working_point.load_std is not None:
-        return shares | {LOAD_WANDER: working_point.load_std / working_point.load}
-    return shares | {
-        "working-point torque": working_point.shaft_torque_std_nm / torque,
-        "working-point speed": -2.0 * working_point.engine_speed_std_rev_s / working_point.engine_speed_rev_s,
-    }
+    return shares | {LOAD_WANDER: working_point.load_std}

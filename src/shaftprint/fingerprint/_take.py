@@ -2,10 +2,14 @@
 
 from collections import Counter
 from collections.abc import Mapping
+from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 import shaftprint
+from shaftprint.arrays import FloatArray
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._calibration import calibration_quantities
 from shaftprint.fingerprint._contradictions import contradictions
@@ -21,6 +25,12 @@ from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._physical import physical_numbers, physical_quantities
 from shaftprint.fingerprint._vessel_fields import vessel_fields
+from shaftprint.fingerprint._working_point_share import (
+    shifts_of_working_point,
+    std_of_working_point,
+    widened,
+    widened_covariance,
+)
 from shaftprint.identify import Budget, Estimate, Identification, Interval, assess, budget, profile
 from shaftprint.models import Combination
 from shaftprint.units import SECONDS_PER_MINUTE
@@ -67,9 +77,8 @@ def take_fingerprint(
     stated = _budget(identification, signals.working_point, vessel, margins)
     physical = physical_quantities(identification, signals.working_point, vessel, stated)
     left_out = _left_out(identification)
-    meanings = _meanings(identification)
     profiled = profile(identification, margins) if identification.is_likelihood else None
-    intervals = {} if profiled is None else profiled.intervals
+    reported = _Reported(stated, {} if profiled is None else profiled.intervals, _meanings(identification))
     conditions = _conditions(identification, signals, vessel, campaign, left_out)
     margin = margin_quantities(identification, profiled, stated)
     verdict = assess(
@@ -88,11 +97,11 @@ def take_fingerprint(
         ),
         conditions=conditions,
         structure=identification.structure.name,
-        parameters=tuple(_quantity(e, meanings, intervals) for e in identification.parameters),
+        parameters=tuple(reported.quantity(e) for e in identification.parameters),
         held={p.name: p.value for p in identification.structure.parameters if p.held},
         priors=dict(identification.settings.priors),
-        covariance=tuple(tuple(row) for row in identification.covariance.tolist()),
-        combinations=tuple(_quantity(e, meanings, intervals) for e in identification.combinations),
+        covariance=_rows(widened_covariance(identification.covariance, identification, signals.working_point)),
+        combinations=tuple(reported.quantity(e) for e in identification.combinations),
         physical=physical,
         margins=margin,
         budget=Budget(sources=stated.sources, rows=tuple(row for row in stated.rows if row.variances)),
@@ -117,7 +126,12 @@ def _budget(
     """Return the budget of parameters, combinations, physical values and margins."""
     numbers = physical_numbers(identification, working_point, vessel)
     direct = {item.number.name: item.direct for item in numbers}
-    return budget(identification, (*(item.number for item in numbers), *margins), direct=direct)
+    shifts = shifts_of_working_point(identification, working_point)
+    return budget(identification, (*(item.number for item in numbers), *margins), direct=direct, shifts=shifts)
+
+
+def _rows(matrix: FloatArray) -> tuple[tuple[float, ...], ...]:
+    return tuple(tuple(row) for row in matrix.tolist())
 
 
 def _left_out(identification: Identification) -> dict[str, str]:
@@ -175,18 +189,31 @@ def _meanings(identification: Identification) -> dict[str, str]:
     return parameters | {item.name: item.meaning for item in structure.combinations}
 
 
-def _quantity(estimate: Estimate, meanings: Mapping[str, str], intervals: Mapping[str, Interval]) -> Quantity:
-    interval = intervals.get(estimate.name)
-    return Quantity(
-        name=estimate.name,
-        unit=estimate.unit,
-        value=estimate.value,
-        std=estimate.std,
-        interval_95=None if interval is None else (interval.lower, interval.upper),
-        interval_open=(False, False) if interval is None else (interval.lower_open, interval.upper_open),
-        at_bound=estimate.at_bound,
-        meaning=meanings[estimate.name],
-    )
+@dataclass(frozen=True, slots=True)
+class _Reported:
+    """Turns estimates of the fit into what is reported: with the error of the working point."""
+
+    stated: Budget
+    intervals: Mapping[str, Interval]
+    meanings: Mapping[str, str]
+
+    def quantity(self, estimate: Estimate) -> Quantity:
+        """Return a parameter or combination with its standard deviation and interval."""
+        interval = self.intervals.get(estimate.name)
+        further = std_of_working_point(self.stated, estimate.name)
+        is_open = (False, False) if interval is None else (interval.lower_open, interval.upper_open)
+        return Quantity(
+            name=estimate.name,
+            unit=estimate.unit,
+            value=estimate.value,
+            std=float(np.hypot(estimate.std, further)),
+            interval_95=None
+            if interval is None
+            else widened((interval.lower, interval.upper), estimate.value, further, is_open),
+            interval_open=is_open,
+            at_bound=estimate.at_bound,
+            meaning=self.meanings[estimate.name],
+        )
 
 
 def _quality(identification: Identification, signals: "Signals", signal_to_noise: "SignalToNoise") -> Quality:

@@ -82,6 +82,7 @@ from shaftprint.identify.judgement import (
     suspects_of,
 )
 from shaftprint.identify.likelihood import (
+    OVER_TORQUE,
     PRIOR_OF_G,
     FittedTerm,
     LineTest,
@@ -122,6 +123,7 @@ from shaftprint.identify.uncertainty import (
 )
 
 __all__ = [
+    "OVER_TORQUE",
     "PRIOR_OF_G",
     "STAN_TUG_NOISE",
     "Accuracy",

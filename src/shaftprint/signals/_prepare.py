@@ -8,23 +8,28 @@ from typing import TYPE_CHECKING
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
-from shaftprint.signals._calibrate import calibrate
+from shaftprint.signals._calibrate import calibrate, calibrate_through_wander
 from shaftprint.signals._compare import compare_speeds
 from shaftprint.signals._condition import Conditioned, conditioned
 from shaftprint.signals._dc_scale import DcScale, dc_scale
 from shaftprint.signals._gaps import Coverage, Gap, within
-from shaftprint.signals._load import with_load_of_test
 from shaftprint.signals._match import expect_campaign, left_out
 from shaftprint.signals._outliers import fault_limits
 from shaftprint.signals._pick_up import PickUp, read_pick_up
 from shaftprint.signals._rack import rack_signal, read_rack
 from shaftprint.signals._ship_speed import read_ship_speed, ship_speed_signal
-from shaftprint.signals._signals import RackSignal, Repair, SetPointCalibration, ShipSpeedSignal, Signals
+from shaftprint.signals._signals import RackSignal, Repair, SetPointCalibration, ShipSpeedSignal, Signals, WorkingPoint
 from shaftprint.signals._sources import Clock, Mode, Sources, common_clock, find_sources
 from shaftprint.signals._steady import SteadyStretch, steady_stretches
 from shaftprint.signals._steps import find_step_delays
 from shaftprint.signals._torque import expect_moving_torque, judge_saturation, torque_limits
-from shaftprint.signals._working_point import expect_plausible, find_working_point, stretches_at_working_point
+from shaftprint.signals._working_point import (
+    expect_plausible,
+    find_working_point,
+    stretches_at_working_point,
+    working_point_of_test,
+    working_voltage,
+)
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel, Recording
@@ -185,13 +190,19 @@ def _read_ship_speed(sources: Sources, vessel: "Vessel", clock: Clock) -> Condit
 
 
 def _rack_signal(
-    sources: Sources, vessel: "Vessel", clock: Clock, read: Conditioned | None, stretches: tuple[SteadyStretch, ...]
+    sources: Sources,
+    vessel: "Vessel",
+    clock: Clock,
+    read: Conditioned | None,
+    stretches: tuple[SteadyStretch, ...],
+    point: WorkingPoint,
 ) -> RackSignal | None:
     sensor = vessel.sensors.rack
     if sources.rack is None or sensor is None or read is None:
         return None
     latency_s = 0.0 if clock.mode == "thesis" else sensor.latency_s
-    return rack_signal(read.values, sources.rack, sensor, stretches, latency_s=latency_s, gaps=read.gaps)
+    load = point.shaft_torque_nm / find_working_point(stretches).shaft_torque_nm
+    return rack_signal(read.values, sources.rack, sensor, stretches, latency_s=latency_s, gaps=read.gaps, load=load)
 
 
 def _ship_speed_signal(
@@ -237,17 +248,28 @@ def _put_together(
     differences = compare_speeds(speeds, vessel)
     stretches = steady_stretches(n_set, speed, torque, campaign, **grid, coverage=coverage)
     thesis = clock.mode == "thesis"
-    calibration = calibrate(stretches, weighted=not thesis, channel=channel)
     quiet = stretches_at_working_point(stretches, campaign, channel=channel)
-    working_point = find_working_point(quiet)
+    if thesis:
+        calibration = calibrate(stretches, channel=channel)
+        working_point = find_working_point(quiet)
+    else:
+        about_v = working_voltage(quiet)
+        calibration, *at = calibrate_through_wander(
+            stretches,
+            campaign,
+            about_v=about_v,
+            set_point_v=n_set,
+            speed_rev_s=speed,
+            channel=channel,
+            **grid,
+            coverage=coverage,
+        )
+        working_point = working_point_of_test(speed, torque, at_v=about_v, at=(at[0], at[1]), **grid, coverage=coverage)
     strange = expect_plausible(working_point, vessel)
     n_set *= calibration.slope_rev_s_per_v
     n_set += calibration.intercept_rev_s
     scale = DcScale(value=1.0, std=0.0, findings=())
     if not thesis:
-        working_point = with_load_of_test(
-            working_point, quiet, campaign, speed_rev_s=speed, torque_nm=torque, **grid, coverage=coverage
-        )
         scale = _rescale(n_set, speed, campaign, coverage, calibration, **grid, about=working_point.engine_speed_rev_s)
     ship_speed, moored = _ship_speed_signal(sources, vessel, clock, read.ship_speed, quiet)
     delays, missed = find_step_delays(n_set, speed, campaign, **grid, coverage=coverage)
@@ -270,7 +292,7 @@ def _put_together(
         recording_sha256=recording.sha256,
         recording_name=recording.path.name,
         set_point_channel=channel,
-        rack=_rack_signal(sources, vessel, clock, read.rack, quiet),
+        rack=_rack_signal(sources, vessel, clock, read.rack, quiet, working_point),
         ship_speed=ship_speed,
     )
 

@@ -70,6 +70,7 @@ def rack_signal(
     *,
     latency_s: float,
     gaps: tuple[Gap, ...] = (),
+    load: float = 1.0,
 ) -> RackSignal:
     """Return the fuel rack with its clock, its sampling and its working point.
 
@@ -85,6 +86,8 @@ def rack_signal(
         Time by which the channel is taken to be late [s].
     gaps
         Where no torque was available.
+    load
+        Torque of the working point over that of the stretches; the rack follows it.
 
     Raises
     ------
@@ -114,8 +117,8 @@ def rack_signal(
         cycle_s=sensor.cycle_s if held else 1.0 / channel.rate_hz,
         averaging_s=group / channel.rate_hz if group > 1 else 0.0,
         hold_s=sensor.cycle_s if held else 0.0,
-        working_point=mean,
-        working_point_std=std,
+        working_point=mean * load,
+        working_point_std=std * load,
         gaps=tuple(replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in gaps),
     )
 

@@ -30,17 +30,15 @@ class WorkingPoint:
     engine_speed_rev_s: float
     """Mean engine speed ``n_0`` [rev/s]."""
     shaft_torque_nm: float
-    """Mean shaft torque ``M_s0`` [N m], measured at the gauge."""
+    """Shaft torque ``M_s0`` [N m] that the gauge shows at ``n_0`` under the mean load of the recording."""
     engine_speed_std_rev_s: float
     """Standard deviation of ``n_0`` [rev/s]."""
     shaft_torque_std_nm: float
-    """Standard deviation of ``M_s0`` [N m]: scatter between steady stretches, without the gauge's own scale error."""
+    """Standard deviation of ``M_s0`` [N m], without the gauge's scale error: ``load_std`` and twice that of ``n_0``."""
     set_point_v: float
     """Mean set-point voltage [V] of the stretches that were used."""
-    load: float = 1.0
-    """Mean propeller load (torque over the square of the speed) of the whole test over that of these stretches [-]."""
-    load_std: float | None = None
-    """Standard deviation of ``load`` as the mean of a load that wanders [-]; None where there are too few windows."""
+    load_std: float
+    """Standard deviation of the mean load ``M_s0 / n_0^2`` over its value [-]: the load of a propeller wanders."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

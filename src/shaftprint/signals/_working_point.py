@@ -6,10 +6,12 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
+from shaftprint.signals._load import torque_of_mean_load
 from shaftprint.signals._signals import WorkingPoint
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
+    from shaftprint.signals._gaps import Coverage
     from shaftprint.signals._steady import SteadyStretch
     from shaftprint.vessel import Vessel
 
@@ -57,10 +59,10 @@ def stretches_at_working_point(
 
 
 def find_working_point(used: "tuple[SteadyStretch, ...]") -> WorkingPoint:
-    """Return the mean of the stretches at the working point (see ``stretches_at_working_point``).
+    """Return the mean of the stretches at the working point (see ``stretches_at_working_point``), the thesis' way.
 
     The standard deviations are those of the means, from the scatter between stretches; with a single stretch from the
-    scatter within it.
+    scatter within it. They are too small where the load wanders more slowly than the stretches follow each other.
     """
     weight = np.array([stretch.duration_s for stretch in used])
     speed, speed_std = mean_of_stretches(
@@ -73,13 +75,59 @@ def find_working_point(used: "tuple[SteadyStretch, ...]") -> WorkingPoint:
         [stretch.torque_std_nm for stretch in used],
         weight,
     )
-    volts, _ = mean_of_stretches([stretch.set_point_v for stretch in used], [0.0] * len(used), weight)
     return WorkingPoint(
         engine_speed_rev_s=speed,
         shaft_torque_nm=torque,
         engine_speed_std_rev_s=speed_std,
         shaft_torque_std_nm=torque_std,
-        set_point_v=volts,
+        set_point_v=working_voltage(used),
+        load_std=float(np.hypot(torque_std / torque, 2.0 * speed_std / speed)),
+    )
+
+
+def working_voltage(used: "tuple[SteadyStretch, ...]") -> float:
+    """Return the mean voltage of the stretches at the working point [V]."""
+    weight = np.array([stretch.duration_s for stretch in used])
+    return mean_of_stretches([stretch.set_point_v for stretch in used], [0.0] * len(used), weight)[0]
+
+
+def working_point_of_test(
+    speed_rev_s: FloatArray,
+    torque_nm: FloatArray,
+    *,
+    at_v: float,
+    at: tuple[float, float],
+    rate_hz: float,
+    start_s: float,
+    coverage: "Coverage",
+) -> WorkingPoint:
+    """Return the working point under the mean load of the whole recording.
+
+    Parameters
+    ----------
+    speed_rev_s, torque_nm
+        Engine speed and shaft torque on the grid, shape (samples,).
+    at_v
+        The working voltage [V].
+    at
+        Speed of the set-point line there, with its standard deviation [rev/s].
+    rate_hz, start_s
+        The grid.
+    coverage
+        Says where the gaps are.
+    """
+    speed, speed_std = at
+    torque, torque_std = torque_of_mean_load(
+        speed_rev_s, torque_nm, about_rev_s=speed, rate_hz=rate_hz, start_s=start_s, coverage=coverage
+    )
+    load_std = torque_std / abs(torque)
+    return WorkingPoint(
+        engine_speed_rev_s=speed,
+        shaft_torque_nm=torque,
+        engine_speed_std_rev_s=speed_std,
+        shaft_torque_std_nm=abs(torque) * float(np.hypot(load_std, 2.0 * speed_std / speed)),
+        set_point_v=at_v,
+        load_std=load_std,
     )
 
 

@@ -6,7 +6,7 @@ from shaftprint.identify.likelihood._experiment import Experiment, ResponseRepea
 from shaftprint.identify.likelihood._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify.likelihood._known import PRIOR_OF_G, priors_from_vessel
 from shaftprint.identify.likelihood._line_test import LineTest
-from shaftprint.identify.likelihood._load_factors import load_factors, with_load
+from shaftprint.identify.likelihood._load_factors import OVER_TORQUE, load_factors, with_load
 from shaftprint.identify.likelihood._objective import Objective, Redrawn
 from shaftprint.identify.likelihood._part import Part, channel_names, channels_of
 from shaftprint.identify.likelihood._prior import Prior
@@ -14,6 +14,7 @@ from shaftprint.identify.likelihood._term import FittedTerm, Repeats, Term, Term
 from shaftprint.identify.likelihood._weighting import MaximumLikelihood, StudentT, Unweighted, Weighting
 
 __all__ = [
+    "OVER_TORQUE",
     "PRIOR_OF_G",
     "Experiment",
     "FittedTerm",

@@ -27,8 +27,9 @@ def priors_from_vessel(
     """Return what is known of a structure's ``g``, ``tau_up``, ``t_sp``, ``t_gauge``, ``t_rack``, those that are free.
 
     The inertia time is ``tau_up = 2 pi I_up n_s0 / M_s0`` (thesis eq. 2.23). Its standard deviation holds that of
-    the TVC and of the gauge's scale: a gauge that shows too much makes it too small. The scatter of the working point
-    is not in it, because ``M_s0`` is the number by which the responses are divided, whatever the load was.
+    the TVC and of the gauge's scale: a gauge that shows too much makes it too small. The error of the working point is
+    not in it, because ``M_s0`` is the number by which the responses are divided, whatever the load was; it comes to all
+    that is found over that number alike, after the fit.
 
     Parameters
     ----------

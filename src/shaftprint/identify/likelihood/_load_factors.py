@@ -8,6 +8,9 @@ from shaftprint.spectra import FrequencyResponse
 
 # Parameters that are slopes of the propeller torque: they grow with the load.
 LOADED = ("k_q", "kappa")
+# Parameters that are a physical value over the torque and times the speed of the working point; ``k_q`` is not, because
+# the load of each line's window is divided by the same torque.
+OVER_TORQUE = ("tau_dn", "tau_up", "tau_n", "K_p", "K_i", "K_d", "g")
 
 
 def with_load(structure: Structure, load: float) -> Structure:

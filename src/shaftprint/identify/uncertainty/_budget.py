@@ -65,7 +65,11 @@ class Budget:
 
 
 def budget(
-    identification: Identification, numbers: Sequence[Combination] = (), *, direct: Direct = NO_DIRECT
+    identification: Identification,
+    numbers: Sequence[Combination] = (),
+    *,
+    direct: Direct = NO_DIRECT,
+    shifts: Direct = NO_DIRECT,
 ) -> Budget:
     """Return the variance of every free parameter, combination and further number by source.
 
@@ -77,6 +81,9 @@ def budget(
         By the name of a further number and of a source: change of the number, with sign, for one standard deviation of
         the source, beside that through the parameters. A source of a prior that also enters the conversion from
         parameter to number has both; they may cancel.
+    shifts
+        By the name of a source and of a parameter: change of the parameter, with sign, for one standard deviation of a
+        source that the fit does not know of, such as that by which its data were divided.
     """
     objective = identification.objective
     theta = identification.values[list(objective.free)][None, :]
@@ -88,7 +95,7 @@ def budget(
     rows, _ = objective.sensitivity(theta[0], expected=False)
     curvature = np.broadcast_to(np.sum(rows**2, axis=1), table.shape)
     values, slopes = every.values(table), every.slopes(table, curvature)
-    moved = propagation(identification)
+    moved = propagation(identification, shifts)
     named = [*((p.name, p.unit) for p in parameters), *((c.name, c.unit) for c in combinations)]
     found = tuple(
         BudgetRow(

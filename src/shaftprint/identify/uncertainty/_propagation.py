@@ -22,6 +22,7 @@ from shaftprint.identify.fit import Identification, PseudoInverse
 from shaftprint.identify.likelihood import Experiment, Term
 
 NO_DIRECT: Mapping[str, float] = {}
+NO_SHIFTS: Mapping[str, Mapping[str, float]] = {}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -54,8 +55,15 @@ class Propagation:
         return found
 
 
-def propagation(identification: Identification) -> Propagation:
-    """Return how noise and priors move the estimates of an identification."""
+def propagation(identification: Identification, shifts: Mapping[str, Mapping[str, float]] = NO_SHIFTS) -> Propagation:
+    """Return how noise, priors and further sources move the estimates of an identification.
+
+    Parameters
+    ----------
+    shifts
+        By the name of a further source and of a parameter: change of the parameter, with sign, for one standard
+        deviation.
+    """
     objective = identification.objective
     theta = identification.values[list(objective.free)]
     rows, _ = objective.sensitivity(theta, expected=False)
@@ -67,7 +75,11 @@ def propagation(identification: Identification) -> Propagation:
         first += term.row_count
         for name, part in _noise_parts(term, own).items():
             noise[name] = noise[name] + part if name in noise else part
-    return Propagation(noise=noise, effects=_prior_effects(identification, information), information=information)
+    names = [parameter.name for parameter in objective.free_parameters]
+    further = {source: np.array([moves.get(name, 0.0) for name in names]) for source, moves in shifts.items()}
+    return Propagation(
+        noise=noise, effects=_prior_effects(identification, information) | further, information=information
+    )
 
 
 def _noise_parts(term: Term, rows: FloatArray) -> dict[str, FloatArray]:
