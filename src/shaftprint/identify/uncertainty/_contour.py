@@ -157,7 +157,7 @@ class _Climb:
         spread = np.ptp(ends.theta, axis=0)
         scaled = ends.theta / np.where(spread > 0.0, spread, 1.0)
         apart = np.linalg.norm(scaled[:, None, :] - scaled[None, :, :], axis=2)
-        return ends.theta[np.argmax(np.where(self._allows(ends), apart, -1.0), axis=1)]
+        return np.asarray(ends.theta[np.argmax(np.where(self._allows(ends), apart, -1.0), axis=1)])
 
     def better(self, ends: Ends, rows: IntArray, theta: FloatArray) -> Ends:
         """Return the ends with those of some rows that lie further when climbed to from other parameters."""
