@@ -82,12 +82,12 @@ def furthest(
     lowest = float(_parabola(numbers.objective, start[None, :])[0][0])
     climb = _Climb(numbers=numbers, start=start, side=side, distance=distance, limit=lowest + 0.5 * distance**2)
     every = np.arange(side.size)
-    first = climb.ends_from(every, np.broadcast_to(start, (side.size, start.size)))
+    first = climb.ends_from(every, start)
     ends = first
     for optimum in np.empty((0, start.size)) if optima is None else optima:
         rows = climb.allowing(optimum)
         if rows.size:
-            ends = climb.better(ends, rows, np.broadcast_to(optimum, (rows.size, start.size)))
+            ends = climb.better(ends, rows, optimum)
     ends = _climbed_further(climb, ends)
     if np.array_equal(ends.value, first.value):
         return ends
@@ -116,11 +116,11 @@ class _Climb:
     limit: FloatArray
 
     def ends_from(self, rows: IntArray, theta: FloatArray) -> Ends:
-        """Return the ends of some of the rows, each found from its own parameter set."""
+        """Return the ends of some of the rows, found from one parameter set or each from its own."""
         numbers = self.numbers.chosen(rows)
         lower, upper = numbers.objective.lower, numbers.objective.upper
         at = _Position.at_start(self, rows, theta)
-        theta = theta.copy()
+        theta = at.theta.copy()
         is_open = np.zeros(rows.size, dtype=np.bool_)
         for _ in range(ROUNDS):
             step = _model_step(at, lower, upper)
@@ -211,9 +211,12 @@ class _Position:
 
     @classmethod
     def at_start(cls, climb: _Climb, rows: IntArray, theta: FloatArray) -> "_Position":
-        """Return the position of some of the rows before their first step."""
+        """Return the position of some of the rows before their first step, at one parameter set or each at its own."""
         numbers, side = climb.numbers.chosen(rows), climb.side[rows]
-        cost, gradient, hessian = _parabola(numbers.objective, theta)
+        sets = np.atleast_2d(theta)
+        one_each = (np.zeros_like(rows) if sets.shape[0] == 1 else np.arange(rows.size),)
+        cost, gradient, hessian = (part[one_each] for part in _parabola(numbers.objective, sets))
+        theta = sets[one_each]
         estimate = np.broadcast_to(climb.start, theta.shape)
         return cls(
             rows=np.arange(rows.size),

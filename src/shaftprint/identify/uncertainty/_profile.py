@@ -19,6 +19,8 @@ from shaftprint.identify.uncertainty._numbers import Numbers, all_numbers
 from shaftprint.models import Combination
 from shaftprint.normal import NORMAL_95
 
+# No curve of a profile rises by more.
+MOST_RISE = 4.0
 # Ends are looked for from so many optima beside the result, those of lowest cost.
 MOST_OPTIMA = 4
 
@@ -57,7 +59,8 @@ def profile_distance(identification: Identification) -> float:
 def other_optima(identification: Identification) -> FloatArray:
     """Return the free parameters of the optima of the search beside the result, shape (optima, free).
 
-    Those are left out that are unstable, or no other place than one before.
+    Those are left out that are unstable, cost more than any end of an interval or curve may, or are no other place than
+    one before.
     """
     objective = identification.objective
     free = list(objective.free)
@@ -66,7 +69,8 @@ def other_optima(identification: Identification) -> FloatArray:
     for cluster in identification.clusters:
         place = cluster.values[free]
         new = all(np.any(np.abs(place - one) > SAME_PLACE * width) for one in kept)
-        if new and cluster.stable is not False and cluster.cost >= identification.cost:
+        allowed = 0.0 <= cluster.cost - identification.cost <= MOST_RISE
+        if new and allowed and cluster.stable is not False:
             kept.append(place)
     return np.array(kept[1 : 1 + MOST_OPTIMA]).reshape(-1, len(free))
 
