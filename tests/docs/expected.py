@@ -124,13 +124,16 @@ def expect_recording(folder, printed, words):
     path = folder / after(words, "-o")
     with read_recording(path) as recording:
         assert set(recording.channels) == CHANNELS
-        assert {(channel.count, channel.rate_hz) for channel in recording.channels.values()} == {(1_720_000, 2000.0)}
+        begin = round(2000.0 * float(after(words, "--from"))) if "--from" in words else 0
+        end = round(2000.0 * float(after(words, "--to"))) if "--to" in words else 1_720_000
+        clocks = {(channel.count, channel.rate_hz, channel.start_s) for channel in recording.channels.values()}
+        assert clocks == {(end - begin, 2000.0, begin / 2000.0)}
         assert path.suffix == ".nc" or "MDF" in recording.format
         if words[0] == "convert":
             with read_recording(folder / words[1]) as source:
                 for name, channel in recording.channels.items():
                     np.testing.assert_array_equal(
-                        channel.values(0, 5000), source.channel(name).values(0, 5000), err_msg=name
+                        channel.values(0, 5000), source.channel(name).values(begin, begin + 5000), err_msg=name
                     )
     if words[0] == "sail":
         assert read_truth(path.with_name(f"{path.stem}.truth.json")).seed == 1

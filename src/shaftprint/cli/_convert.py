@@ -1,17 +1,19 @@
 """``shaftprint convert``: recordings of other formats into the native container, or into another format."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import click
 
 from shaftprint.cli._file_to_write import expect_no_input
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.cli._reading import hints_of, reading_options
+from shaftprint.cli._reading import cut_options, hints_of, reading_options
 from shaftprint.errors import RecordingError
 from shaftprint.recording import (
     NATIVE_ENDINGS,
     Channel,
     Recording,
+    cut,
     expect_known_ending,
     read_recording,
     write_by_ending,
@@ -30,6 +32,7 @@ from shaftprint.recording import (
 @click.option("--channel", "chosen", multiple=True, help="Only this channel; may be given several times.")
 @click.option("--unit", "units", multiple=True, metavar="CHANNEL=UNIT", help="Unit of a channel whose file gives none.")
 @click.option("--force", is_flag=True, help="Replace an existing file.")
+@cut_options
 @reading_options
 @no_progress_option
 def command(
@@ -38,13 +41,15 @@ def command(
     chosen: tuple[str, ...],
     units: tuple[str, ...],
     force: bool,
+    from_s: float | None,
+    to_s: float | None,
     no_progress: bool,
     **said: object,
 ) -> None:
     """Write recordings of any readable format as the native container.
 
-    Channels keep their own clocks and counts. The ending of the output chooses another format. Input files are not
-    changed.
+    Channels keep their own clocks and counts. The ending of the output chooses another format. --from and --to cut;
+    what is left keeps its times, so that a campaign file holds for it too. Input files are not changed.
     """
     into_folder = output.is_dir()
     if len(recordings) > 1 and not into_folder:
@@ -57,13 +62,21 @@ def command(
         for source, target in zip(recordings, targets, strict=True):
             expect_known_ending(target)
             steps.begin(f"Converting {source.name}")
-            with read_recording(source, **hints_of(**said)) as opened:
-                channels = [_with_unit(opened, name, given) for name in chosen or opened.channels]
+            with read_recording(source, **hints_of(**said)) as whole:
+                opened = cut(_only(whole, chosen), from_s=from_s, to_s=to_s)
+                channels = [_with_unit(opened, name, given) for name in opened.channels]
                 write_by_ending(target, channels, attributes=opened.attributes, overwrite=force)
                 left_out = dict(opened.left_out) | _facts_left_out(opened, target)
             for name, reason in left_out.items():
                 click.echo(f"{source}: left out {name}: {reason}", err=True)
             click.echo(f"{target}: {len(channels)} channels of {source}.")
+
+
+def _only(recording: Recording, chosen: tuple[str, ...]) -> Recording:
+    """Return a recording with some of its channels, in the order in which they were asked for; all if none was."""
+    if not chosen:
+        return recording
+    return replace(recording, channels={name: recording.channel(name) for name in chosen})
 
 
 def _facts_left_out(opened: Recording, target: Path) -> dict[str, str]:

@@ -6,24 +6,28 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._file_to_write import expect_no_input
+from shaftprint.cli._reading import cut_options
 from shaftprint.clocks import joined
-from shaftprint.recording import read_recording, write_recording
+from shaftprint.recording import cut, read_recording, write_recording
 
 
 @click.command("join")
 @click.argument("parts", type=click.Path(path_type=Path), nargs=-1, required=True)
 @click.option("-o", "--output", type=click.Path(path_type=Path), required=True, help="Recording to write.")
 @click.option("--follow-on", is_flag=True, help="Each part begins where the one before ends, whatever its clock says.")
+@cut_options
 @click.option("--force", is_flag=True, help="Replace an earlier recording.")
-def command(parts: tuple[Path, ...], output: Path, *, follow_on: bool, force: bool) -> None:
+def command(
+    parts: tuple[Path, ...], output: Path, *, follow_on: bool, from_s: float | None, to_s: float | None, force: bool
+) -> None:
     """Join files that one logger wrote one after the other, in the order given.
 
-    Every part must begin where the one before it ends.
+    Every part must begin where the one before it ends. --from and --to cut the whole; what is left keeps its times.
     """
     expect_no_input(output, *parts)
     with ExitStack() as stack:
         opened = [stack.enter_context(read_recording(part)) for part in parts]
-        whole = joined(opened, follow_on=follow_on)
+        whole = cut(joined(opened, follow_on=follow_on), from_s=from_s, to_s=to_s)
         write_recording(output, whole.channels.values(), attributes=whole.attributes, overwrite=force)
         for channel in whole.channels.values():
             click.echo(f"{channel.name}: {channel.count} samples, {channel.duration_s:.1f} s")

@@ -18,6 +18,13 @@ def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     return rate(columns(delimiter(decimal(encoding(command)))))
 
 
+def cut_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options ``--from`` and ``--to``."""
+    begin = click.option("--from", "from_s", type=float, help="First second to keep, as counted by the recording [s].")
+    end = click.option("--to", "to_s", type=float, help="Second before which to end [s]; times stay as they are.")
+    return begin(end(command))
+
+
 def hints_of(**said: object) -> dict[str, Any]:
     """Return what was said, under the names that readers know, without what was not."""
     names = {"sample_rate": "sample_rate_hz"}

@@ -13,6 +13,7 @@ Files are opened read-only. Values that are not numbers are passed on as they ar
 """
 
 from shaftprint.recording._channel import Channel, ClockJump
+from shaftprint.recording._cut import cut
 from shaftprint.recording._from_arrays import Samples, recording_from_arrays
 from shaftprint.recording._levels import Levels
 from shaftprint.recording._read import read_recording
@@ -42,6 +43,7 @@ __all__ = [
     "Recording",
     "RecordingWriter",
     "Samples",
+    "cut",
     "expect_known_ending",
     "read_recording",
     "recording_from_arrays",

@@ -97,6 +97,16 @@ class Channel:
         values += self.offset
         return values
 
+    def part(self, first: int, last: int) -> Self:
+        """Return the samples [first, last) as a channel whose times are the same."""
+        source = self.source
+        return replace(
+            self,
+            start_s=self.start_s + first / self.rate_hz,
+            count=last - first,
+            source=lambda start, stop: source(first + start, first + stop),
+        )
+
     def with_unit(self, unit: str) -> Self:
         """Return the same channel in a unit that the user gives, where the file gives none."""
         return replace(self, unit=unit)
