@@ -1,6 +1,7 @@
 import pytest
 
-from shaftprint.files import plain_name, written_whole
+from shaftprint.escape import plain_name
+from shaftprint.files import written_whole
 
 
 def _write(path, text, *, overwrite=False, then=lambda: None):

@@ -1,9 +1,8 @@
-"""Files that are written whole or not at all, names for them, and text out of those that may be damaged."""
+"""Files that are written whole or not at all."""
 
 import contextlib
 import errno
 import os
-import re
 import secrets
 from collections.abc import Iterator
 from pathlib import Path
@@ -57,16 +56,6 @@ def naming(path: Path, *, instead_of: Path | None = None) -> Iterator[None]:
         if is_full or (error.filename is not None and error.filename in _spellings(instead_of)):
             error.filename = str(path)
         raise
-
-
-def plain_name(text: str) -> str:
-    """Return a text as the stem of a file name: what some system forbids there becomes a hyphen."""
-    return re.sub(r'[\\/:*?"<>|\s]+', "-", text)
-
-
-def printable(text: str) -> str:
-    """Return text with a question mark for every character that ends lines, moves the cursor or is not to be seen."""
-    return "".join(letter if letter.isprintable() else "?" for letter in text)
 
 
 def _spellings(path: Path | None) -> tuple[object, ...]:

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import ExportError
+from shaftprint.escape import modelica_string
 from shaftprint.export import write_modelica
 from shaftprint.export._modelica import modelica_text
-from shaftprint.export._modelica_text import modelica_name, modelica_number, modelica_string
+from shaftprint.export._modelica_text import modelica_name, modelica_number
 from shaftprint.models import (
     STRUCTURES,
     Diagram,
@@ -281,7 +282,7 @@ def test_words_and_numbers():
     assert modelica_name("K_p") == "K_p"
     assert modelica_name("end") == "'end'"
     assert modelica_name("k 1's") == "'k 1\\'s'"
-    assert modelica_string('a "b"\n c\\') == '"a \\"b\\" c\\\\"'
+    assert modelica_string('a "b"\n c\\') == '"a \\"b\\"? c\\\\"'
     assert modelica_number(-1e-05) == "(-1e-05)"
     with pytest.raises(ExportError, match="finite numbers"):
         modelica_number(float("nan"))

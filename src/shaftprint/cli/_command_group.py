@@ -6,7 +6,9 @@ from typing import Any
 import click
 
 from shaftprint.cli._lazy_group import LazyGroup
+from shaftprint.cli._terminal import echo
 from shaftprint.errors import ShaftprintError
+from shaftprint.escape import terminal_message
 
 # The one-line help of every command, in the order of use. It stands here, and not in the commands only, because
 # asking a command for it would import the command: 2 s instead of 0.06 s. A test holds both against each other.
@@ -52,14 +54,18 @@ class CommandGroup(LazyGroup):
         try:
             return super().invoke(ctx)
         except ShaftprintError as error:
-            raise click.ClickException(str(error)) from error
+            raise click.ClickException(terminal_message(str(error))) from error
+        except click.ClickException as error:
+            # click says of its own attribute that nobody is to change it
+            vars(error)["message"] = terminal_message(error.message)
+            raise
         except KeyboardInterrupt:
-            click.echo("Interrupted; nothing is left half-written.", err=True)
+            echo("Interrupted; nothing is left half-written.", err=True)
             ctx.exit(INTERRUPTED)
         except OSError as error:
             if error.errno == errno.EPIPE:
                 raise
-            raise click.ClickException(_describe(error)) from error
+            raise click.ClickException(terminal_message(_describe(error))) from error
 
 
 def _describe(error: OSError) -> str:

@@ -9,6 +9,7 @@ from shaftprint.cli._numbers import plain
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._tables import print_table
+from shaftprint.cli._terminal import echo
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.report import (
     LOAD_REPEATABILITY,
@@ -76,14 +77,14 @@ def command(
         answer = change_in_words(apart[name])
         if doubtful:
             answer = f"It cannot be told: not trustworthy: {', '.join(doubtful)}."
-        click.echo(f"Has the ship changed{f', {name}' if len(others) > 1 else ''}? {answer}")
+        echo(f"Has the ship changed{f', {name}' if len(others) > 1 else ''}? {answer}")
     for name, other in others:
         _print_tables(first_name, name, apart[name])
         for sentence in vessel_file_sentences(first, other):
-            click.echo(sentence)
+            echo(sentence)
         _print_left_out(apart[name])
     if output is not None:
-        click.echo(f"Report: {output / REPORT}")
+        echo(f"Report: {output / REPORT}")
 
 
 def _named(places: tuple[Path, ...], names: tuple[str, ...]) -> dict[str, Fingerprint]:
@@ -132,7 +133,7 @@ def _print_left_out(found: tuple[Difference, ...]) -> None:
     """Print which numbers were not compared, and why."""
     for reason in dict.fromkeys(_reason(one) for one in found if one.because):
         names = ", ".join(one.first.name for one in found if one.because and _reason(one) == reason)
-        click.echo(f"Not compared, {reason}: {names}.")
+        echo(f"Not compared, {reason}: {names}.")
 
 
 def _reason(one: Difference) -> str:

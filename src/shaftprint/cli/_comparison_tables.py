@@ -1,17 +1,16 @@
 """A comparison of structures on the terminal: why one wins, and the numbers behind it."""
 
-import click
-
 from shaftprint.cli._tables import print_table
+from shaftprint.cli._terminal import echo
 from shaftprint.identify import Candidate, Comparison, LikelihoodRatio
 
 
 def print_comparison(comparison: Comparison) -> None:
     """Print why a structure wins, and the criteria and tests of all."""
-    click.echo(f"Which structure: {comparison.best.name}")
+    echo(f"Which structure: {comparison.best.name}")
     for sentence in comparison.sentences:
-        click.echo(f"  * {sentence}")
-    click.echo()
+        echo(f"  * {sentence}")
+    echo()
     columns = ("structure", "parameters", "chi-square", "freedom", "p-value", "AIC", "AICc", "BIC", "belief", "FPE")
     told = any(candidate.foretold is not None for candidate in comparison.candidates)
     rows = [_row(candidate, comparison.weights[candidate.name], told) for candidate in comparison.candidates]

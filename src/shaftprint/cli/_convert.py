@@ -8,6 +8,7 @@ import click
 from shaftprint.cli._file_to_write import expect_no_input
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._reading import cut_options, hints_of, reading_options
+from shaftprint.cli._terminal import echo
 from shaftprint.errors import RecordingError
 from shaftprint.recording import (
     NATIVE_ENDINGS,
@@ -68,8 +69,8 @@ def command(
                 write_by_ending(target, channels, attributes=opened.attributes, overwrite=force)
                 left_out = dict(opened.left_out) | _facts_left_out(opened, target)
             for name, reason in left_out.items():
-                click.echo(f"{source}: left out {name}: {reason}", err=True)
-            click.echo(f"{target}: {len(channels)} channels of {source}.")
+                echo(f"{source}: left out {name}: {reason}", err=True)
+            echo(f"{target}: {len(channels)} channels of {source}.")
 
 
 def _only(recording: Recording, chosen: tuple[str, ...]) -> Recording:

@@ -18,6 +18,7 @@ from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._progress import Steps, no_progress_option, progress
 from shaftprint.cli._results import where, write_results
 from shaftprint.cli._signal_tables import print_lines
+from shaftprint.cli._terminal import echo
 from shaftprint.cli._thesis_way import thesis_way, weighted_fits
 from shaftprint.cli._validations import validations_of
 from shaftprint.fingerprint import Fingerprint
@@ -69,7 +70,7 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
     for comparison in comparisons:
         print_comparison(comparison)
     print_summary(found.fingerprint, true, found.thesis.identifications["OL1"])
-    click.echo(_where(output))
+    echo(_where(output))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

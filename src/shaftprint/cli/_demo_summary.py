@@ -2,24 +2,23 @@
 
 from collections.abc import Mapping
 
-import click
-
 from shaftprint.cli._numbers import plain, with_uncertainty
+from shaftprint.cli._terminal import echo
 from shaftprint.fingerprint import Fingerprint, Quantity
 from shaftprint.identify import Identification
 
 
 def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], core: Identification) -> None:
     """Print what an engineer wants to know, each with its truth."""
-    click.echo("What was found")
+    echo("What was found")
     for name, words in SENTENCES.items():
         quantity = fingerprint.quantity(name)
         unit = "" if quantity.unit == "-" else f" {quantity.unit}"
         given = _given(quantity, fingerprint)
-        click.echo(f"  * {words}: {_value(quantity)}{unit}{given}; in truth {plain(truth[name])}{unit}.")
+        echo(f"  * {words}: {_value(quantity)}{unit}{given}; in truth {plain(truth[name])}{unit}.")
     for sentence in _of_the_thesis(fingerprint, core):
-        click.echo(f"  * {sentence}")
-    click.echo()
+        echo(f"  * {sentence}")
+    echo()
 
 
 def _value(quantity: Quantity) -> str:

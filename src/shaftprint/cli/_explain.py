@@ -10,6 +10,7 @@ from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._report_tables import on_terminal, print_report_table
 from shaftprint.cli._results import where, write_results
+from shaftprint.cli._terminal import echo
 from shaftprint.cli._thesis_way import thesis_way, weighted_fits
 from shaftprint.report import (
     Explanation,
@@ -51,11 +52,11 @@ def command(
             write_results(folder, recording, trial, measurement, fits, fingerprint, steps=steps, thesis=thesis)
     _print(explanation)
     if output is not None:
-        click.echo(where(output))
+        echo(where(output))
 
 
 def _print(explanation: Explanation) -> None:
     tables = (inertia_table, damping_table, gain_table)
     for sentence, make in zip(explanation_sentences(explanation), tables, strict=True):
         print_report_table(make(explanation))
-        click.echo(f"{on_terminal(sentence)}\n")
+        echo(f"{on_terminal(sentence)}\n")

@@ -7,6 +7,7 @@ import click
 from shaftprint.cli._exported import file_to_write, fingerprint_argument, force_option
 from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
+from shaftprint.cli._terminal import echo
 from shaftprint.export import exported_model, write_csv
 
 
@@ -33,4 +34,4 @@ def command(fingerprint: Path, structure: TypedName | None, output: Path | None,
     path = file_to_write(output, exported_model(found, of=chosen), ".csv", inputs=(fingerprint,), force=force)
     written = write_csv(found, path, of=chosen, overwrite=force)
     for table in (written.parameters, written.combinations, written.response):
-        click.echo(table)
+        echo(table)

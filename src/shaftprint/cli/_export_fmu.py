@@ -16,6 +16,7 @@ from shaftprint.cli._exported import (
 )
 from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.cli._terminal import echo
 from shaftprint.export import PLATFORMS, WrittenFmu, write_fmu
 
 
@@ -89,11 +90,11 @@ def command(
 
 def _print(written: WrittenFmu) -> None:
     kinds = "co-simulation and model exchange" if written.model_exchange else "co-simulation only"
-    click.echo(f"FMI {written.version}.0, {kinds}, sources, binaries for {', '.join(written.platforms) or 'no system'}")
-    click.echo(
+    echo(f"FMI {written.version}.0, {kinds}, sources, binaries for {', '.join(written.platforms) or 'no system'}")
+    echo(
         f"internal step {1e3 * written.internal_step_s:g} ms, fastest pole {written.largest_pole_rad_s:.3g} rad/s: "
         f"{written.internal_step_s * written.largest_pole_rad_s:.2g} of 2.7 that is stable"
     )
     for name in written.late_outputs:
-        click.echo(f"{name} comes later than its time stamp in the recording, by lateness.{name} in the FMU")
-    click.echo(written.path)
+        echo(f"{name} comes later than its time stamp in the recording, by lateness.{name} in the FMU")
+    echo(written.path)

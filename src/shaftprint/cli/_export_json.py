@@ -7,6 +7,7 @@ import click
 from shaftprint.cli._exported import file_to_write, fingerprint_argument, force_option
 from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
+from shaftprint.cli._terminal import echo
 from shaftprint.export import exported_model, write_json
 
 
@@ -28,4 +29,4 @@ def command(fingerprint: Path, structure: TypedName | None, output: Path | None,
     found = fingerprint_at(fingerprint)
     chosen = structure_to_use(structure, found)
     path = file_to_write(output, exported_model(found, of=chosen), ".model.json", inputs=(fingerprint,), force=force)
-    click.echo(write_json(found, path, of=chosen, overwrite=force))
+    echo(write_json(found, path, of=chosen, overwrite=force))

@@ -17,6 +17,7 @@ from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._inputs import NAMES, load_trial
 from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.cli._terminal import echo
 from shaftprint.export import write_matlab
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
@@ -66,8 +67,8 @@ def command(
             fingerprint, model.structure, recording, vessel=vessel, campaign=campaign, no_progress=no_progress
         )
     written = write_matlab(model, path, measured=measured, overwrite=force)
-    click.echo(written.data)
-    click.echo(written.script)
+    echo(written.data)
+    echo(written.script)
 
 
 def _measured(

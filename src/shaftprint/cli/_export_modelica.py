@@ -13,6 +13,7 @@ from shaftprint.cli._exported import (
     structure_option,
 )
 from shaftprint.cli._own_structure import TypedName
+from shaftprint.cli._terminal import echo
 from shaftprint.export import write_modelica
 
 
@@ -41,7 +42,7 @@ def command(
     written = write_modelica(
         model, file_to_write(output, model, ".mo", inputs=(fingerprint,), force=force), overwrite=force
     )
-    click.echo(f"package {written.package}: block Line, experiment Step")
+    echo(f"package {written.package}: block Line, experiment Step")
     for name in written.late_outputs:
-        click.echo(f"{name} comes later than its time stamp in the recording, which lies ahead of what can be known")
-    click.echo(written.path)
+        echo(f"{name} comes later than its time stamp in the recording, which lies ahead of what can be known")
+    echo(written.path)

@@ -13,6 +13,7 @@ from shaftprint.cli._exported import (
     structure_option,
 )
 from shaftprint.cli._own_structure import TypedName
+from shaftprint.cli._terminal import echo
 from shaftprint.export import write_osp
 
 
@@ -41,6 +42,4 @@ def command(
     """
     model = model_to_export(fingerprint, structure, dict(given))
     # the FMU may be there already: it stays as it is
-    click.echo(
-        write_osp(model, file_to_write(output, model, ".fmu", inputs=(fingerprint,), force=True), overwrite=force)
-    )
+    echo(write_osp(model, file_to_write(output, model, ".fmu", inputs=(fingerprint,), force=True), overwrite=force))

@@ -13,6 +13,7 @@ from shaftprint.cli._exported import (
     structure_option,
 )
 from shaftprint.cli._own_structure import TypedName
+from shaftprint.cli._terminal import echo
 from shaftprint.export import write_ssv
 
 
@@ -37,6 +38,4 @@ def command(
     the FMU's parameters, so that the set can be given to it in a system structure.
     """
     model = model_to_export(fingerprint, structure, dict(given))
-    click.echo(
-        write_ssv(model, file_to_write(output, model, ".ssv", inputs=(fingerprint,), force=force), overwrite=force)
-    )
+    echo(write_ssv(model, file_to_write(output, model, ".ssv", inputs=(fingerprint,), force=force), overwrite=force))

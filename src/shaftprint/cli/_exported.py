@@ -10,8 +10,8 @@ from shaftprint.cli._fingerprint_file import fingerprint_at, fingerprint_file
 from shaftprint.cli._known_values import named_value
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
+from shaftprint.escape import plain_name
 from shaftprint.export import ExportedModel
-from shaftprint.files import plain_name
 
 fingerprint_argument = click.argument("fingerprint", type=click.Path(path_type=Path))
 structure_option = click.option(

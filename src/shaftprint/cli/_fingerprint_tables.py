@@ -2,10 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 
-import click
-
 from shaftprint.cli._numbers import plain, with_uncertainty
 from shaftprint.cli._tables import print_table
+from shaftprint.cli._terminal import echo
 from shaftprint.fingerprint import Conditions, Fingerprint, Quantity
 from shaftprint.identify import Verdict
 
@@ -47,31 +46,31 @@ def _print_verdict(verdict: Verdict) -> None:
 
 def print_findings(title: str, findings: Sequence[str]) -> None:
     """Print findings in words, one a line, under a title."""
-    click.echo(title)
+    echo(title)
     for finding in findings or ("None.",):
-        click.echo(f"  * {finding}")
-    click.echo()
+        echo(f"  * {finding}")
+    echo()
 
 
 def _print_conditions(fingerprint: Fingerprint) -> None:
     where: Conditions = fingerprint.conditions
-    click.echo(f"{where.vessel}; {where.campaign}")
+    echo(f"{where.vessel}; {where.campaign}")
     for quantity in (where.engine_speed, where.shaft_torque):
         value = with_uncertainty(quantity.value, quantity.std)
-        click.echo(f"  {quantity.meaning}: {quantity.name} = {value} {quantity.unit}")
-    click.echo(f"  speed sensor {where.speed_channel}; signals prepared in {where.mode} mode")
-    click.echo(f"  lines used: {', '.join(where.lines_used)}")
+        echo(f"  {quantity.meaning}: {quantity.name} = {value} {quantity.unit}")
+    echo(f"  speed sensor {where.speed_channel}; signals prepared in {where.mode} mode")
+    echo(f"  lines used: {', '.join(where.lines_used)}")
     if where.lines_left_out:
-        click.echo(f"  lines left out: {', '.join(where.lines_left_out)}")
+        echo(f"  lines left out: {', '.join(where.lines_left_out)}")
     for source in fingerprint.sources:
-        click.echo(f"  {source.role} {source.name}: SHA-256 {source.sha256[:16]}...")
-    click.echo(f"  made {fingerprint.created:%Y-%m-%d %H:%M %Z} with shaftprint {fingerprint.shaftprint_version}\n")
+        echo(f"  {source.role} {source.name}: SHA-256 {source.sha256[:16]}...")
+    echo(f"  made {fingerprint.created:%Y-%m-%d %H:%M %Z} with shaftprint {fingerprint.shaftprint_version}\n")
 
 
 def _print_priors(fingerprint: Fingerprint) -> None:
     known = [f"{name} = {plain(prior.mean)} +/- {plain(prior.std)}" for name, prior in fingerprint.priors.items()]
     held = [f"{name} = {plain(value)}" for name, value in fingerprint.held.items()]
-    click.echo(f"  known beforehand: {', '.join(known) or 'nothing'}; held: {', '.join(held) or 'nothing'}\n")
+    echo(f"  known beforehand: {', '.join(known) or 'nothing'}; held: {', '.join(held) or 'nothing'}\n")
 
 
 def _print_quantities(title: str, quantities: Sequence[Quantity], truth: Mapping[str, float]) -> None:
@@ -152,7 +151,7 @@ def _print_quality(fingerprint: Fingerprint) -> None:
     print_table("How well the model explains the data", ("output", "FitPercent", "perfect model"), rows, numbers=(1, 2))
     square = "" if quality.chi_square is None else f"chi-square {quality.chi_square:.1f} for "
     chance = "" if quality.p_value is None else f" (p = {quality.p_value:.2g})"
-    click.echo(
+    echo(
         f"  {square}{quality.degrees_of_freedom} degrees of freedom{chance}; "
         f"{quality.starts_at_optimum} of {quality.starts} starts reached this optimum\n"
     )

@@ -16,6 +16,7 @@ from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._results import where, write_results
+from shaftprint.cli._terminal import echo
 from shaftprint.cli._validations import validations_of
 
 
@@ -78,4 +79,4 @@ def command(
         print_fits("All structures", fits)
     for comparison in comparisons:
         print_comparison(comparison)
-    click.echo(where(output))
+    echo(where(output))

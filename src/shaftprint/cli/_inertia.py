@@ -7,6 +7,7 @@ import click
 from shaftprint.cli._file_to_write import expect_free, expect_no_input
 from shaftprint.cli._fingerprint_file import fingerprint_at, fingerprint_file
 from shaftprint.cli._report_tables import on_terminal, print_report_table
+from shaftprint.cli._terminal import echo
 from shaftprint.files import written_whole
 from shaftprint.fingerprint import inertia_beside
 from shaftprint.report import (
@@ -71,7 +72,7 @@ def command(vessel: str, found: Path | None, drawing: Path | None, force: bool) 
         _draw(vibrations, drawing)
     _print(ship, expected, beside, vibrations)
     if drawing is not None:
-        click.echo(drawing)
+        echo(drawing)
 
 
 def _expected(ship: Vessel, found: Path | None) -> tuple[ExpectedInertia, tuple[Beside, ...]]:
@@ -79,7 +80,7 @@ def _expected(ship: Vessel, found: Path | None) -> tuple[ExpectedInertia, tuple[
         return expected_inertia(ship), ()
     fingerprint = fingerprint_at(found)
     if fingerprint.conditions.vessel != ship.name:
-        click.echo(f"Mind: the fingerprint is of {fingerprint.conditions.vessel}, the vessel file of {ship.name}.\n")
+        echo(f"Mind: the fingerprint is of {fingerprint.conditions.vessel}, the vessel file of {ship.name}.\n")
     return inertia_beside(fingerprint, ship)
 
 
@@ -99,9 +100,9 @@ def _print(ship: Vessel, expected: ExpectedInertia, beside: tuple[Beside, ...], 
         if table.rows:
             print_report_table(table)
     if vibrations is None:
-        click.echo("No torsional modes: the vessel file has no [[links]] between its masses.")
+        echo("No torsional modes: the vessel file has no [[links]] between its masses.")
         return
     print_report_table(mode_table(vibrations))
     line = vibrations.line
     driven = line.bodies[int((line.inertia_kg_m2 * (1.0 - line.is_downstream)).argmax())]
-    click.echo(f"{on_terminal(two_mass_sentence(two_masses(line, driven=[driven])))}\n")
+    echo(f"{on_terminal(two_mass_sentence(two_masses(line, driven=[driven])))}\n")

@@ -14,6 +14,7 @@ from shaftprint.cli._reading import hints_of, reading_options
 from shaftprint.cli._sensor_map import Seen, proposed_sensors
 from shaftprint.cli._signal_tables import print_lines, print_signals
 from shaftprint.cli._tables import print_table
+from shaftprint.cli._terminal import echo
 from shaftprint.clocks import logger_clocks
 from shaftprint.fingerprint import clock_findings, clock_influences
 from shaftprint.nonlinearity import detect
@@ -55,8 +56,9 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
         print_clocks(clocks)
         if ship is None:
             print_findings("Left out", [f"{name}: {reason}" for name, reason in opened.left_out.items()])
-            click.echo("Proposal for the vessel file; lines that begin with # are for you to fill in\n")
-            click.echo(proposed_sensors(seen))
+            echo("Proposal for the vessel file; lines that begin with # are for you to fill in\n")
+            for line in proposed_sensors(seen):
+                echo(line)
             return
         _print_sensors(opened, ship, hidden=no_progress)
         if asked is not None:
@@ -74,11 +76,11 @@ def _print_channels(opened: Recording, *, hidden: bool) -> list[Seen]:
         values = [f"{value:.5g}" for value in (levels.lowest, levels.mean, levels.highest)]
         span = f"{channel.start_s:g} to {channel.start_s + channel.duration_s:g}"
         rows.append((channel.name, channel.unit, f"{channel.rate_hz:g}", span, *values, str(levels.missing)))
-    click.echo(f"{opened.path}: {opened.format}, SHA-256 {opened.sha256}\n")
+    echo(f"{opened.path}: {opened.format}, SHA-256 {opened.sha256}\n")
     columns = ("channel", "unit", "rate [Hz]", "span [s]", "lowest", "mean", "highest", "not a number")
     print_table("Channels, raw", columns, rows, numbers=(2, 4, 5, 6, 7))
     if opened.began is not None:
-        click.echo(f"Second 0 is {opened.began.isoformat(sep=' ')} by the logger's clock.\n")
+        echo(f"Second 0 is {opened.began.isoformat(sep=' ')} by the logger's clock.\n")
     return seen
 
 
@@ -125,7 +127,7 @@ def _print_test(opened: Recording, ship: Vessel, asked: Campaign, *, hidden: boo
     influences = clock_influences(logger_clocks(opened), spectra=spectra, signals=signals, vessel=ship)
     print_findings("Findings on the signals", [*signals.findings, *clock_findings(influences)])
     print_findings("Nonlinearities", [found.sentence, *(finding.evidence for finding in found.findings)])
-    click.echo(verdict(spectra))
+    echo(verdict(spectra))
 
 
 def verdict(spectra: Spectra) -> str:

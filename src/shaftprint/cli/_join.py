@@ -7,6 +7,7 @@ import click
 
 from shaftprint.cli._file_to_write import expect_no_input
 from shaftprint.cli._reading import cut_options
+from shaftprint.cli._terminal import echo
 from shaftprint.clocks import joined
 from shaftprint.recording import cut, read_recording, write_recording
 
@@ -30,5 +31,5 @@ def command(
         whole = cut(joined(opened, follow_on=follow_on), from_s=from_s, to_s=to_s)
         write_recording(output, whole.channels.values(), attributes=whole.attributes, overwrite=force)
         for channel in whole.channels.values():
-            click.echo(f"{channel.name}: {channel.count} samples, {channel.duration_s:.1f} s")
-    click.echo(output)
+            echo(f"{channel.name}: {channel.count} samples, {channel.duration_s:.1f} s")
+    echo(output)

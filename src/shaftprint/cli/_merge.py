@@ -7,6 +7,7 @@ import click
 from shaftprint.cli._clock_tables import print_clocks
 from shaftprint.cli._file_to_write import expect_no_input
 from shaftprint.cli._inputs import NAMES
+from shaftprint.cli._terminal import echo
 from shaftprint.clocks import align, logger_clocks, merged
 from shaftprint.recording import Recording, read_recording, write_recording
 from shaftprint.signals import Content, content_of
@@ -59,7 +60,7 @@ def command(
         both = merged(still, [(moving, found)])
         print_clocks(logger_clocks(both))
         write_recording(output, both.channels.values(), attributes=both.attributes, overwrite=force)
-    click.echo(output)
+    echo(output)
 
 
 def _names(shared: str) -> tuple[str, str]:

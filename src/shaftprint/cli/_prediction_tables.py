@@ -3,12 +3,11 @@
 import math
 from collections.abc import Mapping
 
-import click
-
 from shaftprint.campaign import Campaign
 from shaftprint.cli._fingerprint_tables import print_findings
 from shaftprint.cli._numbers import plain, with_uncertainty
 from shaftprint.cli._tables import print_table
+from shaftprint.cli._terminal import echo
 from shaftprint.identify import Accuracy, Estimate, Identifiability, Interval
 from shaftprint.spectra import FrequencyResponse
 
@@ -33,7 +32,7 @@ def print_prediction(
         What the lines would tell.
     """
     structure = possible.structure
-    click.echo(f"{campaign.name}; {structure.name}: {structure.title}")
+    echo(f"{campaign.name}; {structure.name}: {structure.title}")
     _print_conditions(response, noise, accuracy)
     print_findings("What these outputs can tell at all", possible.sentences)
     columns = ("quantity", "unit", "value +/- 1 std", "std [%]", "95 % interval", "meaning")
@@ -56,13 +55,13 @@ def print_prediction(
 
 def _print_conditions(response: FrequencyResponse, noise: str, accuracy: Accuracy) -> None:
     used = [name for name, is_used in zip(response.lines, response.used, strict=True) if is_used]
-    click.echo(f"  {noise}")
-    click.echo(f"  lines used: {', '.join(used)}")
+    echo(f"  {noise}")
+    echo(f"  lines used: {', '.join(used)}")
     for name, remark in response.remarks.items():
-        click.echo(f"  {name} not used: {remark}")
+        echo(f"  {name} not used: {remark}")
     known = [f"{name} = {plain(prior.mean)} +/- {plain(prior.std)}" for name, prior in accuracy.priors.items()]
     held = [f"{p.name} = {plain(p.value)}" for p in accuracy.objective.parameters if p.held]
-    click.echo(f"  known beforehand: {', '.join(known) or 'nothing'}; held: {', '.join(held) or 'nothing'}\n")
+    echo(f"  known beforehand: {', '.join(known) or 'nothing'}; held: {', '.join(held) or 'nothing'}\n")
 
 
 def _percent(estimate: Estimate) -> str:

@@ -8,6 +8,8 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
+from shaftprint.escape import printable
+
 no_progress_option = click.option("--no-progress", is_flag=True, help="Show no progress bars.")
 """The option of every command that takes longer than a second."""
 
@@ -34,7 +36,7 @@ class Steps:
         if self.bars is None:
             return
         self.end()
-        self.current = self.bars.add_task(text, total=total)
+        self.current = self.bars.add_task(printable(text), total=total)
 
     def advance(self, amount: float) -> None:
         """Move the running bar by an amount of work."""
@@ -60,6 +62,6 @@ def progress(*, hidden: bool) -> Iterator[Steps]:
     if hidden or not console.is_terminal:
         yield Steps(bars=None)
         return
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    columns = (TextColumn("{task.description}", markup=False), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as bars:
         yield Steps(bars=bars)

@@ -1,8 +1,7 @@
 """Tables and sentences of the report on the terminal."""
 
-import click
-
 from shaftprint.cli._tables import print_table
+from shaftprint.cli._terminal import echo
 from shaftprint.report import Table
 
 # What a terminal's code page may lack, as it is written elsewhere on the terminal.
@@ -21,4 +20,4 @@ def print_report_table(table: Table) -> None:
     rows = [[on_terminal(cell) for cell in row] for row in table.rows]
     print_table(on_terminal(table.caption), [on_terminal(cell) for cell in table.header], rows)
     if table.note:
-        click.echo(f"{on_terminal(table.note)}\n")
+        echo(f"{on_terminal(table.note)}\n")

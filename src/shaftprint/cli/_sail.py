@@ -6,6 +6,7 @@ import click
 
 from shaftprint.cli._inputs import load_trial
 from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.cli._terminal import echo
 from shaftprint.recording import expect_known_ending
 from shaftprint.tug import sail_as, truth_path
 
@@ -36,5 +37,5 @@ def command(vessel: str, campaign: str, output: Path, seed: int, force: bool, no
     with progress(hidden=no_progress) as steps:
         steps.begin("Sailing", total=1.0)
         sail_as(trial.vessel, trial.campaign, output, seed=seed, overwrite=force, progress=steps.reach)
-    click.echo(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
-    click.echo(f"{truth_path(output)}: what was put into it.")
+    echo(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
+    echo(f"{truth_path(output)}: what was put into it.")

@@ -10,7 +10,8 @@ import click
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.files import plain_name
+from shaftprint.cli._terminal import echo
+from shaftprint.escape import plain_name
 from shaftprint.report import plot_sensitivity, save_figure, thesis_families
 
 if TYPE_CHECKING:
@@ -70,7 +71,7 @@ def command(
             save_figure(draw(), folder / f"{stem}.{suffix}")
             steps.advance(1.0)
     for stem in drawings:
-        click.echo(output / f"{stem}.{suffix}")
+        echo(output / f"{stem}.{suffix}")
 
 
 def _of_structure(name: TypedName, span: tuple[float, float]) -> "Drawings":

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from shaftprint.escape import toml_string
 from shaftprint.recording import Channel
 
 Use: TypeAlias = Literal["speed", "shaft_torque", "set_point", "rack", "ship_speed"]
@@ -17,29 +18,29 @@ _ENGINE = re.compile(r"eng|motor|_e\b|crank|flywheel", re.IGNORECASE)
 _FIELDS = {
     "speed": (
         'name = "{name}"',
-        'channel = "{channel}"',
-        'unit = "{unit}"',
+        "channel = {channel}",
+        "unit = {unit}",
         'shaft = "{shaft}"  # engine or propeller: check',
         "# pulses_per_revolution =        # count the strips or teeth, then take the # away",
     ),
     "shaft_torque": (
-        'channel = "{channel}"',
-        'unit = "{unit}"',
+        "channel = {channel}",
+        "unit = {unit}",
         "{scale}",
         "# zero_nm =                      # turn the shaft slowly both ways before the test [N m]",
         "# latency_s =                    # of the telemetry, from its data sheet [s]",
         "# full_scale_nm =                # largest torque that it passes on [N m]",
     ),
-    "set_point": ('channel = "{channel}"', 'unit = "{unit}"'),
+    "set_point": ("channel = {channel}", "unit = {unit}"),
     "rack": (
-        'channel = "{channel}"',
-        'unit = "{unit}"',
+        "channel = {channel}",
+        "unit = {unit}",
         "cycle_s = {cycle:g}",
         "# latency_s =                    # [s]",
     ),
     "ship_speed": (
-        'channel = "{channel}"',
-        'unit = "{unit}"',
+        "channel = {channel}",
+        "unit = {unit}",
         "cycle_s = {cycle:g}",
         "# resolution =                   # step of the value, in its unit",
         "# latency_s =                    # [s]",
@@ -57,8 +58,8 @@ class Seen:
     """Whether its values are at two levels, most of the time at one of them."""
 
 
-def proposed_sensors(seen: Sequence[Seen]) -> str:
-    """Return text for the vessel file: what can be told is filled in, the rest is left for the user.
+def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
+    """Return lines for the vessel file: what can be told is filled in, the rest is left for the user.
 
     Parameters
     ----------
@@ -87,7 +88,7 @@ def proposed_sensors(seen: Sequence[Seen]) -> str:
     if not speeds:
         lines += ["# [[sensors.speed]]: no channel holds pulses", ""]
     rate = max((item.channel.rate_hz for item in seen), default=0.0)
-    return "\n".join([*lines, "[logger]", f"sample_rate_hz = {rate!r}"])
+    return [*lines, "[logger]", f"sample_rate_hz = {rate!r}"]
 
 
 def _use(item: Seen) -> Use | None:
@@ -111,8 +112,8 @@ def _use(item: Seen) -> Use | None:
 def _values(channel: Channel, speeds: int) -> dict[str, object]:
     is_torque = channel.unit == "N m"
     return {
-        "channel": channel.name.replace("\\", "\\\\").replace('"', '\\"'),
-        "unit": channel.unit,
+        "channel": toml_string(channel.name),
+        "unit": toml_string(channel.unit),
         "name": f"n_{speeds}",
         "shaft": "engine" if _ENGINE.search(channel.name) else "propeller",
         "cycle": 1.0 / channel.rate_hz,

@@ -2,11 +2,11 @@
 
 from collections import Counter
 
-import click
 import numpy as np
 
 from shaftprint.cli._numbers import with_uncertainty
 from shaftprint.cli._tables import print_table
+from shaftprint.cli._terminal import echo
 from shaftprint.signals import Signals, SpeedSignal
 from shaftprint.spectra import Spectra
 from shaftprint.units import rpm_from_rev_s
@@ -37,9 +37,9 @@ def print_lines(spectra: Spectra) -> None:
     columns = ("line", "[Hz]", "[rad/s]", *(f"{channel} [dB]" for channel in ratios.channels), "used")
     print_table("Signal-to-noise ratio of the test lines", columns, rows, numbers=range(1, len(columns) - 1))
     for line, remark in spectra.remarks.items():
-        click.echo(f"  {line}: {remark}")
+        echo(f"  {line}: {remark}")
     if spectra.remarks:
-        click.echo()
+        echo()
 
 
 def _print_steady_state(signals: Signals) -> None:
@@ -49,10 +49,10 @@ def _print_steady_state(signals: Signals) -> None:
     slope_std, intercept_std = rpm_from_rev_s(np.sqrt(np.diag(line.covariance)))
     slope = with_uncertainty(rpm_from_rev_s(line.slope_rev_s_per_v), float(slope_std))
     intercept = with_uncertainty(rpm_from_rev_s(line.intercept_rev_s), float(intercept_std))
-    click.echo("Steady state")
-    click.echo(f"  working point: n_0 = {speed} rpm, M_s0 = {torque} N m at {point.set_point_v:.4g} V")
-    click.echo(f"  set-point line from {line.level_v.size} levels: n_set = ({slope}) rpm/V U + ({intercept}) rpm")
-    click.echo(f"  scale that makes n / n_set go to 1: {with_uncertainty(signals.dc_scale, signals.dc_scale_std)}\n")
+    echo("Steady state")
+    echo(f"  working point: n_0 = {speed} rpm, M_s0 = {torque} N m at {point.set_point_v:.4g} V")
+    echo(f"  set-point line from {line.level_v.size} levels: n_set = ({slope}) rpm/V U + ({intercept}) rpm")
+    echo(f"  scale that makes n / n_set go to 1: {with_uncertainty(signals.dc_scale, signals.dc_scale_std)}\n")
 
 
 def _print_speeds(signals: Signals) -> None:
@@ -84,9 +84,9 @@ def _print_strips(signals: Signals) -> None:
             with_uncertainty(DEGREES_PER_REVOLUTION * angle, DEGREES_PER_REVOLUTION * std)
             for angle, std in zip(strips.angle_rev.tolist(), strips.std_rev.tolist(), strict=True)
         ]
-        click.echo(f"Strip angles of {strips.channel} [deg]: {', '.join(angles)}")
+        echo(f"Strip angles of {strips.channel} [deg]: {', '.join(angles)}")
     if signals.strips:
-        click.echo()
+        echo()
 
 
 def _print_delays(signals: Signals) -> None:
@@ -108,7 +108,7 @@ def _print_delays(signals: Signals) -> None:
 def _print_repairs(signals: Signals) -> None:
     places = Counter((repair.channel, repair.kind) for repair in signals.repairs)
     if not places:
-        click.echo("Repairs: none.\n")
+        echo("Repairs: none.\n")
         return
     rows = []
     for (channel, kind), count in sorted(places.items()):

@@ -16,6 +16,7 @@ from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
 from shaftprint.cli._simulated_set_point import Drive, Place, campaign_drive, file_drive, place_of
 from shaftprint.cli._simulation_run import Prediction, predicted, signals_of, write_signals
 from shaftprint.cli._simulation_tables import print_simulation
+from shaftprint.cli._terminal import echo
 from shaftprint.files import written_whole
 from shaftprint.models import Structure
 from shaftprint.report import SimulatedSignal, plot_simulation, save_figure
@@ -122,7 +123,7 @@ def command(
     print_simulation(model, drive.time_s, signals, warnings=_warnings(model.structure, drive, prediction))
     for path in (output, figure):
         if path is not None:
-            click.echo(path)
+            echo(path)
 
 
 def _drive(

@@ -3,13 +3,13 @@
 import math
 from collections.abc import Sequence
 
-import click
 import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.cli._numbers import with_uncertainty
 from shaftprint.cli._simulated_model import SimulatedModel
 from shaftprint.cli._tables import print_table
+from shaftprint.cli._terminal import echo
 from shaftprint.report import SimulatedSignal
 
 
@@ -47,9 +47,9 @@ def print_simulation(
     columns = ("signal", "unit", "lowest", "highest", "largest std")
     print_table(f"From {time_s[0]:g} to {time_s[-1]:g} s", columns, rows, numbers=(2, 3, 4))
     if model.uncertain:
-        click.echo("The standard deviations hold the covariance of the parameters, not noise, weather or load.")
+        echo("The standard deviations hold the covariance of the parameters, not noise, weather or load.")
     if model.not_known:
         left = "it" if len(model.not_known) == 1 else "them"
-        click.echo(f"The test said nothing of {', '.join(model.not_known)}: the band leaves {left} out.")
+        echo(f"The test said nothing of {', '.join(model.not_known)}: the band leaves {left} out.")
     for sentence in warnings:
-        click.echo(sentence)
+        echo(sentence)

@@ -4,6 +4,7 @@ import click
 
 from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.cli._tables import print_table
+from shaftprint.cli._terminal import echo
 from shaftprint.models import STRUCTURES, Parameter, Structure
 
 
@@ -36,6 +37,6 @@ def _print_combinations(chosen: Structure) -> None:
     tied = {tie.name: f"; follows from {', '.join(tie.arguments)}" for tie in chosen.ties}
     for combination in chosen.combinations:
         follows = tied.get(combination.name, "")
-        click.echo(f"  {combination.name} [{combination.unit}]: {combination.meaning}{follows}")
+        echo(f"  {combination.name} [{combination.unit}]: {combination.meaning}{follows}")
     if chosen.combinations:
-        click.echo()
+        echo()

@@ -4,8 +4,9 @@ from collections.abc import Collection, Sequence
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
+
+from shaftprint.cli._terminal import literal
 
 # A table that goes into a file or a pipe must not be folded to the width of a terminal that is not there.
 WIDTH_WITHOUT_TERMINAL = 200
@@ -42,14 +43,14 @@ def print_table(
     unbounded = console.options.update(max_width=WIDEST)
     if spare and console.measure(table, options=unbounded).maximum > console.width:
         table = _table(columns[:-1], [row[:-1] for row in rows], numbers)
-    console.print(title, style="bold", markup=False, soft_wrap=True)
+    console.print(literal(title, style="bold"), soft_wrap=True)
     console.print(table)
 
 
 def _table(columns: Sequence[str], rows: Sequence[Sequence[str]], numbers: Collection[int]) -> Table:
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for place, heading in enumerate(columns):
-        table.add_column(escape(heading), justify="right" if place in numbers else "left")
+        table.add_column(literal(heading), justify="right" if place in numbers else "left")
     for row in rows:
-        table.add_row(*(escape(cell) for cell in row))
+        table.add_row(*(literal(cell) for cell in row))
     return table

@@ -14,6 +14,7 @@ from shaftprint.cli._inputs import Trial, campaign_option, load_trial, vessel_op
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
 from shaftprint.cli._progress import Steps, no_progress_option, progress
+from shaftprint.cli._terminal import echo
 from shaftprint.cli._validation_results import write_validations
 from shaftprint.cli._validation_tables import print_compared_models, print_validation
 from shaftprint.fingerprint import Fingerprint
@@ -108,7 +109,7 @@ def command(
     if thesis_sets:
         print_compared_models(validations)
     if output is not None:
-        click.echo(f"Figures: {output}")
+        echo(f"Figures: {output}")
 
 
 def _model(

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from shaftprint.cli._progress import Steps
-from shaftprint.files import plain_name
+from shaftprint.escape import plain_name
 from shaftprint.report import plot_validation, plot_validation_summary, save_figure
 from shaftprint.validation import Comparison, Validation
 

@@ -1,11 +1,11 @@
 """The identified model against chirps and staircases of the same recording, for the report."""
 
-import click
 import numpy as np
 
 from shaftprint.cli._chain import Measurement
 from shaftprint.cli._inputs import Trial
 from shaftprint.cli._progress import Steps
+from shaftprint.cli._terminal import echo
 from shaftprint.errors import ValidationError
 from shaftprint.identify import Identification
 from shaftprint.validation import Validation, validate
@@ -41,5 +41,5 @@ def validations_of(
     try:
         return (validate(identification, measurement.signals, campaign, rng=np.random.default_rng(seed)),)
     except ValidationError as error:
-        click.echo(f"The model is not validated: {error}")
+        echo(f"The model is not validated: {error}")
         return ()

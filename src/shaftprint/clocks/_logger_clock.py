@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, RootModel, ValidationError
 from shaftprint.clocks._alignment import Alignment, Stretch
 from shaftprint.clocks._clock_map import ClockMap
 from shaftprint.errors import ClockError, RecordingError
-from shaftprint.files import printable
+from shaftprint.escape import printable
 from shaftprint.recording import Recording
 
 ATTRIBUTE = "clock_maps"

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from shaftprint.clocks._alignment import Alignment
 from shaftprint.clocks._logger_clock import ATTRIBUTE, LoggerClock, clock_attributes, logger_clocks
 from shaftprint.errors import ClockError
-from shaftprint.files import printable
+from shaftprint.escape import printable
 from shaftprint.recording import Channel, Recording
 
 # A part may begin this share of a sample beside the grid of the part before it.

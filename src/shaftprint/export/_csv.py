@@ -8,6 +8,7 @@ from pathlib import Path
 
 from numpy.typing import ArrayLike
 
+from shaftprint.escape import csv_cell
 from shaftprint.export._model import exported_model
 from shaftprint.export._model_response import model_response
 from shaftprint.export._tables import Cell, Row, number_rows, parameter_rows, response_rows
@@ -90,4 +91,4 @@ def _text(cell: Cell) -> str:
         return ""
     if isinstance(cell, bool):
         return "yes" if cell else "no"
-    return repr(cell) if isinstance(cell, float) else cell
+    return repr(cell) if isinstance(cell, float) else csv_cell(cell)

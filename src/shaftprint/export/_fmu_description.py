@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, SubElement
 
 from shaftprint import __version__
 from shaftprint.export._fmu_units import unit_definitions, unit_name
 from shaftprint.export._fmu_variables import Variable
+from shaftprint.export._xml import xml_document
 
 STOP_S, TOLERANCE, COMMUNICATION_STEP_S = 100.0, 1e-6, 0.01
 
@@ -59,7 +60,7 @@ def description_of_fmi_2(d: FmuDescription) -> bytes:
                 unknown = SubElement(group, "Unknown", index=places[variable.reference])
                 if title != "InitialUnknowns":
                     unknown.set("dependencies", _dependencies(variable, places))
-    return _text(root)
+    return xml_document(root)
 
 
 def description_of_fmi_3(d: FmuDescription) -> bytes:
@@ -86,7 +87,7 @@ def description_of_fmi_3(d: FmuDescription) -> bytes:
                 unknown.set("dependencies", _dependencies(variable, references))
     for variable in d.indicators:
         SubElement(structure, "EventIndicator", valueReference=str(variable.reference))
-    return _text(root)
+    return xml_document(root)
 
 
 def build_description(d: FmuDescription) -> bytes:
@@ -96,7 +97,7 @@ def build_description(d: FmuDescription) -> bytes:
     files = SubElement(configuration, "SourceFileSet", language="C99")
     for name in d.sources:
         SubElement(files, "SourceFile", name=name)
-    return _text(root)
+    return xml_document(root)
 
 
 def _root(d: FmuDescription, version: str, token: str) -> Element:
@@ -185,9 +186,3 @@ def _value(variable: Variable) -> dict[str, str]:
     if variable.start is not None:
         found["start"] = repr(float(variable.start)) if variable.integers is None else str(int(variable.start))
     return found
-
-
-def _text(root: Element) -> bytes:
-    indent(root)
-    found: bytes = tostring(root, encoding="utf-8", xml_declaration=True)
-    return found + b"\n"

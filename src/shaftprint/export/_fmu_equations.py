@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 
 from shaftprint.arrays import FloatArray
+from shaftprint.escape import c_string
 from shaftprint.export._c_text import c_array, c_function, c_integers, identifier
 from shaftprint.export._fmu_program import FmuProgram
 from shaftprint.export._fmu_signals import FmuSignal
@@ -109,8 +110,9 @@ class FmuEquations:
         """
         formulas = self._formulas()
         functions = [c_function(f"model_{name}", formulas[name], self._leaves()) for name in FUNCTIONS]
-        head = f"/* Equations of {title.replace('*/', '')}; written by shaftprint. */\n"
-        return "\n".join([head + '#include "model.h"\n\n#include <math.h>\n', self._tables(), *functions])
+        head = '/* Equations of one model; written by shaftprint. */\n#include "model.h"\n\n#include <math.h>\n'
+        named = f"const char model_title[] = {c_string(title)};\n"
+        return "\n".join([head, named + self._tables(), *functions])
 
     def _formulas(self) -> dict[str, list[Quantity]]:
         program, ready = self.ready.program, self.ready

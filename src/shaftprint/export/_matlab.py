@@ -12,6 +12,7 @@ from scipy.io import savemat
 
 from shaftprint import __version__
 from shaftprint.errors import ExportError
+from shaftprint.escape import matlab_comment, matlab_string, printable
 from shaftprint.export._delay_model import DelayModel, delay_model
 from shaftprint.export._described import scaled_signal
 from shaftprint.export._model import ExportedModel
@@ -58,13 +59,15 @@ def write_matlab(
     Raises
     ------
     ExportError
-        If the model has no state space, its frequencies are wrong, or the name holds no letter.
+        If the model has no state space, its frequencies are wrong, or the name holds no letter or control characters.
     StructureError
         If a block of the structure has no equations in time.
     FileExistsError
         If a file exists and is not to be replaced.
     """
     data = Path(path) if Path(path).suffix == ".mat" else Path(path).with_name(f"{Path(path).name}.mat")
+    if printable(data.name) != data.name:
+        raise ExportError(f"{data}: expected a file name without control characters; rename it.")
     name = matlab_name(data.stem)
     script = data.with_name(f"{name}.m")
     content = _content(model, model_response(model, omega_rad_s), delay_model(model), measured)
@@ -95,23 +98,25 @@ def matlab_name(stem: str) -> str:
 
 def _script(name: str, data: str, model: ExportedModel) -> str:
     text = files("shaftprint.export").joinpath("templates", "rebuild.m").read_text(encoding="utf-8")
-    title = " ".join(f"{model.title}, {model.structure.name}: {model.structure.title}".split())
-    for key, value in (
-        ("NAME_UPPER", name.upper()),
-        ("NAME", name),
-        ("DATA", data.replace("'", "''")),
-        ("TITLE", title),
-        ("VERSION", __version__),
-    ):
-        text = text.replace(f"@{key}@", value)
-    return text
+    words = {
+        "NAME_UPPER": name.upper(),
+        "NAME": name,
+        "DATA": matlab_string(data),
+        "DATA_WORDS": matlab_comment(data),
+        "TITLE": matlab_comment(f"{model.title}, {model.structure.name}: {model.structure.title}"),
+        "VERSION": __version__,
+    }
+    # in one pass: what is put in is never searched for marks again
+    return re.sub(r"@([A-Z_]+)@", lambda mark: words[mark[1]], text)
 
 
 def _content(
     model: ExportedModel, response: ModelResponse, linear: DelayModel, measured: FrequencyResponse | None
 ) -> dict[str, Any]:
     found: dict[str, Any] = {
-        "title": model.title,
+        "title": printable(model.title),
+        # Octave counts bytes where the file counts letters, and would cut a title that is not in ASCII
+        "title_utf8": np.frombuffer(printable(model.title).encode(), dtype=np.uint8),
         "structure": model.structure.name,
         "structure_title": model.structure.title,
         "version": __version__,

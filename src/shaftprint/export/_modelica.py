@@ -5,12 +5,13 @@ from pathlib import Path
 from typing import Final
 
 from shaftprint import __version__
+from shaftprint.escape import html_text, modelica_string
 from shaftprint.export._c_text import identifier
 from shaftprint.export._described import described_parameters
 from shaftprint.export._fmu_signals import ENGINE_SPEED, FmuSignal, fmu_signal
 from shaftprint.export._model import ExportedModel
 from shaftprint.export._modelica_equations import ModelicaEquations, Names, modelica_equations
-from shaftprint.export._modelica_text import modelica_name, modelica_number, modelica_string
+from shaftprint.export._modelica_text import RESERVED, modelica_name, modelica_number
 from shaftprint.files import written_whole
 
 UNITS: Final = {"-": "1", "rpm": "rev/min", "N m": "N.m", "kg m2": "kg.m2"}
@@ -68,11 +69,17 @@ def write_modelica(
         If the file exists and is not to be replaced.
     """
     place = Path(path)
-    name = identifier(place.stem if package is None else package)
+    name = package_name(place.stem if package is None else package)
     text, equations = modelica_text(model, name)
     with written_whole(place, overwrite=overwrite) as part:
         part.write_text(text, encoding="utf-8", newline="\n")
     return WrittenModelica(path=place, package=name, late_outputs=equations.late)
+
+
+def package_name(text: str) -> str:
+    """Return a text as the name of a package, which stands without quotes: it is the name of the file, too."""
+    name = identifier(text)
+    return f"{name}_" if name in RESERVED else name
 
 
 def modelica_text(model: ExportedModel, package: str) -> tuple[str, ModelicaEquations]:
@@ -109,7 +116,7 @@ def modelica_text(model: ExportedModel, package: str) -> tuple[str, ModelicaEqua
 
 def _class(kind: str, name: str, model: ExportedModel, lines: list[str], inner: list[str], relations: list[str]) -> str:
     info = (
-        f"<html><p>{_escaped(model.structure.title)}, identified about {model.engine_speed_rpm:.1f} rpm of the "
+        f"<html><p>{html_text(model.structure.title)}, identified about {model.engine_speed_rpm:.1f} rpm of the "
         f"engine and {model.shaft_torque_nm:.0f} N m at the gauge. It begins in steady running at the working point."
         "</p></html>"
     )
@@ -122,10 +129,6 @@ def _class(kind: str, name: str, model: ExportedModel, lines: list[str], inner: 
         + "".join(f"    {line}\n" for line in relations)
         + f"    annotation({ICON}, Documentation(info = {modelica_string(info)}));\n  end {name};\n"
     )
-
-
-def _escaped(text: str) -> str:
-    return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
 
 
 def _unit(unit: str) -> str:

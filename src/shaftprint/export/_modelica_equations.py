@@ -5,10 +5,11 @@ from typing import Final
 
 import numpy as np
 
+from shaftprint.escape import modelica_string
 from shaftprint.export._c_text import identifier
 from shaftprint.export._fmu_program import fmu_program
 from shaftprint.export._model import ExportedModel
-from shaftprint.export._modelica_text import ModelicaText, modelica_name, modelica_number, modelica_string
+from shaftprint.export._modelica_text import ModelicaText, modelica_name, modelica_number
 from shaftprint.export._past_rates import without_past_rates
 from shaftprint.models import Program, evaluate, postorder
 
@@ -43,10 +44,12 @@ class Names:
 
     def __call__(self, wanted: str) -> str:
         """Return a name that is free, in quotes where it must be."""
-        while wanted in self._taken:
+        name = modelica_name(wanted)
+        while name in self._taken:
             wanted += "_"
-        self._taken.add(wanted)
-        return modelica_name(wanted)
+            name = modelica_name(wanted)
+        self._taken.add(name)
+        return name
 
 
 def modelica_equations(model: ExportedModel, names: Names, parameters: dict[str, str]) -> ModelicaEquations:

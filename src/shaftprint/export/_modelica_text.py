@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Final
 
 from shaftprint.errors import ExportError
+from shaftprint.escape import modelica_identifier
 from shaftprint.models import Quantity, postorder
 
 _WORDS: Final = """
@@ -27,13 +28,7 @@ def modelica_name(text: str) -> str:
     """Return a text as an identifier of Modelica, in single quotes where it must be."""
     if re.fullmatch(r"[A-Za-z_][A-Za-z0-9_]*", text) and text not in RESERVED:
         return text
-    return "'" + text.replace("\\", "\\\\").replace("'", "\\'") + "'"
-
-
-def modelica_string(text: str) -> str:
-    """Return a text as a string of Modelica, on one line."""
-    plain = " ".join(text.split()).replace("\\", "\\\\").replace('"', '\\"')
-    return f'"{plain}"'
+    return modelica_identifier(text)
 
 
 def modelica_number(value: float) -> str:

@@ -8,12 +8,13 @@ line that holds its propeller gives both out: they are groups of their own then.
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Final
-from xml.etree.ElementTree import Element, SubElement, indent, tostring
+from xml.etree.ElementTree import Element, SubElement
 
 from shaftprint.export._fmu_signals import ENGINE_SPEED, SHAFT_TORQUE, FmuSignal, fmu_signal
 from shaftprint.export._fmu_units import unit_definitions, unit_name
 from shaftprint.export._fmu_variables import structured_name
 from shaftprint.export._model import ExportedModel
+from shaftprint.export._xml import xml_document
 from shaftprint.files import written_whole
 
 NAMESPACE: Final = "https://open-simulation-platform.com/OspModelDescription/1.0.0"
@@ -69,8 +70,7 @@ def osp_description(model: ExportedModel) -> bytes:
     for signal in left:
         if _kind(signal) == "ShaftSpeed":
             _variable(SubElement(groups, "ShaftSpeed", name=signal.name), signal)
-    indent(root)
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root) + b"\n"
+    return xml_document(root)
 
 
 def _kind(signal: FmuSignal) -> str:

@@ -2,13 +2,14 @@
 
 from pathlib import Path
 from typing import Final
-from xml.etree.ElementTree import Element, SubElement, indent, register_namespace, tostring
+from xml.etree.ElementTree import Element, SubElement, register_namespace
 
 from shaftprint import __version__
 from shaftprint.export._described import described_parameters
 from shaftprint.export._fmu_units import BASE_UNITS, unit_name
 from shaftprint.export._fmu_variables import structured_name
 from shaftprint.export._model import ExportedModel
+from shaftprint.export._xml import xml_document
 from shaftprint.files import written_whole
 
 SSV: Final = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
@@ -58,8 +59,7 @@ def parameter_set(model: ExportedModel) -> bytes:
         for unit in units:
             powers = {key: repr(power) for key, power in BASE_UNITS[unit].items()}
             SubElement(SubElement(defined, f"{{{SSC}}}Unit", name=unit_name(unit)), f"{{{SSC}}}BaseUnit", powers)
-    indent(root)
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root) + b"\n"
+    return xml_document(root)
 
 
 def _entries(model: ExportedModel) -> list[tuple[str, str, float, str]]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import FingerprintError, StructureError
-from shaftprint.files import printable
+from shaftprint.escape import printable
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.models import Structure, shipped_structure
 

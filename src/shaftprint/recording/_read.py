@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
-from shaftprint.files import printable
+from shaftprint.escape import printable
 from shaftprint.publication import complete
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers import READERS, Reader, read_outside

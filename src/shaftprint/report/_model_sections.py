@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import TYPE_CHECKING
 
-from shaftprint.files import plain_name
+from shaftprint.escape import plain_name
 from shaftprint.report._bode import plot_bode
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
 from shaftprint.report._explanation import can_explain, explain_thesis

@@ -17,6 +17,7 @@ from pathlib import Path
 from jinja2 import DictLoader, Environment, StrictUndefined, Template
 from markupsafe import Markup
 
+from shaftprint.escape import html_value
 from shaftprint.report._cover import Cover
 from shaftprint.report._folder import FIGURES, PAGE, PLOTS, report_written_whole
 from shaftprint.report._sections import Picture, Section
@@ -174,14 +175,7 @@ def _html(
 ) -> str:
     first_plot = next(iter(plots), None)
     style = _template(STYLE)
-    environment = Environment(
-        loader=DictLoader({name: _template(name) for name in (TEMPLATE, TABLE_TEMPLATE)}),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["symbols"] = sentence_html
+    environment = _environment()
     table_template = environment.get_template(TABLE_TEMPLATE)
     return environment.get_template(TEMPLATE).render(
         title=page.title,
@@ -205,6 +199,20 @@ def _html(
         style=Markup(style),  # noqa: S704
         policy=_policy(style, scripted=scripts is not None),
     )
+
+
+def _environment() -> Environment:
+    """Return what fills the templates in: whatever it writes is escaped here, and nowhere else."""
+    environment = Environment(
+        loader=DictLoader({name: _template(name) for name in (TEMPLATE, TABLE_TEMPLATE)}),
+        autoescape=True,
+        finalize=html_value,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["symbols"] = sentence_html
+    return environment
 
 
 def _shown(template: Template, table: Table) -> Markup:

@@ -2,6 +2,8 @@
 
 import re
 
+from shaftprint.escape import printable
+
 _GREEK = {"tau", "omega", "zeta", "delta", "eta", "rho"}
 _NAME = re.compile(r"[A-Za-z]+(?:_[A-Za-z0-9]+)?")
 _UNITS = {"kg m2": "kg m²", "N m": "N·m", "N m/rpm": "N·m/rpm", "N m/(rpm s)": "N·m/(rpm·s)", "1/s": "s⁻¹", "-": ""}
@@ -28,7 +30,7 @@ def mathtext(formula: str) -> str:
     """Return a parameter name or formula such as ``K_p / K_i`` as mathtext; ordinary words stay words."""
     words = []
     for before, base, index in name_parts(formula):
-        words.append(before)
+        words.append(plain_label(before))
         if not base:
             continue
         if not is_symbol(base, index):
@@ -56,4 +58,4 @@ def response_label(output: str, input_: str) -> str:
 
 def plain_label(label: str) -> str:
     """Return the name of a model, test or fingerprint for a figure of matplotlib, which takes $ for mathematics."""
-    return label.replace("$", r"\$")
+    return printable(label).replace("$", r"\$")

@@ -22,6 +22,7 @@ typedef struct {
     double step; /* time since a computer that takes values at every step took the last ones [s] */
 } Values;
 
+extern const char model_title[]; /* what the equations are of */
 extern const int model_still[];
 extern const int model_feeds[];
 extern const int model_varies[];

@@ -1,7 +1,7 @@
 function [model, response, omega] = @NAME@(omega)
 %@NAME_UPPER@  @TITLE@
 %
-%   model = @NAME@() reads @DATA@, which stands beside this file, and rebuilds what the program at hand has classes for:
+%   model = @NAME@() reads @DATA_WORDS@, which stands beside this file, and rebuilds what the program at hand has classes for:
 %     model.sys      ss object with its delays, exact (Control System Toolbox of MATLAB)
 %     model.frd      frd object of the response (Control System Toolbox of MATLAB, package control of Octave)
 %     model.idfrd    idfrd object of the response with its covariance (System Identification Toolbox)
@@ -19,8 +19,9 @@ function [model, response, omega] = @NAME@(omega)
 %   what a deviation of 1 stands for. Written by shaftprint @VERSION@.
 
   folder = fileparts(mfilename('fullpath'));
-  stored = load(fullfile(folder, '@DATA@'));
+  stored = load(fullfile(folder, @DATA@));
   model = stored.shaftprint;
+  model.title = native2unicode(model.title_utf8(:)', 'UTF-8');
   if nargin < 1
     omega = model.response.omega_rad_s;
   end

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
+from shaftprint.escape import csv_cell_text
 from shaftprint.recording.readers._csv_dates import is_date
 from shaftprint.recording.readers._units import plain_unit, seconds_in
 from shaftprint.recording.readers._vectors import TIME_NAMES
@@ -199,7 +200,7 @@ def _title_fields(line: str, delimiter: str, width: int) -> list[str]:
     """Return the titles of a line; with white space between columns those that are as many as the columns."""
     line = line.lstrip("\ufeff").lstrip("#%")
     if delimiter != WHITE_SPACE:
-        titles = _fields(line, delimiter)
+        titles = [csv_cell_text(field) for field in _fields(line, delimiter)]
         return titles[:-1] if len(titles) == width + 1 and titles[-1].lower() == _REMARKS else titles
     spaced = _SPACED_TITLE.findall(line)
     far_apart = re.split(r"\s{2,}", line.strip())

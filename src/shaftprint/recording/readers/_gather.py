@@ -6,7 +6,7 @@ from datetime import datetime
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
-from shaftprint.files import printable
+from shaftprint.escape import printable
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording.readers._epoch import from_second_zero

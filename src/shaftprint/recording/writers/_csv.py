@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from shaftprint.errors import RecordingError
+from shaftprint.escape import csv_cell
 from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording.writers._shared_clock import on_one_clock
@@ -47,7 +48,7 @@ def write_csv(
     """
     path = Path(path)
     found = on_one_clock(path, channels)
-    titles = ["time [s]", *(f"{channel.name} [{channel.unit}]" for channel in found)]
+    titles = ["time [s]", *(csv_cell(f"{channel.name} [{channel.unit}]") for channel in found)]
     _expect_readable(path, titles, delimiter, decimal)
     try:
         with written_whole(path, overwrite=overwrite) as part, part.open("w", encoding="utf-8", newline="\n") as file:

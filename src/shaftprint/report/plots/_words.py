@@ -1,7 +1,6 @@
 """Words on interactive figures: names with slanted letters and lowered indices, all else as it is written."""
 
-from markupsafe import escape
-
+from shaftprint.escape import html_text
 from shaftprint.report._symbols import unit_text
 from shaftprint.report._table import symbol_html
 
@@ -13,7 +12,7 @@ def name_text(formula: str) -> str:
 
 def label_text(label: str) -> str:
     """Return the name of a model, test or fingerprint as it was given: no part of it is a formula or a tag."""
-    return str(escape(label)).replace("$", "&#36;")
+    return html_text(label).replace("$", "&#36;")
 
 
 def axis_text(label: str, unit: str = "") -> str:
