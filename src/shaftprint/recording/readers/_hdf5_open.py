@@ -11,6 +11,7 @@ import h5py
 from shaftprint.errors import RecordingError
 from shaftprint.recording.readers import _hdf5_probe
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
+from shaftprint.recording.readers._hdf5_outside import outside_of, stored_outside
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 # Blocks are unpacked whole; ours and MATLAB's have up to a few MB.
@@ -38,22 +39,42 @@ def open_hdf5(path: Path, what: str, *, is_whole: bool = False) -> Any:
     Raises
     ------
     RecordingError
-        If HDF5's library refuses the file, or hangs or crashes on it.
+        If HDF5's library refuses the file, hangs or crashes on it, or the file leads to others.
     """
     if not is_whole:
         _expect_an_end(path, what)
     with told_as_damage(path, what):
-        return h5py.File(path, "r")
+        file = h5py.File(path, "r")
+    try:
+        _expect_nothing_outside(path, outside_of(file))
+    except RecordingError:
+        file.close()
+        raise
+    return file
+
+
+def _expect_nothing_outside(path: Path, found: str) -> None:
+    """Refuse a file that leads to others: these may be any of the user's, and the SHA-256 does not cover them."""
+    if found:
+        raise RecordingError(
+            f"{path}: expected one file that holds all its samples, found that {found}. Other files are not opened, "
+            "since the SHA-256 of the recording does not cover them; copy the data into one file (h5repack -l CONTI, "
+            "for links h5copy -f ext)."
+        )
 
 
 def expect_storage(path: Path, name: str, dataset: Any) -> None:
     """Refuse a data set that promises more samples than are stored, or has blocks too large to unpack.
+
+    Refused is one that has its samples in other files, too, as it may have been reached by a reference and no link.
 
     Raises
     ------
     RecordingError
         If it does.
     """
+    found = stored_outside(dataset.id)
+    _expect_nothing_outside(path, f"{name} is {found}" if found else "")
     sample_bytes = dataset.dtype.itemsize
     # up to 64 kB may lie in the header, and count as stored in no block
     stored = int(dataset.id.get_storage_size()) + 64

@@ -97,6 +97,11 @@ def _channel(path: Path, name: str, dataset: Any) -> Channel:
             f"found none named {', '.join(missing)}."
         )
 
+    if dataset.dtype.kind not in "fiu" or dataset.ndim != 1:
+        raise RecordingError(
+            f"{path}, channel {name}: expected a row of numbers, found {dataset.ndim} dimensions of {dataset.dtype}; "
+            "write it as numbers, or leave it out."
+        )
     expect_storage(path, name, dataset)
 
     def source(start: int, stop: int) -> NDArray[Any]:
