@@ -13,9 +13,9 @@ torque, slowly: what is wrong with the calibration of the set point would otherw
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from shaftprint.arrays import FloatArray
+from shaftprint.kernels import compiled
 
 RING = 256
 """Longest delay in steps of the replay, a power of two."""
@@ -54,12 +54,12 @@ class Terms(NamedTuple):
     """``tau_up + tau_dn`` where the speed is to be simulated [s]; 0 where the measured speed is followed."""
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _clipped(value, low, high):  # type: ignore[no-untyped-def]
     return min(max(value, low), high)
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _full_load(speed, curve_speed, curve_torque):  # type: ignore[no-untyped-def]
     """Return the full-load torque at a speed; the curve goes on level beyond its ends."""
     j = 1
@@ -69,7 +69,7 @@ def _full_load(speed, curve_speed, curve_torque):  # type: ignore[no-untyped-def
     return curve_torque[j - 1] + _clipped(part, 0.0, 1.0) * (curve_torque[j] - curve_torque[j - 1])
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _delayed(ring, place, delay):  # type: ignore[no-untyped-def]
     """Return the value of a ring a number of steps ago, linear between steps."""
     whole = int(delay)
@@ -78,7 +78,7 @@ def _delayed(ring, place, delay):  # type: ignore[no-untyped-def]
     return newer + (delay - whole) * (older - newer)
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def replay(  # type: ignore[no-untyped-def]
     set_point, speed, torque, terms, actuation, curve_speed, curve_torque, step_s, engine, followed
 ) -> None:

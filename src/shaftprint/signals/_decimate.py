@@ -11,10 +11,10 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
+from shaftprint.kernels import compiled
 
 PASS_SHARE, STOP_SHARE = 0.2, 0.5
 """Ends of the pass band and beginning of the stop band, as shares of the rate of the grid."""
@@ -120,7 +120,7 @@ def decimated(samples: Iterable[FloatArray], grid: Grid, *, channel: str) -> Flo
     return out
 
 
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract"})
+@compiled(nogil=True, fastmath={"reassoc", "contract"})
 def filter_grid(  # type: ignore[no-untyped-def]
     held, origin: int, taps, half: int, first: float, step: float, done: int, out
 ) -> int:

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numba import njit
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
+from shaftprint.kernels import compiled
 from shaftprint.signals._channels import Counts, spots
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def find_edges(samples: Iterable[Counts], levels: PulseLevels) -> FloatArray:
     return np.concatenate(found) if found else np.empty(0)
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def scan_edges(  # type: ignore[no-untyped-def]
     counts, first: int, sign: float, arm: float, middle: float, fire: float, state, edges
 ) -> int:

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
+from shaftprint.kernels import compiled
 from shaftprint.signals._channels import Counts, spots
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ def sample_codes(values: Counts, limits: FaultLimits) -> NDArray[np.uint8]:
     return codes
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def mark_spikes(values, half: int, floor, mads: float, codes) -> None:  # type: ignore[no-untyped-def]
     """Mark samples further from the median of their window than the floor and so many MADs.
 
@@ -181,7 +181,7 @@ def mark_spikes(values, half: int, floor, mads: float, codes) -> None:  # type: 
                 codes[first + i] = SPIKE
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def mark_holds(values, margin: int, shortest: int, codes) -> None:  # type: ignore[no-untyped-def]
     """Mark samples that belong to a run of at least ``shortest`` equal ones."""
     begin = 0

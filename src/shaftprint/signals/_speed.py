@@ -6,9 +6,9 @@ de Boor, "A Practical Guide to Splines", chapter IV (cubic spline interpolation)
 """
 
 import numpy as np
-from numba import njit
 
 from shaftprint.arrays import FloatArray
+from shaftprint.kernels import compiled
 
 
 def spline_speed(time_s: FloatArray, angle_rev: FloatArray, *, start_s: float, step_s: float, count: int) -> FloatArray:
@@ -30,7 +30,7 @@ def spline_speed(time_s: FloatArray, angle_rev: FloatArray, *, start_s: float, s
     return speed
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def solve_slopes(x, y, slope) -> None:  # type: ignore[no-untyped-def]
     """Write the slope of the spline at each knot, by elimination in the tridiagonal equations.
 
@@ -53,7 +53,7 @@ def solve_slopes(x, y, slope) -> None:  # type: ignore[no-untyped-def]
         slope[k] -= upper[k] * slope[k + 1]
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def sample_slopes(x, y, slope, start: float, step: float, out) -> None:  # type: ignore[no-untyped-def]
     """Write the derivative of the spline on a uniform grid."""
     last = x.size - 1

@@ -1,4 +1,4 @@
-"""Compiled kernels of programs: written once to a cache folder, where the compiler keeps its own files beside them."""
+"""Compiled kernels of programs: their text is written once to the folder of kernels, where what is compiled is kept."""
 
 import hashlib
 import importlib.abc
@@ -6,12 +6,11 @@ import importlib.machinery
 import importlib.util
 import os
 import sys
-import tempfile
 import threading
 from pathlib import Path
 from types import ModuleType
 
-from shaftprint.errors import StructureError
+from shaftprint.kernels import private_folder
 
 _MAKING = threading.Lock()
 
@@ -33,20 +32,6 @@ class _Written(importlib.abc.InspectLoader):
         return str(self._path)
 
 
-def cache_folder() -> Path:
-    """Return the folder of compiled kernels: ``SHAFTPRINT_CACHE`` where it is set, else the system's cache folder."""
-    chosen = os.environ.get("SHAFTPRINT_CACHE")
-    if chosen:
-        return Path(chosen)
-    if sys.platform == "win32":
-        base = Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local"))
-    elif sys.platform == "darwin":
-        base = Path.home() / "Library" / "Caches"
-    else:
-        base = Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache"))
-    return base / "shaftprint"
-
-
 def plain_module_of(text: str) -> ModuleType:
     """Return the module of a text of ours that is not compiled: no file is needed."""
     name = f"shaftprint_formulas_{hashlib.sha256(text.encode()).hexdigest()[:16]}"
@@ -58,13 +43,7 @@ def plain_module_of(text: str) -> ModuleType:
 
 
 def module_of(text: str) -> ModuleType:
-    """Return the module of a text of ours; only the text is run, never what a file holds.
-
-    Raises
-    ------
-    StructureError
-        If no folder can be written to.
-    """
+    """Return the module of a text of ours; only the text is run, never what a file holds."""
     name = f"shaftprint_equations_{hashlib.sha256(text.encode()).hexdigest()[:16]}"
     # of several threads that want the same kernels the first makes them, so that they are compiled once
     with _MAKING:
@@ -83,21 +62,20 @@ def _made(text: str, name: str) -> ModuleType:
 
 
 def _written(text: str, name: str) -> Path:
-    """Write the text where it does not stand already: its age decides whether what was compiled still holds."""
-    problem = ""
-    for folder in (cache_folder(), Path(tempfile.gettempdir()) / "shaftprint"):
-        path = folder / f"{name}.py"
-        try:
-            folder.mkdir(parents=True, exist_ok=True)
-            if not path.exists() or path.read_text(encoding="utf-8") != text:
-                part = path.with_suffix(f".{os.getpid()}.part")
-                part.write_text(text, encoding="utf-8")
-                part.replace(path)
-        except OSError as error:
-            problem = f"{folder} ({error.strerror})"
-        else:
-            return path
-    raise StructureError(
-        f"compiled equations: expected a folder that can be written to, found none, last {problem}; set "
-        "SHAFTPRINT_CACHE to one."
-    )
+    """Write the text where it does not stand already: its age decides whether what was compiled still holds.
+
+    Without a folder that is the user's alone nothing is written, and nothing that was compiled is kept.
+    """
+    folder = private_folder()
+    unwritten = Path(f"{name}.py")
+    if folder is None:
+        return unwritten
+    path = folder / f"{name}.py"
+    try:
+        if not path.exists() or path.read_text(encoding="utf-8") != text:
+            part = path.with_suffix(f".{os.getpid()}.part")
+            part.write_text(text, encoding="utf-8")
+            part.replace(path)
+    except OSError:
+        return unwritten
+    return path

@@ -19,8 +19,10 @@ import numpy as np
 from numba import njit
 from numpy import cos, exp, log, sin, sqrt, tanh
 
+from shaftprint.kernels import compiled
+
 INNER = njit(error_model="numpy", fastmath={"contract"}, no_cpython_wrapper=True, no_cfunc_wrapper=True)
-OUTER = njit(error_model="numpy", fastmath={"contract"}, nogil=True, cache=True)
+OUTER = compiled(error_model="numpy", fastmath={"contract"}, nogil=True)
 
 
 # written so, these are one instruction of the processor each, and the first of two equal ones

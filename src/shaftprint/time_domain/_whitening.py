@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numba import njit
 
 from shaftprint.arrays import FloatArray
+from shaftprint.kernels import compiled
 from shaftprint.time_domain._noise_model import NoiseModel
 
 
@@ -64,7 +64,7 @@ class Whitening:
         return np.concatenate(found, axis=1)
 
 
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract"})
+@compiled(nogil=True, fastmath={"reassoc", "contract"})
 def predict(flat, rows, begin: int, out) -> None:  # type: ignore[no-untyped-def]
     """Write the innovations from place ``begin`` on, outputs side by side."""
     outputs, length = rows.shape

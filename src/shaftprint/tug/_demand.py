@@ -1,18 +1,18 @@
 """The way of the set point from the voltage at the helm to the speed demand inside the ECU."""
 
 import numpy as np
-from numba import njit
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign, setpoint
 from shaftprint.errors import SettingsError
+from shaftprint.kernels import compiled
 from shaftprint.tug._physics import working_point
 from shaftprint.tug._tug import Tug
 from shaftprint.units import rev_s_from_rpm, rpm_from_rev_s
 from shaftprint.vessel import Vessel
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _rate_limit(demand: FloatArray, largest_change, last) -> None:  # type: ignore[no-untyped-def]
     for j in range(demand.size):
         change = min(max(demand[j] - last, -largest_change), largest_change)

@@ -4,9 +4,9 @@ import math
 from typing import NamedTuple, Self
 
 import numpy as np
-from numba import njit
 
 from shaftprint.arrays import FloatArray
+from shaftprint.kernels import compiled
 from shaftprint.tug._noise import Noise
 
 
@@ -31,7 +31,7 @@ class _Colour(NamedTuple):
     hunting: _Resonance
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _swing(step_s, resonance, white, state, place):  # type: ignore[no-untyped-def]
     """Step one resonance, whose value and rate stand at ``place`` and the place after it."""
     # semi-implicit Euler: stable and, at a hundredth of a period a step, exact enough for noise
@@ -41,7 +41,7 @@ def _swing(step_s, resonance, white, state, place):  # type: ignore[no-untyped-d
     state[place] += step_s * rate
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _colour(  # type: ignore[no-untyped-def]
     white: FloatArray,
     colour,

@@ -4,10 +4,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray, IntArray
+from shaftprint.kernels import compiled
 from shaftprint.tug._faults import Fault, draw_dropouts, draw_spikes
 from shaftprint.tug._noise import Noise
 from shaftprint.tug._voyage import Leg
@@ -42,7 +42,7 @@ class _Telemetry(NamedTuple):
     """Load over the square of the shaft speed [N m s2]."""
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _to_count(torque_nm, telemetry):  # type: ignore[no-untyped-def]
     """Return what the logger stores for a torque after the telemetry's steps and limits."""
     if telemetry.resolution_nm > 0.0:
@@ -63,7 +63,7 @@ class _Memory(NamedTuple):
     """Samples done, next spike, next dropout and last count, shape (4,)."""
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _ripple(angle, telemetry):  # type: ignore[no-untyped-def]
     """Return the sum of the orders at a shaft angle as a fraction of the load."""
     ripple = 0.0
@@ -73,7 +73,7 @@ def _ripple(angle, telemetry):  # type: ignore[no-untyped-def]
     return ripple
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _read_out(  # type: ignore[no-untyped-def]
     torque, angle, speed, broadband, telemetry, memory, spikes, dropouts, counts
 ) -> None:

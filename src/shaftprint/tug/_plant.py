@@ -29,9 +29,9 @@ limited, a fast rise is. A limit of the rate of the rack holds for what the gove
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
+from shaftprint.kernels import compiled
 from shaftprint.tug._sailing import AT_THE_QUAY, Way
 
 SPEED, INTEGRAL, RACK, RACK_RATE, SLIPSTREAM, ANGLE, WAY = range(7)
@@ -88,7 +88,7 @@ class Plant(NamedTuple):
     """The ship and what its propellers do underway."""
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _torque_limits(speed, plant):  # type: ignore[no-untyped-def]
     """Return the lowest and highest brake torque [N m] at an engine speed [rev/s]."""
     speeds = plant.limit_speed_rev_s
@@ -109,7 +109,7 @@ def _torque_limits(speed, plant):  # type: ignore[no-untyped-def]
     return lowest, highest
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _power_sum(powers, at):  # type: ignore[no-untyped-def]
     """Return a sum of powers, by Horner's rule."""
     value = 0.0
@@ -118,7 +118,7 @@ def _power_sum(powers, at):  # type: ignore[no-untyped-def]
     return value
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _under_way(speed_s, ship_speed, propeller_noise, way):  # type: ignore[no-untyped-def]
     """Return the torque of a propeller [N m] and the acceleration of the ship [m/s2]."""
     square = speed_s * abs(speed_s)
@@ -128,7 +128,7 @@ def _under_way(speed_s, ship_speed, propeller_noise, way):  # type: ignore[no-un
     return square * _power_sum(way.torque_nm_s2, advance), (pull - resistance) / way.mass_kg
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _felt(error, plant):  # type: ignore[no-untyped-def]
     """Return the speed error [rev/s] that the governor feels beyond its deadband."""
     if plant.deadband_rev_s == 0.0:
@@ -136,7 +136,7 @@ def _felt(error, plant):  # type: ignore[no-untyped-def]
     return error - min(max(error, -plant.deadband_rev_s), plant.deadband_rev_s)
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def governor_rack(speed_s, integral, demand, plant, air=1.0):  # type: ignore[no-untyped-def]
     """Return the rack that the governor asks for, before and after the limiter of the ECU.
 
@@ -151,7 +151,7 @@ def governor_rack(speed_s, integral, demand, plant, air=1.0):  # type: ignore[no
     return wanted, given
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def derivatives(  # type: ignore[no-untyped-def]
     state, demand, rack_delayed, propeller_noise, engine_noise, plant, air=1.0
 ):
@@ -196,7 +196,7 @@ def derivatives(  # type: ignore[no-untyped-def]
     )
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _past(history, mask, first, weights):  # type: ignore[no-untyped-def]
     """Return the value between the second and third of four nodes of a ring."""
     return (
@@ -256,7 +256,7 @@ class Traces(NamedTuple):
     ship_speed_m_s: FloatArray
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _moved(x, h, rates):  # type: ignore[no-untyped-def]
     """Return the states after a time ``h`` at constant rates; the angle stays, for no rate depends on it."""
     return (
@@ -270,7 +270,7 @@ def _moved(x, h, rates):  # type: ignore[no-untyped-def]
     )
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant, air):  # type: ignore[no-untyped-def]
     """Return the state after a step of the classical fourth-order method, whose first rates ``k1`` are known.
 
@@ -294,7 +294,7 @@ def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant, air):  # type
     )
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def advance(  # type: ignore[no-untyped-def]
     step_s, demand, propeller_noise, engine_noise, plant, delay, carried, traces
 ) -> None:

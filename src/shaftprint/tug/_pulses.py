@@ -3,10 +3,10 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray, IntArray
+from shaftprint.kernels import compiled
 from shaftprint.tug._faults import Fault, draw_times
 from shaftprint.tug._tug import Tug
 from shaftprint.tug._voyage import Leg
@@ -35,7 +35,7 @@ class _Strips(NamedTuple):
     rate_hz: float
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _reflection(distance, width, ramp):  # type: ignore[no-untyped-def]
     """Return the reflected light [0 to 1] at a distance from the middle of a strip: a smooth trapezoid."""
     part = (0.5 * width - abs(distance)) / ramp + 0.5
@@ -58,14 +58,14 @@ class _View(NamedTuple):
     """Times after which the next pulse is doubled; the time of its edge once it has passed."""
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _middle(strip, strips):  # type: ignore[no-untyped-def]
     """Return the angle of the middle of a strip, counted on from strip 0 of the first revolution [rev]."""
     per_turn = strips.middle_rev.size
     return strip // per_turn + strips.middle_rev[strip % per_turn]
 
 
-@njit(inline="always", cache=True)
+@compiled(inline="always")
 def _fault_of(time, edge_s, view):  # type: ignore[no-untyped-def]
     """Return the kind of the pulse that comes into view, and note the time of its edge where it is a fault."""
     place = view.place
@@ -80,7 +80,7 @@ def _fault_of(time, edge_s, view):  # type: ignore[no-untyped-def]
     return _NORMAL
 
 
-@njit(cache=True, nogil=True)
+@compiled(nogil=True)
 def _pulse_train(angle, speed, noise_v, strips, view, counts) -> None:  # type: ignore[no-untyped-def]
     """Fill the counts of one chunk from the angle and speed of the propeller shaft."""
     place = view.place
