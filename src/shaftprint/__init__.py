@@ -33,19 +33,23 @@ from types import ModuleType
 __version__ = "0.1.0"
 
 _ROOMS = (
+    "arguments",
     "arrays",
     "campaign",
     "clocks",
     "errors",
+    "escape",
     "export",
     "files",
     "fingerprint",
     "identify",
+    "kernels",
     "models",
     "nonlinearity",
     "normal",
     "propeller",
     "publication",
+    "reasons",
     "recording",
     "report",
     "settings",

@@ -1,17 +1,21 @@
 # What type checkers see of the rooms, which __init__.py loads when they are first used.
+from shaftprint import arguments as arguments
 from shaftprint import arrays as arrays
 from shaftprint import campaign as campaign
 from shaftprint import clocks as clocks
 from shaftprint import errors as errors
+from shaftprint import escape as escape
 from shaftprint import export as export
 from shaftprint import files as files
 from shaftprint import fingerprint as fingerprint
 from shaftprint import identify as identify
+from shaftprint import kernels as kernels
 from shaftprint import models as models
 from shaftprint import nonlinearity as nonlinearity
 from shaftprint import normal as normal
 from shaftprint import propeller as propeller
 from shaftprint import publication as publication
+from shaftprint import reasons as reasons
 from shaftprint import recording as recording
 from shaftprint import report as report
 from shaftprint import settings as settings

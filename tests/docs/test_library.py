@@ -26,7 +26,7 @@ def test_every_room_is_given_by_the_package_and_known_to_type_checkers():
 
 
 def test_a_room_that_is_not_there_is_refused():
-    with pytest.raises(AttributeError, match="has no attribute 'gearbox'; its rooms are arrays, campaign"):
+    with pytest.raises(AttributeError, match="has no attribute 'gearbox'; its rooms are arguments, arrays"):
         _ = sp.gearbox
 
 

@@ -28,7 +28,8 @@ from rich.console import Console
 
 import shaftprint.cli
 from shaftprint import escape
-from shaftprint.cli._terminal import echo, literal
+from shaftprint.cli._tables import literal
+from shaftprint.cli._terminal import echo
 from shaftprint.export import ExportedModel, write_fmu, write_matlab, write_modelica, write_osp, write_ssv
 from shaftprint.models import structure
 

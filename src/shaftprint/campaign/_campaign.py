@@ -7,7 +7,9 @@ from typing import Self, TypeAlias
 
 from pydantic import model_validator
 
+from shaftprint.arguments import refusing_none
 from shaftprint.campaign._excitations import Chirp, Sine, Staircase
+from shaftprint.errors import SettingsError
 from shaftprint.settings import Name, Number, PositiveNumber, Settings, load_settings
 
 Excitation: TypeAlias = Sine | Chirp | Staircase
@@ -80,6 +82,7 @@ class Campaign(Settings):
         ]
 
 
+@refusing_none(SettingsError)
 def load_campaign(path_or_name: str | Path) -> Campaign:
     """Read a campaign file, or a shipped one by its name such as ``thesis``.
 

@@ -6,11 +6,14 @@ from typing import assert_never
 import numpy as np
 from numpy.typing import ArrayLike
 
+from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._campaign import Campaign, Excitation
 from shaftprint.campaign._excitations import Chirp, Sine, Staircase
+from shaftprint.errors import SettingsError
 
 
+@refusing_none(SettingsError)
 def setpoint(campaign: Campaign, time_s: ArrayLike) -> FloatArray:
     """Return the set point of a campaign at given times.
 

@@ -5,8 +5,9 @@ from collections.abc import Collection, Sequence
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
-from shaftprint.cli._terminal import literal
+from shaftprint.escape import printable
 
 # A table that goes into a file or a pipe must not be folded to the width of a terminal that is not there.
 WIDTH_WITHOUT_TERMINAL = 200
@@ -54,3 +55,8 @@ def _table(columns: Sequence[str], rows: Sequence[Sequence[str]], numbers: Colle
     for row in rows:
         table.add_row(*(literal(cell) for cell in row))
     return table
+
+
+def literal(text: str, *, style: str = "") -> Text:
+    """Return text for rich that stands for itself: no brackets are markup in it, no words between colons pictures."""
+    return Text(printable(text), style=style)

@@ -1,9 +1,8 @@
 """The gate to the terminal: whatever a command prints goes through here, and no text out of a file moves the cursor."""
 
 import click
-from rich.text import Text
 
-from shaftprint.escape import printable, terminal_line
+from shaftprint.escape import terminal_line
 
 
 def echo(line: object = "", *, err: bool = False) -> None:
@@ -17,8 +16,3 @@ def echo(line: object = "", *, err: bool = False) -> None:
         Whether it goes to the error output.
     """
     click.echo(terminal_line(str(line)), err=err)
-
-
-def literal(text: str, *, style: str = "") -> Text:
-    """Return text for rich that stands for itself: no brackets are markup in it, no words between colons pictures."""
-    return Text(printable(text), style=style)

@@ -8,6 +8,8 @@ from pathlib import Path
 
 from numpy.typing import ArrayLike
 
+from shaftprint.arguments import refusing_none
+from shaftprint.errors import ExportError
 from shaftprint.escape import csv_cell
 from shaftprint.export._model import exported_model
 from shaftprint.export._model_response import model_response
@@ -29,6 +31,7 @@ class WrittenTables:
     """Frequency response of the model with its 95 % band."""
 
 
+@refusing_none(ExportError)
 def write_csv(
     fingerprint: Fingerprint,
     path: str | Path,

@@ -11,6 +11,7 @@ from typing import Final, Literal
 
 import numpy as np
 
+from shaftprint.arguments import refusing_none
 from shaftprint.errors import ExportError
 from shaftprint.export._c_text import identifier
 from shaftprint.export._fmu_build import PLATFORMS, build_binary, can_build
@@ -58,6 +59,7 @@ class WrittenFmu:
     """Outputs that come later than their time stamps in the recording."""
 
 
+@refusing_none(ExportError)
 def write_fmu(
     model: ExportedModel,
     path: str | Path,

@@ -7,6 +7,8 @@ from typing import Any, Final
 from numpy.typing import ArrayLike
 
 from shaftprint import __version__
+from shaftprint.arguments import refusing_none
+from shaftprint.errors import ExportError
 from shaftprint.export._delay_model import DelayModel, delay_model
 from shaftprint.export._described import scaled_signal
 from shaftprint.export._model import ExportedModel, exported_model
@@ -19,6 +21,7 @@ from shaftprint.models import Structure
 LAYOUT: Final = 1
 
 
+@refusing_none(ExportError)
 def write_json(
     fingerprint: Fingerprint,
     path: str | Path,

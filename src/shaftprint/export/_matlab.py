@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.io import savemat
 
 from shaftprint import __version__
+from shaftprint.arguments import refusing_none
 from shaftprint.errors import ExportError
 from shaftprint.escape import matlab_comment, matlab_string, printable
 from shaftprint.export._delay_model import DelayModel, delay_model
@@ -35,6 +36,7 @@ class WrittenMatlab:
     """The function that rebuilds the objects; it must stay beside the data."""
 
 
+@refusing_none(ExportError)
 def write_matlab(
     model: ExportedModel,
     path: str | Path,

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import ExportError
 from shaftprint.fingerprint import Fingerprint, identified_model, named_structure
@@ -69,6 +70,7 @@ class ExportedModel:
         return dict(zip(self.uncertain, np.sqrt(np.diag(self.covariance_matrix)).tolist(), strict=True))
 
 
+@refusing_none(ExportError)
 def exported_model(fingerprint: Fingerprint, *, of: Structure | None = None) -> ExportedModel:
     """Return the model of a fingerprint, with the covariance of its parameters.
 

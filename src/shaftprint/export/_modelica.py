@@ -5,6 +5,8 @@ from pathlib import Path
 from typing import Final
 
 from shaftprint import __version__
+from shaftprint.arguments import refusing_none
+from shaftprint.errors import ExportError
 from shaftprint.escape import html_text, modelica_string
 from shaftprint.export._c_text import identifier
 from shaftprint.export._described import described_parameters
@@ -45,6 +47,7 @@ class WrittenModelica:
     """Outputs that come later than their time stamps in the recording."""
 
 
+@refusing_none(ExportError)
 def write_modelica(
     model: ExportedModel, path: str | Path, *, package: str | None = None, overwrite: bool = False
 ) -> WrittenModelica:

@@ -10,6 +10,8 @@ from pathlib import Path
 from typing import Final
 from xml.etree.ElementTree import Element, SubElement
 
+from shaftprint.arguments import refusing_none
+from shaftprint.errors import ExportError
 from shaftprint.export._fmu_signals import ENGINE_SPEED, SHAFT_TORQUE, FmuSignal, fmu_signal
 from shaftprint.export._fmu_units import unit_definitions, unit_name
 from shaftprint.export._fmu_variables import structured_name
@@ -22,6 +24,7 @@ VERSION: Final = "1.0"
 ENDING: Final = "_OspModelDescription.xml"
 
 
+@refusing_none(ExportError)
 def write_osp(model: ExportedModel, fmu: str | Path, *, overwrite: bool = False) -> Path:
     """Write the description of a model's variable groups beside its FMU.
 

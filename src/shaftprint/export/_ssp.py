@@ -5,6 +5,8 @@ from typing import Final
 from xml.etree.ElementTree import Element, SubElement, register_namespace
 
 from shaftprint import __version__
+from shaftprint.arguments import refusing_none
+from shaftprint.errors import ExportError
 from shaftprint.export._described import described_parameters
 from shaftprint.export._fmu_units import BASE_UNITS, unit_name
 from shaftprint.export._fmu_variables import structured_name
@@ -17,6 +19,7 @@ SSC: Final = "http://ssp-standard.org/SSP1/SystemStructureCommon"
 VERSION: Final = "1.0"
 
 
+@refusing_none(ExportError)
 def write_ssv(model: ExportedModel, path: str | Path, *, overwrite: bool = False) -> Path:
     """Write the values of a model's parameters, named as in its FMU, with units; what is known of each in words.
 

@@ -4,14 +4,16 @@ import hashlib
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Final, Literal
+from typing import Annotated, Final, Literal, Self, TypeAlias
 
 import numpy as np
-from pydantic import AwareDatetime, BaseModel, ConfigDict, ValidationError
+from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, ValidationError, model_validator
 
+from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
-from shaftprint.errors import FingerprintError
+from shaftprint.errors import FingerprintError, ShaftprintError
 from shaftprint.files import written_whole
+from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._vessel_fields import FieldValue
 from shaftprint.identify import Budget, Prior, Verdict
 from shaftprint.publication import complete
@@ -25,6 +27,16 @@ class _Record(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="strings", strict=False)
 
 
+def _not_negative(std: float) -> float:
+    if std < 0.0:
+        raise ValueError(f"expected a standard deviation that is not negative, found {std:g}")
+    return std
+
+
+Deviation: TypeAlias = Annotated[float, AfterValidator(_not_negative)]
+"""A standard deviation; it may be infinite."""
+
+
 class Quantity(_Record):
     """A number with its unit and uncertainty."""
 
@@ -34,7 +46,7 @@ class Quantity(_Record):
     """Unit, ``-`` where there is none."""
     value: float
     """Estimate."""
-    std: float
+    std: Deviation
     """Standard deviation to first order; infinite where the test says nothing about it."""
     interval_95: tuple[float, float] | None = None
     """95 % interval from the profile likelihood; None where there is none."""
@@ -44,7 +56,7 @@ class Quantity(_Record):
     """Whether the search stopped at a bound."""
     expected: float | None = None
     """Value from another source, such as the torsional vibration calculation."""
-    expected_std: float | None = None
+    expected_std: Deviation | None = None
     """Standard deviation of that value."""
     meaning: str = ""
     """What it stands for."""
@@ -159,6 +171,13 @@ class Fingerprint(_Record):
     findings: tuple[str, ...]
     """What a reader must know, in words."""
 
+    @model_validator(mode="after")
+    def _expect_covariance(self) -> Self:
+        fault = covariance_fault(self.covariance, [quantity.std for quantity in self.parameters])
+        if fault:
+            raise ValueError(f"covariance: {fault}")
+        return self
+
     def quantity(self, name: str) -> Quantity:
         """Return a parameter, combination, physical value, margin or calibration by its name.
 
@@ -217,6 +236,7 @@ def _content(fingerprint: Fingerprint) -> bytes:
     return (fingerprint.model_dump_json(indent=2) + "\n").encode()
 
 
+@refusing_none(FingerprintError)
 def read_fingerprint(path: str | Path) -> Fingerprint:
     """Read a fingerprint from JSON; what was written comes back equal.
 
@@ -234,8 +254,17 @@ def read_fingerprint(path: str | Path) -> Fingerprint:
     try:
         return Fingerprint.model_validate_json(text)
     except ValidationError as error:
-        wrong = "; ".join(f"{'.'.join(str(part) for part in e['loc'])}: {e['msg']}" for e in error.errors())
+        wrong = "; ".join(_described(details["loc"], details["msg"]) for details in error.errors())
         raise FingerprintError(f"{place} is not a fingerprint of schema {SCHEMA_VERSION}: {wrong}.") from None
+    except ShaftprintError as error:
+        # what other rooms ask of their own nouns, such as a prior
+        raise FingerprintError(f"{place} is not a fingerprint of schema {SCHEMA_VERSION}: {error}") from None
+
+
+def _described(place: tuple[int | str, ...], message: str) -> str:
+    """Return an error of a field; one of the whole record names its fields itself."""
+    words = message.removeprefix("Value error, ")
+    return f"{'.'.join(str(part) for part in place)}: {words}" if place else words
 
 
 def _fingerprint_text(place: Path) -> str:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import shaftprint
+from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._calibration import calibration_quantities
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from shaftprint.vessel import Vessel
 
 
+@refusing_none(FingerprintError)
 def take_fingerprint(
     identification: Identification,
     *,

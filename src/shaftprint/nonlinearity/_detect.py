@@ -4,6 +4,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from shaftprint.arguments import refusing_none
+from shaftprint.errors import SignalError
 from shaftprint.nonlinearity._fit import GOVERNOR, fit_governor
 from shaftprint.nonlinearity._harmonic_evidence import harmonic_evidence
 from shaftprint.nonlinearity._level_evidence import level_evidence
@@ -27,6 +29,7 @@ FALSE_ALARM = 1e-3
 _PROMPT_WINDUP_S = 2.0
 
 
+@refusing_none(SignalError)
 def detect(
     signals: "Signals",
     campaign: "Campaign",

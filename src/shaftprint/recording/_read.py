@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from shaftprint.arguments import refusing_none
 from shaftprint.errors import RecordingError
 from shaftprint.escape import printable
 from shaftprint.publication import complete
@@ -10,6 +11,7 @@ from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers import READERS, Reader, read_outside
 
 
+@refusing_none(RecordingError)
 def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **hints: object) -> Recording:
     """Open a raw logger file, read only; samples are read as they are asked for.
 

@@ -4,7 +4,9 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from shaftprint.arguments import refusing_none
 from shaftprint.clocks import logger_clocks
+from shaftprint.errors import ReportError
 from shaftprint.fingerprint import fingerprint_sha256
 from shaftprint.report._inertia_sections import inertia_section
 from shaftprint.report._measurement_sections import response_section, signal_section, time_section
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
     from shaftprint.vessel import Vessel
 
 
+@refusing_none(ReportError)
 def render_report(
     directory: str | Path,
     *,

@@ -5,6 +5,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
@@ -53,6 +54,7 @@ class _Read:
     findings: tuple[str, ...]
 
 
+@refusing_none(SignalError)
 def prepare_signals(
     recording: "Recording",
     vessel: "Vessel",

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import StructureError
 from shaftprint.models import Structure
@@ -26,6 +27,7 @@ class Trace:
     """Derivatives of each output to the wanted parameters, shape (wanted, samples)."""
 
 
+@refusing_none(StructureError)
 def simulate(
     structure: Structure,
     values: ArrayLike,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.arguments import refusing_none
 from shaftprint.errors import ResponseError
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._harmonics import Harmonics, collect_harmonics
@@ -54,6 +55,7 @@ class Spectra:
     """What was found, by name of the line: also lines that the recording does not hold."""
 
 
+@refusing_none(ResponseError)
 def estimate_response(
     signals: "Signals",
     campaign: "Campaign",
@@ -68,6 +70,7 @@ def estimate_response(
     return estimate_spectra(signals, campaign, method=method, speed=speed).response
 
 
+@refusing_none(ResponseError)
 def estimate_spectra(
     signals: "Signals",
     campaign: "Campaign",

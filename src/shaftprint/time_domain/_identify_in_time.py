@@ -12,6 +12,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, Settings, Term, identify_jointly, with_load, with_sensor
@@ -122,6 +123,7 @@ def with_noise_at(term: OutputError, values: FloatArray, *, longest_memory_s: fl
     return term.with_noise(Whitening(noise=estimate_noise(left, term.record.stretches, max_order=order)))
 
 
+@refusing_none(IdentificationError)
 def identify_in_time(
     pairs: Sequence[Source],
     *,

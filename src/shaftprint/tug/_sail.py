@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from shaftprint.arguments import refusing_none
 from shaftprint.campaign import Campaign
 from shaftprint.errors import RecordingError, SettingsError
 from shaftprint.files import written_whole
@@ -34,6 +35,7 @@ RATE_HZ = 2000.0
 _CHUNK = 262_144
 
 
+@refusing_none(SettingsError)
 def sail(
     vessel: Vessel,
     campaign: Campaign,

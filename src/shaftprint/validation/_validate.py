@@ -5,8 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
+from shaftprint.arguments import refusing_none
 from shaftprint.arrays import frozen_float
 from shaftprint.campaign import Campaign
+from shaftprint.errors import ValidationError
 from shaftprint.identify import Identification
 from shaftprint.models import Structure
 from shaftprint.signals import Signals
@@ -22,6 +24,7 @@ from shaftprint.validation._validation import Comparison, Traces, Validation
 from shaftprint.validation._words import findings_of, outcome_sentences
 
 
+@refusing_none(ValidationError)
 def validate(
     model: Model | Identification | Structure,
     signals: Signals,

@@ -7,6 +7,8 @@ from typing import Literal, Self
 
 from pydantic import Field, model_validator
 
+from shaftprint.arguments import refusing_none
+from shaftprint.errors import SettingsError
 from shaftprint.settings import Name, PositiveNumber, Settings, load_settings
 from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
@@ -88,6 +90,7 @@ class Vessel(Settings):
         return math.hypot(*(row.referred_std_kg_m2(ratio) for row in self.inertia if row.gauge == gauge))
 
 
+@refusing_none(SettingsError)
 def load_vessel(path_or_name: str | Path) -> Vessel:
     """Read a vessel file, or a shipped one by its name such as ``stan-tug-1205``.
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from shaftprint.arguments import refusing_none
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.comparison._comparison import Candidate, Comparison
 from shaftprint.identify.comparison._comparison_words import comparison_words
@@ -21,6 +22,7 @@ FOLDS = 5
 DRAWS = 199
 
 
+@refusing_none(IdentificationError)
 def compare_structures(
     structures: Sequence[Structure],
     response: FrequencyResponse,

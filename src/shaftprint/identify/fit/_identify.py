@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._covariance import estimate_covariance
@@ -28,6 +29,7 @@ STAYS = 0.02
 MOST_FITS = 8
 
 
+@refusing_none(IdentificationError)
 def identify(
     structure: Structure,
     response: FrequencyResponse,

@@ -16,6 +16,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
+from shaftprint.arguments import refusing_none
+from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Estimate, Identification
 from shaftprint.identify.judgement._cautions import cautions_of
 from shaftprint.identify.judgement._contradictions import contradicted_priors
@@ -77,6 +79,7 @@ class Verdict:
     """What the numbers rest on and no recording can show, in sentences."""
 
 
+@refusing_none(IdentificationError)
 def assess(
     identification: Identification,
     *,

@@ -1,0 +1,49 @@
+"""Arguments that a public function cannot do without."""
+
+import functools
+import inspect
+from collections.abc import Callable
+from typing import ParamSpec, TypeVar
+
+_OPEN = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
+
+_Given = ParamSpec("_Given")
+_Result = TypeVar("_Result")
+
+
+def refusing_none(error: type[Exception]) -> Callable[[Callable[_Given, _Result]], Callable[_Given, _Result]]:
+    """Return a decorator that refuses None for an argument without default, before anything else is done.
+
+    In an interactive session it is what a name holds that was never set, and would otherwise end far inside in an
+    attribute that None lacks.
+
+    Parameters
+    ----------
+    error
+        What is raised, with one sentence.
+    """
+
+    def decorated(verb: Callable[_Given, _Result]) -> Callable[_Given, _Result]:
+        signature = inspect.signature(verb)
+        kinds = {
+            name: str(parameter.annotation if isinstance(parameter.annotation, str) else _name(parameter.annotation))
+            for name, parameter in signature.parameters.items()
+            if parameter.default is inspect.Parameter.empty and parameter.kind not in _OPEN
+        }
+
+        @functools.wraps(verb)
+        def checked(*args: _Given.args, **kwargs: _Given.kwargs) -> _Result:
+            given = signature.bind(*args, **kwargs).arguments
+            missing = [f"{name} ({kind})" for name, kind in kinds.items() if given[name] is None]
+            if missing:
+                raise error(f"{verb.__name__}: expected {' and '.join(missing)}, found None; it cannot be left out.")
+            return verb(*args, **kwargs)
+
+        return checked
+
+    return decorated
+
+
+def _name(annotation: object) -> str:
+    """Return a type as it is written, without its module."""
+    return annotation.__name__ if isinstance(annotation, type) else str(annotation).rsplit(".", 1)[-1]
