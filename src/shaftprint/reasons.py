@@ -9,6 +9,7 @@ ReasonKind: TypeAlias = Literal[
     "clipping",
     "gauge steadiness",
     "gauge scale",
+    "set-point shape",
     "set-point scale",
     "gauge latency",
     "prior",

@@ -99,13 +99,16 @@ def test_all_that_is_wrong_with_a_table_is_told_at_once(tmp_path):
         )
 
 
-def test_rows_without_standard_deviation_count_as_exact(tmp_path):
+def test_rows_without_standard_deviation_take_that_of_the_trade(tmp_path):
     path = tmp_path / "ship.toml"
     write_template("vessel", path)
     lines = [line for line in path.read_text().splitlines() if not line.startswith("std_kg_m2")]
     path.write_text("\n".join(lines))
     vessel = load_vessel(path)
-    assert vessel.inertia_upstream_std_kg_m2 == 0.0
+    upstream = [row for row in vessel.inertia if row.gauge == "upstream"]
+    referred = [row.inertia_kg_m2 * (vessel.gearbox.ratio**2 if row.shaft == "engine" else 1.0) for row in upstream]
+    assert vessel.inertia_upstream_std_kg_m2 == pytest.approx(0.05 * sum(one**2 for one in referred) ** 0.5)
+    assert "= 0.05 of the inertia" in vessel.taken_as_usual[-1]
     assert vessel.inertia_downstream_kg_m2 == pytest.approx(16.7)
 
 

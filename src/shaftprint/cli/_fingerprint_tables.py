@@ -90,7 +90,10 @@ def _print_quantities(title: str, quantities: Sequence[Quantity], truth: Mapping
 
 
 def _value(quantity: Quantity) -> str:
-    return with_uncertainty(quantity.value, quantity.std) + (" at bound" if quantity.at_bound else "")
+    """Return value and standard deviation; the value alone where only its interval tells how well it is known."""
+    std = quantity.stated_std
+    text = plain(quantity.value) if std is None else with_uncertainty(quantity.value, std)
+    return text + (" at bound" if quantity.at_bound else "")
 
 
 def _interval(quantity: Quantity) -> str:

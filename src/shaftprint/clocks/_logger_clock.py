@@ -11,10 +11,7 @@ from shaftprint.clocks._alignment import Alignment, Stretch
 from shaftprint.clocks._clock_map import ClockMap
 from shaftprint.errors import ClockError, RecordingError
 from shaftprint.escape import printable
-from shaftprint.recording import Recording
-
-ATTRIBUTE = "clock_maps"
-"""Attribute of a recording that holds its clock maps, as JSON."""
+from shaftprint.recording import CLOCK_MAPS, Recording
 
 # Seconds beyond any calendar, and small enough that products and squares stay numbers.
 _LARGEST = 1e15
@@ -48,7 +45,7 @@ def logger_clocks(recording: Recording) -> tuple[LoggerClock, ...]:
     RecordingError
         If the attribute of the file that holds them cannot be understood.
     """
-    text = recording.attributes.get(ATTRIBUTE)
+    text = recording.attributes.get(CLOCK_MAPS)
     if text is None:
         return ()
     try:
@@ -66,7 +63,7 @@ def logger_clocks(recording: Recording) -> tuple[LoggerClock, ...]:
 def clock_attributes(clocks: Iterable[LoggerClock]) -> dict[str, str]:
     """Return the attributes of a recording that hold clock maps, to the last digit; none for no clock."""
     entries = [_entry(clock) for clock in clocks]
-    return {ATTRIBUTE: _Entries(entries).model_dump_json()} if entries else {}
+    return {CLOCK_MAPS: _Entries(entries).model_dump_json()} if entries else {}
 
 
 Seconds = Annotated[float, Field(allow_inf_nan=False, ge=-_LARGEST, le=_LARGEST)]
@@ -138,6 +135,6 @@ def _entry(clock: LoggerClock) -> _Entry:
 
 def _broken(recording: Recording, found: str) -> RecordingError:
     return RecordingError(
-        f"{recording.path}, attribute {ATTRIBUTE}: expected the clock maps of a merged recording, found something else "
-        f"({found}); merge the loggers again."
+        f"{recording.path}, attribute {CLOCK_MAPS}: expected the clock maps of a merged recording, found something "
+        f"else ({found}); merge the loggers again."
     )

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.clocks._alignment import Alignment
-from shaftprint.clocks._logger_clock import ATTRIBUTE, LoggerClock, clock_attributes, logger_clocks
+from shaftprint.clocks._logger_clock import LoggerClock, clock_attributes, logger_clocks
 from shaftprint.errors import ClockError
 from shaftprint.escape import printable
-from shaftprint.recording import Channel, Recording
+from shaftprint.recording import CLOCK_MAPS, Channel, Recording
 
 # A part may begin this share of a sample beside the grid of the part before it.
 BESIDE = 0.51
@@ -117,7 +117,7 @@ def joined(parts: Sequence[Recording], *, follow_on: bool = False) -> Recording:
     shared = {
         name: value
         for name, value in first.attributes.items()
-        if name != ATTRIBUTE and all(part.attributes.get(name) == value for part in parts)
+        if name != CLOCK_MAPS and all(part.attributes.get(name) == value for part in parts)
     }
     clocks = [clock for part in parts for clock in logger_clocks(part)]
     return _one(parts, channels, "joined", shared | clock_attributes(clocks))

@@ -30,11 +30,18 @@ def scaled_signal(model: ExportedModel, name: str) -> ScaledSignal:
 
 def described_parameters(model: ExportedModel) -> Iterator[tuple[Parameter, float, str]]:
     """Give each parameter that stands in the equations, its value, and what it is and how well it is known."""
-    std = model.std
     for parameter, value in zip(model.structure.parameters, model.values, strict=True):
         # held at zero, it is a lag or a delay that is not there
         if parameter.held and value == 0.0:
             continue
-        known = f"; standard deviation {std[parameter.name]:.3g}" if parameter.name in std else ""
-        known = "; not known from the test" if parameter.name in model.not_known else known
-        yield parameter, float(value), f"{parameter.meaning}{known}"
+        yield parameter, float(value), f"{parameter.meaning}{known_text(model, parameter.name)}"
+
+
+def known_text(model: ExportedModel, name: str) -> str:
+    """Return how well a parameter is known, as the end of its description; nothing for one that was held."""
+    if name in model.not_known:
+        return "; not known from the test"
+    if name in model.intervals:
+        lower, upper = model.intervals[name]
+        return f"; 95 % interval {lower:.3g} to {upper:.3g}"
+    return f"; standard deviation {model.std[name]:.3g}" if name in model.std else ""

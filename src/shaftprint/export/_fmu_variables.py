@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from shaftprint.export._c_text import identifier
+from shaftprint.export._described import known_text
 from shaftprint.export._fmu_equations import FmuEquations
 from shaftprint.export._model import ExportedModel
 
@@ -120,18 +121,15 @@ def _settings(equations: FmuEquations) -> Iterator[Variable]:
 
 
 def _parameters(model: ExportedModel, equations: FmuEquations) -> Iterator[Variable]:
-    std = model.std
     for i, parameter in enumerate(model.structure.parameters):
         if parameter.name in equations.ready.gone:
             continue
-        known = f"; standard deviation {std[parameter.name]:.3g}" if parameter.name in std else ""
-        known = "; not known from the test" if parameter.name in model.not_known else known
         yield Variable(
             name=structured_name(parameter.name),
             reference=equations.references["PARAMETER"] + i,
             causality="parameter",
             variability="tunable",
-            meaning=f"{parameter.meaning}{known}",
+            meaning=f"{parameter.meaning}{known_text(model, parameter.name)}",
             unit=parameter.unit,
             start=float(model.values[i]),
         )

@@ -1,6 +1,7 @@
 """What is exported: a structure with its values, where it holds and how well it is known."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -31,6 +32,8 @@ class ExportedModel:
     """Their covariance, shape (uncertain, uncertain); None where there are none."""
     not_known: tuple[str, ...] = ()
     """Parameters of which the test said nothing."""
+    intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """95 % intervals of parameters whose standard deviation does not tell what the interval tells."""
 
     def __post_init__(self) -> None:
         """Check that every number may stand in a file that others compute with.
@@ -94,6 +97,7 @@ def exported_model(fingerprint: Fingerprint, *, of: Structure | None = None) -> 
         engine_speed_rpm=fingerprint.conditions.engine_speed.value,
         shaft_torque_nm=fingerprint.conditions.shaft_torque.value,
         uncertain=uncertain,
+        intervals={q.name: q.interval_95 for q in fingerprint.parameters if q.interval_95 and q.stated_std is None},
         covariance=frozen_float(fingerprint.covariance_of(uncertain)),
         not_known=found.not_known,
     )

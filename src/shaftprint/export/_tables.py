@@ -57,7 +57,7 @@ def quantity_row(quantity: Quantity) -> Row:
         "name": quantity.name,
         "unit": quantity.unit,
         "value": _finite(quantity.value),
-        "std": _finite(quantity.std),
+        "std": _finite(quantity.stated_std),
         "lower_95": None if open_low else _finite(low),
         "upper_95": None if open_high else _finite(high),
         "interval_from_profile": quantity.interval_95 is not None,

@@ -5,13 +5,10 @@ import numpy as np
 from shaftprint.fingerprint._fingerprint import Quantity
 from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER
-from shaftprint.identify import Budget, Estimate, Identification
-from shaftprint.models import Parameter
+from shaftprint.identify import Budget, Estimate, Identification, Profile, doubts_of
 
 # A combination is worth naming when it is known this much better, relative to its size, than a parameter in it.
 BETTER_KNOWN = 0.4
-# Parameters whose standard deviation exceeds this share of their size are called hardly known.
-HARDLY_KNOWN = 0.1
 # A misfit that chance alone makes in fewer than this share of the tests is none of chance.
 UNLIKELY = 0.01
 # A search that fewer of its starts agree on than this share may have missed the optimum.
@@ -33,15 +30,22 @@ WHY = {
 
 
 def findings_of(
-    identification: Identification, physical: tuple[Quantity, ...], stated: Budget, left_out: dict[str, str]
+    identification: Identification,
+    physical: tuple[Quantity, ...],
+    stated: Budget,
+    left_out: dict[str, str],
+    profile: Profile | None = None,
 ) -> tuple[str, ...]:
-    """Return the findings of one identification, most important first."""
+    """Return the findings of one identification, most important first.
+
+    What is hardly known is decided by the rule of the verdict, with the same profile likelihood.
+    """
     return (
         *_stability(identification),
         *_misfit(identification),
         *_bounds(identification),
         *_search(identification),
-        *_hardly_known(identification),
+        *_hardly_known(identification, profile),
         *_known_beforehand(identification, stated),
         *_gauge_zero(physical),
         *_against_expected(physical),
@@ -92,23 +96,18 @@ def _search(identification: Identification) -> list[str]:
     return [f"Only {reached} of {starts} starts reached the optimum: use more starts."]
 
 
-def _hardly_known(identification: Identification) -> list[str]:
+def _hardly_known(identification: Identification, profile: Profile | None) -> list[str]:
+    """Return the parameters that the verdict does not trust, with the combinations that are known better."""
+    doubts = doubts_of(identification, identification.parameters, profile)
     found = []
-    for parameter, estimate in zip(identification.structure.free, identification.parameters, strict=True):
-        sharp = estimate.std <= HARDLY_KNOWN * _size(parameter, estimate)
-        if sharp or estimate.name in identification.settings.priors:
+    for estimate in identification.parameters:
+        if estimate.name not in doubts or estimate.name in identification.settings.priors or estimate.at_bound:
             continue
         text = f"{estimate.name} = {_written(estimate)} is hardly known from this test"
         better = [c for c in identification.combinations if _is_better(c, estimate, identification)]
         known = ", ".join(f"{c.name} = {_written(c)}" for c in better)
         found.append(text + (f"; known is {known}." if better else "."))
     return found
-
-
-def _size(parameter: Parameter, estimate: Estimate) -> float:
-    """Return what a deviation is compared with: the value, or the range of a parameter that may have either sign."""
-    either_sign = parameter.lower < 0.0 < parameter.upper
-    return max(abs(estimate.value), parameter.upper - parameter.lower if either_sign else 0.0)
 
 
 def _is_better(combination: Estimate, estimate: Estimate, identification: Identification) -> bool:

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Final, Literal, Self, TypeAlias
@@ -16,9 +17,12 @@ from shaftprint.files import written_whole
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._vessel_fields import FieldValue
 from shaftprint.identify import Budget, Prior, Verdict
+from shaftprint.normal import NORMAL_95
 from shaftprint.publication import complete
 
 SCHEMA_VERSION: Final = 1
+# A standard deviation and an interval that differ by more than this factor tell different stories.
+ALIKE: Final = 2.0
 
 
 class _Record(BaseModel):
@@ -60,6 +64,21 @@ class Quantity(_Record):
     """Standard deviation of that value."""
     meaning: str = ""
     """What it stands for."""
+
+    @property
+    def stated_std(self) -> float | None:
+        """The standard deviation where it tells what the interval tells; None where only the interval should be shown.
+
+        To first order a standard deviation at a bound, or where the likelihood is far from a parabola, is several times
+        too large or too small.
+        """
+        if self.at_bound:
+            return None
+        if self.interval_95 is None or not math.isfinite(self.std) or any(self.interval_open):
+            return self.std
+        half = (self.interval_95[1] - self.interval_95[0]) / 2.0
+        alike = half / ALIKE <= NORMAL_95 * self.std <= half * ALIKE
+        return self.std if alike else None
 
 
 class SourceFile(_Record):

@@ -57,7 +57,7 @@ def physical_numbers(
     """Return the physical values that a fit gives, as numbers that follow from its parameters."""
     structure = identification.structure
     named = structure.named(identification.own_values())
-    scale = vessel.sensors.shaft_torque.scale_std_fraction or 0.0
+    scale = vessel.sensors.shaft_torque.scale_std
     plans = (*_inertias(working_point, vessel), *_governor_actions(working_point))
     found = []
     for needs, plan in plans:
@@ -154,9 +154,7 @@ def _gauge_zero(structure: Structure, working_point: "WorkingPoint", vessel: "Ve
         of=lambda named: PERCENT * (IDEAL_SLOPE / named["k_q"] - 1.0),
         meaning="zero offset of the torque gauge, or constant friction, over the working-point torque",
     )
-    stated_nm = vessel.sensors.shaft_torque.zero_std_nm
-    if stated_nm is None:
-        return (PhysicalNumber(number=number),)
+    stated_nm = vessel.sensors.shaft_torque.zero_std
     stated = PERCENT * stated_nm / working_point.shaft_torque_nm
     return (PhysicalNumber(number=number, expected=0.0, expected_std=stated),)
 
@@ -191,7 +189,7 @@ def _torque_coefficient(slope: float | None, working_point: "WorkingPoint", vess
 def _shares_of_coefficient(working_point: "WorkingPoint", vessel: "Vessel", *, finds_zero: bool) -> dict[str, float]:
     """Return the change of the torque coefficient for one standard deviation of each source, over its size."""
     sensor, torque = vessel.sensors.shaft_torque, working_point.shaft_torque_nm
-    shares = {"gauge scale": sensor.scale_std_fraction or 0.0}
+    shares = {"gauge scale": sensor.scale_std}
     if not finds_zero:
-        shares["gauge zero"] = (sensor.zero_std_nm or 0.0) / torque
+        shares["gauge zero"] = sensor.zero_std / torque
     return shares | {LOAD_WANDER: working_point.load_std}

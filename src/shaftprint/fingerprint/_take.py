@@ -12,6 +12,7 @@ import shaftprint
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import FingerprintError
+from shaftprint.fingerprint._assumptions import assumptions_of
 from shaftprint.fingerprint._calibration import calibration_quantities
 from shaftprint.fingerprint._contradictions import contradictions
 from shaftprint.fingerprint._findings import findings_of
@@ -89,6 +90,7 @@ def take_fingerprint(
         signal_to_noise=signal_to_noise,
         reasons=contradictions(physical, signals.working_point, vessel),
         further=[_estimate(q) for q in (*physical, *margin, conditions.engine_speed, conditions.shaft_torque)],
+        assumptions=assumptions_of(identification, vessel),
     )
     return Fingerprint(
         shaftprint_version=shaftprint.__version__,
@@ -111,7 +113,7 @@ def take_fingerprint(
         calibration=calibration_quantities(signals),
         quality=_quality(identification, signals, signal_to_noise),
         verdict=verdict,
-        findings=findings_of(identification, physical, stated, left_out),
+        findings=findings_of(identification, physical, stated, left_out, profiled),
     )
 
 

@@ -78,6 +78,7 @@ from shaftprint.identify.judgement import (
     Suspect,
     Verdict,
     assess,
+    doubts_of,
     report_search,
     suspects_of,
 )
@@ -180,6 +181,7 @@ __all__ = [
     "compare_fits",
     "compare_structures",
     "criteria_of",
+    "doubts_of",
     "estimate_covariance",
     "expect_comparable",
     "expected_response",

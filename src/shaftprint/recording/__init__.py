@@ -17,7 +17,7 @@ from shaftprint.recording._cut import cut
 from shaftprint.recording._from_arrays import Samples, recording_from_arrays
 from shaftprint.recording._levels import Levels
 from shaftprint.recording._read import read_recording
-from shaftprint.recording._recording import Recording
+from shaftprint.recording._recording import CLOCK_MAPS, Recording
 from shaftprint.recording._write import write_recording
 from shaftprint.recording._writer import RecordingWriter
 from shaftprint.recording.readers import READERS, Reader, ReaderFunction
@@ -33,6 +33,7 @@ from shaftprint.recording.writers import (
 )
 
 __all__ = [
+    "CLOCK_MAPS",
     "NATIVE_ENDINGS",
     "READERS",
     "Channel",

@@ -12,6 +12,9 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._levels import Levels, levels_of
 
+CLOCK_MAPS = "clock_maps"
+"""Name of the attribute that holds the clock maps of a recording that was merged of several."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Recording:

@@ -14,8 +14,9 @@ if TYPE_CHECKING:
     from shaftprint.identify import Identification
 
 INTERVAL_NOTE = (
-    "± is one standard deviation. The 95 % interval is that of the profile likelihood where there is one; an open end, "
-    "marked with an asterisk, is a bound of the search and not a result."
+    "± is one standard deviation; it is left out where it does not tell what the interval tells. The 95 % interval is "
+    "that of the profile likelihood where there is one; an open end, marked with an asterisk, is a bound of the search "
+    "and not a result."
 )
 
 
@@ -50,7 +51,7 @@ def _quantities(caption: str, quantities: "Sequence[Quantity]", truth: Mapping[s
         lower, upper = limits(quantity)
         cells: tuple[Cell, ...] = (
             symbol_html(quantity.name),
-            with_deviation(quantity.value, quantity.std) + (" (at its bound)" if quantity.at_bound else ""),
+            _value_text(quantity) + (" (at its bound)" if quantity.at_bound else ""),
             _interval_text(quantity),
         )
         if told:
@@ -59,6 +60,12 @@ def _quantities(caption: str, quantities: "Sequence[Quantity]", truth: Mapping[s
             cells = (*cells, plain(true, decimals_of(true, quantity.std)), inside)
         rows.append((*cells, unit_text(quantity.unit), quantity.meaning))
     return Table(caption=caption, header=header, rows=tuple(rows), note=INTERVAL_NOTE)
+
+
+def _value_text(quantity: "Quantity") -> str:
+    """Return value and standard deviation; the value alone where only its interval tells how well it is known."""
+    std = quantity.stated_std
+    return rounded(quantity.value) if std is None else with_deviation(quantity.value, std)
 
 
 def limits(quantity: "Quantity") -> tuple[float, float]:

@@ -21,6 +21,9 @@ FAR, TOO_FAR = 2.0, 3.5
 COMMON_ZERO = 2.0
 # Share of the test lines that may be left out before anyone should look.
 LEFT_OUT = 0.25
+# Share of the numbers that must be known before all is fine.
+MOST = 2.0 / 3.0
+PERCENT = 100.0
 NUMBERS = (
     ("I_dn", "Inertia behind the torque gauge: propeller, shaft, entrained water"),
     ("I_up", "Inertia before the torque gauge: engine, coupling, gearbox"),
@@ -45,6 +48,7 @@ def cover_of(fingerprint: "Fingerprint", validations: "Sequence[Validation]" = (
         _usable(fingerprint),
         *_stable(fingerprint),
         *_inertia(fingerprint),
+        *_propeller(fingerprint),
         *_gauge(fingerprint),
         _foretells(validations),
         _measured(fingerprint),
@@ -69,12 +73,14 @@ def _usable(fingerprint: "Fingerprint") -> Card:
     question = "Can the result be used?"
     if not fingerprint.verdict.trustworthy:
         return Card(question=question, state="bad", sentence=fingerprint.verdict.reason)
-    trusted, others = len(fingerprint.verdict.trusted), len(fingerprint.verdict.not_trusted)
-    words = (
-        f"The model explains the measured lines within their noise, and no other values do so. {trusted} of "
-        f"{trusted + others} numbers are known well enough to be used."
-    )
-    return Card(question=question, state="fine", sentence=words)
+    verdict = fingerprint.verdict
+    trusted, others = len(verdict.trusted), len(verdict.not_trusted)
+    count = f"{trusted} of {trusted + others} numbers are known well enough to be used."
+    if verdict.reasons:
+        return Card(question=question, state="look", sentence=f"Only in part. {verdict.reasons[0].sentence} {count}")
+    words = f"The model explains the measured lines within their noise, and no other values do so. {count}"
+    many = trusted >= MOST * (trusted + others)
+    return Card(question=question, state="fine" if many else "look", sentence=words)
 
 
 def _stable(fingerprint: "Fingerprint") -> list[Card]:
@@ -94,8 +100,9 @@ def _stable(fingerprint: "Fingerprint") -> list[Card]:
     if found and loop != "unstable":
         words += f" The governor gain may grow by {_ranged(found[0])} before the speed hunts; 2 or more is usual."
     question = "Does the engine hold its speed without hunting?"
-    if not fingerprint.verdict.trustworthy and loop != "unstable":
-        return [Card(question=question, state="open", sentence=f"The model is not trustworthy. {words}")]
+    doubt = _doubt(fingerprint, "gain margin")
+    if doubt and loop != "unstable":
+        return [Card(question=question, state="open", sentence=f"{doubt} {words}")]
     return [Card(question=question, state=state, sentence=words)]
 
 
@@ -119,12 +126,51 @@ def _inertia(fingerprint: "Fingerprint") -> list[Card]:
         f"vibration calculation {expected_text(quantity)}."
     )
     spread = (quantity.std**2 + (quantity.expected_std or 0.0) ** 2) ** 0.5
-    if not fingerprint.verdict.trustworthy or not 0.0 < spread < float("inf"):
-        return [Card(question=question, state="open", sentence=words)]
+    doubt = _doubt(fingerprint, "I_dn")
+    if doubt or not 0.0 < spread < float("inf"):
+        return [Card(question=question, state="open", sentence=f"{doubt} {words}".strip())]
     apart = abs(quantity.value - (quantity.expected or 0.0)) / spread
     state: State = "fine" if apart <= FAR else "look" if apart <= TOO_FAR else "bad"
     reason = "" if state == "fine" else f" That is {plain(apart, 1)} standard deviations apart."
     return [Card(question=question, state=state, sentence=words + reason)]
+
+
+def _propeller(fingerprint: "Fingerprint") -> list[Card]:
+    """Return whether the propeller takes the torque that the vessel file expects; nothing where it expects none."""
+    found = [q for q in fingerprint.physical if q.name == "K_Q" and q.expected]
+    if not found:
+        return []
+    (quantity,) = found
+    question = "Does the propeller take the torque that it should?"
+    share = PERCENT * (quantity.value / (quantity.expected or quantity.value) - 1.0)
+    words = (
+        f"Its torque coefficient is {with_deviation(quantity.value, quantity.std)}, {plain(share, 1)} % beside the "
+        f"{expected_text(quantity)} of the vessel file."
+    )
+    doubt = _doubt(fingerprint, "K_Q")
+    if doubt or not quantity.std < float("inf"):
+        return [Card(question=question, state="open", sentence=f"{doubt} {words}".strip())]
+    if _is_off(quantity):
+        words += " The propeller, its inflow or the torque gauge has changed."
+        return [Card(question=question, state="look", sentence=words)]
+    return [Card(question=question, state="fine", sentence=words)]
+
+
+def _is_off(quantity: "Quantity") -> bool:
+    """Return whether a number is farther from the vessel file than its deviations let expect."""
+    if not quantity.expected:
+        return False
+    spread = (quantity.std**2 + (quantity.expected_std or 0.0) ** 2) ** 0.5
+    return bool(abs(quantity.value - quantity.expected) > TOO_FAR * spread)
+
+
+def _doubt(fingerprint: "Fingerprint", name: str) -> str:
+    """Return that a number is not trusted, as a sentence; nothing where it is."""
+    verdict = fingerprint.verdict
+    if not verdict.trustworthy:
+        return "The model is not trustworthy."
+    reason = verdict.not_trusted.get(name)
+    return f"It cannot be told: {reason}." if reason else ""
 
 
 def _gauge(fingerprint: "Fingerprint") -> list[Card]:
@@ -186,7 +232,9 @@ def _numbers(fingerprint: "Fingerprint") -> list[Table]:
         lower, upper = limits(quantity)
         unit = unit_text(quantity.unit)
         value = f"{plain(quantity.value, decimals_of(quantity.value, quantity.std))} {unit}".strip()
-        rows.append((words, value, interval(lower, upper, quantity.std), expected_text(quantity)))
+        expected = expected_text(quantity) + (" (!)" if _is_off(quantity) else "")
+        marked = words if not _doubt(fingerprint, name) else f"{words} (not to be used)"
+        rows.append((marked, value, interval(lower, upper, quantity.std), expected))
     if not rows:
         return []
     header = ("what", "found", "95 % interval", "vessel file")

@@ -13,14 +13,17 @@ from shaftprint.signals._calibrate import calibrate, calibrate_through_wander
 from shaftprint.signals._compare import compare_speeds
 from shaftprint.signals._condition import Conditioned, conditioned
 from shaftprint.signals._dc_scale import DcScale, dc_scale
+from shaftprint.signals._flat_top import expect_whole_crests
 from shaftprint.signals._gaps import Coverage, Gap, within
 from shaftprint.signals._match import expect_campaign, left_out
 from shaftprint.signals._outliers import fault_limits
 from shaftprint.signals._pick_up import PickUp, read_pick_up
 from shaftprint.signals._rack import rack_signal, read_rack
+from shaftprint.signals._rates import expect_one_rate
 from shaftprint.signals._ship_speed import read_ship_speed, ship_speed_signal
 from shaftprint.signals._signals import RackSignal, Repair, SetPointCalibration, ShipSpeedSignal, Signals, WorkingPoint
 from shaftprint.signals._sources import Clock, Mode, Sources, common_clock, find_sources
+from shaftprint.signals._steadiness import expect_steady_gauge
 from shaftprint.signals._steady import SteadyStretch, steady_stretches
 from shaftprint.signals._steps import find_step_delays
 from shaftprint.signals._torque import expect_moving_torque, judge_saturation, torque_limits
@@ -242,6 +245,7 @@ def _put_together(
     rate_hz, start_s = clock.rate_hz, clock.start_s
     speeds = tuple(pick_up.speed for pick_up in read.pick_ups)
     speed, torque, n_set = speeds[0].speed_rev_s, read.torque_nm, read.volts
+    reasons = [*expect_one_rate(recording, sources.every), *expect_whole_crests(sources.torque)]
     coverage = Coverage(start_s=start_s, stop_s=start_s + clock.count / rate_hz, step_s=1.0 / rate_hz, gaps=read.gaps)
     lost = left_out(campaign, coverage, name=str(recording.path))
     grid = {"rate_hz": rate_hz, "start_s": start_s}
@@ -268,6 +272,16 @@ def _put_together(
         )
         working_point = working_point_of_test(speed, torque, at_v=about_v, at=(at[0], at[1]), **grid, coverage=coverage)
     strange = expect_plausible(working_point, vessel)
+    if not thesis:
+        reasons += expect_steady_gauge(
+            stretches,
+            campaign,
+            speed_rev_s=speed,
+            torque_nm=torque,
+            **grid,
+            channel=vessel.sensors.shaft_torque.channel,
+            coverage=coverage,
+        )  # fmt: skip
     n_set *= calibration.slope_rev_s_per_v
     n_set += calibration.intercept_rev_s
     scale = DcScale(value=1.0, std=0.0, findings=())
@@ -291,6 +305,7 @@ def _put_together(
         gaps=read.gaps,
         mode=clock.mode,
         findings=(*lost, *read.findings, *mismatches, *strange, *differences, *scale.findings, *moored, *missed),
+        reasons=tuple(reasons),
         recording_sha256=recording.sha256,
         recording_name=recording.path.name,
         set_point_channel=channel,

@@ -114,13 +114,13 @@ def _disturbances(start_s: FloatArray, stop_s: FloatArray, shortest_s: float) ->
     length = stop_s - start_s
     factors: list[FloatArray] = []
     for time_s in np.geomspace(_SHORTEST_SHARE * shortest_s, longest_s, _TIMES):
-        wander = _window_covariance(start_s, stop_s, time_s)
+        wander = window_covariance(start_s, stop_s, time_s)
         white = np.diag(_WHITE_S / length)
         factors += [np.asarray(np.linalg.cholesky(wander + share * white)) for share in _WHITE_SHARES]
     return factors
 
 
-def _window_covariance(start_s: FloatArray, stop_s: FloatArray, time_s: float) -> FloatArray:
+def window_covariance(start_s: FloatArray, stop_s: FloatArray, time_s: float) -> FloatArray:
     """Return the covariance of window means of a process of variance 1 and autocorrelation ``exp(-t / T)``.
 
     The double integral of the autocorrelation over two windows, by its second antiderivative ``T |t| + T^2 exp(-t/T)``.

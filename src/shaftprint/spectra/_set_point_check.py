@@ -8,6 +8,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import ResponseError
+from shaftprint.reasons import Reason
 from shaftprint.spectra._stretches import stretch_periods
 
 if TYPE_CHECKING:
@@ -21,6 +22,8 @@ _STRETCH_TOLERANCE = 0.25
 _STRETCH_LIMIT = 0.5
 _CLEAN_DB = 40.0
 _NEIGHBOUR_GAP_DB = 20.0
+# Held steps and quantisation of a set point stay far below this.
+_HARMONIC_LIMIT = 0.03
 _HZ_PER_RAD_S = 1.0 / (2.0 * np.pi)
 
 
@@ -117,6 +120,37 @@ def check_set_point(
             f"lines beside it have {typical_db:.1f} dB"
         )
     return SetPointFinding(remarks=tuple(remarks), usable=offset_bins < _FREQUENCY_LIMIT_BINS)
+
+
+def shape_reasons(lines: Sequence["LineMeasurement"]) -> tuple[Reason, ...]:
+    """Return a reason where the recorded set point is no sine: it was cut off, or another one was asked for.
+
+    Parameters
+    ----------
+    lines
+        One entry a line; the first channel is the set point.
+    """
+    bent = [line for line in lines if _harmonic_share(line) > _HARMONIC_LIMIT]
+    if not bent:
+        return ()
+    worst = max(bent, key=_harmonic_share)
+    share = f"{100.0 * _harmonic_share(worst):.1f} % of it at {worst.window.line}"
+    return (
+        Reason(
+            kind="set-point shape",
+            where=worst.window.line,
+            sentence=(
+                f"The set point is no sine as the campaign asks: its harmonics are {share}, and too much at "
+                f"{len(bent)} lines; check whether its channel is cut off at a highest or lowest value."
+            ),
+        ),
+    )
+
+
+def _harmonic_share(line: "LineMeasurement") -> float:
+    """Return the size of harmonics 2 and 3 of the set point over its sine; 0 where they were not fitted."""
+    size = float(np.sqrt(np.nansum(np.abs(line.harmonic[:, 0]) ** 2)))
+    return size / max(float(np.abs(line.amplitude[0])), np.finfo(np.float64).tiny)
 
 
 def _wrong_sine(line: "LineMeasurement", found: float, expected: float, rpm: float) -> str:

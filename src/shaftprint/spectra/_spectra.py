@@ -8,6 +8,8 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ResponseError
+from shaftprint.reasons import Reason
+from shaftprint.spectra._clock_check import clock_reasons
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._harmonics import Harmonics, collect_harmonics
 from shaftprint.spectra._line_fit import SineMethod, WindowSamples, cut_window
@@ -15,7 +17,8 @@ from shaftprint.spectra._line_measurement import LineMeasurement, measure_line
 from shaftprint.spectra._line_responses import response_of_lines
 from shaftprint.spectra._load_drift import LoadDrift, load_drift
 from shaftprint.spectra._rack_line import cut_rack
-from shaftprint.spectra._set_point_check import amplitude_remark, check_frequency_unit, check_set_point
+from shaftprint.spectra._set_point_check import amplitude_remark, check_frequency_unit, check_set_point, shape_reasons
+from shaftprint.spectra._shift_check import shift_reasons
 from shaftprint.spectra._ship_line import shows
 from shaftprint.spectra._signal_to_noise import SignalToNoise, signal_to_noise
 from shaftprint.spectra._sine_fit import WholePeriodSine
@@ -125,19 +128,21 @@ def estimate_spectra(
     remarks, usable = _judge(signals, campaign, measurements, sensor, ratios.local_db[:, 0])
     drift = load_drift(measurements, speed=used_channels[1], torque=used_channels[2])
     thesis = signals.mode == "thesis"
+    against = () if thesis else _against(cuts, measurements, sensor, used_channels)
     used = np.ones_like(usable) if thesis else usable
     load = np.ones(len(measurements)) if thesis else 1.0 + drift.delta
+    response = replace(
+        response_of_lines(signals, measurements, channels=used_channels, sensor=sensor, load=load),
+        used=used,
+        remarks=remarks,
+        load=load,
+        averaging_s=sensor.averaging_s,
+        hold_s=sensor.hold_s,
+        pick_up_delay_s=sensor.delay_s,
+    )
+    shifted = () if thesis else shift_reasons(response)
     return Spectra(
-        response=replace(
-            response_of_lines(signals, measurements, channels=used_channels, sensor=sensor, load=load),
-            used=used,
-            remarks=remarks,
-            load=load,
-            averaging_s=sensor.averaging_s,
-            hold_s=sensor.hold_s,
-            pick_up_delay_s=sensor.delay_s,
-            reasons=signals.reasons,
-        ),
+        response=replace(response, reasons=(*signals.reasons, *against, *shifted)),
         windows=tuple(line.window for line in measurements),
         signal_to_noise=ratios,
         harmonics=collect_harmonics(measurements, speed=used_channels[1], torque=used_channels[2]),
@@ -145,6 +150,14 @@ def estimate_spectra(
         speed=sensor.name,
         remarks=remarks | silent | left_out,
     )
+
+
+def _against(
+    cuts: Sequence[WindowSamples], lines: Sequence[LineMeasurement], sensor: "SpeedSignal", places: Sequence[int]
+) -> tuple[Reason, ...]:
+    """Return what the sines say against clocks and set point."""
+    channels = {"the set point": places[0], f"the speed {sensor.name}": places[1], "the shaft torque": places[2]}
+    return (*clock_reasons(cuts, lines, channels=channels), *shape_reasons(lines))
 
 
 def _speed_signal(signals: "Signals", speed: str | None) -> "SpeedSignal":

@@ -49,7 +49,7 @@ def limit_numbers(fit: Identification, working_point: WorkingPoint, vessel: Vess
 
 def _numbers(estimate: Estimate, point: WorkingPoint, vessel: Vessel) -> Iterator[LimitNumber]:
     doubt = point.shaft_torque_std_nm / point.shaft_torque_nm
-    gauge = vessel.sensors.shaft_torque.scale_std_fraction or 0.0
+    gauge = vessel.sensors.shaft_torque.scale_std
     brake_nm = point.shaft_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
     speed = point.engine_speed_rev_s
     curve = np.array(vessel.engine.full_load_speed_rpm), np.array(vessel.engine.full_load_torque_nm)

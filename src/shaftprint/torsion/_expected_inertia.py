@@ -114,7 +114,7 @@ def expected_inertia(
     speed = rev_s_from_rpm(point.engine_speed_rpm) if engine_speed_rev_s is None else engine_speed_rev_s
     torque = point.shaft_torque_nm if shaft_torque_nm is None else shaft_torque_nm
     factor = 2.0 * math.pi * speed / vessel.gearbox.ratio / torque
-    scale = vessel.sensors.shaft_torque.scale_std_fraction or 0.0
+    scale = vessel.sensors.shaft_torque.scale_std
     sides = {side: [row for row in vessel.inertia if row.gauge == side] for side, _ in SIDES}
     times = tuple(_time(vessel, sides[side], index, side, factor, scale) for side, index in SIDES)
     return ExpectedInertia(sums=_sums(vessel), times=times, wet=_wet(vessel, sides["downstream"], factor, scale))
@@ -147,7 +147,7 @@ def _sum(
         name=name,
         unit="kg m2",
         value=math.fsum(row.referred_kg_m2(ratio) for row in rows),
-        changes={row.name: row.referred_std_kg_m2(ratio) for row in rows if row.std_kg_m2},
+        changes={row.name: row.referred_std_kg_m2(ratio) for row in rows if row.referred_std_kg_m2(ratio)},
         meaning=meaning,
     )
 

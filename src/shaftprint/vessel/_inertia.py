@@ -5,6 +5,7 @@ from typing import Literal, Self
 from pydantic import model_validator
 
 from shaftprint.settings import Name, NotNegativeNumber, Settings
+from shaftprint.vessel._usual import INERTIA_STD
 
 
 class InertiaRow(Settings):
@@ -15,7 +16,7 @@ class InertiaRow(Settings):
     inertia_kg_m2: NotNegativeNumber
     """Mass moment of inertia [kg m2] at the speed of its own shaft."""
     std_kg_m2: NotNegativeNumber | None = None
-    """Standard deviation [kg m2] of the inertia at its own shaft; absent where nobody has judged it."""
+    """Standard deviation [kg m2] of the inertia at its own shaft; 5 % is taken where nobody has judged it."""
     shaft: Literal["engine", "propeller"]
     """Which shaft it turns with."""
     gauge: Literal["upstream", "downstream"]
@@ -39,8 +40,9 @@ class InertiaRow(Settings):
         return self.inertia_kg_m2 * self._factor(ratio)
 
     def referred_std_kg_m2(self, ratio: float) -> float:
-        """Return the standard deviation referred to the propeller shaft [kg m2]; 0 where absent."""
-        return (self.std_kg_m2 or 0.0) * self._factor(ratio)
+        """Return the standard deviation referred to the propeller shaft [kg m2], as stated or as usual."""
+        std = INERTIA_STD * self.inertia_kg_m2 if self.std_kg_m2 is None else self.std_kg_m2
+        return std * self._factor(ratio)
 
     def _factor(self, ratio: float) -> float:
         return ratio**2 if self.shaft == "engine" else 1.0

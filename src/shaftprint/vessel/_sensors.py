@@ -16,6 +16,7 @@ from shaftprint.settings import (
     Settings,
 )
 from shaftprint.units import M_S_PER_KNOT
+from shaftprint.vessel._usual import GAUGE_SCALE_STD, GAUGE_ZERO_SHARE, LATENCY_STD_S
 
 
 class SpeedSensor(Settings):
@@ -74,15 +75,15 @@ class ShaftTorqueSensor(Settings):
     scale_nm_per_unit: Number
     """Torque for one unit of the channel [N m per unit]; negative where the gauge is mounted reversed."""
     scale_std_fraction: NotNegativeNumber | None = None
-    """Relative standard deviation of the scale."""
+    """Relative standard deviation of the scale; see ``scale_std`` where it is not stated."""
     zero_nm: Number
     """Torque that the scaled channel shows when there is none [N m]; it is subtracted."""
     zero_std_nm: NotNegativeNumber | None = None
-    """Standard deviation of the zero [N m]."""
+    """Standard deviation of the zero [N m]; see ``zero_std`` where it is not stated."""
     latency_s: NotNegativeNumber
     """Time by which the telemetry is late [s]."""
     latency_std_s: NotNegativeNumber | None = None
-    """Standard deviation of the latency [s]."""
+    """Standard deviation of the latency [s]; see ``latency_std`` where it is not stated."""
     full_scale_nm: PositiveNumber
     """Largest torque that the telemetry can pass on [N m], either sign."""
     resolution_nm: PositiveNumber | None = None
@@ -93,6 +94,21 @@ class ShaftTorqueSensor(Settings):
         if self.scale_nm_per_unit == 0.0:
             raise ValueError("expected scale_nm_per_unit other than 0, found 0.")
         return self
+
+    @property
+    def scale_std(self) -> float:
+        """Relative standard deviation of the scale, as stated or as usual."""
+        return GAUGE_SCALE_STD if self.scale_std_fraction is None else self.scale_std_fraction
+
+    @property
+    def zero_std(self) -> float:
+        """Standard deviation of the zero [N m], as stated or as usual."""
+        return GAUGE_ZERO_SHARE * self.full_scale_nm if self.zero_std_nm is None else self.zero_std_nm
+
+    @property
+    def latency_std(self) -> float:
+        """Standard deviation of the latency [s], as stated or as usual."""
+        return LATENCY_STD_S if self.latency_std_s is None else self.latency_std_s
 
     def torque_nm(self, reading: ArrayLike) -> FloatArray:
         """Return the shaft torque [N m] for readings in the channel's unit, of any shape."""

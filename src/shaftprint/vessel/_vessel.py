@@ -15,6 +15,7 @@ from shaftprint.vessel._inertia import InertiaRow
 from shaftprint.vessel._links import ShaftLink, wrong_links
 from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, WorkingPoint
 from shaftprint.vessel._sensors import Logger, Sensors
+from shaftprint.vessel._usual import INERTIA_STD
 
 
 class Vessel(Settings):
@@ -80,6 +81,22 @@ class Vessel(Settings):
     def inertia_downstream_std_kg_m2(self) -> float:
         """Standard deviation of the downstream inertia [kg m2], rows taken as independent."""
         return self._inertia_std_kg_m2("downstream")
+
+    @property
+    def taken_as_usual(self) -> tuple[str, ...]:
+        """Standard deviations that the file does not state, each with the value that is taken, in words."""
+        gauge, field = self.sensors.shaft_torque, "sensors.shaft_torque"
+        taken = []
+        if gauge.scale_std_fraction is None:
+            taken.append(f"{field}.scale_std_fraction = {gauge.scale_std:g}")
+        if gauge.zero_std_nm is None:
+            taken.append(f"{field}.zero_std_nm = {gauge.zero_std:g}")
+        if gauge.latency_std_s is None:
+            taken.append(f"{field}.latency_std_s = {gauge.latency_std:g}")
+        silent = [row.name for row in self.inertia if row.std_kg_m2 is None]
+        if silent:
+            taken.append(f"std_kg_m2 of {', '.join(silent)} = {INERTIA_STD:g} of the inertia")
+        return tuple(taken)
 
     def _inertia_kg_m2(self, gauge: Literal["upstream", "downstream"]) -> float:
         ratio = self.gearbox.ratio

@@ -5,6 +5,7 @@ from shaftprint.identify.judgement._phrases import probability
 from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.identify.judgement._search_report import SearchReport, report_search
 from shaftprint.identify.judgement._suspects import Suspect, suspects_of
+from shaftprint.identify.judgement._trust import doubts_of
 from shaftprint.identify.judgement._verdict import Verdict, assess
 
 __all__ = [
@@ -13,6 +14,7 @@ __all__ = [
     "Suspect",
     "Verdict",
     "assess",
+    "doubts_of",
     "explained",
     "misfit_words",
     "probability",

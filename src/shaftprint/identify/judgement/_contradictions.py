@@ -15,7 +15,7 @@ from shaftprint.reasons import Reason, ReasonKind
 # So many standard deviations from what was known are no chance: once in 2000 tests.
 PULLED = 3.5
 # A prior that the data hardly sharpen leaves nothing to divide by: the rest is rounding and curvature.
-LEAST_SHARE = 0.1
+LEAST_SHARE = 0.3
 # Parameters that say what a sensor is off by; without a prior they are expected at their nominal value, exactly.
 NOMINAL = {"c_set": 1.0}
 KINDS: dict[str, ReasonKind] = {"t_gauge": "gauge latency", "c_set": "set-point scale"}
@@ -28,6 +28,7 @@ def contradicted_priors(identification: Identification) -> tuple[Reason, ...]:
 
 def _pulled(identification: Identification) -> Iterator[Reason]:
     priors = identification.settings.priors
+    meanings = {parameter.name: parameter.meaning for parameter in identification.objective.free_parameters}
     for estimate in identification.parameters:
         if estimate.name in priors:
             prior = priors[estimate.name]
@@ -40,15 +41,15 @@ def _pulled(identification: Identification) -> Iterator[Reason]:
         else:
             continue
         if distance > PULLED:
-            yield _reason(estimate, known, float(distance))
+            yield _reason(estimate, meanings[estimate.name], known, float(distance))
 
 
-def _reason(estimate: Estimate, known: str, distance: float) -> Reason:
+def _reason(estimate: Estimate, meaning: str, known: str, distance: float) -> Reason:
     return Reason(
         kind=KINDS.get(estimate.name, "prior"),
         where=estimate.name,
         sentence=(
-            f"The data contradict what was known of {estimate.name}: {known} was expected, "
+            f"The data contradict what was known of {estimate.name} ({meaning}): {known} was expected, "
             f"{number(estimate.value, estimate.unit)} +/- {number(estimate.std, estimate.unit, digits=2)} is the "
             f"compromise, {distance:.1f} standard deviations away; check it in the vessel file, and what else moves it."
         ),

@@ -63,6 +63,7 @@ HANGING: Mapping[ReasonKind, tuple[frozenset[Role], str]] = {
         "it hangs on a torque gauge and a load that stay the same during the test",
     ),
     "gauge scale": (frozenset(("torque", "governor", "part of delay")), "it hangs on the scale of the torque gauge"),
+    "set-point shape": (ALL - {"speed"}, "it hangs on a set point that was not recorded as it was"),
     "set-point scale": (ALL - {"speed"}, "it hangs on the scale of the set point"),
     "gauge latency": (ALL - {"speed", "set point"}, "it hangs on the latency of the torque gauge"),
     "prior": (ALL - {"speed", "set point"}, "it hangs on what was known before the test, which the data contradict"),

@@ -18,7 +18,7 @@ def doubts_of(
     identification: Identification,
     numbers: Sequence[Estimate],
     profile: Profile | None,
-    requirements: Requirements,
+    requirements: Requirements | None = None,
 ) -> dict[str, str]:
     """Return, by name, why numbers are not known well enough to be used; nothing of those that are.
 
@@ -28,11 +28,13 @@ def doubts_of(
         Parameters, combinations and what else was made of them.
     profile
         Profile likelihood of the fit; its intervals are then asked instead of the standard deviations.
+    requirements
+        What a number must satisfy.
     """
+    limits = requirements or Requirements()
     intervals = {} if profile is None else profile.intervals
     doubts = {
-        estimate.name: _doubt(identification, estimate, intervals.get(estimate.name), requirements)
-        for estimate in numbers
+        estimate.name: _doubt(identification, estimate, intervals.get(estimate.name), limits) for estimate in numbers
     }
     doubts |= {name: doubts.get(of, "") for name, of in MULTIPLES.items() if name in doubts and not doubts[name]}
     return {name: doubt for name, doubt in doubts.items() if doubt}

@@ -136,6 +136,7 @@ def assess(
                     *(reason.sentence for reason in every),
                     *_lists(trusted, not_trusted, whole=not usable and bool(of_fit)),
                     *cautions,
+                    *(f"Assumed: {assumption}" for assumption in assumptions),
                 )
             )
         ),

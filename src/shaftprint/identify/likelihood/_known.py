@@ -49,15 +49,15 @@ def priors_from_vessel(
         tau = 2.0 * np.pi * inertia * shaft_rev_s / torque
         sources = {
             "TVC": tau * vessel.inertia_upstream_std_kg_m2 / inertia,
-            "gauge scale": -tau * (gauge.scale_std_fraction or 0.0),
+            "gauge scale": -tau * gauge.scale_std,
         }
         sources = {name: float(part) for name, part in sources.items() if part}
         found["tau_up"] = Prior(mean=float(tau), std=float(np.linalg.norm(list(sources.values()))), sources=sources)
-    if "t_gauge" in names and gauge.latency_std_s:
+    if "t_gauge" in names and gauge.latency_std > 0.0:
         found["t_gauge"] = Prior(
             mean=gauge.latency_s if mode == "thesis" else 0.0,
-            std=gauge.latency_std_s,
-            sources={"telemetry latency": gauge.latency_std_s},
+            std=gauge.latency_std,
+            sources={"telemetry latency": gauge.latency_std},
         )
     set_point = vessel.sensors.set_point
     if "t_sp" in names and set_point.latency_s is not None and set_point.latency_std_s is not None:

@@ -1,0 +1,47 @@
+"""Whether the channels of one logger say that they run at one rate."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.reasons import Reason
+from shaftprint.recording import CLOCK_MAPS
+from shaftprint.units import PPM
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel, Recording
+
+# Rates that differ by less are one rate that was rounded; by more, different ones on purpose.
+_LEAST, _MOST = 2e-6, 1e-2
+
+
+def expect_one_rate(recording: "Recording", channels: "Sequence[Channel]") -> tuple[Reason, ...]:
+    """Return a reason for the channel whose rate is nearly, but not quite, that of the others.
+
+    Where recordings were merged, the clocks are known and rates may differ.
+
+    Parameters
+    ----------
+    recording
+        Says whether it was merged.
+    channels
+        Channels of set point, speeds and torque.
+    """
+    if CLOCK_MAPS in recording.attributes:
+        return ()
+    usual = float(np.median([channel.rate_hz for channel in channels]))
+    apart = [channel for channel in channels if _LEAST < abs(channel.rate_hz / usual - 1.0) < _MOST]
+    return tuple(
+        Reason(
+            kind="channel clock",
+            where=channel.name,
+            sentence=(
+                f"The clock of channel {channel.name} is in doubt: its rate of {channel.rate_hz:.9g} Hz differs by "
+                f"{PPM * (channel.rate_hz / usual - 1.0):+.0f} parts per million from the "
+                f"{usual:.9g} Hz of the others; correct rate_hz where one logger wrote them all, merge the recordings "
+                "where two did (shaftprint merge)."
+            ),
+        )
+        for channel in apart
+    )

@@ -1,0 +1,77 @@
+"""Whether speed and torque are shifted against each other, from the ratio of both at the lines.
+
+Behind the gauge are inertia and load: ``M_s / n = (k + j w tau) exp(-j w t)`` with a torque that leads the speed. For
+each delay ``t`` the load ``k`` and the inertia time ``tau`` that fit best are found by least squares. What the
+telemetry or a pick-up really is late by, a few milliseconds, the fit of a structure finds; here the coarse errors are
+named that no structure reaches: samples that were lost in one channel, a latency in the wrong unit.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.reasons import Reason
+from shaftprint.units import MILLI
+
+if TYPE_CHECKING:
+    from shaftprint.spectra._frequency_response import FrequencyResponse
+
+_DELAYS_S = np.arange(-300, 301) * 0.01
+# A delay below this is for the fit to find; one that is named lowers chi-square by as much as five deviations.
+_LEAST_S, _LEAST_FALL = 0.025, 25.0
+# Loads and inertia times that are possible at all.
+_LOADS, _LONGEST_S = (0.5, 4.0), 3.0
+_FEWEST_LINES = 4
+
+
+def shift_reasons(response: "FrequencyResponse") -> tuple[Reason, ...]:
+    """Return a reason where the torque comes later, or earlier, than load and inertia let expect.
+
+    Parameters
+    ----------
+    response
+        Response from the set point to speed ``n`` and torque ``M_s``.
+    """
+    used = response.used
+    if np.count_nonzero(used) < _FEWEST_LINES:
+        return ()
+    places = [response.outputs.index(name) for name in ("n", "M_s")]
+    speed, torque = response.response[places, 0][:, used]
+    variance = np.diagonal(response.covariance, axis1=1, axis2=2)[used]
+    half = len(response.outputs)
+    share = sum(
+        (variance[:, place] + variance[:, half + place]) / np.abs(value) ** 2
+        for place, value in zip(places, (speed, torque), strict=True)
+    )
+    ratio = torque / speed
+    fall = _chi_squares(response.omega_rad_s[used], ratio, np.abs(ratio) * np.sqrt(share / 2.0), response.load[used])
+    best = int(np.argmin(fall))
+    delay_s = float(_DELAYS_S[best])
+    if abs(delay_s) < _LEAST_S or not fall[_DELAYS_S.size // 2] - fall[best] > _LEAST_FALL:
+        return ()
+    return (
+        Reason(
+            kind="gauge latency",
+            where="M_s",
+            sentence=(
+                f"Speed and torque are shifted against each other: the torque comes about {MILLI * delay_s:+.0f} ms "
+                "later than load and inertia let expect; check latency_s of the torque gauge in the vessel file, "
+                "whether the speed pick-up is late, and whether samples of one channel were lost."
+            ),
+        ),
+    )
+
+
+def _chi_squares(omega_rad_s: FloatArray, ratio: FloatArray, std: FloatArray, load: FloatArray) -> FloatArray:
+    """Return the lowest chi-square for each delay, shape (delays,); infinite where the best fit is impossible."""
+    found = np.full(_DELAYS_S.size, np.inf)
+    for place, delay_s in enumerate(_DELAYS_S):
+        seen = ratio * np.exp(1j * omega_rad_s * delay_s) / std
+        # the real part is the load, the imaginary part the inertia
+        load_row, inertia_row = load / std, omega_rad_s / std
+        k = float(load_row @ seen.real / (load_row @ load_row))
+        tau = float(inertia_row @ seen.imag / (inertia_row @ inertia_row))
+        if _LOADS[0] < k < _LOADS[1] and 0.0 <= tau < _LONGEST_S:
+            found[place] = np.sum((seen.real - k * load_row) ** 2 + (seen.imag - tau * inertia_row) ** 2)
+    return found

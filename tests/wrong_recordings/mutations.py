@@ -1,0 +1,249 @@
+"""Ways to spoil a recording or the files that describe it; each returns what changes one trial."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from scipy.signal import butter, sosfilt
+from tests.wrong_recordings.trial import TORQUE, Change, Trial, Values
+
+
+def changed(channel: str, of: Callable[[Values, Values], Values]) -> Change:
+    """Apply a function of time [s] and values to a channel."""
+    return lambda trial: trial.with_values(channel, of(trial.time_s(channel), trial.values(channel)))
+
+
+def both(*changes: Change) -> Change:
+    """Apply one change after the other."""
+
+    def applied(trial: Trial) -> Trial:
+        for change in changes:
+            trial = change(trial)
+        return trial
+
+    return applied
+
+
+def gain(channel: str, of: Callable[[Values], Values]) -> Change:
+    """Multiply a channel by a function of time."""
+    return changed(channel, lambda time, values: values * of(time))
+
+
+def late(seconds: float, *channels: str) -> Change:
+    """Let channels come late; before the begin they keep their first value."""
+
+    def applied(time: Values, values: Values) -> Values:
+        return np.interp(time - seconds, time, values)
+
+    return both(*(changed(channel, applied) for channel in channels))
+
+
+def low_pass(channel: str, corner_hz: float) -> Change:
+    """Smooth a channel by a filter of first order."""
+
+    def applied(time: Values, values: Values) -> Values:
+        sections = butter(1, corner_hz, fs=1.0 / (time[1] - time[0]), output="sos")
+        return values[0] + sosfilt(sections, values - values[0])
+
+    return changed(channel, applied)
+
+
+def noise(channel: str, rms: float) -> Change:
+    """Add white noise."""
+    return changed(channel, lambda time, values: values + np.random.default_rng(5).normal(0.0, rms, values.size))
+
+
+def slow_noise(channel: str, rms: float, rate_hz: float) -> Change:
+    """Add noise below a frequency: drawn values with straight lines between them."""
+
+    def applied(time: Values, values: Values) -> Values:
+        knots = np.arange(time[0], time[-1] + 1.0 / rate_hz, 1.0 / rate_hz)
+        return values + np.interp(time, knots, np.random.default_rng(5).normal(0.0, rms, knots.size))
+
+    return changed(channel, applied)
+
+
+def hum(channel: str, amplitude: float) -> Change:
+    """Add mains hum of 50 Hz."""
+    return changed(channel, lambda time, values: values + amplitude * np.sin(2.0 * np.pi * 50.0 * time))
+
+
+def swell(frequency_hz: float, share: float, first_s: float, last_s: float) -> Change:
+    """Let the torque swing as in a swell, between two instants."""
+
+    def of(time: Values) -> Values:
+        inside = (time >= first_s) & (time < last_s)
+        return 1.0 + share * inside * np.sin(2.0 * np.pi * frequency_hz * time)
+
+    return gain(TORQUE, of)
+
+
+def without_pulses(channel: str, share: float) -> Change:
+    """Lose pulses by chance."""
+
+    def applied(time: Values, values: Values) -> Values:
+        first, last = pulses(values)
+        rng = np.random.default_rng(6)
+        found = values.copy()
+        for begin, end in zip(first, last, strict=True):
+            if rng.random() < share:
+                found[max(begin - 8, 0) : end + 8] = values.min()
+        return found
+
+    return changed(channel, applied)
+
+
+def every_second_pulse(channel: str) -> Change:
+    """Lose every second pulse."""
+
+    def applied(time: Values, values: Values) -> Values:
+        first, last = pulses(values)
+        found = values.copy()
+        for begin, end in zip(first[::2], last[::2], strict=False):
+            found[max(begin - 8, 0) : end + 8] = values.min()
+        return found
+
+    return changed(channel, applied)
+
+
+def doubled_pulses(channel: str, share: float) -> Change:
+    """Break pulses in two by chance."""
+
+    def applied(time: Values, values: Values) -> Values:
+        first, last = pulses(values)
+        rng = np.random.default_rng(6)
+        found = values.copy()
+        for begin, end in zip(first, last, strict=True):
+            third = max((end - begin) // 3, 1)
+            if rng.random() < share:
+                found[begin + third : end - third] = values.min()
+        return found
+
+    return changed(channel, applied)
+
+
+def pulses(values: Values) -> tuple[Values, Values]:
+    """Return the first and last sample of every pulse."""
+    high = values > 0.5 * (values.max() + values.min())
+    step = np.diff(high.astype(np.int8))
+    first, last = np.flatnonzero(step == 1) + 1, np.flatnonzero(step == -1) + 1
+    last = last[last > first[0]]
+    return first[: last.size], last
+
+
+def rate(factor: float, *channels: str) -> Change:
+    """Declare another rate; all channels where none is named."""
+
+    def applied(trial: Trial) -> Trial:
+        for name in channels or tuple(trial.recording.channels):
+            trial = trial.with_channel(name, rate_hz=factor * trial.recording.channels[name].rate_hz)
+        return trial
+
+    return applied
+
+
+def sampled_at(factor: float, *channels: str) -> Change:
+    """Sample channels with a clock that is too fast by a factor, and say nothing of it."""
+
+    def applied(time: Values, values: Values) -> Values:
+        return np.interp(time / factor, time, values)
+
+    return both(*(changed(channel, applied) for channel in channels))
+
+
+def attributes(channel: str, **fields: object) -> Change:
+    """Change what the file says of a channel."""
+    return lambda trial: trial.with_channel(channel, **fields)
+
+
+def everywhere(of: Callable[[Values], Values]) -> Change:
+    """Apply a function of the values to every channel; it may make them shorter."""
+
+    def applied(trial: Trial) -> Trial:
+        for name in trial.recording.channels:
+            trial = trial.with_values(name, of(trial.values(name)))
+        return trial
+
+    return applied
+
+
+def cut_out(first_s: float, last_s: float, *channels: str) -> Change:
+    """Take a stretch out, so that what follows comes too early.
+
+    Where channels are named, their end keeps its last value, as all channels of a file are of one length.
+    """
+
+    def applied(time: Values, values: Values) -> Values:
+        inside = (time >= first_s) & (time < last_s)
+        kept = values[~inside]
+        return np.concatenate([kept, np.full(values.size - kept.size if channels else 0, kept[-1])])
+
+    return lambda trial: both(*(changed(name, applied) for name in channels or tuple(trial.recording.channels)))(trial)
+
+
+def swapped(one: str, other: str) -> Change:
+    """Exchange what two channels hold."""
+
+    def applied(trial: Trial) -> Trial:
+        channels = dict(trial.recording.channels)
+        channels[one], channels[other] = (
+            replace(channels[other], name=one),
+            replace(channels[one], name=other),
+        )
+        return replace(trial, recording=replace(trial.recording, channels=channels))
+
+    return applied
+
+
+def campaign(of: Callable[[Trial], dict[str, object]]) -> Change:
+    """Change fields of the campaign file."""
+    return lambda trial: replace(trial, campaign=trial.campaign.model_copy(update=of(trial)))
+
+
+def sine(name: str, **fields: object) -> Change:
+    """Change what the campaign file says of one sine."""
+    return campaign(
+        lambda trial: {
+            "sines": tuple(one.model_copy(update=fields) if one.name == name else one for one in trial.campaign.sines)
+        }
+    )
+
+
+def sines(of: Callable[[object], dict[str, object]]) -> Change:
+    """Change what the campaign file says of every sine."""
+    return campaign(lambda trial: {"sines": tuple(one.model_copy(update=of(one)) for one in trial.campaign.sines)})
+
+
+def sensor(name: str, **fields: object) -> Change:
+    """Change what the vessel file says of a sensor."""
+    return lambda trial: trial.with_sensor(name, **fields)
+
+
+def pick_up(place: int, **fields: object) -> Change:
+    """Change what the vessel file says of a pick-up."""
+
+    def applied(trial: Trial) -> Trial:
+        speeds = list(trial.vessel.sensors.speed)
+        speeds[place] = speeds[place].model_copy(update=fields)
+        sensors = trial.vessel.sensors.model_copy(update={"speed": tuple(speeds)})
+        return replace(trial, vessel=trial.vessel.model_copy(update={"sensors": sensors}))
+
+    return applied
+
+
+def vessel(part: str, **fields: object) -> Change:
+    """Change what the vessel file says of a part."""
+    return lambda trial: trial.with_vessel(part, **fields)
+
+
+def inertias(factor: float, side: str) -> Change:
+    """Change the inertias of the vessel file on one side of the gauge."""
+
+    def applied(trial: Trial) -> Trial:
+        rows = tuple(
+            row.model_copy(update={"inertia_kg_m2": factor * row.inertia_kg_m2}) if row.gauge == side else row
+            for row in trial.vessel.inertia
+        )
+        return replace(trial, vessel=trial.vessel.model_copy(update={"inertia": rows}))
+
+    return applied
