@@ -70,13 +70,14 @@ def test_standard_deviation_of_the_governor_action(fit, truth, working_point, ve
     assert found["governor integral action"].std == pytest.approx(0.0206217 * 6.22212, rel=1e-4)
 
 
-def test_without_stated_accuracy_only_the_fit_counts(core, working_point, vessel):
+def test_accuracy_that_is_not_stated_is_that_of_the_trade(core, working_point, vessel):
     sensor = vessel.sensors.shaft_torque.model_copy(update={"scale_std_fraction": None, "zero_std_nm": None})
     plain = vessel.model_copy(update={"sensors": vessel.sensors.model_copy(update={"shaft_torque": sensor})})
     point = replace(working_point, load_std=0.01)
     found = {quantity.name: quantity for quantity in physical_quantities(core, point, plain)}
-    assert found["I"].std == pytest.approx(17.0096 * 0.01, rel=1e-4)
-    assert found["K_Q"].std == pytest.approx(0.049430 * 0.01, rel=1e-4)
+    # 1 % of the fit and 1 % of the scale; 1 % of the working point, 1 % of the scale and 25 N m of the zero
+    assert found["I"].std == pytest.approx(17.0096 * 0.01 * 2.0**0.5, rel=1e-4)
+    assert found["K_Q"].std == pytest.approx(0.049430 * (2.0 * 0.01**2 + (25.0 / 1725.0) ** 2) ** 0.5, rel=1e-4)
 
 
 def test_inertia_of_the_thesis_is_that_of_its_own_arithmetic(fit, working_point, vessel):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from shaftprint.reasons import Reason
 from shaftprint.report._superintendent import cover_of
 
 
@@ -23,6 +24,8 @@ def with_verdict(fingerprint, **changes):
 INERTIA = "Is the inertia of propeller and shaft as calculated?"
 GAUGE = "Is the torque gauge in order?"
 HUNTING = "Does the engine hold its speed without hunting?"
+PROPELLER = "Does the propeller take the torque that it should?"
+USABLE = "Can the result be used?"
 FORETELLS = "Does the model foretell what it has not seen?"
 
 
@@ -45,7 +48,7 @@ def test_the_zero_of_the_gauge(fingerprint, zero, std, state):
 
 @pytest.mark.parametrize(("loop", "state"), [("ample", "fine"), ("small", "look"), ("unstable", "bad")])
 def test_the_loop(fingerprint, loop, state):
-    found = answers(with_verdict(fingerprint, loop=loop, trustworthy=True))[HUNTING]
+    found = answers(with_verdict(fingerprint, loop=loop, trustworthy=True, not_trusted={}))[HUNTING]
     assert found.state == state
     assert ("usual" in found.sentence) == (loop != "unstable")
 
@@ -80,7 +83,8 @@ def test_many_lines_left_out_are_worth_a_look(fingerprint):
 
 
 def test_the_headline_counts_what_is_worth_a_look(fingerprint):
-    good = with_verdict(fingerprint, loop="ample", trustworthy=True)
+    good = with_verdict(fingerprint, loop="ample", trustworthy=True, trusted=("k_q",), not_trusted={}, reasons=())
+    good = with_physical(good, "K_Q", value=0.049, std=0.001, expected=0.0494)
     good = with_physical(good, "I_dn", value=17.0, std=0.5, expected=17.0, expected_std=1.6)
     good = with_physical(good, "gauge zero share", value=0.0, std=0.1)
     quality = good.quality.model_copy(update={"remarks": ()})
@@ -91,3 +95,42 @@ def test_the_headline_counts_what_is_worth_a_look(fingerprint):
     assert cover_of(small).headline == "The test can be used; one point is worth a look"
     both = with_physical(small, "I_dn", value=30.0, std=0.5)
     assert cover_of(both).headline == "The test can be used; one point is not fine"
+
+
+@pytest.mark.parametrize(("value", "state"), [(0.0494, "fine"), (0.051, "fine"), (0.035, "look")])
+def test_a_torque_coefficient_that_is_off_is_on_the_first_page(fingerprint, value, state):
+    """0.001 measured beside 0.0494: 0.051 is 1.6 deviations away, 0.035 is 14."""
+    found = with_verdict(fingerprint, trustworthy=True, not_trusted={})
+    found = with_physical(found, "K_Q", value=value, std=0.001, expected=0.0494, expected_std=None)
+    assert answers(found)[PROPELLER].state == state
+    (table,) = cover_of(found).tables
+    (row,) = [row for row in table.rows if row[0] == "Torque coefficient of the propeller"]
+    assert ("(!)" in row[-1]) == (state == "look")
+
+
+def test_seven_of_sixteen_numbers_are_worth_a_look(fingerprint):
+    names = [f"number {i}" for i in range(16)]
+    few = with_verdict(
+        fingerprint,
+        trustworthy=True,
+        trusted=tuple(names[:7]),
+        not_trusted=dict.fromkeys(names[7:], "vague"),
+        reasons=(),
+    )
+    card = answers(few)[USABLE]
+    assert card.state == "look"
+    assert "7 of 16 numbers" in card.sentence
+
+
+def test_there_is_no_room_to_spare_where_the_scale_of_the_gauge_is_in_doubt(fingerprint):
+    """Times 2 in the vessel file: the gain margin 1.6 becomes 2.04, and must not be called fine."""
+    scale = Reason(kind="gauge scale", sentence="The scale of the torque gauge is in doubt.", where="M_s")
+    doubt = "it hangs on the scale of the torque gauge"
+    found = with_verdict(
+        fingerprint, trustworthy=True, loop="ample", not_trusted={"gain margin": doubt, "I_dn": doubt}, reasons=(scale,)
+    )
+    told = answers(found)
+    assert told[USABLE].state == "look"
+    assert "The scale of the torque gauge is in doubt." in told[USABLE].sentence
+    assert told[HUNTING].state == told[INERTIA].state == "open"
+    assert told[HUNTING].sentence.startswith("It cannot be told: it hangs on the scale of the torque gauge.")

@@ -81,7 +81,9 @@ def expect_campaign(
     SignalError
         If the set point never moves, or if it does not follow any of the slow tests.
     """
-    levels = [campaign.offset_v, *(level for item in campaign.excitations for level in _extremes(item, campaign))]
+    stop_s = start_s + set_point_v.size / rate_hz
+    inside = [item for item in campaign.excitations if item.start_s < stop_s and item.stop_s > start_s]
+    levels = [campaign.offset_v, *(level for item in inside for level in _extremes(item, campaign))]
     lowest, highest = float(np.min(set_point_v)), float(np.max(set_point_v))
     expected = max(levels) - min(levels)
     if highest - lowest < _LEAST_MOVEMENT * expected:

@@ -32,7 +32,7 @@ _TIMES_S = np.geomspace(10.0, 100.0, 8)
 _FEWEST_BESIDE, _FEWEST = 2, 8
 # Twice the gain in log-likelihood that the wander alone exceeds once in several hundred tests, and the least change
 # that is worth a word: a tenth of it stays in the mean torque.
-_DRIFT_GAIN, _JUMP_GAIN = 12.0, 20.0
+_DRIFT_GAIN, _JUMP_GAIN = 14.0, 20.0
 _LEAST_CHANGE = 0.03
 _PERCENT = 100.0
 

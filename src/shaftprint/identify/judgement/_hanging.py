@@ -72,9 +72,9 @@ HANGING: Mapping[ReasonKind, tuple[frozenset[Role], str]] = {
     "gap": (ALL, WHOLE),
     "misfit": (ALL, WHOLE),
     "suspect": (frozenset(), ""),
+    "lines left out": (ALL, "the model does not hold at the lines that were left out"),
     "unstable": (ALL, WHOLE),
     "not unique": (ALL, WHOLE),
-    "lines left out": (frozenset(("governor", "part of delay")), "it holds in the band that was fitted only"),
 }
 """For each kind of reason, the most important first: the roles that hang on it, and why, as a clause."""
 

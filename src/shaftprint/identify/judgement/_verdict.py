@@ -4,7 +4,7 @@
 contradicts of the vessel file, and what it asks of the fit itself, where the first no decides:
 
 1. Are there enough good lines, and is there no gap where the loop decides on its stability?
-2. Does the structure explain the data within their noise?
+2. Does the structure explain the data within their noise, and predict the usable lines that were left out?
 3. Is no unstable model better, and is the optimum the only one?
 4. Is the identified loop stable?
 
@@ -31,6 +31,7 @@ from shaftprint.identify.judgement._doubts import (
 )
 from shaftprint.identify.judgement._evidence import Evidence
 from shaftprint.identify.judgement._hanging import by_weight, clause_of
+from shaftprint.identify.judgement._left_out_lines import not_predicted
 from shaftprint.identify.judgement._phrases import listed, probability
 from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.identify.judgement._suspects import Suspect, suspects_of
@@ -47,6 +48,7 @@ QUESTIONS: tuple[tuple[ReasonKind, Callable[[Evidence], str]], ...] = (
     ("too few data", too_few_good_data),
     ("gap", gap_where_it_matters),
     ("misfit", not_explained),
+    ("lines left out", not_predicted),
     ("unstable", better_when_unstable),
     ("not unique", not_unique),
     ("unstable", unstable),
@@ -117,7 +119,15 @@ def assess(
     rejected = any(reason.kind == "misfit" for reason in of_fit)
     suspects = suspects_of(identification, rejected=evidence.requirements.lowest_p_value) if rejected else ()
     hints = tuple(Reason(kind="suspect", sentence=suspect.sentence) for suspect in suspects)
-    every = by_weight((*_of_data(identification), *reasons, *contradicted_priors(identification), *of_fit, *hints))
+    every = by_weight(
+        (
+            *_of_data(identification),
+            *reasons,
+            *contradicted_priors(identification),
+            *of_fit,
+            *hints,
+        )
+    )
     numbers = (*identification.parameters, *identification.combinations, *further)
     own = doubts_of(identification, numbers, evidence.profile, evidence.requirements)
     doubts = {number.name: clause_of(number.name, every) or own.get(number.name, "") for number in numbers}
