@@ -89,7 +89,7 @@ GAUGE = (
          change=m.changed(TORQUE, lambda time, v: np.minimum(v, 1.4 * v.mean()))),
     Case(name="torque: the highest 0.3 % clipped", cause=CLIPPED,
          change=m.changed(TORQUE, lambda time, v: np.minimum(v, np.quantile(v, 0.997)))),
-    Case(name="torque dead from 500 s on", cause="dead|move",
+    Case(name="torque dead from 500 s on", cause="dead|stands still",
          change=m.changed(TORQUE, lambda time, v: np.where(time < 500.0, v, v.mean()))),
     Case(name="torque zero", cause="dead|move|torque", change=m.gain(TORQUE, lambda time: 0.0)),
     Case(name="torque reversed", cause="sign|positive", change=m.gain(TORQUE, lambda time: -1.0)),
@@ -182,7 +182,7 @@ CLOCKS = (
     Case(name="start of the torque infinite", cause="start", change=m.attributes(TORQUE, start_s=float("inf"))),
     Case(name="3 s lost in S4", cause=f"{CAMPAIGN}|short|start", change=m.cut_out(560.0, 563.0)),
     Case(name="0.7 s lost in all channels at 600 s", cause=CAMPAIGN, change=m.cut_out(600.0, 600.7)),
-    Case(name="second half cut off", cause="short", fast=True, change=m.everywhere(lambda v: v[: v.size // 2])),
+    Case(name="second half cut off", cause="short|lasts", fast=True, change=m.everywhere(lambda v: v[: v.size // 2])),
     Case(name="first 60 s lost", cause=f"{CAMPAIGN}|short", change=m.everywhere(lambda v: v[120_000:])),
     Case(name="reversed in time", cause=f"{CAMPAIGN}|misfit|explain", change=m.everywhere(lambda v: v[::-1].copy())),
 )  # fmt: skip

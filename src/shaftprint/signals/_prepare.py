@@ -281,7 +281,7 @@ def _put_together(
             **grid,
             channel=vessel.sensors.shaft_torque.channel,
             coverage=coverage,
-        )  # fmt: skip
+        )
     n_set *= calibration.slope_rev_s_per_v
     n_set += calibration.intercept_rev_s
     scale = DcScale(value=1.0, std=0.0, findings=())

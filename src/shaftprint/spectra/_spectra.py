@@ -134,7 +134,7 @@ def estimate_spectra(
     response = replace(
         response_of_lines(signals, measurements, channels=used_channels, sensor=sensor, load=load),
         used=used,
-        remarks=remarks,
+        remarks=remarks | silent | left_out,
         load=load,
         averaging_s=sensor.averaging_s,
         hold_s=sensor.hold_s,

@@ -18,6 +18,9 @@ from shaftprint.spectra import FrequencyResponse
 
 Source: TypeAlias = tuple[Structure, FrequencyResponse] | Term
 
+# How many missing lines a message names.
+_NAMED = 3
+
 
 def build_objective(
     structure: Structure,
@@ -107,5 +110,17 @@ def _expect_solvable(objective: Objective, known: Sequence[str]) -> None:
         lines = sum(e.s.size for e in objective.experiments)
         raise IdentificationError(
             f"structure {objective.name} has {len(names)} free parameters, the response {objective.data_count} usable "
-            f"numbers ({lines} lines): measure more lines or hold parameters."
+            f"numbers ({lines} lines): measure more lines or hold parameters.{_missing_lines(objective)}"
         )
+
+
+def _missing_lines(objective: Objective) -> str:
+    """Return why lines are missing, as a further sentence; nothing where none is."""
+    remarks = [
+        f"{name} {remark}"
+        for experiment in objective.experiments
+        for name, remark in experiment.response.remarks.items()
+        if name not in experiment.response.lines or not experiment.fitted[experiment.response.lines.index(name)]
+    ]
+    more = f"; and {len(remarks) - _NAMED} more" if len(remarks) > _NAMED else ""
+    return f" Lines are missing: {'; '.join(remarks[:_NAMED])}{more}." if remarks else ""
