@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import ResponseError
-from shaftprint.spectra import ExactBin, FrequencyResponse, HighestPeak, estimate_response, estimate_spectra
+from shaftprint.spectra import (
+    ExactBin,
+    FrequencyResponse,
+    HighestPeak,
+    WholePeriodSine,
+    estimate_response,
+    estimate_spectra,
+)
 
 RATE_HZ = 20.0
 # expected amplitude of the set point: 0.6 V of 4 rev/s a volt over 20 rev/s
@@ -157,6 +164,24 @@ def test_thesis_mode_uses_all_lines_and_says_what_speaks_against_them(ship):
     spectra = estimate_spectra(*ship(pulse_rate_hz=5.0, mode="thesis"), method=ExactBin())
     assert spectra.response.used.all()
     assert list(spectra.response.remarks) == ["S4"]
+
+
+def test_thesis_mode_normalises_each_line_by_its_own_offset(ship):
+    """A set point 1 % too low everywhere is, over its own mean, 1 % too large in its sines; one whose scale is 1 % too
+    low is not. Over one working point it is the other way round."""
+    for mode, method, shifted, scaled in (
+        ("thesis", ExactBin(), 0.99, 1.0),
+        ("shaftprint", WholePeriodSine(), 1.0, 1.0 / 0.99),
+    ):
+        signals, campaign = ship(mode=mode)
+        plain = estimate_response(signals, campaign, method=method).response
+        point = signals.working_point.engine_speed_rev_s
+        for set_point, factor in (
+            (signals.set_point_rev_s - 0.01 * point, shifted),
+            (0.99 * signals.set_point_rev_s, scaled),
+        ):
+            found = estimate_response(replace(signals, set_point_rev_s=set_point), campaign, method=method).response
+            assert found / plain == pytest.approx(np.full(plain.shape, factor), rel=1e-6)
 
 
 def test_a_spline_of_the_pulses_is_corrected(ship):

@@ -121,7 +121,9 @@ def _amplitudes(
 ) -> tuple[ComplexArray, ComplexArray]:
     """Return the amplitudes of set point, speed, torque, ship and rack, as far as measured, and their noise.
 
-    Except in the thesis' way the torque is without the cross term of its quadratic propeller.
+    Except in the thesis' way the torque is without the cross term of its quadratic propeller. The thesis' way divides
+    each channel by its own mean of the window, "the offset, which serves as the normalisation point of each frequency"
+    (section 3.3): a set point that is off by a constant is then off by a factor.
     """
     frequency = line.window.frequency_hz
     scale = np.array([1.0, 1.0 / pick_up_gain(sensor, frequency), 1.0], dtype=np.complex128)
@@ -136,7 +138,9 @@ def _amplitudes(
         noise = np.block([[noise, own[:-1, np.newaxis].conj()], [own[np.newaxis]]])
     amplitude, noise = scale * amplitude, scale[:, np.newaxis] * noise * scale.conj()
     if signals.mode == "thesis":
-        return amplitude, noise
+        offset = np.ones(amplitude.size)
+        offset[: len(channels)] = line.mean[channels]
+        return amplitude / offset, noise / np.outer(offset, offset)
     speed = channels[1]
     return without_cross_term(
         amplitude, noise, harmonic=line.harmonic[0, speed], variance=line.harmonic_variance[0, speed], load=load

@@ -88,8 +88,8 @@ def estimate_spectra(
     goes with the response as ``load``. Lines above half the pulse rate of the speed sensor are aliased and not used
     by default; neither are lines whose set point is not a sine of the stated frequency. A line may be too fast for
     the messages of the control unit: its response to ``X`` is then unknown (see `measured`), that to speed and
-    torque is not. In thesis mode all lines are used, as the thesis did, and the remarks say what speaks against
-    them.
+    torque is not. In thesis mode all lines are used, each divided by its own mean instead of the working point, as the
+    thesis did (section 3.3), and the remarks say what speaks against them.
 
     Parameters
     ----------
