@@ -10,16 +10,21 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.models import structure
 from shaftprint.report import (
+    SET_POINT_OFF,
     ThesisMode,
     damping_table,
     explain_thesis,
     explanation_sentences,
     gain_table,
     inertia_table,
+    integral_table,
     plot_missing_damping,
 )
+from shaftprint.report._integral_gain import integral_gain
+from shaftprint.spectra import open_loop
 
 # truth of tests/report/conftest.py
+GOVERNORS = ("OL2", "OL3", "OL4", "OL5")
 TAU_DN, TAU_UP, K_P, K_I, T_D, OMEGA_N, ZETA = 0.32, 1.016, 5.7, 4.27, 0.07, 10.3, 0.47
 
 
@@ -30,7 +35,9 @@ def thesis(signals, spectra, open_responses):
     settings = Settings(weighting=Unweighted(), starts=12)
     data = {"OL1": core, "GAUGE-CORE": core} | dict.fromkeys(("OL2", "OL3", "OL4", "OL5"), governor)
     found = {name: identify(structure(name), r, rng=rng, settings=settings) for name, r in data.items()}
-    return ThesisMode(signals=signals, spectra=spectra, identifications=found)
+    scaled = replace(spectra.response, response=spectra.response.response / (1.0 + SET_POINT_OFF))
+    off = {name: identify(structure(name), open_loop(scaled)[0], rng=rng, settings=settings) for name in GOVERNORS}
+    return ThesisMode(signals=signals, spectra=spectra, identifications=found, set_point_off=off)
 
 
 @pytest.fixture(scope="module")
@@ -81,7 +88,7 @@ def test_the_gain_without_inertia_and_the_share_of_two_lines(explanation, open_r
 
 
 def test_words_and_tables_say_the_numbers(explanation):
-    factor, damping, drift = explanation_sentences(explanation)
+    factor, damping, drift, integral = explanation_sentences(explanation)
     assert f"a factor {explanation.inertia[2].factor:.2f}" in factor
     deepest = min(np.degrees(np.angle(step.inertia)) for step in explanation.lines)
     assert f"turned by \N{MINUS SIGN}{-deepest:.0f}°" in damping
@@ -90,6 +97,52 @@ def test_words_and_tables_say_the_numbers(explanation):
     assert len(inertia_table(explanation).rows) == 6
     assert [row[0] for row in damping_table(explanation).rows] == ["S7", "S8", "S9", "S10", "S11", "S12"]
     assert gain_table(explanation).rows[0][-1] == "< 0.000001"
+    assert f"= {explanation.integral.seen:.2f} is to be seen" in integral
+    assert "off by \N{MINUS SIGN}0.85 %" in integral
+    assert [row[0] for row in integral_table(explanation).rows] == ["OL2", "OL3", "OL4", "OL5"]
+
+
+@pytest.mark.parametrize(("t_sp", "pick_up"), [(0.0, 0.0), (0.05, 0.0), (0.0, 0.05), (0.05, 0.051)])
+def test_delays_outside_the_loop_make_the_integral_gain_smaller(thesis, response, t_sp, pick_up):
+    """On a line of 0.001 rad/s ``j omega M_s / e`` is ``2 / (2 / K_i + t_sp + t_pickup)`` to a part in a thousand; with
+    4.27 1/s, 52 and 51 ms 3.50."""
+    values = {"K_p": K_P, "K_i": K_I, "t_d": T_D, "omega_n": OMEGA_N, "zeta": ZETA, "tau_dn": TAU_DN, "tau_up": TAU_UP}
+    model = structure("GAUGE-CLOSED").held_at(g=0.0, k_q=2.0, t_gauge=0.0, c_set=1.0, t_sp=t_sp)
+    slow = 1e-3j
+    speed, torque = model.response(model.vector(values), [slow])[:, 0]
+    seen = (slow * torque / (1.0 - speed * np.exp(-slow * pick_up))).real
+    exact = model.response(model.vector(values), 1j * response.omega_rad_s)
+    clean = replace(response, response=exact[:, None, :])
+    gauge = identify(model, clean, rng=np.random.default_rng(1), settings=Settings(starts=10))
+    late = replace(thesis.spectra, response=replace(thesis.spectra.response, pick_up_delay_s=pick_up))
+    found = integral_gain(replace(thesis, spectra=late), gauge)
+    assert found.seen == pytest.approx(seen, rel=1e-3)
+    assert found.seen == pytest.approx(2.0 / (2.0 / K_I + t_sp + pick_up), rel=1e-4)
+
+
+def test_a_set_point_that_is_off_takes_the_fits_down_together(thesis, response):
+    """Without noise, governor alone: at the slowest line the error is 0.0276 (2 / K_i + t_sp) = 1.4 % of the set point,
+    and an offset of 0.85 % leaves ``1 / (1 + (0.85 / 1.43)^2)`` = 0.74 of the K_i that it shows."""
+    values = {"K_p": K_P, "K_i": K_I, "t_d": T_D, "omega_n": OMEGA_N, "zeta": ZETA, "tau_dn": TAU_DN, "tau_up": TAU_UP}
+    model = structure("GAUGE-CLOSED").held_at(g=0.0, k_q=2.0, t_gauge=0.0, c_set=1.0, t_sp=0.05)
+    exact = model.response(model.vector(values), 1j * response.omega_rad_s)
+    clean = replace(response, response=exact[:, None, :])
+    gauge = identify(model, clean, rng=np.random.default_rng(1), settings=Settings(starts=10))
+    settings, rng = Settings(weighting=Unweighted(), starts=12), np.random.default_rng(9)
+    right, off = (
+        {name: identify(structure(name), open_loop(data)[0], rng=rng, settings=settings) for name in GOVERNORS}
+        for data in (clean, replace(clean, response=clean.response / (1.0 + SET_POINT_OFF)))
+    )
+    spectra = replace(thesis.spectra, response=clean)
+    gain = integral_gain(replace(thesis, spectra=spectra, identifications=right, set_point_off=off), gauge)
+    assert gain.slowest_error == pytest.approx(2.0 * np.pi * 0.0044 * (2.0 / K_I + 0.05), rel=0.01)
+    # OL2 and OL3, which cannot follow the faster lines, bend the slow ones by 2 %
+    assert [step.thesis for step in gain.steps] == pytest.approx([gain.seen] * 4, rel=0.03)
+    assert all(step.fit_percent > 90.0 for step in gain.steps)
+    assert all(45.0 < step.off_fit_percent < 60.0 for step in gain.steps)
+    # the lines above the slowest lose less
+    assert all(0.74 < step.off / gain.seen < 0.92 for step in gain.steps)
+    assert max(step.off for step in gain.steps) < 1.03 * min(step.off for step in gain.steps)
 
 
 def test_the_figure_shows_models_and_points(explanation):

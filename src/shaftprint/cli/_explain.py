@@ -19,6 +19,7 @@ from shaftprint.report import (
     explanation_sentences,
     gain_table,
     inertia_table,
+    integral_table,
 )
 
 
@@ -36,8 +37,8 @@ def command(
     """Say where the numbers of the thesis' way come from on one recording.
 
     Fits the structures of the thesis the thesis' way and the gauge-aware one, and shows side by side where the
-    inertia time that is too small, the damping that is missing between 1 and 10 rad/s and the K_p that
-    drifts come from. With --output the whole report is written too.
+    inertia time that is too small, the damping that is missing between 1 and 10 rad/s, the K_p that
+    drifts and the K_i that is always the same come from. With --output the whole report is written too.
     """
     trial = load_trial(vessel, campaign)
     with progress(hidden=no_progress) as steps:
@@ -56,7 +57,7 @@ def command(
 
 
 def _print(explanation: Explanation) -> None:
-    tables = (inertia_table, damping_table, gain_table)
+    tables = (inertia_table, damping_table, gain_table, integral_table)
     for sentence, make in zip(explanation_sentences(explanation), tables, strict=True):
         print_report_table(make(explanation))
         echo(f"{on_terminal(sentence)}\n")

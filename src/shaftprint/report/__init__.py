@@ -28,7 +28,13 @@ from shaftprint.report._difference_figure import plot_differences
 from shaftprint.report._differences import LOAD_REPEATABILITY, Difference, differences
 from shaftprint.report._explanation import Explanation, explain_thesis
 from shaftprint.report._explanation_figure import plot_missing_damping
-from shaftprint.report._explanation_words import damping_table, explanation_sentences, gain_table, inertia_table
+from shaftprint.report._explanation_words import (
+    damping_table,
+    explanation_sentences,
+    gain_table,
+    inertia_table,
+    integral_table,
+)
 from shaftprint.report._fit_figures import (
     plot_closed_loop_comparison,
     plot_closed_loop_fits,
@@ -64,7 +70,7 @@ from shaftprint.report._strip_figure import plot_strip_angles
 from shaftprint.report._style import save_figure
 from shaftprint.report._table import Table
 from shaftprint.report._thesis_families import Family, thesis_families
-from shaftprint.report._thesis_mode import ThesisMode
+from shaftprint.report._thesis_mode import SET_POINT_OFF, ThesisMode
 from shaftprint.report._time_series import plot_chirp, plot_excitation, plot_staircase
 from shaftprint.report._validation_figure import plot_validation
 from shaftprint.report._validation_summary_figure import plot_validation_summary
@@ -72,6 +78,7 @@ from shaftprint.report._vessel_file_words import vessel_file_sentences
 
 __all__ = [
     "LOAD_REPEATABILITY",
+    "SET_POINT_OFF",
     "Curve",
     "Difference",
     "Explanation",
@@ -90,6 +97,7 @@ __all__ = [
     "gain_table",
     "inertia_budget_table",
     "inertia_table",
+    "integral_table",
     "mass_table",
     "mode_table",
     "open_loop_curve",

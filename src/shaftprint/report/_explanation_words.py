@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.report._integral_gain import integral_gain_table, integral_gain_words
 from shaftprint.report._numbers import plain, rounded, with_deviation
 from shaftprint.report._table import Table
 
@@ -15,8 +16,18 @@ REJECTED_BELOW = 0.01
 
 
 def explanation_sentences(explanation: "Explanation") -> tuple[str, ...]:
-    """Return what the three tables say, one paragraph each."""
-    return (_inertia_words(explanation), _damping_words(explanation), _gain_words(explanation))
+    """Return what the four tables say, one paragraph each."""
+    return (
+        _inertia_words(explanation),
+        _damping_words(explanation),
+        _gain_words(explanation),
+        integral_gain_words(explanation.integral),
+    )
+
+
+def integral_table(explanation: "Explanation") -> Table:
+    """Return the integral gain structure by structure, with the set point as it is and off."""
+    return integral_gain_table(explanation.integral)
 
 
 def inertia_table(explanation: "Explanation") -> Table:

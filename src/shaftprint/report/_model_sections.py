@@ -14,6 +14,7 @@ from shaftprint.report._explanation_words import (
     explanation_sentences,
     gain_table,
     inertia_table,
+    integral_table,
 )
 from shaftprint.report._fit_figures import (
     plot_closed_loop_comparison,
@@ -36,6 +37,7 @@ ROWS_A_FIGURE = 4
 GOVERNOR = ("OL2", "OL3", "OL4", "OL5")
 CLOSED = ("CL1", "CL3", "CL4", "BENCHMARK")
 OF_THE_THESIS = ("OL1", *GOVERNOR, *CLOSED)
+EXPLAINED = (inertia_table, damping_table, gain_table, integral_table)
 BAND_NOTE = "Bands hold the noise only: of a structure that does not explain the data they are too narrow."
 
 
@@ -72,7 +74,7 @@ def explanation_section(inputs: Inputs) -> list[Section]:
             key="explanation",
             title="Where the thesis' numbers come from",
             paragraphs=explanation_sentences(explanation),
-            tables=tuple(with_symbols(make(explanation)) for make in (inertia_table, damping_table, gain_table)),
+            tables=tuple(with_symbols(make(explanation)) for make in EXPLAINED),
             pictures=(
                 Picture(
                     name="missing_damping",
