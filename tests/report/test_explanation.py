@@ -126,7 +126,8 @@ def test_a_set_point_that_is_off_takes_the_fits_down_together(thesis, response):
     values = {"K_p": K_P, "K_i": K_I, "t_d": T_D, "omega_n": OMEGA_N, "zeta": ZETA, "tau_dn": TAU_DN, "tau_up": TAU_UP}
     model = structure("GAUGE-CLOSED").held_at(g=0.0, k_q=2.0, t_gauge=0.0, c_set=1.0, t_sp=0.05)
     exact = model.response(model.vector(values), 1j * response.omega_rad_s)
-    clean = replace(response, response=exact[:, None, :])
+    # with hardly any noise: of the fixture's the error of the slowest lines does not stand out
+    clean = replace(response, response=exact[:, None, :], covariance=1e-4 * response.covariance)
     gauge = identify(model, clean, rng=np.random.default_rng(1), settings=Settings(starts=10))
     settings, rng = Settings(weighting=Unweighted(), starts=12), np.random.default_rng(9)
     right, off = (

@@ -302,6 +302,18 @@ def test_one_line_with_a_frequency_misread_by_a_digit(ship):
     assert used
 
 
+def test_a_misread_frequency_is_said_with_the_digits_that_differ(ship):
+    """0.4 mHz, 0.08 of a bin: with four digits both would be 1.234 Hz."""
+
+    def near(time_s, set_point):
+        there = (time_s > 430.0) & (time_s < 660.0)
+        set_point[there] = AMPLITUDE * np.sin(2.0 * np.pi * 1.2344 * time_s[there])
+
+    sines = (*SINES[:1], ("S2", 1.234, 450.0, 650.0), *SINES[3:])
+    remark = estimate_spectra(*ship(noise=1e-4, change=near, sines=sines)).remarks["S2"]
+    assert remark == "set point runs at 1.2344 Hz where the campaign says 1.234 Hz"
+
+
 def test_a_sine_that_starts_late(ship):
     def late(time_s, set_point):
         set_point[(time_s > 430.0) & (time_s < 490.0)] = 0.0

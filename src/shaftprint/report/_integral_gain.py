@@ -141,9 +141,10 @@ def integral_gain_words(gain: IntegralGain) -> str:
         f"point reaches the governor {set_point_ms} ms late and the pick-up shows the speed {pick_up_ms} ms late. Both "
         "delays lie outside the loop and add to the error that is measured: "
         f"k_q / ((k_q - g) / (v K_i) + t_sp + t_pickup) = {rounded(gain.seen, 3)} is to be seen. FitPercent hangs on "
-        f"the set point: at {gain.slowest_line} the error is {plain(PERCENT * gain.slowest_error, 1)} % of it. With the "
-        f"set point off by {plain(PERCENT * SET_POINT_OFF, 2)} % the same fits reach {_range(off_percent, 3)} % instead "
-        f"of {_range(percent, 3)} %, with K_i of {_range(off, 3)}: four values alike are no proof that they are right."
+        f"the set point: at {gain.slowest_line} the error is {plain(PERCENT * gain.slowest_error, 1)} % of it. With "
+        f"the set point off by {plain(PERCENT * SET_POINT_OFF, 2)} % the same fits reach {_range(off_percent, 3)} % "
+        f"instead of {_range(percent, 3)} %, with K_i of {_range(off, 3)}: that four values are alike does not prove "
+        "them right."
     )
 
 

@@ -1,5 +1,6 @@
 """Whether the set point of a line is what the campaign says, and a clean sine."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -113,7 +114,9 @@ def check_set_point(
     typical_db = _typical_db(local_db, place)
     if offset_bins > _FREQUENCY_TOLERANCE_BINS:
         hz = line.window.frequency_hz
-        remarks.append(f"set point runs at {hz + offset_hz:.4g} Hz where the campaign says {hz:g} Hz")
+        # as many decimals as the difference needs to be seen
+        decimals = max(0, 1 + math.floor(-math.log10(abs(offset_hz))))
+        remarks.append(f"set point runs at {hz + offset_hz:.{decimals}f} Hz where the campaign says {hz:g} Hz")
     elif local_db[place] < min(_CLEAN_DB, typical_db - _NEIGHBOUR_GAP_DB):
         remarks.append(
             f"set point is not a clean sine: signal-to-noise {local_db[place]:.1f} dB where the "
