@@ -1,8 +1,12 @@
 """``shaftprint inspect`` says what is in a recording; ``tests/docs`` inspects a whole test, as the pages show it."""
 
+import re
+from importlib.resources import files
+
 import numpy as np
 import pytest
 
+from shaftprint.campaign import load_campaign
 from shaftprint.cli._inspect import verdict
 from shaftprint.recording import RecordingWriter
 from shaftprint.spectra import FrequencyResponse, SignalToNoise, Spectra
@@ -162,3 +166,30 @@ def test_verdict_nothing_at_the_crossover():
     sentence = verdict(_spectra([0.01, 0.02, 0.05, 0.1, 0.12, 0.3], [20.0] * 6, [True] * 6))
     assert sentence.startswith("Not good enough: 6 of 6")
     assert "at least 2 are needed there" in sentence
+
+
+def test_proposal_for_a_campaign_whose_times_are_wrong(run, recording, tmp_path):
+    """The recording was sailed by `short`: what is proposed in place of a wrong campaign must be that."""
+    truth = load_campaign("short")
+    text = (files("shaftprint.campaign") / "shipped" / "short.toml").read_text(encoding="utf-8")
+    wrong = re.sub(
+        r"(start_s|settled_s|stop_s) = ([\d.]+)", lambda match: f"{match[1]} = {float(match[2]) + 2.5:.4g}", text
+    )
+    wrong = wrong.replace("frequency_hz = 0.8\n", "frequency_hz = 0.83\n").replace("860.0", "870.0")
+    path = tmp_path / "wrong.toml"
+    path.write_text(wrong, encoding="utf-8")
+    result = run("inspect", recording, "--vessel", "stan-tug-1205", "--campaign", path)
+    assert "All tests are found 2.500 s earlier than planned." in result.output
+    head, proposal = result.output.split("in place of those that it has\n\n")
+    lines = proposal.split("\n\nSteady state")[0]
+    path.write_text(wrong.split("[[staircases]]")[0] + lines, encoding="utf-8")
+    found = load_campaign(path)
+    assert [test.name for test in found.excitations] == [test.name for test in truth.excitations]
+    for test, sailed in zip(found.excitations, truth.excitations, strict=True):
+        assert test.start_s == pytest.approx(sailed.start_s, abs=0.02)
+        assert test.stop_s == pytest.approx(sailed.stop_s, abs=0.02)
+    assert [s.frequency_hz for s in found.sines] == pytest.approx([s.frequency_hz for s in truth.sines], rel=1e-4)
+    # with it nothing is left to be said
+    again = run("inspect", recording, "--vessel", "stan-tug-1205", "--campaign", path)
+    assert "Proposal for the campaign file" not in again.output
+    assert "0.83 Hz" in head

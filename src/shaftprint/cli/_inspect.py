@@ -8,6 +8,7 @@ import numpy as np
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.cli._clock_tables import print_clocks
 from shaftprint.cli._fingerprint_tables import print_findings
+from shaftprint.cli._found_tests import print_found_tests
 from shaftprint.cli._inputs import NAMES
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._reading import hints_of, reading_options
@@ -19,7 +20,7 @@ from shaftprint.clocks import logger_clocks
 from shaftprint.fingerprint import clock_findings, clock_influences
 from shaftprint.nonlinearity import detect
 from shaftprint.recording import Recording, read_recording
-from shaftprint.signals import ChannelReport, contradictions, inspect_channels, prepare_signals
+from shaftprint.signals import ChannelReport, contradictions, find_tests, inspect_channels, prepare_signals
 from shaftprint.spectra import Spectra, estimate_spectra
 from shaftprint.vessel import Vessel, load_vessel
 
@@ -115,6 +116,8 @@ def _sensor_row(report: ChannelReport) -> tuple[str, ...]:
 
 
 def _print_test(opened: Recording, ship: Vessel, asked: Campaign, *, hidden: bool) -> None:
+    # before the signals are prepared: where they are refused, this says what the campaign should be
+    print_found_tests(find_tests(opened, ship, asked), asked)
     with progress(hidden=hidden) as steps:
         steps.begin("Preparing the signals", total=1.0)
         signals = prepare_signals(opened, ship, asked, progress=steps.reach)

@@ -17,9 +17,11 @@ deviation             1        ``(x - x_0) / x_0`` from the working point
 
 from shaftprint.signals._content import Content, content_of
 from shaftprint.signals._contradictions import contradictions
+from shaftprint.signals._found_tests import FoundTest, common_shift_s
 from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._inspect import ChannelReport, PulseReport, inspect_channels
-from shaftprint.signals._prepare import prepare_signals
+from shaftprint.signals._prepare import find_tests, prepare_signals
+from shaftprint.signals._proposed_campaign import proposed_campaign
 from shaftprint.signals._signals import (
     RackSignal,
     Repair,
@@ -38,6 +40,7 @@ __all__ = [
     "ChannelReport",
     "Content",
     "Coverage",
+    "FoundTest",
     "Gap",
     "Mode",
     "PulseReport",
@@ -50,9 +53,12 @@ __all__ = [
     "StepDelay",
     "StripAngles",
     "WorkingPoint",
+    "common_shift_s",
     "content_of",
     "contradictions",
     "deviation",
+    "find_tests",
     "inspect_channels",
     "prepare_signals",
+    "proposed_campaign",
 ]

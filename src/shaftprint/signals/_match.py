@@ -1,5 +1,6 @@
 """Whether a recording and a campaign belong together, judged by the set point."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -7,6 +8,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign, Excitation, Sine, Staircase, setpoint
 from shaftprint.errors import SignalError
+from shaftprint.signals._found_tests import FoundTest, common_shift_s, found_tests
 from shaftprint.signals._gaps import EVERYTHING, Coverage, gap_findings
 from shaftprint.signals._steps import step_window
 
@@ -16,6 +18,7 @@ _SLOW_HZ = 0.2
 _LEAST_MOVEMENT = 0.5
 _LEAST_EXPLAINED = 0.5
 _LOOKS_PER_S = 10.0
+_OPPOSITE_DEG = 150.0
 
 
 def measured_windows(campaign: Campaign) -> tuple[tuple[str, float, float], ...]:
@@ -72,9 +75,9 @@ def expect_campaign(
     channel: str,
     coverage: Coverage = EVERYTHING,
 ) -> tuple[str, ...]:
-    """Check that the set point moves as the campaign says; return a finding for each test that does not.
+    """Check that the set point moves as the campaign says; return a finding for all that differs.
 
-    Only tests that the recording holds whole are judged.
+    Only tests that the recording holds whole are judged. Where all are shifted alike, one finding says by how much.
 
     Raises
     ------
@@ -97,13 +100,42 @@ def expect_campaign(
     foreign = [
         item.name for item in slow if _explained(set_point_v, item, campaign, rate_hz, start_s) < _LEAST_EXPLAINED
     ]
+    found = found_tests(set_point_v, campaign, rate_hz=rate_hz, start_s=start_s)
+    shift_s = common_shift_s(found)
     if foreign and len(foreign) == len(slow):
+        instead = _shift_words(shift_s) or _upside_down(found) or "check the campaign file and its start times"
         raise SignalError(
             f'channel {channel}: expected the set point of the campaign "{campaign.name}", found '
-            f"another course in every slow test ({', '.join(foreign)}); check the campaign file and "
-            "its start times."
+            f"another course in every slow test ({', '.join(foreign)}): {instead}; `shaftprint inspect` with --vessel "
+            "and --campaign proposes the start of every test."
         )
-    return tuple(f"the set point does not follow the campaign during {name}; check its times" for name in foreign)
+    if shift_s:
+        return (f"{_shift_words(shift_s)}; `shaftprint inspect` proposes the start of every test",)
+    whole = {item.name for item in held}
+    judged = [test for test in found if test.planned.name in whole]
+    return tuple(
+        f"{test.planned.name} {difference}"
+        if test.is_found
+        else f"the set point does not follow the campaign during {test.planned.name}; check its times"
+        for test in judged
+        for difference in test.differences
+    )
+
+
+def _shift_words(shift_s: float) -> str:
+    if shift_s == 0.0:
+        return ""
+    late, how = ("later", "earlier") if shift_s < 0.0 else ("earlier", "later")
+    return f"the recording starts {abs(shift_s):.2f} s {late} than the campaign says: all tests are found so much {how}"
+
+
+def _upside_down(found: Sequence[FoundTest]) -> str:
+    """Return that the set point is upside down where all tests that have a sign say so."""
+    there = [test for test in found if test.is_found]
+    turned = [test.is_inverted or abs(test.phase_error_deg) > _OPPOSITE_DEG for test in there]
+    if len(there) < 2 or not all(turned):
+        return ""
+    return "every test is upside down; turn the sign of the channel, or of the levels in the campaign file"
 
 
 def _extremes(item: Excitation, campaign: Campaign) -> tuple[float, ...]:

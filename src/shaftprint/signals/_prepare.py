@@ -10,10 +10,12 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
 from shaftprint.signals._calibrate import calibrate, calibrate_through_wander
+from shaftprint.signals._channels import find_channel
 from shaftprint.signals._compare import compare_speeds
 from shaftprint.signals._condition import Conditioned, conditioned
 from shaftprint.signals._dc_scale import DcScale, dc_scale
 from shaftprint.signals._flat_top import expect_whole_crests
+from shaftprint.signals._found_tests import FoundTest, found_tests
 from shaftprint.signals._gaps import Coverage, Gap, within
 from shaftprint.signals._match import expect_campaign, left_out
 from shaftprint.signals._outliers import fault_limits
@@ -41,6 +43,8 @@ if TYPE_CHECKING:
 
 # One thread computes while the other waits for the file; more would only queue for the file.
 _THREADS = 2
+# Rate at which the set point alone is looked at [Hz].
+_SET_POINT_HZ = 200.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -99,6 +103,41 @@ def prepare_signals(
     sources = find_sources(recording, vessel)
     clock = common_clock(sources, mode=mode, rate_hz=rate_hz, chunk_s=chunk_s, progress=progress)
     return _put_together(recording, vessel, campaign, clock, sources, _read_all(vessel, sources, clock))
+
+
+def find_tests(recording: "Recording", vessel: "Vessel", campaign: Campaign) -> tuple[FoundTest, ...]:
+    """Return when and how every test of a campaign was really made, from the recorded set point alone.
+
+    Parameters
+    ----------
+    recording
+        The raw recording, open.
+    vessel
+        Says which channel is the set point.
+    campaign
+        What was asked of the ship; its times may be off by the same amount, or each by a few seconds.
+
+    Returns
+    -------
+    One entry a test, in order of time; `proposed_campaign` makes a campaign of them.
+
+    Raises
+    ------
+    SignalError
+        If the channel of the set point is missing, in another unit, or holds no numbers.
+    """
+    sensor = vessel.sensors.set_point
+    channel = find_channel(recording, sensor.channel, unit=sensor.unit, use="set point")
+    rate_hz = min(_SET_POINT_HZ, channel.rate_hz)
+    clock = Clock(
+        start_s=channel.start_s,
+        rate_hz=rate_hz,
+        count=int(channel.duration_s * rate_hz),
+        mode="shaftprint",
+        chunk_s=None,
+        advance=lambda samples: None,
+    )
+    return found_tests(_read_set_point(channel, clock).values, campaign, rate_hz=rate_hz, start_s=clock.start_s)
 
 
 def _read_all(vessel: "Vessel", sources: Sources, clock: Clock) -> _Read:

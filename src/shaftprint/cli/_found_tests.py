@@ -1,0 +1,78 @@
+"""Where the tests of a campaign are in the recorded set point, as a table and as lines of a campaign file."""
+
+import json
+
+import click
+
+from shaftprint.campaign import Campaign, Sine
+from shaftprint.cli._tables import print_table
+from shaftprint.errors import SignalError
+from shaftprint.files import printable
+from shaftprint.signals import FoundTest, common_shift_s, proposed_campaign
+
+_SECTIONS = ("staircases", "sines", "chirps")
+
+
+def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign) -> None:
+    """Print when and how every test was made; where that is other than planned, the lines that fit too."""
+    rows = [_row(test) for test in found]
+    columns = (
+        "test",
+        "planned at [s]",
+        "begins at [s]",
+        "phase [deg]",
+        "frequency [Hz]",
+        "amplitude [V]",
+        "as planned",
+    )
+    print_table("Tests in the recorded set point", columns, rows, numbers=range(1, 6))
+    if not any(test.differences for test in found):
+        return
+    shift_s = common_shift_s(found)
+    if shift_s:
+        click.echo(
+            f"All tests are found {abs(shift_s):.3f} s {'later' if shift_s > 0.0 else 'earlier'} than planned.\n"
+        )
+    try:
+        text = campaign_text(proposed_campaign(found, campaign))
+    except SignalError as error:
+        click.echo(f"No proposal for the campaign file: {error}\n")
+        return
+    click.echo("Proposal for the campaign file: these tests in place of those that it has\n")
+    click.echo(text)
+
+
+def campaign_text(campaign: Campaign) -> str:
+    """Return the tests of a campaign as the lines of a campaign file."""
+    parts = []
+    for section in _SECTIONS:
+        for test in getattr(campaign, section):
+            lines = [f"{key} = {_toml(value)}" for key, value in test.model_dump().items()]
+            parts.append("\n".join([f"[[{section}]]", *lines]))
+    return "\n\n".join(parts) + "\n"
+
+
+def _toml(value: object) -> str:
+    if isinstance(value, str):
+        # what JSON escapes, TOML reads alike
+        return printable(json.dumps(value, ensure_ascii=False))
+    if isinstance(value, tuple):
+        return f"[{', '.join(_toml(item) for item in value)}]"
+    # a float of TOML has a point; times are known to a millisecond, frequencies are whatever the file said
+    return f"{round(float(str(value)), 9)!r}"
+
+
+def _row(test: FoundTest) -> tuple[str, ...]:
+    planned = test.planned
+    if not test.is_found:
+        return (planned.name, f"{planned.start_s:g}", "not found", "", "", "", "no")
+    sine = isinstance(planned, Sine)
+    return (
+        planned.name,
+        f"{planned.start_s:g}",
+        f"{test.begin_s:.2f}",
+        f"{round(test.phase_deg)}" if sine else ("180" if test.is_inverted else "0"),
+        f"{test.frequency_hz:.5g}" if sine else "",
+        f"{test.amplitude_v:.3g}" if sine else "",
+        "no: " + "; ".join(test.differences) if test.differences else "yes",
+    )
