@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import ResponseError
+from shaftprint.signals import Gap
 from shaftprint.spectra import (
     ExactBin,
     FrequencyResponse,
@@ -191,6 +192,27 @@ def test_a_spline_of_the_pulses_is_corrected(ship):
     assert ratio[3] == pytest.approx(1.0 / 0.957, abs=1e-3)
     assert ratio[0] == pytest.approx(1.0, abs=1e-6)
     assert corrected.response[1] == pytest.approx(plain.response[1])
+
+
+def test_a_gap_costs_its_line_and_is_never_looked_at(ship):
+    """In the gap stands what would spoil every mean."""
+    signals, campaign = ship()
+    second = next(sine for sine in campaign.sines if sine.name == "S2")
+    first = round((second.settled_s + 5.0 - signals.start_s) * signals.rate_hz)
+    torque = signals.shaft_torque_nm.copy()
+    torque[first : first + 400] = 1e9
+    gap = Gap(
+        channel="M_s",
+        start_s=second.settled_s + 5.0,
+        stop_s=second.settled_s + 5.0 + 400.0 / signals.rate_hz,
+        reason="has no values",
+    )
+    whole = estimate_spectra(signals, campaign)
+    spectra = estimate_spectra(replace(signals, shaft_torque_nm=torque, gaps=(gap,)), campaign)
+    assert spectra.response.lines == tuple(line for line in whole.response.lines if line != "S2")
+    assert spectra.remarks["S2"] == f"left out: {gap.sentence}"
+    kept = [whole.response.lines.index(line) for line in spectra.response.lines]
+    assert np.array_equal(spectra.response.response, whole.response.response[..., kept])
 
 
 def test_a_recording_that_ends_early_keeps_the_lines_it_holds(ship):

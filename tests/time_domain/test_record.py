@@ -7,7 +7,7 @@ import pytest
 
 from shaftprint.campaign import load_campaign
 from shaftprint.errors import SignalError
-from shaftprint.signals import Repair, SetPointCalibration, Signals, SpeedSignal, WorkingPoint
+from shaftprint.signals import Gap, Repair, SetPointCalibration, Signals, SpeedSignal, WorkingPoint
 from shaftprint.time_domain import Decimator, record_from_arrays, records_of
 
 RATE = 200.0
@@ -192,6 +192,23 @@ def test_many_lost_pulses_are_a_gap(signals, campaign):
     given = repaired(signals, channel="E", kind="missing pulse", time_s=sine.start_s + 20.0, count=10)
     (record,) = records_of(given, campaign, [sine.name])
     assert (~record.used).sum() / 20.0 == pytest.approx(0.5 + 2 * record.margin / RATE, abs=0.11)
+
+
+def test_gaps_of_the_signals_are_gaps_of_the_record(signals, campaign):
+    """A gap of an output is not used, with what the filter sees of it; one of the set point leaves no record."""
+    name = campaign.excitations[0].name
+    whole = records_of(signals, campaign, [name])[0]
+    middle = whole.start_s + 0.5 * whole.samples / whole.rate_hz
+    gap = Gap(channel="M_s", start_s=middle, stop_s=middle + 1.0, reason="has no values", reach_s=0.05)
+    found = records_of(replace(signals, gaps=(gap,), set_point_channel="U"), campaign, [name])[0]
+    lost = whole.used & ~found.used
+    assert np.all(~found.used[(found.time_s > middle) & (found.time_s < middle + 1.0)])
+    every = round(signals.rate_hz / whole.rate_hz)
+    reach_s = Decimator(every=every).half / signals.rate_hz
+    assert lost.sum() / whole.rate_hz == pytest.approx(1.1 + 2.0 * reach_s, abs=1.1 / whole.rate_hz)
+    spoilt = replace(signals, gaps=(replace(gap, channel="U"),), set_point_channel="U")
+    with pytest.raises(SignalError, match=rf"record {name}: expected the set point .* but channel U has no values"):
+        records_of(spoilt, campaign, [name])
 
 
 def test_values_that_are_no_numbers_are_gaps(signals, campaign):

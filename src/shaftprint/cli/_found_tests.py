@@ -1,13 +1,11 @@
 """Where the tests of a campaign are in the recorded set point, as a table and as lines of a campaign file."""
 
-import json
-
 import click
 
 from shaftprint.campaign import Campaign, Sine
 from shaftprint.cli._tables import print_table
 from shaftprint.errors import SignalError
-from shaftprint.files import printable
+from shaftprint.escape import toml_string
 from shaftprint.signals import FoundTest, common_shift_s, proposed_campaign
 
 _SECTIONS = ("staircases", "sines", "chirps")
@@ -54,8 +52,7 @@ def campaign_text(campaign: Campaign) -> str:
 
 def _toml(value: object) -> str:
     if isinstance(value, str):
-        # what JSON escapes, TOML reads alike
-        return printable(json.dumps(value, ensure_ascii=False))
+        return toml_string(value)
     if isinstance(value, tuple):
         return f"[{', '.join(_toml(item) for item in value)}]"
     # a float of TOML has a point; times are known to a millisecond, frequencies are whatever the file said
