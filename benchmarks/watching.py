@@ -4,7 +4,7 @@ Simulated ships are tested, a raw recording each, and their fingerprints compare
 tests are made on the same day: strength of the wandering inflow, surge, combustion noise and hunting, the torque of the
 propeller, the zero of the gauge, how well that was taken anew for the vessel file, and the set point are drawn for
 each. So no two tests have the same vessel file. Run ``python benchmarks/watching.py``; with ``--write`` the
-tables go into the document. A test takes 2 s of a processor, all of them 11 minutes.
+tables go into the document. A test takes 2 s of a processor, all of them 13 minutes.
 """
 
 import argparse
@@ -211,7 +211,7 @@ def main() -> None:
 
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--pairs", type=int, default=40, help="independent pairs of tests of an unchanged ship")
+    parser.add_argument("--pairs", type=int, default=60, help="independent pairs of tests of an unchanged ship")
     parser.add_argument("--tests", type=int, default=12, help="tests of each change of each size")
     parser.add_argument("--campaign", default="short", help="campaign that is sailed")
     parser.add_argument("--processes", type=int, default=os.cpu_count(), help="processes; as many as there are cores")
