@@ -187,6 +187,21 @@ CLOCKS = (
     Case(name="reversed in time", cause=f"{CAMPAIGN}|misfit|explain", change=m.everywhere(lambda v: v[::-1].copy())),
 )  # fmt: skip
 
+GAPS = (
+    Case(name="missing: 30 s of the torque in S4", cause=NOTHING, change=m.missing(550.0, 580.0, TORQUE)),
+    Case(name="missing: 30 s of the set point in S4", cause=NOTHING, change=m.missing(550.0, 580.0, SET_POINT)),
+    Case(name="missing: 20 s of the pulses in S3", cause=NOTHING, change=m.missing(490.0, 510.0, SPEED)),
+    Case(name="missing: 12.3 s of all channels in S5", cause=NOTHING, change=m.missing(600.0, 612.3)),
+    Case(name="missing: one value of the torque", cause=NOTHING, change=m.missing(610.0, 610.0005, TORQUE)),
+    Case(name="missing: the first 100 s, and the start says so", cause=NOTHING, change=m.begun_late(100.0)),
+    Case(name="missing: the first 60 s, held", cause=f"{NOTHING}|lasts|stands still|no pulses",
+         change=m.held(0.0, 60.0)),
+    Case(name="missing: the last 60 s, held", cause=f"{NOTHING}|lasts|stands still|no pulses",
+         change=m.held(800.0, 860.0)),
+    Case(name="missing: 30 s of the torque in S4, held", cause=NOTHING, change=m.held(550.0, 580.0, TORQUE)),
+    Case(name="missing: nothing, but the clock jumps in S4", cause=NOTHING, change=m.clock_jump(0.0003, 560.0)),
+)  # fmt: skip
+
 FILES = (
     Case(name="campaign file: frequencies in rad/s", cause="rad/s", fast=True,
          change=m.sines(lambda one: {"frequency_hz": 2.0 * np.pi * one.frequency_hz})),
@@ -213,5 +228,5 @@ FILES = (
          truth={"K_Q": 1.025}),
 )  # fmt: skip
 
-CASES = (*GAUGE, *PICK_UPS, *SET_POINTS, *CLOCKS, *FILES)
+CASES = (*GAUGE, *PICK_UPS, *SET_POINTS, *CLOCKS, *GAPS, *FILES)
 FAST = tuple(case for case in CASES if case.fast)

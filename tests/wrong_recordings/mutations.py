@@ -7,6 +7,8 @@ import numpy as np
 from scipy.signal import butter, sosfilt
 from tests.wrong_recordings.trial import TORQUE, Change, Trial, Values
 
+from shaftprint.recording import ClockJump
+
 
 def changed(channel: str, of: Callable[[Values, Values], Values]) -> Change:
     """Apply a function of time [s] and values to a channel."""
@@ -179,6 +181,59 @@ def cut_out(first_s: float, last_s: float, *channels: str) -> Change:
         return np.concatenate([kept, np.full(values.size - kept.size if channels else 0, kept[-1])])
 
     return lambda trial: both(*(changed(name, applied) for name in channels or tuple(trial.recording.channels)))(trial)
+
+
+def missing(first_s: float, last_s: float, *channels: str) -> Change:
+    """Let a stretch hold no numbers, in all channels where none is named."""
+
+    def applied(trial: Trial) -> Trial:
+        for name in channels or tuple(trial.recording.channels):
+            time, values = trial.time_s(name), trial.values(name)
+            values[(time >= first_s) & (time < last_s)] = np.nan
+            trial = trial.with_channel(
+                name, source=lambda begin, end, values=values: values[begin:end].copy(), scale=1.0, offset=0.0
+            )
+        return trial
+
+    return applied
+
+
+def begun_late(seconds: float) -> Change:
+    """Begin all channels later, which their start says."""
+
+    def applied(trial: Trial) -> Trial:
+        for name in trial.recording.channels:
+            time, values = trial.time_s(name), trial.values(name)
+            trial = trial.with_values(name, values[time >= seconds]).with_channel(name, start_s=seconds)
+        return trial
+
+    return applied
+
+
+def held(first_s: float, last_s: float, *channels: str) -> Change:
+    """Let channels keep the value that they have at the begin of a stretch; at its end where it begins with the file.
+
+    Channels are all where none is named.
+    """
+
+    def applied(time: Values, values: Values) -> Values:
+        inside = (time >= first_s) & (time < last_s)
+        place = int(np.flatnonzero(inside)[0]) if first_s > 0.0 else int(np.flatnonzero(inside)[-1])
+        return np.where(inside, values[place], values)
+
+    return lambda trial: both(*(changed(name, applied) for name in channels or tuple(trial.recording.channels)))(trial)
+
+
+def clock_jump(jump_s: float, at_s: float) -> Change:
+    """Let the clock of all channels jump, as a reader says it."""
+
+    def applied(trial: Trial) -> Trial:
+        for name, channel in trial.recording.channels.items():
+            jump = ClockJump(sample=round(at_s * channel.rate_hz), jump_s=jump_s)
+            trial = trial.with_channel(name, clock_jumps=(jump,))
+        return trial
+
+    return applied
 
 
 def swapped(one: str, other: str) -> Change:
