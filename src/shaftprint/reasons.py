@@ -15,6 +15,7 @@ ReasonKind: TypeAlias = Literal[
     "prior",
     "gear ratio",
     "misfit",
+    "contradicting data",
     "suspect",
     "too few data",
     "gap",

@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.errors import IdentificationError
+from shaftprint.identify import Settings
 from shaftprint.models import limited
-from shaftprint.time_domain import ExactDelays, output_error, record_from_arrays
+from shaftprint.time_domain import ExactDelays, identify_in_time, output_error, record_from_arrays
 from shaftprint.time_domain._simulator import on_record
 
 RATE = 20.0
@@ -84,3 +86,20 @@ def test_a_short_record_has_one_load(line, record):
     )
     free, plain = (replace(output_error(line, short), moving_load=moves) for moves in (True, False))
     assert free.data_count == plain.data_count
+
+
+def test_a_load_that_moves_and_a_slope_that_is_free_are_refused(line, record):
+    """With both free, records of ``k_q = 2`` gave 2.43 +/- 0.12: the load takes what the torque tells of it."""
+    moving = replace(output_error(line, record), moving_load=True)
+    rng = np.random.default_rng(1)
+    with pytest.raises(IdentificationError, match=r"record C1: a load that may move .* hold it with .*k_q"):
+        identify_in_time([moving], rng=rng, start={})
+    noisy = replace(record, outputs={k: v + 1e-3 * rng.standard_normal(v.size) for k, v in record.outputs.items()})
+    names = [p.name for p in line.free if p.name not in ("k_q", "K_p")]
+    known = line.held_at(**{p.name: p.value for p in line.free if p.name in names})
+    held = replace(output_error(known.held_at(k_q=2.0), noisy), moving_load=True)
+    other = output_error(known, replace(noisy, name="C2"))
+    for terms in ([held], [replace(output_error(known, noisy), moving_load=True), other]):
+        found = identify_in_time(terms, rng=rng, settings=Settings(starts=1), start={"K_p": 5.0, "k_q": 2.0})
+        gain = next(p for p in found.parameters if p.name == "K_p")
+        assert abs(gain.value - line.named(line.vector({}))["K_p"]) < 4.0 * gain.std

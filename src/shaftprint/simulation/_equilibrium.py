@@ -1,6 +1,6 @@
 """The steady running of a structure at constant inputs."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -22,6 +22,8 @@ class Equilibrium:
     """The inputs, in the structure's own units."""
     states: FloatArray
     """The states, shape (states,)."""
+    state_names: tuple[str, ...]
+    """What the equations call them, each once: the second of two of one name has a 2 behind it."""
     outputs: Mapping[str, float]
     """The outputs."""
 
@@ -31,6 +33,7 @@ class Equilibrium:
         return cls(
             inputs=dict(inputs),
             states=frozen_float(steady.states),
+            state_names=_each_once(program.states),
             outputs=dict(zip(program.outputs, (float(value) for value in steady.outputs), strict=True)),
         )
 
@@ -53,6 +56,12 @@ def equilibrium(structure: Structure, values: ArrayLike, inputs: Mapping[str, fl
     vector = np.asarray(values, dtype=np.float64)
     built = build(structure, held_zeros(structure, vector))
     return Equilibrium.of(built.program, inputs, built.steady.solve(vector, input_vector(structure, inputs)))
+
+
+def _each_once(names: Sequence[str]) -> tuple[str, ...]:
+    """Return names with a number behind those that came before."""
+    counts = [names[: place + 1].count(name) for place, name in enumerate(names)]
+    return tuple(name if count == 1 else f"{name} {count}" for name, count in zip(names, counts, strict=True))
 
 
 def input_vector(structure: Structure, inputs: Mapping[str, float]) -> FloatArray:

@@ -20,21 +20,26 @@ from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain._input_response import noise_of
 from shaftprint.time_domain._known_start import KnownStart
+from shaftprint.time_domain._moving_load import SLOPE
 from shaftprint.time_domain._noise_model import LONGEST_S, estimate_noise, white_noise
+from shaftprint.time_domain._nuisance import usual_drift_degree
 from shaftprint.time_domain._output_error import OutputError
 from shaftprint.time_domain._record import Record
+from shaftprint.time_domain._record_fit import RecordFit
 from shaftprint.time_domain._simulator import ExactDelays, Simulator
 from shaftprint.time_domain._whitening import Whitening
 
 Source: TypeAlias = tuple[Structure, Record | FrequencyResponse] | Term
+Part: TypeAlias = tuple[Structure, FrequencyResponse] | Term
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class TimeSettings:
     """What is taken out of records beside the model, and how their noise is found."""
 
-    drift_degree: int = 1
-    """Highest power of time in what is projected out of each output: 0 for offsets, 1 for drifts, -1 for nothing."""
+    drift_degree: int | None = None
+    """Highest power of time in what is projected out of each output: 0 for offsets, 1 for drifts, -1 for nothing. If
+    not given 0 for a record of steps, whose levels a drift would take, and 1 for others."""
     anew_after_s: float = 10.0
     """A gap longer than this [s] begins offset and drift anew."""
     initial_states: bool = False
@@ -55,7 +60,8 @@ class TimeSettings:
         IdentificationError
             If one is out of range.
         """
-        if self.drift_degree < -1 or self.rounds < 0 or not (self.longest_memory_s >= 0.0 and self.anew_after_s >= 0.0):
+        degree = 0 if self.drift_degree is None else self.drift_degree
+        if degree < -1 or self.rounds < 0 or not (self.longest_memory_s >= 0.0 and self.anew_after_s >= 0.0):
             raise IdentificationError(
                 f"fit in time: expected a drift degree of at least -1 and no negative rounds or times, found {self}."
             )
@@ -93,9 +99,10 @@ def output_error(structure: Structure, record: Record, *, settings: TimeSettings
         record=record,
         whitening=Whitening(noise=white_noise(outputs - outputs[record.used].mean(axis=0), record.stretches)),
         simulator=chosen.simulator,
-        drift_degree=chosen.drift_degree,
+        drift_degree=usual_drift_degree(record) if chosen.drift_degree is None else chosen.drift_degree,
         anew_after_s=chosen.anew_after_s,
         initial_states=chosen.initial_states,
+        longest_memory_s=chosen.longest_memory_s,
         held=own.vector({}),
         free=free,
         places=free,
@@ -160,14 +167,41 @@ def identify_in_time(
     parts = [_term(pair, how) for pair in pairs]
     if not any(isinstance(part, OutputError) for part in parts):
         raise IdentificationError("fit in time: expected at least one structure with a record, found none.")
+    _expect_known_slope(parts)
     first = _start(parts, rng, chosen, start)
     for _ in range(how.rounds):
         parts = [_renewed(part, first, how) for part in parts]
         first = _values(identify_jointly(parts, rng=rng, settings=_from(parts, first, replace(chosen, starts=1))))
-    return identify_jointly(parts, rng=rng, settings=_from(parts, first, chosen))
+    return _with_states(identify_jointly(parts, rng=rng, settings=_from(parts, first, chosen)))
 
 
-Part: TypeAlias = tuple[Structure, FrequencyResponse] | Term
+def _expect_known_slope(parts: Sequence[Part]) -> None:
+    """Refuse records whose load may move where nothing else tells of the load's slope.
+
+    Raises
+    ------
+    IdentificationError
+        If it is free in such a record and in no other data.
+    """
+    asked = [part for part in parts if SLOPE in {p.name for p in _structure(part).free}]
+    moving = [part for part in asked if isinstance(part, OutputError) and part.moving_load]
+    if moving and len(moving) == len(asked):
+        raise IdentificationError(
+            f"{moving[0].name}: a load that may move takes the torque that another {SLOPE} would give, so that the "
+            f"record cannot tell {SLOPE}; hold it with structure.held_at({SLOPE}=...), add a frequency response, or "
+            "fit with moving_load=False."
+        )
+
+
+def _with_states(found: Identification) -> Identification:
+    """Return a fit whose initial states have deviations that hold those of the parameters too."""
+    parts = []
+    for term, part in zip(found.objective.terms, found.parts, strict=True):
+        if isinstance(term, OutputError) and term.initial_states and isinstance(part, RecordFit):
+            covariance = found.covariance[np.ix_(term.columns, term.columns)]
+            part = replace(part, initial_states=term.started_from(term.own(found.values), covariance))
+        parts.append(part)
+    return replace(found, parts=tuple(parts))
 
 
 def _term(pair: Source, how: TimeSettings) -> Part:

@@ -11,20 +11,25 @@ its standard deviations (p = 0.15); looking for limits is the task of ``nonlinea
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.time_domain._nuisance import without
 from shaftprint.time_domain._record import Record
 
 # Length of the impulse responses [s], and the most lags, evenly spread, that they have.
 MEMORY_S, MOST_LAGS = 3.0, 60
 # Directions in which the inputs move less than this share of the largest are not excited: a sine has two.
 EXCITED = 1e-3
-# Directions of which less than this share is left beside others say nothing of their own.
-INDEPENDENT = 1e-5
 
 
-def delayed_inputs(record: Record) -> FloatArray:
-    """Return the inputs at every lag, shape (inputs * lags, samples); before its beginning an input was constant."""
-    lags = np.unique(np.rint(np.linspace(0, MEMORY_S * record.rate_hz, MOST_LAGS)).astype(int))
+def delayed_inputs(record: Record, *, most: int = MOST_LAGS, longest_s: float = MEMORY_S) -> FloatArray:
+    """Return the inputs at every lag, shape (inputs * lags, samples); before its beginning an input was constant.
+
+    Parameters
+    ----------
+    most
+        Most lags, no more than usual, evenly spread.
+    longest_s
+        The longest of them [s].
+    """
+    lags = np.unique(np.rint(np.linspace(0, longest_s * record.rate_hz, min(most, MOST_LAGS))).astype(int))
     rows = []
     for values in record.inputs.values():
         padded = np.concatenate([np.full(lags[-1], values[0]), values])
@@ -48,23 +53,3 @@ def noise_of(residuals: FloatArray, record: Record) -> FloatArray:
     kept = residuals * record.used[:, None]
     spare = max(int(record.used.sum()) - basis.shape[0], 1)
     return np.asarray((kept - basis.T @ (basis @ kept)) * np.sqrt(record.used.sum() / spare))
-
-
-def explained_part(residuals: FloatArray, directions: FloatArray, basis: FloatArray) -> tuple[float, int]:
-    """Return the squared length of residuals within directions, beside an orthonormal basis, and how many those are.
-
-    Parameters
-    ----------
-    residuals
-        Shape (length,).
-    directions
-        Shape (directions, length).
-    basis
-        Shape (rank, length).
-    """
-    beside = without(directions, basis)
-    size = np.linalg.norm(beside, axis=1)
-    rows = beside[size > 0.0] / size[size > 0.0, None]
-    squares, turn = np.linalg.eigh(rows @ rows.T)
-    kept = squares > INDEPENDENT**2 * squares.max(initial=0.0)
-    return float(np.sum((turn[:, kept].T @ (rows @ residuals)) ** 2 / squares[kept])), int(kept.sum())

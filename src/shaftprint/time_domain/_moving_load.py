@@ -10,6 +10,10 @@ of its standard deviations, ``k_q`` by eight, ``t_gauge`` by six (scatter over s
 
 So the torque is compared without ``l n^2``, of data and model alike, which leaves noise of one colour; and the pattern
 ``(1 + n)^2`` of the measured speed, times a piecewise linear function of time, is projected out of it as drifts are.
+
+With the load goes what the torque tells of its slope ``k_q``. What the speed still tells of it is little and wrong, for
+the pattern is that of a measured speed: records whose ``k_q`` is 2 gave 1.61 +/- 0.01 and 2.43 +/- 0.12. Something else
+has to tell of it, or it is held.
 """
 
 import numpy as np
@@ -17,6 +21,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.time_domain._record import Record
 
+# The parameter that no record tells of whose load may move: another slope of the torque is another load.
+SLOPE = "k_q"
 # Time from one corner of the load to the next [s]: inflow moves over minutes, steps over seconds.
 CORNER_S = 40.0
 SPEED, TORQUE = "n", "M_s"

@@ -64,6 +64,14 @@ class NoiseModel:
         blocks = total.reshape(self.order, self.outputs, self.order, self.outputs)[::-1, :, ::-1]
         return np.asarray(blocks.reshape(size, size))
 
+    def driven(self, innovations: FloatArray) -> FloatArray:
+        """Return what innovations give that follow each other from rest, both of shape (rows, samples, outputs)."""
+        found = innovations.copy()
+        for place in range(1, found.shape[1]):
+            past = found[:, max(place - self.order, 0) : place][:, ::-1]
+            found[:, place] += np.einsum("rpj,pij->ri", past, self.coefficients[: past.shape[1]])
+        return found
+
     def spectrum(self, frequency_hz: FloatArray, rate_hz: float) -> ComplexArray:
         """Return the two-sided power spectral density [1/Hz], shape (frequencies, outputs, outputs)."""
         turn = np.exp(-2j * np.pi * np.asarray(frequency_hz)[:, None] / rate_hz * np.arange(1, self.order + 1))

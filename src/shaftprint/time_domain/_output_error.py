@@ -13,23 +13,30 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import LineTest, Repeats, Term, TermTest
+from shaftprint.identify import Estimate, LineTest, Repeats, Term, TermTest
 from shaftprint.models import Structure
 from shaftprint.time_domain._at_once import at_once
-from shaftprint.time_domain._input_response import excited, explained_part
+from shaftprint.time_domain._flexible import FlexibleModel
+from shaftprint.time_domain._initial_states import InitialStates, state_estimates
+from shaftprint.time_domain._input_response import excited
 from shaftprint.time_domain._moving_load import load_columns, with_square, without_square
+from shaftprint.time_domain._noise_model import LONGEST_S
 from shaftprint.time_domain._nuisance import drift_columns, orthonormal, without
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._record_fit import RecordFit, record_fit
 from shaftprint.time_domain._record_repeats import RecordRepeats
 from shaftprint.time_domain._simulator import Simulator, on_record
+from shaftprint.time_domain._span import Span
 from shaftprint.time_domain._turned import turned
 from shaftprint.time_domain._whitening import Whitening
 
 # Cost of a simulation that runs away, over that of no model at all.
 AWAY = 1e12
-# Steps towards initial states; one is exact where the outputs depend on them linearly.
-STATE_STEPS = 2
+# Most steps towards initial states, and the share of their size below which one is the last: the first is exact where
+# the outputs depend on them linearly.
+STATE_STEPS, SMALL_STEP = 5, 1e-6
+# Change of a state over which its effect is taken.
+STATE_CHANGE = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -53,6 +60,8 @@ class OutputError(Term):
     moving_load: bool = False
     """Whether the propeller's load may move, for structures with speed ``n`` and torque ``M_s`` of a propeller that
     takes the square of the speed: the torque is compared without that square."""
+    longest_memory_s: float = LONGEST_S
+    """Longest memory of the noise that is tried [s]."""
     held: FloatArray
     """Values of the structure's parameters; the free ones are replaced, shape (structure's parameters,)."""
     free: tuple[int, ...]
@@ -68,9 +77,7 @@ class OutputError(Term):
 
     def __post_init__(self) -> None:
         """Whiten what does not depend on parameters."""
-        measured = self._outputs()[None]
-        compared = without_square(measured, self._names, self.record.load) if self.moving_load else measured
-        object.__setattr__(self, "measured", frozen_float(self._white(compared)[0]))
+        object.__setattr__(self, "measured", frozen_float(self._white(self._compared(self._outputs())[None])[0]))
         object.__setattr__(self, "drifts", frozen_float(orthonormal(self._white(self._columns()))))
 
     @property
@@ -154,20 +161,16 @@ class OutputError(Term):
     def judged(self, values: FloatArray, number: int) -> tuple[RecordFit, TermTest]:
         """Return FitPercent and whitened residuals, and how much of these the inputs still explain."""
         own = self.own(values)
-        found = self._rows(own, self.measured)
-        if found is None:
-            raise IdentificationError(
-                f"{self.name}: the simulation of {self.structure.name} runs away at the parameters that were found; "
-                "narrow the bounds, or start from a fit to a frequency response."
-            )
-        rows, basis = found
+        start, simulated = self._evaluated(own)
+        rows, basis = self._projected(simulated, start, self.measured)
         part = record_fit(
             self.structure,
             self.record,
             self.whitening.noise,
-            measured=self._outputs(),
-            model=self.model(own),
+            model=self._completed(simulated[0], start),
             whitened=rows[0].reshape(-1, len(self._names)),
+            initial_states=() if start is None else state_estimates(start, self._white(start.effects), self.drifts),
+            flexible=self._flexible(simulated, start),
         )
         test = self._tested(rows, basis)
         line = LineTest(
@@ -177,15 +180,29 @@ class OutputError(Term):
             chi_square=test[0], count=test[1], mean=float(test[1]), variance=2.0 * test[1], lines=(line,)
         )
 
+    def started_from(self, own: FloatArray, covariance: FloatArray) -> tuple[Estimate, ...]:
+        """Return the states at the start with their standard deviations; none where they are not estimated.
+
+        Parameters
+        ----------
+        own
+            All parameters of the structure, shape (parameters,).
+        covariance
+            Covariance of the free ones, shape (free, free).
+        """
+        start, simulated = self._evaluated(own)
+        if start is None:
+            return ()
+        slopes = self._white(simulated[1:])
+        return state_estimates(start, self._white(start.effects), self.drifts, slopes=slopes, covariance=covariance)
+
     def redrawn(self, values: FloatArray, count: int, rng: np.random.Generator) -> RecordRepeats:
         """Return repeats with noise of the same colour."""
-        model = self._simulated(self.own(values), wanted=())
-        if model is None:
-            raise IdentificationError(f"{self.name}: the simulation runs away, repeats of it cannot be drawn.")
-        return RecordRepeats(model=self._white(model)[0], seeds=rng.integers(0, 2**62, size=count))
+        _, simulated = self._evaluated(self.own(values))
+        return RecordRepeats(model=self._white(simulated[:1])[0], seeds=rng.integers(0, 2**62, size=count))
 
     def model(self, own: FloatArray) -> FloatArray:
-        """Return simulated outputs with their best offset and drift, shape (samples, outputs).
+        """Return simulated outputs with their best offset, drift and initial states, shape (samples, outputs).
 
         Parameters
         ----------
@@ -197,23 +214,12 @@ class OutputError(Term):
         IdentificationError
             If the simulation runs away.
         """
-        simulated = self._simulated(own, wanted=())
-        if simulated is None:
-            raise IdentificationError(f"{self.name}: the simulation of {self.structure.name} runs away.")
-        columns = self._columns()
-        found = simulated[0]
-        if columns.size:
-            gap = self.measured - self._white(simulated)[0]
-            shares, *_ = np.linalg.lstsq(self._white(columns).T, gap, rcond=None)
-            found = found + np.tensordot(shares, columns, axes=1)
-        return with_square(found, self._names, self.record.load) if self.moving_load else np.asarray(found)
+        start, simulated = self._evaluated(own)
+        return self._completed(simulated[0], start)
 
     def left(self, own: FloatArray) -> FloatArray:
         """Return what the model leaves of the outputs as they are compared; see ``model``."""
-        pair = np.stack([self._outputs(), self.model(own)])
-        if self.moving_load:
-            pair = np.concatenate([without_square(one[None], self._names, self.record.load) for one in pair])
-        return np.asarray(pair[0] - pair[1])
+        return self._compared(self._outputs()) - self._compared(self.model(own))
 
     def rows(self, own: FloatArray) -> FloatArray | None:
         """Return whitened residuals and their derivatives, shape (1 + free, used samples * outputs).
@@ -228,35 +234,94 @@ class OutputError(Term):
 
         None where the simulation runs away.
         """
-        wanted = [self.structure.names[place] for place in self.free]
-        basis, initial = self.drifts, None
-        if self.initial_states:
-            found = self._start(own, data)
-            if found is None:
-                return None
-            initial, basis = found
-        simulated = self._simulated(own, wanted, initial)
-        if simulated is None:
-            return None
+        found = self._run(own, data)
+        return None if found is None else self._projected(found[1], found[0], data)
+
+    def _projected(
+        self, simulated: FloatArray, start: InitialStates | None, data: FloatArray
+    ) -> tuple[FloatArray, FloatArray]:
+        """Return whitened residuals of a simulation with derivatives beside offsets, drifts and initial states."""
+        basis = self.drifts
+        if start is not None:
+            effects = without(self._white(start.effects), self.drifts)
+            basis = orthonormal(np.concatenate([self.drifts, effects]))
         rows = self._white(simulated)
         rows[0] = data - rows[0]
         rows[1:] *= -1.0
         return without(rows, basis), basis
 
-    def _start(self, own: FloatArray, data: FloatArray) -> tuple[FloatArray, FloatArray] | None:
-        """Return the best states at the start, and an orthonormal basis of their effects and the drifts."""
+    def _evaluated(self, own: FloatArray) -> tuple[InitialStates | None, FloatArray]:
+        """Return initial states and the simulation from them with its derivatives, for the data of the record.
+
+        Raises
+        ------
+        IdentificationError
+            If the simulation runs away.
+        """
+        found = self._run(own, self.measured)
+        if found is None:
+            raise IdentificationError(
+                f"{self.name}: the simulation of {self.structure.name} runs away at these parameters; narrow the "
+                "bounds, or start from a fit to a frequency response."
+            )
+        return found
+
+    def _run(self, own: FloatArray, data: FloatArray) -> tuple[InitialStates | None, FloatArray] | None:
+        """Return initial states where they are estimated, and the simulation from them; None where it runs away."""
+        start = self._start(own, data) if self.initial_states else None
+        if self.initial_states and start is None:
+            return None
+        wanted = [self.structure.names[place] for place in self.free]
+        simulated = self._simulated(own, wanted, None if start is None else start.values)
+        return None if simulated is None else (start, simulated)
+
+    def _start(self, own: FloatArray, data: FloatArray) -> InitialStates | None:
+        """Return the best states at the start; None where the simulation runs away."""
         states = self.simulator.rest(self.structure, own, self.record)
-        basis = self.drifts
         for _ in range(STATE_STEPS):
-            moved = [self._simulated(own, (), states + step) for step in (np.zeros(states.size), *np.eye(states.size))]
+            steps = STATE_CHANGE * np.eye(states.size)
+            moved = [self._simulated(own, (), states + step) for step in (np.zeros(states.size), *steps)]
             if any(m is None for m in moved):
                 return None
-            rows = self._white(np.concatenate([m for m in moved if m is not None]))
-            effects = without(rows[1:] - rows[0], self.drifts)
-            shares, *_ = np.linalg.lstsq(effects.T, without(data - rows[0], self.drifts), rcond=1e-9)
+            runs = np.concatenate([m for m in moved if m is not None])
+            effects = (runs[1:] - runs[0]) / STATE_CHANGE
+            rows = without(self._white(effects), self.drifts)
+            shares, *_ = np.linalg.lstsq(rows.T, without(data - self._white(runs[:1])[0], self.drifts), rcond=1e-9)
             states = states + shares
-            basis = orthonormal(np.concatenate([self.drifts, effects]))
-        return states, basis
+            if np.abs(shares).max(initial=0.0) <= SMALL_STEP * np.abs(states).max(initial=0.0):
+                break
+        return InitialStates(structure=self.structure, record=self.record, own=own, values=states, effects=effects)
+
+    def _completed(self, simulated: FloatArray, start: InitialStates | None) -> FloatArray:
+        """Return a simulation with its best offset and drift as the record shows it, shape (samples, outputs)."""
+        columns, found = self._columns(), simulated
+        if columns.size:
+            gap = self.measured - self._white(simulated[None])[0]
+            if start is not None:
+                # the last step towards the states was small, but drifts and states may have moved against each other
+                columns = np.concatenate([columns, start.effects])
+            shares, *_ = np.linalg.lstsq(self._white(columns).T, gap, rcond=1e-9)
+            found = found + np.tensordot(shares, columns, axes=1)
+        return with_square(found, self._names, self.record.load) if self.moving_load else np.asarray(found)
+
+    def _flexible(self, simulated: FloatArray, start: InitialStates | None) -> FlexibleModel:
+        """Return what is more flexible than the structure, to judge it by."""
+        fitted = self._columns() if start is None else np.concatenate([self._columns(), start.effects])
+        measured = self._outputs()
+        return FlexibleModel(
+            record=self.record,
+            names=self._names,
+            measured=measured,
+            residuals=self._compared(measured) - self._compared(self._completed(simulated[0], start)),
+            simulated=simulated[0],
+            slopes=simulated[1:],
+            nuisance=fitted,
+            longest_memory_s=self.longest_memory_s,
+        )
+
+    def _compared(self, values: FloatArray) -> FloatArray:
+        """Return outputs as they are compared, without the square of the speed where the load may move."""
+        return without_square(values[None], self._names, self.record.load)[0] if self.moving_load else values
 
     def _simulated(
         self, own: FloatArray, wanted: Sequence[str], initial: FloatArray | None = None
@@ -292,4 +357,5 @@ class OutputError(Term):
         for output in range(size):
             directions[output, :, :, output] = moves
         table = self._white(directions.reshape(-1, self.record.samples, size))
-        return explained_part(rows[0], np.concatenate([rows[1:], table]), basis)
+        span = Span.of(without(np.concatenate([rows[1:], table]), basis))
+        return span.explained(rows[0]), span.rank

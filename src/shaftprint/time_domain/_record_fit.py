@@ -1,13 +1,14 @@
 """How well one record is explained by a fit."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.identify import FittedTerm, fit_ceiling, fit_percent
+from shaftprint.arrays import ComplexArray, FloatArray, frozen_float
+from shaftprint.identify import Estimate, FittedTerm, TermCheck, fit_ceiling, fit_percent
 from shaftprint.models import Structure
+from shaftprint.time_domain._flexible import FlexibleModel
 from shaftprint.time_domain._noise_model import NoiseModel
 from shaftprint.time_domain._record import Record
 
@@ -23,14 +24,16 @@ class RecordFit(FittedTerm):
     noise: NoiseModel
     """The noise by which residuals were weighed."""
     model: Mapping[str, FloatArray]
-    """Simulated outputs with offset and drift by name [-], each of shape (samples,)."""
+    """Simulated outputs with offset, drift and initial states by name [-], each of shape (samples,)."""
     fit_percent: Mapping[str, float]
     """FitPercent of each output over the used samples (thesis eq. 2.41)."""
-    fit_ceiling: Mapping[str, float]
-    """FitPercent that the noise allows, of each output; its noise does not depend on the structure."""
     whitened: FloatArray
     """Residuals of the used samples after the noise's filter, shape (used samples, outputs); independent of each other
     with a standard deviation of 1 where structure and noise model hold."""
+    initial_states: tuple[Estimate, ...]
+    """States at the first sample, by the names of the structure's equations, where they were estimated; else none."""
+    flexible: FlexibleModel = field(repr=False)
+    """What is more flexible than the structure, by which it is judged."""
 
     @property
     def name(self) -> str:
@@ -42,35 +45,56 @@ class RecordFit(FittedTerm):
         """Length of the used samples [s]."""
         return int(self.record.used.sum()) / self.record.rate_hz
 
+    @property
+    def fit_ceiling(self) -> Mapping[str, float]:
+        """FitPercent that the noise allows, of each output: its noise is that beside a flexible model."""
+        used, power = self.record.used, self.flexible.power
+        return {
+            name: fit_ceiling(_complex(self.record.outputs[name][used]), np.full(int(used.sum()), power[place]))
+            for place, name in enumerate(self.structure.outputs)
+        }
+
+    @property
+    def checks(self) -> tuple[TermCheck, ...]:
+        """Whether parts of the record contradict each other, the other data or a flexible model."""
+        return self.flexible.checks
+
 
 def record_fit(
     structure: Structure,
     record: Record,
     noise: NoiseModel,
     *,
-    measured: FloatArray,
     model: FloatArray,
     whitened: FloatArray,
+    initial_states: tuple[Estimate, ...],
+    flexible: FlexibleModel,
 ) -> RecordFit:
     """Return how well a record is explained.
 
     Parameters
     ----------
-    measured, model
-        Outputs with offset and drift, shape (samples, outputs).
+    model
+        Outputs with offset, drift and initial states, shape (samples, outputs).
     whitened
         Residuals of the used samples after the noise's filter, shape (used samples, outputs).
     """
-    used, power = record.used, np.diag(noise.power)
+    used = record.used
     places = {name: place for place, name in enumerate(structure.outputs)}
     return RecordFit(
         structure=structure,
         record=record,
         noise=noise,
         model={name: frozen_float(model[:, i]) for name, i in places.items()},
-        fit_percent={name: fit_percent(measured[used, i] + 0j, model[used, i] + 0j) for name, i in places.items()},
-        fit_ceiling={
-            name: fit_ceiling(measured[used, i] + 0j, np.full(int(used.sum()), power[i])) for name, i in places.items()
+        fit_percent={
+            name: fit_percent(_complex(record.outputs[name][used]), _complex(model[used, i]))
+            for name, i in places.items()
         },
         whitened=frozen_float(whitened),
+        initial_states=initial_states,
+        flexible=flexible,
     )
+
+
+def _complex(values: FloatArray) -> ComplexArray:
+    return values.astype(np.complex128)

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from shaftprint.identify import FittedTerm, LineTest, Repeats, Term, TermTest
+from shaftprint.identify import FittedTerm, LineTest, Repeats, Term, TermCheck, TermTest
 from shaftprint.models import Structure
 from shaftprint.time_domain._bands import ORDERS
 from shaftprint.time_domain._nodes import Nodes
@@ -62,6 +62,11 @@ class FittedSpectrum(FittedTerm):
     def seconds(self) -> float:
         """Length of the used samples [s]."""
         return int(self.spectrum.record.used.sum()) / self.spectrum.record.rate_hz
+
+    @property
+    def checks(self) -> tuple[TermCheck, ...]:
+        """Nothing: each band of lines is tested on its own."""
+        return ()
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -71,6 +71,7 @@ HANGING: Mapping[ReasonKind, tuple[frozenset[Role], str]] = {
     "too few data": (ALL, WHOLE),
     "gap": (ALL, WHOLE),
     "misfit": (ALL, WHOLE),
+    "contradicting data": (ALL, WHOLE),
     "suspect": (frozenset(), ""),
     "lines left out": (ALL, "the model does not hold at the lines that were left out"),
     "unstable": (ALL, WHOLE),

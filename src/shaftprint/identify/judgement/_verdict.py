@@ -4,7 +4,8 @@
 contradicts of the vessel file, and what it asks of the fit itself, where the first no decides:
 
 1. Are there enough good lines, and is there no gap where the loop decides on its stability?
-2. Does the structure explain the data within their noise, and predict the usable lines that were left out?
+2. Does the structure explain the data within their noise, does no record contradict itself or the others, and are the
+   usable lines that were left out predicted?
 3. Is no unstable model better, and is the optimum the only one?
 4. Is the identified loop stable?
 
@@ -20,6 +21,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Estimate, Identification
 from shaftprint.identify.judgement._cautions import cautions_of
+from shaftprint.identify.judgement._contradicting_data import contradicting_data
 from shaftprint.identify.judgement._contradictions import contradicted_priors
 from shaftprint.identify.judgement._doubts import (
     better_when_unstable,
@@ -48,6 +50,7 @@ QUESTIONS: tuple[tuple[ReasonKind, Callable[[Evidence], str]], ...] = (
     ("too few data", too_few_good_data),
     ("gap", gap_where_it_matters),
     ("misfit", not_explained),
+    ("contradicting data", contradicting_data),
     ("lines left out", not_predicted),
     ("unstable", better_when_unstable),
     ("not unique", not_unique),

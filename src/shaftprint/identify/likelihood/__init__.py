@@ -11,11 +11,13 @@ from shaftprint.identify.likelihood._objective import Objective, Redrawn
 from shaftprint.identify.likelihood._part import Part, channel_names, channels_of
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.likelihood._term import FittedTerm, Repeats, Term, TermTest
+from shaftprint.identify.likelihood._term_check import CheckKind, TermCheck
 from shaftprint.identify.likelihood._weighting import MaximumLikelihood, StudentT, Unweighted, Weighting
 
 __all__ = [
     "OVER_TORQUE",
     "PRIOR_OF_G",
+    "CheckKind",
     "Experiment",
     "FittedTerm",
     "LineTest",
@@ -29,6 +31,7 @@ __all__ = [
     "Source",
     "StudentT",
     "Term",
+    "TermCheck",
     "TermTest",
     "Unweighted",
     "Weighting",

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.identify.likelihood._term import FittedTerm
+from shaftprint.identify.likelihood._term_check import TermCheck
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 
@@ -36,6 +37,11 @@ class Part(FittedTerm):
     def seconds(self) -> float:
         """Length of a record; 0 of a frequency response."""
         return 0.0
+
+    @property
+    def checks(self) -> tuple[TermCheck, ...]:
+        """Nothing: each line is tested on its own."""
+        return ()
 
 
 def channels_of(response: FrequencyResponse) -> ComplexArray:

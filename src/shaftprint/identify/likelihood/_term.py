@@ -14,6 +14,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
 from shaftprint.identify.likelihood._line_test import LineTest
+from shaftprint.identify.likelihood._term_check import TermCheck
 from shaftprint.models import Structure, stable_rows
 
 
@@ -36,8 +37,11 @@ class FittedTerm(ABC):
     """The structure, with its held and free parameters."""
     fit_percent: Mapping[str, float]
     """FitPercent of each output (thesis eq. 2.41)."""
-    fit_ceiling: Mapping[str, float]
-    """FitPercent that the noise allows, of each output."""
+
+    @property
+    @abstractmethod
+    def fit_ceiling(self) -> Mapping[str, float]:
+        """FitPercent that the noise allows, of each output."""
 
     @property
     @abstractmethod
@@ -48,6 +52,11 @@ class FittedTerm(ABC):
     @abstractmethod
     def seconds(self) -> float:
         """Length of a record, gaps apart [s]; 0 of a frequency response."""
+
+    @property
+    @abstractmethod
+    def checks(self) -> tuple[TermCheck, ...]:
+        """Whether the data contradict themselves or the other data; empty where that is not asked."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

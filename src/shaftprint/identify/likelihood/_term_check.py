@@ -1,0 +1,24 @@
+"""Does one term contradict itself, or the others? A check of a structure against what is more flexible than it."""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+CheckKind: TypeAlias = Literal["small and large", "up and down", "halves", "other data", "flexible"]
+"""What is compared: small motions with large ones, motions up with motions down, the first half of the data with the
+second, these data with the others, the structure with a flexible model."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TermCheck:
+    """How much better data are explained where the structure may have other numbers for each of two sides."""
+
+    kind: CheckKind
+    """What is compared."""
+    output: str
+    """The output in which the difference is largest."""
+    share: float
+    """Root mean square of the difference over that of the output's motion [-]."""
+    noise: float
+    """Root mean square of the noise of that output over that of its motion [-]."""
+    p_value: float
+    """Probability of a difference that large or larger if the structure holds."""

@@ -1,0 +1,79 @@
+"""The states in which a record begins, where they are estimated with the parameters.
+
+For given parameters ``theta`` the states ``x`` are the least-squares solution ``x(theta)`` of the whitened record, with
+offset and drift beside them. With the effects ``E`` of the states and the slopes ``J`` of the outputs, whitened and
+without offset and drift, their covariance is ``(E E^T)^-1 + D C D^T`` with ``D = -(E E^T)^-1 E J^T`` and the covariance
+``C`` of the parameters (Golub and Pereyra, The differentiation of pseudo-inverses and nonlinear least squares problems
+whose variables separate, 1973).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.identify import Estimate, PseudoInverse
+from shaftprint.models import Structure
+from shaftprint.simulation import equilibrium
+from shaftprint.time_domain._nuisance import without
+from shaftprint.time_domain._record import Record
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class InitialStates:
+    """States at the first sample of a record's drive."""
+
+    structure: Structure
+    """The structure whose states they are."""
+    record: Record
+    """The data."""
+    own: FloatArray
+    """All parameters of the structure, shape (parameters,)."""
+    values: FloatArray
+    """The states, in the structure's units, shape (states,)."""
+    effects: FloatArray
+    """What one unit of each adds to the outputs as they are compared, shape (states, samples, outputs)."""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What the equations of the structure call the states."""
+        inputs = {name: float(self.record.drive[name][0]) for name in self.structure.inputs}
+        return equilibrium(self.structure, self.own, inputs).state_names
+
+
+def state_estimates(
+    start: InitialStates,
+    effects: FloatArray,
+    drifts: FloatArray,
+    *,
+    slopes: FloatArray | None = None,
+    covariance: FloatArray | None = None,
+) -> tuple[Estimate, ...]:
+    """Return the states with their standard deviations; infinite where the record does not tell of one.
+
+    Parameters
+    ----------
+    start
+        The states.
+    effects
+        Their whitened effects, shape (states, length).
+    drifts
+        Orthonormal basis of whitened offsets and drifts, shape (rank, length).
+    slopes, covariance
+        Whitened derivatives to the free parameters, shape (free, length), and the covariance of these, shape (free,
+        free); the parameters are taken to be known where they are not given. One of infinite variance leaves the states
+        that hang on it unknown.
+    """
+    beside = without(effects, drifts)
+    known = PseudoInverse.of(beside)
+    variance = np.diag(known.inverse).copy()
+    if slopes is not None and covariance is not None:
+        change = known.inverse @ beside @ slopes.T
+        finite = np.isfinite(np.diag(covariance))
+        variance += np.einsum("si,ij,sj->s", change[:, finite], covariance[np.ix_(finite, finite)], change[:, finite])
+        variance[np.any(change[:, ~finite] != 0.0, axis=1)] = np.inf
+    variance[known.lost] = np.inf
+    return tuple(
+        Estimate(name=name, unit="", value=float(value), std=float(np.sqrt(spread)))
+        for name, value, spread in zip(start.names, start.values, variance, strict=True)
+    )
