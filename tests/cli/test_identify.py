@@ -75,7 +75,7 @@ def test_recording_of_another_format(run, recording, tmp_path):
         (("--starts", "0"), 2, "0 is not in the range x>=1"),
         (("--mode", "guess"), 2, "'guess' is not one of 'shaftprint', 'thesis'"),
         (("--colour", "red"), 2, "No such option '--colour'"),
-        (("--campaign", "thesis"), 1, "found 860.0 s"),
+        (("--campaign", "thesis"), 1, "found a recording from 0.0 to 860.0 s"),
         (("--campaign", "trip.toml"), 1, "trip.toml: expected a settings file, found nothing there"),
         (("--vessel", "tor"), 1, "one of the shipped names stan-tug-1205"),
     ],

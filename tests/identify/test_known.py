@@ -15,7 +15,7 @@ def vessel(inertia_std=2.7, scale_std=0.02, latency_std=0.002):
         inertia_upstream_std_kg_m2=inertia_std,
         gearbox=SimpleNamespace(ratio=3.82),
         sensors=SimpleNamespace(
-            shaft_torque=SimpleNamespace(scale_std_fraction=scale_std, latency_s=0.005, latency_std_s=latency_std),
+            shaft_torque=SimpleNamespace(scale_std=scale_std, latency_s=0.005, latency_std=latency_std),
             set_point=SimpleNamespace(latency_s=None, latency_std_s=None),
             rack=None,
         ),
@@ -41,11 +41,21 @@ def test_thesis_mode_leaves_the_latency_of_the_telemetry_in_the_torque():
     assert known["t_gauge"] == Prior(mean=0.005, std=0.002, sources={"telemetry latency": 0.002})
 
 
-def test_what_the_vessel_file_does_not_tell_is_no_prior():
-    known = priors_from_vessel(structure("GAUGE-CLOSED"), vessel(inertia_std=0.0, latency_std=None), WORKING_POINT)
+def test_what_the_vessel_file_takes_for_exact_is_no_prior():
+    known = priors_from_vessel(structure("GAUGE-CLOSED"), vessel(inertia_std=0.0, latency_std=0.0), WORKING_POINT)
     assert set(known) == {"g"}
-    certain = priors_from_vessel(structure("GAUGE-CLOSED"), vessel(scale_std=None), WORKING_POINT)
+    certain = priors_from_vessel(structure("GAUGE-CLOSED"), vessel(scale_std=0.0), WORKING_POINT)
     assert certain["tau_up"].std / certain["tau_up"].mean == pytest.approx(0.04999, rel=1e-4)
+
+
+def test_what_the_vessel_file_does_not_state_is_that_of_the_trade():
+    """1 % of the scale and 2 ms of latency, as docs of the vessel file say."""
+    shipped = load_vessel("stan-tug-1205")
+    gauge = shipped.sensors.shaft_torque.model_copy(update={"scale_std_fraction": None, "latency_std_s": None})
+    silent = shipped.model_copy(update={"sensors": shipped.sensors.model_copy(update={"shaft_torque": gauge})})
+    known = priors_from_vessel(structure("GAUGE-CLOSED"), silent, WORKING_POINT)
+    assert known["tau_up"].sources["gauge scale"] == pytest.approx(-0.01 * known["tau_up"].mean)
+    assert known["t_gauge"].std == 0.002
 
 
 def test_only_free_parameters_of_gauge_aware_structures_have_priors():

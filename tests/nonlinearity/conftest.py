@@ -107,7 +107,7 @@ def make(campaign: Campaign) -> Make:
             speeds={"n_e": speed},
             working_point=WorkingPoint(
                 engine_speed_rev_s=19.73, shaft_torque_nm=1725.0, engine_speed_std_rev_s=0.002,
-                shaft_torque_std_nm=5.0, set_point_v=-5.049,
+                shaft_torque_std_nm=5.0, set_point_v=-5.049, load_std=0.003,
             ),
             calibration=SetPointCalibration(
                 slope_rev_s_per_v=-250.97 / 60.0, intercept_rev_s=-83.467 / 60.0, covariance=1e-8 * np.eye(2),

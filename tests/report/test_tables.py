@@ -29,7 +29,7 @@ def test_intervals_of_the_profile_and_open_ends(fingerprint):
     unknown = Quantity(name="v", unit="-", value=1.0, std=math.inf, at_bound=True)
     table = parameter_table(with_parameters(fingerprint, profiled, upper, unknown), {})
     assert [row[2] for row in table.rows] == ["0.000* to 0.099", "4.00 to 20.00*", "not known"]
-    assert table.rows[2][1] == "1.000 (not known) (at its bound)"
+    assert table.rows[2][1] == "1.000 (at its bound)"
     assert table.rows[0][3] == "s"
     assert limits(Quantity(name="a", unit="-", value=1.0, std=1.0)) == pytest.approx((-0.959964, 2.959964))
 

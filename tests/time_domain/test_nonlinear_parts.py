@@ -22,6 +22,7 @@ POINT = WorkingPoint(
     engine_speed_std_rev_s=0.002,
     shaft_torque_std_nm=17.0,
     set_point_v=-5.0,
+    load_std=0.01,
 )
 
 

@@ -43,6 +43,7 @@ def signals(campaign):
             engine_speed_std_rev_s=0.01,
             shaft_torque_std_nm=1.0,
             set_point_v=-5.0,
+            load_std=0.001,
         ),
         calibration=SetPointCalibration(
             slope_rev_s_per_v=-1.0,

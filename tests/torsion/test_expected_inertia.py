@@ -151,18 +151,21 @@ def test_measured_working_point_instead_of_that_of_the_file(tug):
     assert found.value("tau_up").value == pytest.approx(1.016 / 2.0, abs=5e-4)
 
 
-def test_a_gauge_of_unknown_scale_adds_nothing(tug):
+def test_a_gauge_whose_scale_is_not_stated_adds_that_of_the_trade(tug):
     gauge = tug.sensors.shaft_torque.model_copy(update={"scale_std_fraction": None})
     sensors = tug.sensors.model_copy(update={"shaft_torque": gauge})
     found = expected_inertia(tug.model_copy(update={"sensors": sensors})).value("tau_dn")
-    assert "gauge scale" not in found.changes
-    assert found.std == pytest.approx(SLOPE * math.hypot(0.61, 1.5, 0.1), rel=1e-5)
+    assert found.changes["gauge scale"] == pytest.approx(-0.01 * found.value)
+    assert found.std == pytest.approx(math.hypot(SLOPE * math.hypot(0.61, 1.5, 0.1), 0.01 * found.value), rel=1e-5)
 
 
 def test_rows_that_nobody_judged(tug):
     exact = tuple(row.model_copy(update={"std_kg_m2": None}) for row in tug.inertia)
     found = expected_inertia(tug.model_copy(update={"inertia": exact})).value("I_up")
-    assert (found.std, found.shares) == (0.0, {})
+    # 5 % of each row upstream, referred to the propeller shaft
+    upstream = [row for row in tug.inertia if row.gauge == "upstream"]
+    expected = math.hypot(*(0.05 * row.referred_kg_m2(tug.gearbox.ratio) for row in upstream))
+    assert found.std == pytest.approx(expected, rel=1e-9)
 
 
 def test_beside_what_a_test_found(expected):

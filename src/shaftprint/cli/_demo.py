@@ -70,7 +70,8 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
     for comparison in comparisons:
         print_comparison(comparison)
     print_summary(found.fingerprint, true, found.thesis.identifications["OL1"])
-    echo(_where(output))
+    for line in _where(output).splitlines():
+        echo(line)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -23,6 +23,9 @@ LOAD_WANDER = "wander of the load"
 SPEED = "working-point speed"
 """Sources of the budget."""
 
+# Step of the central differences, over the size of a parameter.
+DIFFERENCE = 1e-6
+
 
 def shares_over_torque(point: "WorkingPoint") -> dict[str, float]:
     """Return the change of a number over the torque for one standard deviation of each source, over its value."""
@@ -31,11 +34,36 @@ def shares_over_torque(point: "WorkingPoint") -> dict[str, float]:
 
 def shifts_of_working_point(identification: Identification, point: "WorkingPoint") -> dict[str, dict[str, float]]:
     """Return the change of each parameter for one standard deviation of each source, by source and parameter."""
-    values = {e.name: e.value for e in identification.parameters if e.name in OVER_TORQUE}
+    changes = _changes_with_torque(identification)
     return {
-        source: {name: share * value for name, value in values.items()}
+        source: {name: share * change for name, change in changes.items()}
         for source, share in shares_over_torque(point).items()
     }
+
+
+def _changes_with_torque(identification: Identification) -> dict[str, float]:
+    """Return the change of each free parameter that multiplies everything over the torque by 1 + x, over x.
+
+    A tied parameter moves through the free ones: ``K_i = K_p / T_i`` with ``K_p``, and ``tau_n = exp(log_tau)`` by a
+    ``log_tau`` that moves by 1. The smallest change that moves them all is taken.
+    """
+    objective, values = identification.objective, identification.values
+    sizes = objective.named(values)
+    names = [name for name in sizes if name in OVER_TORQUE]
+    step = np.maximum(np.abs(values), 1.0) * DIFFERENCE
+    columns = []
+    for place in objective.free:
+        there, back = values.copy(), values.copy()
+        there[place] += step[place]
+        back[place] -= step[place]
+        above, below = objective.named(there), objective.named(back)
+        columns.append([float(above[name] - below[name]) / (2.0 * step[place]) for name in names])
+    slopes = np.array(columns).reshape(len(objective.free), len(names)).T
+    moving = np.any(slopes != 0.0, axis=1)
+    wanted = np.array([float(sizes[name]) for name in names])
+    change = np.linalg.lstsq(slopes[moving], wanted[moving])[0]
+    free = (estimate.name for estimate in identification.parameters)
+    return {name: float(size) for name, size in zip(free, change, strict=True) if size}
 
 
 def std_of_working_point(stated: Budget, name: str) -> float:

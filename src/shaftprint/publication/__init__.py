@@ -8,7 +8,7 @@ file in the folder     meaning
 ``.shaftprint.journal`` the new results are complete and synced: whoever reads or writes here next moves them
 ====================== =======================================================================================
 
-Without a journal the folder holds the earlier results; with one, the new. Decision 32 says why.
+Without a journal the folder holds the earlier results; with one, the new. Decision 31 says why.
 """
 
 from shaftprint.publication._journal import CONTROL_NAMES, is_inner

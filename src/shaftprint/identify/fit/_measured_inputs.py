@@ -33,6 +33,9 @@ def has_measured_inputs(structure: Structure, response: FrequencyResponse) -> bo
     structure, response
         What is to be fitted, and to what.
     """
+    # what is neither is refused, in words, where it is fitted
+    if not (isinstance(structure, Structure) and isinstance(response, FrequencyResponse)):
+        return False
     needed = {*structure.inputs[1:], *structure.outputs}
     return len(structure.inputs) > 1 and response.inputs == structure.inputs[:1] and needed <= set(response.outputs)
 
