@@ -16,7 +16,7 @@ from shaftprint.cli._fit_tables import print_fits
 from shaftprint.cli._inputs import Trial, load_trial, settings_text
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._progress import Steps, no_progress_option, progress
-from shaftprint.cli._results import where, write_results
+from shaftprint.cli._results import print_paths, write_results
 from shaftprint.cli._signal_tables import print_lines
 from shaftprint.cli._terminal import echo
 from shaftprint.cli._thesis_way import thesis_way, weighted_fits
@@ -70,8 +70,7 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
     for comparison in comparisons:
         print_comparison(comparison)
     print_summary(found.fingerprint, true, found.thesis.identifications["OL1"])
-    for line in _where(output).splitlines():
-        echo(line)
+    _print_paths(output)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -116,9 +115,8 @@ def _print(found: _Found, true: Mapping[str, float]) -> None:
     print_fingerprint(found.fingerprint, truth=true)
 
 
-def _where(output: Path) -> str:
+def _print_paths(output: Path) -> None:
+    echo(f"Recording:   {output / RECORDING}")
+    print_paths(output)
     again = f"shaftprint identify {output / RECORDING} --vessel {output / 'vessel.toml'}"
-    return (
-        f"Recording:   {output / RECORDING}\n{where(output)}\n"
-        f"Again:       {again} --campaign {output / 'campaign.toml'} -o again"
-    )
+    echo(f"Again:       {again} --campaign {output / 'campaign.toml'} -o again")

@@ -9,7 +9,7 @@ from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._report_tables import on_terminal, print_report_table
-from shaftprint.cli._results import where, write_results
+from shaftprint.cli._results import print_paths, write_results
 from shaftprint.cli._terminal import echo
 from shaftprint.cli._thesis_way import thesis_way, weighted_fits
 from shaftprint.report import (
@@ -53,7 +53,7 @@ def command(
             write_results(folder, recording, trial, measurement, fits, fingerprint, steps=steps, thesis=thesis)
     _print(explanation)
     if output is not None:
-        echo(where(output))
+        print_paths(output)
 
 
 def _print(explanation: Explanation) -> None:

@@ -1,9 +1,8 @@
 """Where the tests of a campaign are in the recorded set point, as a table and as lines of a campaign file."""
 
-import click
-
 from shaftprint.campaign import Campaign, Sine
 from shaftprint.cli._tables import print_table
+from shaftprint.cli._terminal import echo
 from shaftprint.errors import SignalError
 from shaftprint.escape import toml_string
 from shaftprint.signals import FoundTest, common_shift_s, proposed_campaign
@@ -28,16 +27,15 @@ def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign) -> None:
         return
     shift_s = common_shift_s(found)
     if shift_s:
-        click.echo(
-            f"All tests are found {abs(shift_s):.3f} s {'later' if shift_s > 0.0 else 'earlier'} than planned.\n"
-        )
+        echo(f"All tests are found {abs(shift_s):.3f} s {'later' if shift_s > 0.0 else 'earlier'} than planned.\n")
     try:
         text = campaign_text(proposed_campaign(found, campaign))
     except SignalError as error:
-        click.echo(f"No proposal for the campaign file: {error}\n")
+        echo(f"No proposal for the campaign file: {error}\n")
         return
-    click.echo("Proposal for the campaign file: these tests in place of those that it has\n")
-    click.echo(text)
+    echo("Proposal for the campaign file: these tests in place of those that it has\n")
+    for line in text.splitlines():
+        echo(line)
 
 
 def campaign_text(campaign: Campaign) -> str:

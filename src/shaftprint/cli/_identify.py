@@ -15,8 +15,7 @@ from shaftprint.cli._inputs import campaign_option, load_trial, structure_source
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.cli._results import where, write_results
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._results import print_paths, write_results
 from shaftprint.cli._validations import validations_of
 
 
@@ -79,4 +78,4 @@ def command(
         print_fits("All structures", fits)
     for comparison in comparisons:
         print_comparison(comparison)
-    echo(where(output))
+    print_paths(output)

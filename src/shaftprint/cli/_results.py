@@ -7,6 +7,7 @@ from shaftprint.cli._chain import Measurement
 from shaftprint.cli._fingerprint_file import FINGERPRINT, REPORT
 from shaftprint.cli._inputs import Trial
 from shaftprint.cli._progress import Steps
+from shaftprint.cli._terminal import echo
 from shaftprint.fingerprint import Fingerprint, write_fingerprint
 from shaftprint.identify import Comparison, Identification
 from shaftprint.recording import read_recording
@@ -75,9 +76,10 @@ def write_results(
         )
 
 
-def where(output: Path) -> str:
-    """Return where the results are, one a line."""
-    return f"Fingerprint: {output / FINGERPRINT}\nReport:      {output / REPORT}"
+def print_paths(output: Path) -> None:
+    """Print where fingerprint and report are."""
+    echo(f"Fingerprint: {output / FINGERPRINT}")
+    echo(f"Report:      {output / REPORT}")
 
 
 def _line_selection(trial: Trial, measurement: Measurement) -> dict[str, FrequencyResponse]:

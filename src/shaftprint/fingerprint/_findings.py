@@ -111,6 +111,8 @@ def _hardly_known(identification: Identification, profile: Profile | None) -> li
 
 
 def _is_better(combination: Estimate, estimate: Estimate, identification: Identification) -> bool:
+    if not np.isfinite(combination.value):  # K_p / K_i of a governor without integral action
+        return False
     of = next(c.of for c in identification.structure.combinations if c.name == combination.name)
     values = identification.objective.named(identification.values)
     place = identification.objective.names.index(estimate.name)
