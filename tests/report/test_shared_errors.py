@@ -3,7 +3,7 @@
 import pytest
 
 from shaftprint.fingerprint import SourceFile, vessel_fields
-from shaftprint.identify import Prior
+from shaftprint.identify import Budget, BudgetRow, Prior
 from shaftprint.report import vessel_file_sentences
 from shaftprint.report._shared_errors import shared_errors
 from shaftprint.report._vessel_file_words import vessel_file_table
@@ -29,7 +29,7 @@ def make(fingerprint):
                 "vessel_fields": vessel_fields(vessel),
                 "sources": (SourceFile(role="vessel", name="tug.toml", sha256=32 * sha),),
                 "priors": {"g": Prior(0.0, 0.1)},
-                "budget": fingerprint.budget.__class__(sources=(*OWN, *STATED), rows=()),
+                "budget": Budget(sources=(*OWN, *STATED), rows=()),
                 **update,
             }
         )
@@ -91,13 +91,36 @@ def test_it_is_said_which_fields_differ_and_what_follows(make, vessel):
     assert vessel_file_sentences(first, other) == (
         f"The vessel files differ in sensors.shaft_torque.scale_nm_per_unit ({gauge.scale_nm_per_unit:g}, then 401.5); "
         f"sensors.shaft_torque.zero_nm ({gauge.zero_nm:g}, then -8.5).",
-        "Stated alike for both tests, so that their error cancels: TVC, telemetry latency, prior of g.",
+        "Stated alike for both tests, so that the error cancels: TVC; telemetry latency; prior of g.",
         "Not the same in both tests, so that the error counts in full: gauge scale.",
     )
     rows = vessel_file_table({"2025": first, "2026": other}).rows
     assert [row[0] for row in rows] == ["sensors.shaft_torque.scale_nm_per_unit", "sensors.shaft_torque.zero_nm"]
     assert rows[1][1:] == (f"{gauge.zero_nm:g}", "-8.5")
     assert vessel_file_sentences(first, first)[0] == "Both vessel files state the same."
+
+
+def test_it_is_said_which_numbers_an_error_is_in(make, vessel):
+    """Of I_dn 80 % of the variance is the gauge's scale, of t_d 1 %, which is nothing to speak of; of tau_up half of
+    it in the second test alone."""
+    first, other = (
+        make(
+            vessel,
+            budget=Budget(
+                sources=("noise of n", "gauge scale"),
+                rows=tuple(
+                    BudgetRow(
+                        name=name, unit="-", value=1.0, variances={"noise of n": 1.0 - share, "gauge scale": share}
+                    )
+                    for name, share in {"I_dn": 0.8, "t_d": 0.01, "K_Q": 0.5, "tau_up": of_tau_up}.items()
+                ),
+            ),
+        )
+        for of_tau_up in (0.0, 0.5)
+    )
+    common = "Stated alike for both tests, so that the error cancels: gauge scale"
+    assert vessel_file_sentences(first, first)[1] == f"{common} (in I_dn, K_Q)."
+    assert vessel_file_sentences(first, other)[1] == f"{common} (in I_dn, K_Q, tau_up)."
 
 
 def test_fields_are_found_by_their_path(vessel):

@@ -11,6 +11,9 @@ if TYPE_CHECKING:
     from shaftprint.report._shared_errors import FieldChange
 
 MOST_NAMED = 4
+MOST_NUMBERS = 6
+# Below this share of the variance of a number a source does not matter to it.
+NOTABLE_SHARE = 0.05
 NOT_STATED = "not stated"
 
 
@@ -24,11 +27,23 @@ def vessel_file_sentences(first: "Fingerprint", other: "Fingerprint") -> tuple[s
     """
     shared = shared_errors(first, other)
     sentences = [_files(shared.changes)]
-    if shared.common:
-        sentences.append(f"Stated alike for both tests, so that their error cancels: {', '.join(shared.common)}.")
-    if shared.apart:
-        sentences.append(f"Not the same in both tests, so that the error counts in full: {', '.join(shared.apart)}.")
+    for sources, words in (
+        (shared.common, "Stated alike for both tests, so that the error cancels"),
+        (shared.apart, "Not the same in both tests, so that the error counts in full"),
+    ):
+        if sources:
+            named = "; ".join(f"{source}{_numbers(source, first, other)}" for source in sources)
+            sentences.append(f"{words}: {named}.")
     return tuple(sentences)
+
+
+def _numbers(source: str, *fingerprints: "Fingerprint") -> str:
+    """Return in brackets which numbers owe a notable share of their variance to a source, in any of the tests."""
+    rows = (row for fingerprint in fingerprints for row in fingerprint.budget.rows)
+    notable = (row.name for row in rows if row.variances.get(source, 0.0) > NOTABLE_SHARE * sum(row.variances.values()))
+    names = list(dict.fromkeys(notable))
+    more = f" and {len(names) - MOST_NUMBERS} more" if len(names) > MOST_NUMBERS else ""
+    return f" (in {', '.join(names[:MOST_NUMBERS])}{more})" if names else ""
 
 
 def _files(changes: "Sequence[FieldChange] | None") -> str:
