@@ -54,6 +54,25 @@ def test_loads_back_equal_with_all_that_a_number_can_be(fingerprint, path):
     assert written_and_read(unusual, path) == unusual
 
 
+@pytest.mark.parametrize(
+    ("value", "std", "interval", "is_stated"),
+    [
+        (1.222, 0.046, (1.151, 1.330), True),
+        (2.000, 0.100, (1.804, 2.196), True),
+        # the interval reaches to one side only: +/- would promise what the data exclude
+        (7.1, 3.9, (4.9, 7.4), False),
+        (0.122, 0.022, (0.057, 0.1234), False),
+        (4.72, 0.42, (4.498, 6.229), False),
+        # as long to both sides, and three times as wide or a third of it
+        (2.000, 0.300, (1.804, 2.196), False),
+        (2.000, 0.033, (1.804, 2.196), False),
+    ],
+)
+def test_a_standard_deviation_is_shown_where_it_gives_the_interval(value, std, interval, is_stated):
+    number = Quantity(name="K_p", unit="-", value=value, std=std, interval_95=interval)
+    assert number.stated_std == (std if is_stated else None)
+
+
 def test_every_fit_loads_back_equal(fit, take, path):
     """Held parameters, lines left out, no feedback, no profile of an unweighted fit."""
     core = fit("OL1", {"tau_n": 0.39}, settings=Settings(weighting=Unweighted(), starts=5), lines=["S1", "S5", "S9"])

@@ -21,8 +21,9 @@ from shaftprint.normal import NORMAL_95
 from shaftprint.publication import complete
 
 SCHEMA_VERSION: Final = 1
-# A standard deviation and an interval that differ by more than this factor tell different stories.
-ALIKE: Final = 2.0
+# An end of the interval further than this share of its width from the end that a standard deviation gives: only the
+# interval is shown.
+ENDS_ALIKE: Final = 0.25
 
 
 class _Record(BaseModel):
@@ -70,14 +71,18 @@ class Quantity(_Record):
         """The standard deviation where it tells what the interval tells; None where only the interval should be shown.
 
         To first order a standard deviation at a bound, or where the likelihood is far from a parabola, is several times
-        too large or too small.
+        too large or too small, and says nothing about the side on which most of the interval lies.
         """
         if self.at_bound:
             return None
         if self.interval_95 is None or not math.isfinite(self.std) or any(self.interval_open):
             return self.std
-        half = (self.interval_95[1] - self.interval_95[0]) / 2.0
-        alike = half / ALIKE <= NORMAL_95 * self.std <= half * ALIKE
+        lower, upper = self.interval_95
+        tolerance = ENDS_ALIKE * (upper - lower)
+        alike = (
+            abs(self.value - NORMAL_95 * self.std - lower) <= tolerance
+            and abs(self.value + NORMAL_95 * self.std - upper) <= tolerance
+        )
         return self.std if alike else None
 
 
