@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.special import chdtrc
+from tests.measured_truth import as_measured
 
 from shaftprint.identify import Settings, identify
 from shaftprint.models import structure
@@ -16,29 +17,12 @@ from shaftprint.tug import sail
 HELD = ("t_d", "g")
 
 
-def normalised(truth, signals):
-    """The truth as the measured working point normalises it: with that, not the true one, deviations were divided.
-
-    Torque is divided by the measured torque, speed by the measured speed, and the set point by the measured line.
-    """
-    point, true = signals.working_point, truth.normalised
-    torque = truth.shaft_torque_nm / point.shaft_torque_nm
-    both = torque * point.engine_speed_rev_s * 60.0 / truth.engine_speed_rpm
-    line = signals.calibration.slope_rev_s_per_v * signals.dc_scale * 60.0
-    return {
-        **{name: both * true[name] for name in ("K_p", "K_i", "tau_dn", "tau_up", "g")},
-        **{name: true[name] for name in ("t_d", "omega_n", "zeta", "k_q", "t_sp")},
-        "c_set": truth.set_point_slope_rpm_per_v / line,
-        "t_gauge": 0.0,
-    }
-
-
 def fitted(path, vessel, campaign, truth):
     """Truth and fits of a recording: equal data, the settled whole periods of all sines, in which no limit acts."""
     assert not any(truth.limited.get(sine.name, 0.0) for sine in campaign.sines)
     with read_recording(path) as recording:
         signals = prepare_signals(recording, vessel, campaign)
-    true = normalised(truth, signals)
+    true = as_measured(truth, signals)
     asked = structure("GAUGE-CLOSED").held_at(**{name: true[name] for name in HELD})
     rng = np.random.default_rng(1)
     lines = identify(asked, estimate_response(signals, campaign), rng=rng)

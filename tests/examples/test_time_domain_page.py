@@ -4,6 +4,9 @@ import re
 from pathlib import Path
 
 import pytest
+from tests.measured_truth import as_measured
+
+from shaftprint.tug import read_truth, truth_path
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "time-domain.md").read_text(encoding="utf-8")
@@ -12,10 +15,11 @@ TRUTH = {"K": 12.0, "T": 0.8, "t_d": 0.13}
 
 @pytest.fixture(scope="module")
 def defined(tmp_path_factory):
-    """Run all Python of the page in order, in a folder of its own; return what it defines."""
-    names = {"__name__": "time_domain_page"}
+    """Run all Python of the page in order, in a folder of its own; return what it defines, and the folder."""
+    folder = tmp_path_factory.mktemp("page")
+    names = {"__name__": "time_domain_page", "folder": folder}
     with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(tmp_path_factory.mktemp("page"))
+        patch.chdir(folder)
         for block in re.findall(r"```python\n(.*?)```", PAGE, flags=re.DOTALL):
             exec(compile(block, "time-domain.md", "exec"), names)  # noqa: S102
     return names
@@ -39,12 +43,13 @@ def test_every_record_has_its_own_noise(defined):
 
 
 def test_slow_lines_and_fast_records_give_the_ship(defined):
-    """The inertia time at the measured working point: 0.3191 s (``tests/end_to_end/test_in_time.py``)."""
+    """The inertia time is the tug's, at the working point that was measured in this recording."""
     ship = defined["ship"]
+    truth = as_measured(read_truth(truth_path(defined["folder"] / "short.nc")), defined["signals"])
     assert next(part.name for part in ship.parts) == "response of n, M_s"
     assert len(ship.parts) == 8
     tau_dn = next(p for p in ship.parameters if p.name == "tau_dn")
-    assert tau_dn.value == pytest.approx(0.3191, abs=3.0 * tau_dn.std)
+    assert tau_dn.value == pytest.approx(truth["tau_dn"], abs=3.0 * tau_dn.std)
     assert tau_dn.std < 0.002
 
 
