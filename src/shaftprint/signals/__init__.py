@@ -17,7 +17,7 @@ deviation             1        ``(x - x_0) / x_0`` from the working point
 
 from shaftprint.signals._content import Content, content_of
 from shaftprint.signals._contradictions import contradictions
-from shaftprint.signals._found_tests import FoundTest, common_shift_s
+from shaftprint.signals._found_test import FoundTest, common_shift_s
 from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._inspect import ChannelReport, PulseReport, inspect_channels
 from shaftprint.signals._prepare import find_tests, prepare_signals

@@ -8,7 +8,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign, Excitation, Sine, Staircase, setpoint
 from shaftprint.errors import SignalError
-from shaftprint.signals._found_tests import FoundTest, common_shift_s, found_tests
+from shaftprint.signals._found_test import FoundTest, common_shift_s
+from shaftprint.signals._found_tests import found_tests
 from shaftprint.signals._gaps import EVERYTHING, Coverage, gap_findings
 from shaftprint.signals._steps import step_window
 

@@ -15,7 +15,8 @@ from shaftprint.signals._compare import compare_speeds
 from shaftprint.signals._condition import Conditioned, conditioned
 from shaftprint.signals._dc_scale import DcScale, dc_scale
 from shaftprint.signals._flat_top import expect_whole_crests
-from shaftprint.signals._found_tests import FoundTest, found_tests
+from shaftprint.signals._found_test import FoundTest
+from shaftprint.signals._found_tests import found_tests
 from shaftprint.signals._gaps import Coverage, Gap, within
 from shaftprint.signals._match import expect_campaign, left_out
 from shaftprint.signals._outliers import fault_limits

@@ -5,7 +5,7 @@ from typing import Any
 
 from shaftprint.campaign import Campaign, Chirp, Sine, Staircase
 from shaftprint.errors import SignalError
-from shaftprint.signals._found_tests import FoundTest
+from shaftprint.signals._found_test import FoundTest
 
 # Digits of a time [s]: a degree of a sine of 3 Hz.
 _DIGITS = 3
