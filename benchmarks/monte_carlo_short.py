@@ -234,17 +234,22 @@ def tested(seed: int, trial: Trial) -> dict[str, Row]:
         except ShaftprintError as error:
             print(f"seed {seed}: {error}", file=sys.stderr)
             return {}
-    true, trusted = true_values(truth, ship, found), set(found.verdict.trusted)
+    return rows_of(found, true_values(truth, ship, found))
+
+
+def rows_of(found: Fingerprint, true: Mapping[str, float]) -> dict[str, Row]:
+    """Return every number of a fingerprint beside its truth."""
+    trusted = set(found.verdict.trusted)
     numbers = (*_numbers(found), found.conditions.engine_speed, found.conditions.shaft_torque)
     return {q.name: _row(q, true[q.name], trusted=q.name in trusted) for q in numbers}
 
 
-def identified(path: Path, trial: Trial, seed: int) -> Fingerprint:
-    """Return what ``shaftprint identify`` writes for a recording."""
-    steps, closed = Steps(bars=None), structure(NAME)
+def identified(path: Path, trial: Trial, seed: int, name: str = NAME) -> Fingerprint:
+    """Return what ``shaftprint identify --structure NAME`` writes for a recording."""
+    steps, chosen = Steps(bars=None), structure(name)
     measurement = measure(path, trial, mode="shaftprint", steps=steps)
-    settings = Settings(priors=known_beforehand(closed, trial.vessel, measurement.signals, {}))
-    fits = fit([closed], measurement, settings={NAME: settings}, seed=seed, steps=steps)
+    settings = Settings(priors=known_beforehand(chosen, trial.vessel, measurement.signals, {}))
+    fits = fit([chosen], measurement, settings={name: settings}, seed=seed, steps=steps)
     return fingerprint_of(fits[0], measurement, trial)
 
 
@@ -262,7 +267,7 @@ def _row(quantity: Quantity, truth: float, *, trusted: bool) -> Row:
     return Row(truth=truth, value=quantity.value, std=quantity.std, lower=lower, upper=upper, trusted=trusted)
 
 
-def summary(tests: Sequence[Mapping[str, Row]]) -> str:
+def summary(tests: Sequence[Mapping[str, Row]], kind: str = "short tests") -> str:
     """Return the table of all numbers, and what holds over all of them."""
     names = dict.fromkeys(name for test in tests for name in test)
     lines, every, trusted = [], [], []
@@ -288,7 +293,7 @@ def summary(tests: Sequence[Mapping[str, Row]]) -> str:
     header = ["number", "tests", "inside", "error / stated, rms", "mean", "width / truth, median", "trusted outside"]
     refused = sum(not test for test in tests)
     return (
-        table(f"{len(tests)} short tests, each with its own truth", header, lines)
+        table(f"{len(tests)} {kind}, each with its own truth", header, lines)
         + f"\nAll numbers together: {100.0 * np.mean(every):.1f} % of {len(every)} inside. Trusted numbers: "
         + f"{100.0 * (1.0 - np.mean(trusted)):.1f} % of {len(trusted)} outside. No fingerprint: {refused} tests.\n"
     )

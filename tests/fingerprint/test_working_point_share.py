@@ -9,6 +9,7 @@ from shaftprint.fingerprint import physical_quantities
 from shaftprint.fingerprint._physical import physical_numbers
 from shaftprint.fingerprint._working_point_share import (
     LOAD_WANDER,
+    RACK,
     SPEED,
     shifts_of_working_point,
     std_of_working_point,
@@ -87,7 +88,7 @@ def test_an_inertia_time_has_the_share_of_load_and_speed(found, stated, working_
 
 
 def test_covariance_grows_by_the_same(found, stated, working_point):
-    grown = widened_covariance(found.covariance, found, working_point)
+    grown = widened_covariance(found.covariance, found, shifts_of_working_point(found, working_point))
     variances = np.diag(grown)
     for place, estimate in enumerate(found.parameters):
         assert variances[place] == pytest.approx(stated.row(estimate.name).std ** 2, rel=1e-6)
@@ -96,6 +97,35 @@ def test_covariance_grows_by_the_same(found, stated, working_point):
     share = 0.005**2 + (0.01 / 19.73) ** 2
     expected = share * found.value("tau_up") * found.value("tau_dn")
     assert grown[up, down] - found.covariance[up, down] == pytest.approx(expected)
+
+
+def test_numbers_move_with_the_rack_as_their_part_of_the_budget_says(fit, truth, vessel, working_point):
+    """The same test, whose mean rack was found 1 % too high: the rack's response is 1 % smaller."""
+    settings = Settings(starts=20, priors=priors_from_vessel(structure("GAUGE-ECU"), vessel, working_point))
+    found = fit("GAUGE-ECU", truth, share=0.0005, settings=settings)
+    size = np.where(np.array(found.response.outputs) == "X", 1.0 / (1.0 + MORE), 1.0)
+    smaller = replace(
+        found.response,
+        response=found.response.response * size[:, None, None],
+        covariance=found.response.covariance * np.outer(np.tile(size, 2), np.tile(size, 2)),
+    )
+    after = identify(found.structure, smaller, rng=np.random.default_rng(7), settings=settings)
+    stated = budget(found, shifts=shifts_of_working_point(found, working_point, rack_share=MORE))
+    before = {e.name: e.value for e in (*found.parameters, *found.combinations)}
+    for estimate in (*after.parameters, *after.combinations):
+        moved = abs(estimate.value - before[estimate.name])
+        part = stated.row(estimate.name).variances.get(RACK, 0.0) ** 0.5
+        assert part == pytest.approx(moved, rel=0.02, abs=1e-5 * abs(before[estimate.name]) + 1e-7), estimate.name
+    for name in ("K_p", "K_i", "v"):
+        assert std_of_working_point(stated, name) == pytest.approx(
+            np.sqrt(MORE**2 + (name != "v") * (0.005**2 + (0.01 / 19.73) ** 2)) * before[name], rel=1e-3
+        )
+
+
+def test_a_rack_that_is_not_in_the_structure_moves_nothing(found, working_point):
+    assert shifts_of_working_point(found, working_point, rack_share=MORE) == shifts_of_working_point(
+        found, working_point
+    )
 
 
 def test_half_widths_add_in_quadrature_and_bounds_stay():

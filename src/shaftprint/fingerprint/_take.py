@@ -77,7 +77,10 @@ def take_fingerprint(
         raise FingerprintError("now: expected a time with time zone, such as datetime.now(UTC), found one without.")
     own = identification.own_values()
     margins = margin_numbers(identification.structure, own)
-    stated = _budget(identification, signals.working_point, vessel, margins)
+    rack = signals.rack
+    rack_share = 0.0 if rack is None else rack.working_point_std / rack.working_point
+    shifts = shifts_of_working_point(identification, signals.working_point, rack_share)
+    stated = _budget(identification, signals.working_point, vessel, margins, shifts)
     physical = physical_quantities(identification, signals.working_point, vessel, stated)
     left_out = _left_out(identification)
     profiled = profile(identification, margins) if identification.is_likelihood else None
@@ -104,7 +107,7 @@ def take_fingerprint(
         parameters=tuple(reported.quantity(e) for e in identification.parameters),
         held={p.name: p.value for p in identification.structure.parameters if p.held},
         priors=dict(identification.settings.priors),
-        covariance=_rows(widened_covariance(identification.covariance, identification, signals.working_point)),
+        covariance=_rows(widened_covariance(identification.covariance, identification, shifts)),
         combinations=tuple(reported.quantity(e) for e in identification.combinations),
         physical=physical,
         margins=margin,
@@ -125,12 +128,15 @@ def _estimate(quantity: Quantity) -> Estimate:
 
 
 def _budget(
-    identification: Identification, working_point: "WorkingPoint", vessel: "Vessel", margins: tuple[Combination, ...]
+    identification: Identification,
+    working_point: "WorkingPoint",
+    vessel: "Vessel",
+    margins: tuple[Combination, ...],
+    shifts: Mapping[str, Mapping[str, float]],
 ) -> Budget:
     """Return the budget of parameters, combinations, physical values and margins."""
     numbers = physical_numbers(identification, working_point, vessel)
     direct = {item.number.name: item.direct for item in numbers}
-    shifts = shifts_of_working_point(identification, working_point)
     return budget(identification, (*(item.number for item in numbers), *margins), direct=direct, shifts=shifts)
 
 

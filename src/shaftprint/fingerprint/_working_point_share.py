@@ -6,8 +6,13 @@ the ``n_0`` that it has found, ``M_s0 = L n_0^2`` with the mean load ``L`` of th
 after it, as a source of its own: to every parameter of ``OVER_TORQUE`` with the share that ``L`` and ``n_0`` have.
 Combinations and margins follow by their slopes: ``K_p / K_i`` does not move, ``v K_i / (k_q - g)`` does. In the
 conversion to kg m2 and N m/rpm the same share comes back with the other sign: ``I_dn`` does not know of it.
+
+A logged rack is divided by its own ``X_0``, a mean of quiet stretches with the steps of its channel in it. Gains are so
+much rack for a speed, ``v`` so much torque for a rack: ``K_p`` and ``K_i`` go with ``1 / X_0``, ``v`` with ``X_0``, and
+``v K_p`` does not move.
 """
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +26,12 @@ if TYPE_CHECKING:
 
 LOAD_WANDER = "wander of the load"
 SPEED = "working-point speed"
+RACK = "working-point rack"
 """Sources of the budget."""
+
+FUEL_RACK = "X"
+WITH_RACK = {"K_p": -1.0, "K_i": -1.0, "K_d": -1.0, "v": 1.0}
+"""Power of ``X_0`` with which a parameter goes, where the rack is among the channels of the structure."""
 
 # Step of the central differences, over the size of a parameter.
 DIFFERENCE = 1e-6
@@ -32,24 +42,40 @@ def shares_over_torque(point: "WorkingPoint") -> dict[str, float]:
     return {LOAD_WANDER: -point.load_std, SPEED: -point.engine_speed_std_rev_s / point.engine_speed_rev_s}
 
 
-def shifts_of_working_point(identification: Identification, point: "WorkingPoint") -> dict[str, dict[str, float]]:
-    """Return the change of each parameter for one standard deviation of each source, by source and parameter."""
-    changes = _changes_with_torque(identification)
-    return {
-        source: {name: share * change for name, change in changes.items()}
-        for source, share in shares_over_torque(point).items()
-    }
+def shifts_of_working_point(
+    identification: Identification, point: "WorkingPoint", rack_share: float = 0.0
+) -> dict[str, dict[str, float]]:
+    """Return the change of each parameter for one standard deviation of each source, by source and parameter.
+
+    Parameters
+    ----------
+    identification, point
+        The fit, and where it was made.
+    rack_share
+        Standard deviation of the working point of a logged rack over its value; it enters the structures that have the
+        rack among their channels.
+    """
+    changes = _changes(identification, dict.fromkeys(OVER_TORQUE, 1.0))
+    shifts = {source: _scaled(share, changes) for source, share in shares_over_torque(point).items()}
+    structure = identification.structure
+    if rack_share and FUEL_RACK in (*structure.inputs, *structure.outputs):
+        shifts[RACK] = _scaled(rack_share, _changes(identification, WITH_RACK))
+    return shifts
 
 
-def _changes_with_torque(identification: Identification) -> dict[str, float]:
-    """Return the change of each free parameter that multiplies everything over the torque by 1 + x, over x.
+def _scaled(share: float, changes: Mapping[str, float]) -> dict[str, float]:
+    return {name: share * change for name, change in changes.items()}
+
+
+def _changes(identification: Identification, powers: Mapping[str, float]) -> dict[str, float]:
+    """Return the change of each free parameter that multiplies every parameter by (1 + x) to its power, over x.
 
     A tied parameter moves through the free ones: ``K_i = K_p / T_i`` with ``K_p``, and ``tau_n = exp(log_tau)`` by a
     ``log_tau`` that moves by 1. The smallest change that moves them all is taken.
     """
     objective, values = identification.objective, identification.values
     sizes = objective.named(values)
-    names = [name for name in sizes if name in OVER_TORQUE]
+    names = [name for name in sizes if name in powers]
     step = np.maximum(np.abs(values), 1.0) * DIFFERENCE
     columns = []
     for place in objective.free:
@@ -60,7 +86,7 @@ def _changes_with_torque(identification: Identification) -> dict[str, float]:
         columns.append([float(above[name] - below[name]) / (2.0 * step[place]) for name in names])
     slopes = np.array(columns).reshape(len(objective.free), len(names)).T
     moving = np.any(slopes != 0.0, axis=1)
-    wanted = np.array([float(sizes[name]) for name in names])
+    wanted = np.array([powers[name] * float(sizes[name]) for name in names])
     change = np.linalg.lstsq(slopes[moving], wanted[moving])[0]
     free = (estimate.name for estimate in identification.parameters)
     return {name: float(size) for name, size in zip(free, change, strict=True) if size}
@@ -69,7 +95,7 @@ def _changes_with_torque(identification: Identification) -> dict[str, float]:
 def std_of_working_point(stated: Budget, name: str) -> float:
     """Return the standard deviation that the working point gives to a number of the budget."""
     variances = stated.row(name).variances
-    return float(np.sqrt(variances.get(LOAD_WANDER, 0.0) + variances.get(SPEED, 0.0)))
+    return float(np.sqrt(sum(variances.get(source, 0.0) for source in (LOAD_WANDER, SPEED, RACK))))
 
 
 def widened(
@@ -84,11 +110,13 @@ def widened(
     )
 
 
-def widened_covariance(covariance: FloatArray, identification: Identification, point: "WorkingPoint") -> FloatArray:
+def widened_covariance(
+    covariance: FloatArray, identification: Identification, shifts: Mapping[str, Mapping[str, float]]
+) -> FloatArray:
     """Return the covariance of the free parameters with the sources of the working point, shape (free, free)."""
     names = [estimate.name for estimate in identification.parameters]
     found = np.array(covariance)
-    for moves in shifts_of_working_point(identification, point).values():
+    for moves in shifts.values():
         along = np.array([moves.get(name, 0.0) for name in names])
         found += np.outer(along, along)
     return found

@@ -17,7 +17,6 @@ from shaftprint.signals._condition import Conditioned
 from shaftprint.signals._gaps import Coverage, Gap, clock_gaps, joined, runs_of
 from shaftprint.signals._signals import RackSignal, Repair
 from shaftprint.signals._steady import SteadyStretch
-from shaftprint.signals._working_point import mean_of_stretches
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
@@ -179,6 +178,9 @@ def _between(fraction: FloatArray, rate_hz: float, start_s: float, stretch: Stea
 def _working_point(inside: list[FloatArray], rate_hz: float, resolution: float) -> tuple[float, float]:
     """Return the mean over steady stretches and its standard deviation; not a number where there are no values.
 
+    The standard deviation is from the scatter inside the stretches, in blocks of a second. How they differ from each
+    other is their load, with which the mean is carried to that of the whole test.
+
     The steps of the channel do not average out where the rack stands stiller than they are wide: with normal noise of
     deviation ``s`` a step ``q`` leaves ``exp(-2 pi^2 s^2 / q^2)`` of its error (Widrow and Kollar, "Quantization
     Noise", 2008).
@@ -192,7 +194,9 @@ def _working_point(inside: list[FloatArray], rate_hz: float, resolution: float) 
         means = values[: values.size - values.size % length].reshape(-1, length).mean(axis=1)
         deviations.append(float(means.std(ddof=1) / np.sqrt(means.size)))
     weight = np.array([float(values.size) for values in long_enough])
-    mean, std = mean_of_stretches([float(values.mean()) for values in long_enough], deviations, weight)
+    share = weight / weight.sum()
+    mean = float(share @ [values.mean() for values in long_enough])
+    std = float(np.linalg.norm(share * deviations))
     noise = max(float(np.mean([values.var() for values in long_enough])) - resolution**2 / 12.0, 0.0)
     left = resolution / np.sqrt(12.0) * np.exp(-2.0 * np.pi**2 * noise / resolution**2)
     return mean, float(np.hypot(std, left))
