@@ -102,16 +102,17 @@ def test_records_that_want_other_gains_contradict_each_other():
     assert assess(fit(records[0], linear_record("third", rng))).trustworthy
 
 
-def test_a_mode_that_rings_for_longer_than_an_impulse_response_is_no_noise():
+@pytest.mark.parametrize("seed", [5, 15, 25])
+def test_a_mode_that_rings_for_longer_than_an_impulse_response_is_no_noise(seed):
     """A mode of 2 Hz that rings for 40 s takes the residuals; noise is 2 % of the motion."""
-    torque, speed, name = linear_record("ringing", np.random.default_rng(5), samples=2400)
+    torque, speed, name = linear_record("ringing", np.random.default_rng(seed), samples=2400)
     omega, damping = 2.0 * np.pi * 2.0, 0.002
     mode = TransferFunction([0.3 * omega**2], [1.0, 2.0 * damping * omega, omega**2])
     _, ringing, _ = lsim(mode, torque, np.arange(2400) / RATE_HZ)
     found = fit((torque, speed + ringing, name))
     (part,) = found.parts
     assert part.fit_percent["w"] < 75.0
-    # a perfect model reaches 97.5 %; two passes of three find the mode, the third what remains of it
+    # a perfect model reaches 97.0 to 97.8 %
     assert 92.0 < part.fit_ceiling["w"] < 98.0
     assert not assess(found).trustworthy
 

@@ -358,10 +358,14 @@ def test_wrong_structure_is_rejected_though_the_noise_is_taken_from_its_residual
     rng = np.random.default_rng(11)
     u = excitation(3000, rng)
     twice = true_output(true_output(u, t=0.7), k=1.0, t=0.5)
-    record = record_from_arrays("two lags", {"u": u}, {"y": twice + noise(3000, rng)}, rate_hz=RATE)
+    added = noise(3000, rng)
+    measured = twice + added
+    record = record_from_arrays("two lags", {"u": u}, {"y": measured}, rate_hz=RATE)
     found = identify_in_time([(lag, record)], rng=rng, settings=SINGLE, time=STAND_IN, start={"k": 1.3, "T": 0.9})
     assert found.p_value < 1e-6
     assert found.fit_percent["y"] < found.fit_ceiling["y"] - 1.0
+    # what two lags would reach
+    assert found.fit_ceiling["y"] == pytest.approx(100.0 * (1.0 - added.std() / measured.std()), abs=1.0)
     verdict = assess(found)
     assert not verdict.trustworthy
     assert "two lags" in verdict.reason

@@ -12,9 +12,9 @@ So the residuals are explained by all that the structure might lack, and what re
   Identification, 2013, section 2.3, in the outputs, where friction acts).
 
 Inputs and simulated outputs are free of noise, so that directions and noise are independent where the structure holds,
-and every test is an F test. They are weighed with a noise model from the flexible model, found by generalised least
-squares in several passes. The likelihood keeps the noise of ``_input_response``: more directions would take slow noise
-with them, and standard deviations under noise that remembers for five seconds would come out an eighth too small.
+and every test is an F test. They are weighed with the noise that the first and the last of them leave. The likelihood
+keeps the noise of ``_input_response``: more directions would take slow noise with them, and standard deviations under
+noise that remembers for five seconds would come out an eighth too small.
 """
 
 from collections.abc import Mapping
@@ -22,43 +22,33 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.signal import lfilter
 from scipy.special import fdtrc
 
 from shaftprint.arrays import FloatArray
 from shaftprint.identify import CheckKind, TermCheck
-from shaftprint.time_domain._input_response import delayed_inputs
+from shaftprint.time_domain._lacking import impulse_responses, small_and_large, through_poles, up_and_down
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise
 from shaftprint.time_domain._nuisance import orthonormal, without
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._span import Span
 from shaftprint.time_domain._whitening import Whitening
 
-# Lengths of the lags: so many, from two samples to this share of the record.
-LAGS, LONGEST_SHARE = 4, 1.0 / 40.0
-# Speed, over its standard deviation, at which the sign of a motion is complete.
-SIGN_WIDTH = 0.05
-# An output reverses where at least this share of its samples lies on either side of zero.
-REVERSES = 0.02
-# Lags of the inputs through the poles of the noise: a mode has two poles, straight lines between samples one more.
-MODE_LAGS = 6
-# How often noise and what is taken from it are found anew.
-PASSES = 3
-# One lag of the impulse response for so many samples.
-SAMPLES_A_LAG = 10
+# What a flexible model follows is chance from this p-value on.
+CHANCE = 1e-3
+# Where it follows this share of what the structure leaves, its own rest is the better noise.
+FOLLOWED = 0.5
+# Residuals smaller than this share of the motion are rounding: simulated data without noise.
+EXACT = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class _Rest:
-    """What directions leave of the residuals of a structure."""
+class _Difference:
+    """What directions explain of what a structure leaves."""
 
-    directions: FloatArray
-    """The directions, shape (directions, samples, outputs)."""
-    noise: NoiseModel
-    """The colour of what they leave."""
-    power: FloatArray
-    """Mean square of the noise, shape (outputs,): what they leave and, with the weight of the noise, what they take of
-    it on average, ``tr V - tr X (X^T V^-1 X)^-1 X^T + tr X (X^T V^-1 X)^-1 X^T``."""
+    size: FloatArray
+    """Root mean square over that of the motion, without what noise gives on average, shape (outputs,)."""
+    p_value: float
+    """Probability of that much or more if the structure holds."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -84,49 +74,90 @@ class FlexibleModel:
 
     @cached_property
     def power(self) -> FloatArray:
-        """Mean square of the noise of each output, of what the flexible model leaves, shape (outputs,)."""
-        return self._passes.power
+        """Mean square of the noise of each output, shape (outputs,).
+
+        It is what the structure leaves, less what the flexible model follows of that unless by chance; where it follows
+        half or more, what the flexible model leaves. Always to take the latter would take a share of a tone that no
+        input drives, such as a shaft order, for motion.
+        """
+        plain = self._misfit
+        if self._exact:
+            return plain
+        flexible = self._difference(self._directions, self._fitted)
+        followed = flexible.size**2 * self._motion
+        if flexible.p_value > CHANCE:
+            return plain
+        most = followed >= FOLLOWED**2 * plain
+        beside = np.minimum(self._unexplained, plain) if np.any(most) else plain
+        return np.asarray(np.where(most, beside, plain - followed))
 
     @cached_property
     def checks(self) -> tuple[TermCheck, ...]:
-        """The structure against the flexible model, and parts of the record against each other."""
-        fitted = np.concatenate([self.nuisance, self.slopes])
+        """The structure against the flexible model, and parts of the record against each other; none without noise."""
+        if self._exact:
+            return ()
         half = np.where(np.cumsum(self.record.used) <= 0.5 * self.record.used.sum(), -1.0, 1.0)
         groups: Mapping[CheckKind, FloatArray] = {
-            "small and large": self._small_and_large,
-            "up and down": self._up_and_down,
+            "small and large": small_and_large(self.record, self.simulated),
+            "up and down": up_and_down(self.record, self.simulated),
             "halves": self.slopes * half[:, None],
-            "flexible": self._passes.directions,
+            "flexible": self._directions,
         }
-        found = [self._check(kind, directions, fitted) for kind, directions in groups.items()]
+        found = [self._check(kind, directions, self._fitted) for kind, directions in groups.items()]
         return (*found, self._check("other data", self.slopes, self.nuisance))
 
     @cached_property
-    def _passes(self) -> "_Rest":
-        """What remains after the last pass."""
-        fitted = np.concatenate([self.nuisance, self.slopes])
-        count = max(int(self.record.used.sum()) // (SAMPLES_A_LAG * len(self.record.inputs)), 1)
-        plain = np.concatenate([
-            self._on_each(delayed_inputs(self.record, most=count)), self._small_and_large, self._up_and_down
-        ])  # fmt: skip
-        found = self._beside(plain, fitted, None)
-        for _ in range(PASSES):
-            found = self._beside(np.concatenate([plain, self._through_poles(found.noise)]), fitted, found.noise)
-        return found
+    def _unexplained(self) -> FloatArray:
+        """Mean square of the noise beside all directions, shape (outputs,).
 
-    def _beside(self, directions: FloatArray, fitted: FloatArray, weight: NoiseModel | None) -> "_Rest":
-        """Return the residuals without directions, fitted with the weight of a noise, right in size on average."""
-        white = self._counted if weight is None else Whitening(noise=weight).whitened
-        every = np.concatenate([fitted, directions])
-        rows = _flat(white(every, self.record.stretches))
-        target = white(self.residuals[None], self.record.stretches).ravel()
-        span, used = Span.of(rows), self.record.used
-        rest = self.residuals - np.tensordot(span.shares(target), every, axes=1)
-        right_in_size = rest * np.sqrt(target.size / max(target.size - span.rank, 1))
+        That is what they leave and, since weights are those of the noise, what they take of it on average:
+        ``tr V = tr (V - X (X^T V^-1 X)^-1 X^T) + tr X (X^T V^-1 X)^-1 X^T``. The noise is found anew beside all of
+        them: the one that gives the poles still holds the mode that they explain.
+        """
+        noise = self._noise_beside(self._directions, self._noise)
+        span, rest = self._beside(self._directions, noise)
+        every, used = np.concatenate([self._fitted, self._directions]), self.record.used
+        return np.asarray(np.mean(rest[used] ** 2, axis=0) + self._energy(every, span.turn) / used.sum())
+
+    @cached_property
+    def _noise(self) -> NoiseModel:
+        """The noise beside all but what goes through its own poles, by generalised least squares."""
+        return self._noise_beside(self._plain, self._noise_beside(self._plain, None))
+
+    def _noise_beside(self, directions: FloatArray, weight: NoiseModel | None) -> NoiseModel:
+        """Return the noise of what directions leave under the weight of another noise."""
+        span, rest = self._beside(directions, weight)
+        size = int(self.record.used.sum()) * len(self.names)
+        right_in_size = np.sqrt(size / max(size - span.rank, 1)) * rest
         order = round(self.longest_memory_s * self.record.rate_hz)
-        noise = estimate_noise(right_in_size, self.record.stretches, max_order=order)
-        power = np.mean(rest[used] ** 2, axis=0) + self._energy(every, span.turn) / used.sum()
-        return _Rest(directions=directions, noise=noise, power=power)
+        return estimate_noise(right_in_size, self.record.stretches, max_order=order)
+
+    @cached_property
+    def _fitted(self) -> FloatArray:
+        """What was fitted, shape (rows, samples, outputs)."""
+        return np.concatenate([self.nuisance, self.slopes])
+
+    @cached_property
+    def _plain(self) -> FloatArray:
+        """Directions that do not depend on the noise, shape (directions, samples, outputs)."""
+        return np.concatenate([
+            impulse_responses(self.record, len(self.names)),
+            small_and_large(self.record, self.simulated),
+            up_and_down(self.record, self.simulated),
+        ])  # fmt: skip
+
+    @cached_property
+    def _directions(self) -> FloatArray:
+        """All directions, shape (directions, samples, outputs)."""
+        return np.concatenate([self._plain, through_poles(self.record, self._noise)])
+
+    def _beside(self, directions: FloatArray, weight: NoiseModel | None) -> tuple[Span, FloatArray]:
+        """Return what was fitted and directions under the weight of a noise, and what they leave of the residuals."""
+        white = self._counted if weight is None else Whitening(noise=weight).whitened
+        every = np.concatenate([self._fitted, directions])
+        span = Span.of(_flat(white(every, self.record.stretches)))
+        target = white(self.residuals[None], self.record.stretches).ravel()
+        return span, self.residuals - np.tensordot(span.shares(target), every, axes=1)
 
     def _counted(self, values: FloatArray, stretches: object) -> FloatArray:
         """Return the samples that count, as a filter of white noise would, shape (rows, counted samples, outputs)."""
@@ -134,8 +165,20 @@ class FlexibleModel:
 
     def _check(self, kind: CheckKind, directions: FloatArray, fitted: FloatArray) -> TermCheck:
         """Return how much of the residuals lies along directions, beside what was fitted."""
-        noise = self._passes.noise
-        white = Whitening(noise=noise).whitened
+        found = self._difference(directions, fitted)
+        level = np.sqrt(self.power / np.maximum(self._motion, np.finfo(np.float64).tiny))
+        largest = int(np.argmax(found.size / level))
+        return TermCheck(
+            kind=kind,
+            output=self.names[largest],
+            share=float(found.size[largest]),
+            noise=float(level[largest]),
+            p_value=found.p_value,
+        )
+
+    def _difference(self, directions: FloatArray, fitted: FloatArray) -> "_Difference":
+        """Return what directions explain of the residuals beside what was fitted."""
+        white = Whitening(noise=self._noise).whitened
         target, basis, rows = (
             _flat(white(values, self.record.stretches)) for values in (self.residuals[None], fitted, directions)
         )
@@ -143,17 +186,11 @@ class FlexibleModel:
         rest = without(target[0], basis)
         span = Span.of(without(rows, basis))
         shares, explained = span.shares(rest), span.explained(rest)
-        spare = rest.size - len(basis) - span.rank - noise.coefficients.size
-        beyond = (rest @ rest - explained) / max(spare, 1)
-        size = self._sizes(directions, span.turn, shares, fitted)
-        level = np.sqrt(self.power / np.maximum(self._motion_power, np.finfo(np.float64).tiny))
-        largest = int(np.argmax(size / level))
+        spare = rest.size - len(basis) - span.rank - self._noise.coefficients.size
+        beyond = max(float(rest @ rest) - explained, 0.0) / max(spare, 1)
         enough = spare > 0 and span.rank > 0 and beyond > 0.0
-        return TermCheck(
-            kind=kind,
-            output=self.names[largest],
-            share=float(size[largest]),
-            noise=float(level[largest]),
+        return _Difference(
+            size=self._sizes(directions, np.sqrt(beyond) * span.turn, shares, fitted),
             p_value=float(fdtrc(span.rank, spare, explained / span.rank / beyond)) if enough else 1.0,
         )
 
@@ -165,7 +202,7 @@ class FlexibleModel:
         directions, fitted
             What it is made of, and what it is taken beside, shape (rows, samples, outputs).
         turn
-            Weights of the directions that independent noise of unit variance has, shape (directions, rank).
+            Weights of the directions that noise gives, as independent vectors, shape (directions, rank).
         shares
             Weights that the difference has, shape (directions,).
         """
@@ -173,9 +210,10 @@ class FlexibleModel:
         basis = orthonormal(_flat(fitted[:, used]))
         beside = without(_flat(directions[:, used]), basis).reshape(len(directions), -1, len(self.names))
         square, chance = (
-            np.sum(np.tensordot(weights.T, beside, axes=1) ** 2, axis=(0, 1)) for weights in (shares[:, None], turn)
+            np.asarray(np.sum(np.tensordot(weights.T, beside, axes=1) ** 2, axis=(0, 1)))
+            for weights in (shares[:, None], turn)
         )
-        motion = used.sum() * np.where(self._motion_power > 0.0, self._motion_power, np.inf)
+        motion = used.sum() * np.where(self._motion > 0.0, self._motion, np.inf)
         return np.asarray(np.sqrt(np.maximum(square - chance, 0.0) / motion))
 
     def _energy(self, directions: FloatArray, turn: FloatArray) -> FloatArray:
@@ -183,51 +221,21 @@ class FlexibleModel:
         return np.asarray(np.sum(np.tensordot(turn.T, directions[:, self.record.used], axes=1) ** 2, axis=(0, 1)))
 
     @property
-    def _motion_power(self) -> FloatArray:
-        """Variance of each output, shape (outputs,)."""
-        return np.asarray(self.measured[self.record.used].var(axis=0))
+    def _misfit(self) -> FloatArray:
+        """Mean square of what the structure leaves, right in size on average, shape (outputs,)."""
+        used = self.record.used
+        spare = max(int(used.sum()) - len(self._fitted), 1)
+        return np.asarray(np.sum(self.residuals[used] ** 2, axis=0) / spare)
 
-    @cached_property
-    def _small_and_large(self) -> FloatArray:
-        """What large motions may do other than small ones, odd in the motion, shape (directions, samples, outputs)."""
-        size = self.simulated.std(axis=0)
-        scaled = self._motion / np.where(size > 0.0, size, 1.0)
-        rows = np.concatenate([np.clip(scaled / SIGN_WIDTH, -1.0, 1.0), scaled * np.abs(scaled)], axis=1)
-        return self._on_each(self._lagged(rows.T))
-
-    @cached_property
-    def _up_and_down(self) -> FloatArray:
-        """What motions up may do other than motions down, shape (directions, samples, outputs)."""
-        return self._on_each(self._lagged(np.abs(self._motion).T))
+    @property
+    def _exact(self) -> bool:
+        """Whether the structure follows some output but for rounding."""
+        return bool(np.any(np.sqrt(self._misfit) <= EXACT * np.sqrt(self._motion)))
 
     @property
     def _motion(self) -> FloatArray:
-        """Simulated outputs, about zero where they reverse and about their mean where not, shape (samples, outputs)."""
-        up = np.mean(self.simulated > 0.0, axis=0)
-        reverses = (up > REVERSES) & (up < 1.0 - REVERSES)
-        return np.asarray(self.simulated - np.where(reverses, 0.0, self.simulated.mean(axis=0)))
-
-    def _lagged(self, rows: FloatArray) -> FloatArray:
-        """Return rows, shape (rows, samples), as they are and behind first-order lags."""
-        rate = self.record.rate_hz
-        found = [rows]
-        for lag_s in np.geomspace(2.0 / rate, max(LONGEST_SHARE * self.record.samples, 4.0) / rate, LAGS):
-            pole = np.exp(-1.0 / (rate * lag_s))
-            found.append(lfilter([1.0 - pole], [1.0, -pole], rows, zi=pole * rows[:, :1])[0])
-        return np.concatenate(found)
-
-    def _through_poles(self, noise: NoiseModel) -> FloatArray:
-        """Return the latest samples of the inputs as if they were innovations of the noise."""
-        recent = delayed_inputs(self.record, most=MODE_LAGS, longest_s=(MODE_LAGS - 1) / self.record.rate_hz)
-        return noise.driven(self._on_each(recent))
-
-    def _on_each(self, rows: FloatArray) -> FloatArray:
-        """Return every row, shape (rows, samples), on every output alone: (rows outputs, samples, outputs)."""
-        size = len(self.names)
-        found = np.zeros((size, *rows.shape, size))
-        for output in range(size):
-            found[output, :, :, output] = rows
-        return found.reshape(-1, self.record.samples, size)
+        """Variance of each output, shape (outputs,)."""
+        return np.asarray(self.measured[self.record.used].var(axis=0))
 
 
 def _flat(rows: FloatArray) -> FloatArray:
