@@ -44,6 +44,7 @@ _ROOMS = (
     "fingerprint",
     "identify",
     "kernels",
+    "limits",
     "models",
     "nonlinearity",
     "normal",

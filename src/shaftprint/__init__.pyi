@@ -10,6 +10,7 @@ from shaftprint import files as files
 from shaftprint import fingerprint as fingerprint
 from shaftprint import identify as identify
 from shaftprint import kernels as kernels
+from shaftprint import limits as limits
 from shaftprint import models as models
 from shaftprint import nonlinearity as nonlinearity
 from shaftprint import normal as normal

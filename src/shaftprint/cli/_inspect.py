@@ -18,7 +18,7 @@ from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo
 from shaftprint.clocks import logger_clocks
 from shaftprint.fingerprint import clock_findings, clock_influences
-from shaftprint.nonlinearity import detect
+from shaftprint.limits import limit_hints
 from shaftprint.recording import Recording, read_recording
 from shaftprint.signals import ChannelReport, contradictions, find_tests, inspect_channels, prepare_signals
 from shaftprint.spectra import Spectra, estimate_spectra
@@ -123,13 +123,11 @@ def _print_test(opened: Recording, ship: Vessel, asked: Campaign, *, hidden: boo
         signals = prepare_signals(opened, ship, asked, progress=steps.reach)
         steps.begin("Measuring the test lines")
         spectra = estimate_spectra(signals, asked)
-        steps.begin("Looking for nonlinearities")
-        found = detect(signals, asked, ship)
     print_signals(signals)
     print_lines(spectra)
     influences = clock_influences(logger_clocks(opened), spectra=spectra, signals=signals, vessel=ship)
     print_findings("Findings on the signals", [*signals.findings, *clock_findings(influences)])
-    print_findings("Nonlinearities", [found.sentence, *(finding.evidence for finding in found.findings)])
+    print_findings("Limits", limit_hints(spectra.harmonics))
     echo(verdict(spectra))
 
 

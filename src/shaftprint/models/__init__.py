@@ -44,6 +44,7 @@ from shaftprint.models._free_response import free_responses
 from shaftprint.models._held import Held
 from shaftprint.models._known_propeller import KnownPropeller, with_known_propeller
 from shaftprint.models._limited_catalogue import limited
+from shaftprint.models._limited_governor import AHEAD_S, limited_governor
 from shaftprint.models._limits import (
     Governed,
     deadband,
@@ -70,6 +71,7 @@ from shaftprint.models._tie import Tie
 from shaftprint.models._two_masses import two_mass_line
 
 __all__ = [
+    "AHEAD_S",
     "STRUCTURES",
     "Block",
     "Combination",
@@ -129,6 +131,7 @@ __all__ = [
     "full_load",
     "is_stable",
     "limited",
+    "limited_governor",
     "limited_pi",
     "loop_gain",
     "margins",

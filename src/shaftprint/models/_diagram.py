@@ -1,4 +1,9 @@
-"""A part of a structure written as equations of signals, with limits, products and whatever else is not linear."""
+"""A part of a structure written as equations of signals, with limits, products and whatever else is not linear.
+
+Equations of several signals ask for the further ones with ``flow.input``: these are inputs of the structure, named in
+``further``. A structure names a path for each of its inputs; the one from the first input holds the equations, those
+from the others are ``port(output, source)``, which in time add nothing to it.
+"""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -22,7 +27,7 @@ Equations = Callable[[Flow, Quantity, Any], Mapping[str, Quantity]]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Diagram:
-    """Equations from one signal to several, in deviations from a working point at which all of them are at rest.
+    """Equations from signals to signals, in deviations from a working point at which all of them are at rest.
 
     From the equations follow the simulation in time with its derivatives, and for small signals the frequency response
     at the working point, with exact delays and exact derivatives too.
@@ -38,24 +43,34 @@ class Diagram:
     """Takes a ``Flow``, the signal that goes in, and parameters as attributes ``p.K_p``; gives the outputs by name."""
     of: tuple[Parameter, ...]
     """Its parameters."""
+    further: tuple[str, ...] = ()
+    """Names of inputs of the structure that the equations ask for beside the signal that goes in."""
     _small: dict[frozenset[str], SmallSignal] = field(default_factory=dict, repr=False)
     """Linear equations, by the parameters that are held at zero; made when first asked for."""
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of all signals that go in."""
+        return (self.input, *self.further)
 
     def ports(self) -> "dict[str, Port]":
         """Return each output as a block that goes from the signal to it."""
         return {output: Port(self, output) for output in self.outputs}
 
-    def port(self, output: str) -> "Port":
-        """Return the block that goes from the signal to one output.
+    def port(self, output: str, source: str = "") -> "Port":
+        """Return the block that goes from the signal, or from a further input, to one output.
 
         Raises
         ------
         StructureError
-            If there is no output of that name.
+            If there is no output or further input of that name.
         """
+        if source and source not in self.further:
+            known = ", ".join(self.further) or "none"
+            raise StructureError(f"diagram {self.name} has no further input {source}; it has {known}.")
         if output not in self.outputs:
             raise StructureError(f"diagram {self.name} has no output {output}; it has {', '.join(self.outputs)}.")
-        return Port(self, output)
+        return Port(self, output, source)
 
     def signals(self, flow: Flow, signal: Quantity) -> Mapping[str, Quantity]:
         """Return the outputs for a signal, adding the equations to a flow.
@@ -82,12 +97,13 @@ class Diagram:
             Names of parameters that are zero for good.
         """
         names = tuple(p.name for p in self.of)
-        flow = Flow.of_parameters(names, zeros)
-        found = self.signals(flow, Quantity("input", name=self.input))
+        inputs = {name: Quantity("input", name=name, place=i) for i, name in enumerate(self.inputs)}
+        flow = Flow.of_parameters(names, zeros, inputs)
+        found = self.signals(flow, inputs[self.input])
         return completed(
             flow,
             name=self.name,
-            inputs=(self.input,),
+            inputs=self.inputs,
             parameters=names,
             outputs={output: (found[output], number(0.0)) for output in self.outputs},
         )
@@ -101,12 +117,14 @@ class Diagram:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Port(Block):
-    """One output of a diagram."""
+    """One output of a diagram, seen from one of its inputs."""
 
     diagram: Diagram
     """The diagram."""
     output: str
     """Name of the output."""
+    source: str = ""
+    """Name of the further input; empty for the signal that goes in."""
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
@@ -132,7 +150,12 @@ class Port(Block):
         return response, gradient
 
     def flow(self, flow: Flow, signal: Quantity) -> Quantity:
-        """Return the output in time; the equations are added once for all outputs of a diagram."""
+        """Return the output in time; the equations are added once for all outputs of a diagram.
+
+        They hold all inputs, so that seen from a further input nothing is left to add.
+        """
+        if self.source:
+            return number(0.0)
         key = (id(self.diagram), id(signal))
         if key not in flow.diagrams:
             flow.kept += [self.diagram, signal]
@@ -147,4 +170,7 @@ class Port(Block):
             for i, (p, value) in enumerate(zip(self.parameters, values, strict=True))
             if i not in wanted and not np.any(value)
         )
-        return self.diagram.small_signal(zeros).response(s, values, wanted, self.diagram.outputs.index(self.output))
+        output, source = self.diagram.outputs.index(self.output), self.source or self.diagram.input
+        return self.diagram.small_signal(zeros).response(
+            s, values, wanted, output, source=self.diagram.inputs.index(source)
+        )

@@ -37,6 +37,8 @@ class Flow:
 
     parameters: Mapping[str, Quantity]
     """Every parameter by name, tied ones as formulas and those held at zero as numbers."""
+    inputs: Mapping[str, Quantity] = field(default_factory=dict)
+    """Every input by name, for equations of several."""
     states: list[Quantity] = field(default_factory=list)
     """Leaves of the states."""
     rates: dict[int, Quantity] = field(default_factory=dict)
@@ -59,15 +61,30 @@ class Flow:
     """How many unknown signals there have been."""
 
     @classmethod
-    def of_parameters(cls, names: Iterable[str], zeros: Iterable[str] = ()) -> Self:
+    def of_parameters(
+        cls, names: Iterable[str], zeros: Iterable[str] = (), inputs: Mapping[str, Quantity] | None = None
+    ) -> Self:
         """Return a flow without equations, its parameters leaves or the number zero."""
         none = frozenset(zeros)
         leaves = {n: Quantity("parameter", name=n, place=i) for i, n in enumerate(names)}
-        return cls(parameters={n: number(0.0) if n in none else leaf for n, leaf in leaves.items()})
+        parameters = {n: number(0.0) if n in none else leaf for n, leaf in leaves.items()}
+        return cls(parameters=parameters, inputs=inputs or {})
 
     def parameter(self, name: str) -> Quantity:
         """Return a parameter."""
         return self.parameters[name]
+
+    def input(self, name: str) -> Quantity:
+        """Return an input of the whole structure.
+
+        Raises
+        ------
+        StructureError
+            If it has no input of that name.
+        """
+        if name not in self.inputs:
+            raise StructureError(f"expected an input {name}, found {', '.join(self.inputs) or 'none'}.")
+        return self.inputs[name]
 
     def state(self, name: str) -> Quantity:
         """Return a new state; give it a rate with ``rate``."""
@@ -89,7 +106,7 @@ class Flow:
     def delayed(self, signal: Quantity, delay: Number) -> Quantity:
         """Return what a signal was some time ago; exactly the signal where the delay is the number zero."""
         late = quantity(delay)
-        if late.equals(0.0):
+        if late.equals(0.0) or signal.is_number:
             return signal
         for past in self.pasts:
             if past.signal is signal and past.delay is late:

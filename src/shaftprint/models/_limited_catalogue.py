@@ -2,7 +2,7 @@
 
 The free bodies are those of ``_gauge_catalogue``; for small signals the structures are ``GAUGE-CLOSED``::
 
-    governor    e = DB(c_set n_set - n)                 X = RL(clip(K_p e + I, X_min, X_max))
+    governor    e = DB(RL(c_set n_set) - n)                 X = RL(clip(K_p e + I, X_min, X_max))
     engine      M_b = clip(v F X(t - t_d) + g n, m_min, m_max(n))
     upstream    tau_up dn/dt = M_b - M_s
     downstream  tau_dn dn/dt = M_s - M_p                M_p = k_q ((1 + n)^2 - 1) / 2
@@ -21,7 +21,7 @@ from shaftprint.errors import StructureError
 from shaftprint.models._blocks import FirstOrderLag, Gain
 from shaftprint.models._delays import Delay, SpeedSensor
 from shaftprint.models._diagram import Diagram
-from shaftprint.models._engine_parts import boosted, full_load, quadratic_propeller
+from shaftprint.models._engine_parts import boosted, quadratic_propeller
 from shaftprint.models._flow import Flow
 from shaftprint.models._gauge_catalogue import (
     C_SET,
@@ -45,7 +45,7 @@ from shaftprint.models._gauge_catalogue import (
 )
 from shaftprint.models._limits import deadband, limited_pi, rate_limited, second_order_lag
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._quantity import Quantity, clip
+from shaftprint.models._quantity import Number, Quantity, clip, table
 from shaftprint.models._structure import Structure
 
 M_MAX = Parameter("m_max", "-", 1.05, 6.0, 2.8, "torque limit of the engine over the brake torque of the working point")
@@ -55,6 +55,7 @@ R_X = Parameter("r_x", "1/s", 0.2, 100.0, 10.0, "fastest change of the fuel rack
 D_E = Parameter("d_e", "-", 0.0, 0.05, 0.002, "speed error within which the governor does nothing")
 DROOP = Parameter("droop", "-", 0.0, 0.1, 0.0, "fall of the speed for one rack of the working point", held=True)
 A_0 = Parameter("a_0", "-", 0.2, 1.0, 0.55, "torque without boost over full-load torque: the smoke limit")
+R_S = Parameter("r_s", "1/s", 0.01, 50.0, 0.3, "fastest change of the set point, over the speed of the working point")
 TAU_TC = Parameter("tau_tc", "s", 0.1, 10.0, 1.0, "lag of the turbocharger")
 
 OPTIONS: Mapping[str, tuple[Parameter, ...]] = {
@@ -62,6 +63,7 @@ OPTIONS: Mapping[str, tuple[Parameter, ...]] = {
     "rate": (R_X,),
     "deadband": (D_E,),
     "smoke": (A_0, TAU_TC),
+    "ramp": (R_S,),
 }
 """Limits that can be put into a structure, with the parameters that each brings."""
 
@@ -74,7 +76,7 @@ def limited(
     Parameters
     ----------
     limits
-        Names of limits: ``torque``, ``rate``, ``deadband``, ``smoke``, the last with ``torque`` only.
+        Names of limits: ``torque``, ``rate``, ``deadband``, ``ramp``, ``smoke``, the last with ``torque`` only.
     curve
         Shape of the full-load torque: corner points of speed deviation and torque over that at the working-point speed.
     period_s
@@ -128,57 +130,80 @@ Load: TypeAlias = Callable[[Flow, Quantity, Any], tuple[Quantity, Mapping[str, Q
 """Takes equations, shaft speed and parameters; gives the torque of the propeller, and what else there is to see."""
 
 
+Observer: TypeAlias = Callable[[Quantity], Quantity]
+"""Takes the brake torque; gives what it adds to the rate of the governor's integrator."""
+
+Shape: TypeAlias = Callable[[Flow, Quantity], Number]
+"""Takes equations and engine speed; gives the torque limit over that at the working-point speed."""
+
+
+def shape_of(curve: tuple[tuple[float, float], ...]) -> Shape:
+    """Return the shape of a torque limit given by corner points; empty for a flat one."""
+    return lambda flow, speed: table(speed, curve) if curve else 1.0
+
+
 def bollard_load(flow: Flow, speed: Quantity, p: Any) -> tuple[Quantity, Mapping[str, Quantity]]:
     """Return the torque of a propeller at the quay, and nothing else."""
     return quadratic_propeller(speed, p.k_q), {}
 
 
-class LimitedLoop:
-    """Equations of governor, engine and line with some limits, around any load."""
+class LimitedEngine:
+    """Equations of a governor and its engine with some limits: from demand and speed to brake torque."""
 
-    def __init__(
-        self, limits: tuple[str, ...], curve: tuple[tuple[float, float], ...], period_s: float, load: Load
-    ) -> None:
+    def __init__(self, limits: tuple[str, ...], shape: Shape, period_s: float) -> None:
         self._limits = limits
-        self._curve = curve
+        self._shape = shape
         self._period_s = period_s
-        self._load = load
 
-    def __call__(self, flow: Flow, demand: Quantity, p: Any) -> Mapping[str, Quantity]:
-        """Return speed, torque at the gauge and rack, and what the load shows."""
-        speed = flow.state("n")
+    def __call__(
+        self, flow: Flow, demand: Quantity, speed: Quantity, p: Any, observer: Observer | None = None
+    ) -> tuple[Quantity, Quantity]:
+        """Return brake torque and rack.
+
+        Parameters
+        ----------
+        observer
+            What the brake torque adds to the rate of the governor's integrator.
+        """
+        if "ramp" in self._limits:
+            demand = rate_limited(flow, demand, p.r_s, period_s=self._period_s)
         error = demand - speed
         if "deadband" in self._limits:
             error = deadband(error, p.d_e)
         burnt = flow.unknown()
         lowest, highest = self._torque_limits(flow, speed, burnt, p)
-        rack = self._governor(flow, error, speed, lowest, highest, p)
+        drawn: Number = observer(burnt) if observer else 0.0
+        rack = self._governor(flow, error, speed, lowest, highest, drawn, p)
         late = second_order_lag(flow, flow.delayed(rack, p.t_d), p.omega_n, p.zeta)
         asked = p.v * late + p.g * speed
         brake = flow.close(burnt, asked if lowest is None else clip(asked, lowest, highest), "engine torque")
-        load, shown = self._load(flow, speed, p)
-        acceleration = (brake - load) / (p.tau_dn + p.tau_up)
-        flow.rate(speed, acceleration)
-        return {"n": speed, "M_s": load + p.tau_dn * acceleration, "X": rack, **shown}
+        return brake, rack
 
     def _torque_limits(self, flow: Flow, speed: Quantity, burnt: Quantity, p: Any) -> tuple[Quantity | None, Quantity]:
         """Return the lowest and highest brake torque; no lowest where torque is not limited."""
         if "torque" not in self._limits:
             return None, burnt
-        highest = full_load(speed, p.m_max, self._curve)
+        highest = p.m_max * self._shape(flow, speed) - 1.0
         if "smoke" in self._limits:
             highest = boosted(flow, burnt, highest, at_rest=p.m_max, unboosted=p.a_0, lag_s=p.tau_tc)
         # friction of a motored engine: half of it independent of speed, half proportional
         return p.m_min * (1.0 + 0.5 * speed) - 1.0, highest
 
     def _governor(
-        self, flow: Flow, error: Quantity, speed: Quantity, lowest: Quantity | None, highest: Quantity, p: Any
+        self,
+        flow: Flow,
+        error: Quantity,
+        speed: Quantity,
+        lowest: Quantity | None,
+        highest: Quantity,
+        drawn: Number,
+        p: Any,
     ) -> Quantity:
         """Return the rack that the governor gives."""
         if lowest is None:
             integral = flow.state("governor integral")
             felt = error - p.droop * integral
-            flow.rate(integral, p.K_i * felt)
+            flow.rate(integral, p.K_i * felt + drawn)
             rack = p.K_p * felt + integral
         else:
             rack = limited_pi(
@@ -190,5 +215,25 @@ class LimitedLoop:
                 highest=(highest - p.g * speed) / p.v,
                 anti_windup_s=p.T_aw,
                 droop=p.droop,
+                drawn=drawn,
             ).given
         return rate_limited(flow, rack, p.r_x, period_s=self._period_s) if "rate" in self._limits else rack
+
+
+class LimitedLoop:
+    """Equations of governor, engine and line with some limits, around any load."""
+
+    def __init__(
+        self, limits: tuple[str, ...], curve: tuple[tuple[float, float], ...], period_s: float, load: Load
+    ) -> None:
+        self._engine = LimitedEngine(limits, shape_of(curve), period_s)
+        self._load = load
+
+    def __call__(self, flow: Flow, demand: Quantity, p: Any) -> Mapping[str, Quantity]:
+        """Return speed, torque at the gauge and rack, and what the load shows."""
+        speed = flow.state("n")
+        brake, rack = self._engine(flow, demand, speed, p)
+        load, shown = self._load(flow, speed, p)
+        acceleration = (brake - load) / (p.tau_dn + p.tau_up)
+        flow.rate(speed, acceleration)
+        return {"n": speed, "M_s": load + p.tau_dn * acceleration, "X": rack, **shown}

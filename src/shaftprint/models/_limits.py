@@ -52,6 +52,7 @@ def limited_pi(
     highest: Number,
     anti_windup_s: Number,
     droop: Number = 0.0,
+    drawn: Number = 0.0,
 ) -> Governed:
     """Return a PI governor whose integrator is led back while its output is limited.
 
@@ -69,12 +70,14 @@ def limited_pi(
         Time in which the integrator is led back [s].
     droop
         Fall of the speed from no rack to full, in units of the error for a unit of rack.
+    drawn
+        What else changes the integrator [1/s], such as an observer.
     """
     state = flow.state("governor integral")
     felt = error - quantity(droop) * state
     wanted = quantity(proportional) * felt + state
     given = clip(wanted, lowest, highest)
-    flow.rate(state, quantity(integral) * felt + (given - wanted) / quantity(anti_windup_s))
+    flow.rate(state, quantity(integral) * felt + (given - wanted) / quantity(anti_windup_s) + quantity(drawn))
     return Governed(wanted, given)
 
 

@@ -85,8 +85,8 @@ def program_of(structure: Structure, zeros: Iterable[str] = ()) -> Program:
     StructureError
         If a block has no equations in time, or a loop depends on itself at once.
     """
-    flow = Flow(parameters=_leaves(structure, frozenset(zeros)))
     inputs = {name: Quantity("input", name=name, place=i) for i, name in enumerate(structure.inputs)}
+    flow = Flow(parameters=_leaves(structure, frozenset(zeros)), inputs=inputs)
     return completed(
         flow,
         name=structure.name,

@@ -50,8 +50,10 @@ class SmallSignal:
         wanted: Sequence[int],
         output: int,
         at: Leaves | None = None,
+        *,
+        source: int = 0,
     ) -> tuple[ComplexArray, list[ComplexArray]]:
-        """Return the response from the input to an output and its derivatives.
+        """Return the response from an input to an output and its derivatives.
 
         Parameters
         ----------
@@ -63,6 +65,8 @@ class SmallSignal:
             Places of the parameters whose derivatives are wanted.
         at
             Inputs, states and pasts of another steady running than rest; derivatives are those with it kept.
+        source
+            Place of the input.
 
         Returns
         -------
@@ -70,7 +74,8 @@ class SmallSignal:
         """
         leaves = self._leaves(values, at or {})
         shape = np.broadcast_shapes(s.shape, *(np.shape(value) for value in values))
-        table = self._table(self._slopes, leaves, s, shape)
+        taken = [*range(len(self._unknown)), len(self._unknown) + source]
+        table = self._table([self._slopes[place] for place in taken], leaves, s, shape)
         times = [np.broadcast_to(time, shape) for time in evaluate(self._times, leaves)]
         size, rates = len(self._unknown), len(self.program.rates)
         late = self._lateness(s, times, shape)
@@ -82,7 +87,7 @@ class SmallSignal:
         slopes = []
         for place in wanted:
             moved, moved_times = self._moved_by(place)
-            change = self._table(moved, leaves, s, shape)
+            change = self._table([moved[column] for column in taken], leaves, s, shape)
             time_slopes = [np.broadcast_to(time, shape) for time in evaluate(moved_times, leaves)]
             d_late = self._lateness_slope(s, times, time_slopes, late)
             d_found = _solved(matrix, self._moved_right(table, change, late, d_late, found, size))

@@ -16,11 +16,11 @@ its next step: half a step early, 1.2 ms at 400 Hz. Hence the finer grid.
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.campaign import Campaign
 from shaftprint.time_domain._decimator import Decimator
 from shaftprint.time_domain._record import Record
@@ -57,6 +57,27 @@ def sharpened(record: Record, campaign: Campaign, *, rate_hz: float = DRIVE_RATE
     return replace(record, drive=drive, every=every)
 
 
+def jumps_of(time_s: FloatArray, drive: FloatArray, campaign: Campaign) -> FloatArray:
+    """Return a set point whose jumps are within one sample, on the grid that it has.
+
+    The sample in which a jump lies gets the share of the jump that keeps its area: for small signals it lies where it
+    was, to a small share of a sample.
+
+    Parameters
+    ----------
+    time_s, drive
+        Times [s] and the set point, shape (samples,).
+    """
+    step_s = float(time_s[1] - time_s[0])
+    for near_s in _jumps(campaign, float(time_s[0]), float(time_s[-1])):
+        jump = _jump_near(time_s, drive, near_s)
+        if jump is not None:
+            passed = np.clip((time_s[jump.inside] - jump.at_s) / step_s + 0.5, 0.0, 1.0)
+            drive = drive.copy()
+            drive[jump.inside] = jump.before + (jump.after - jump.before) * passed
+    return drive
+
+
 def _jumps(campaign: Campaign, begin_s: float, end_s: float) -> Iterator[float]:
     """Yield the times of all jumps of staircases far enough inside a stretch, to and from the offset too."""
     reach = RINGING_S + LEVEL_S + NEAR_S
@@ -67,8 +88,22 @@ def _jumps(campaign: Campaign, begin_s: float, end_s: float) -> Iterator[float]:
                 yield time_s
 
 
-def _restored(time_s: FloatArray, drive: FloatArray, near_s: float) -> FloatArray:
-    """Return a drive in which the jump near a time is within a sample; the levels beside it are those measured."""
+@dataclass(frozen=True, slots=True, eq=False)
+class _Jump:
+    """A jump of a filtered set point."""
+
+    inside: BoolArray
+    """Samples in which the filter rings, shape (samples,)."""
+    at_s: float
+    """Where the jump lies [s]."""
+    before: float
+    """Level before it."""
+    after: float
+    """Level after it."""
+
+
+def _jump_near(time_s: FloatArray, drive: FloatArray, near_s: float) -> _Jump | None:
+    """Return the jump near a time; None where there is hardly one."""
     around = np.flatnonzero(np.abs(time_s - near_s) <= NEAR_S)
     place = around[0] + int(np.argmax(np.abs(np.diff(drive[around]))))
     before, after = (
@@ -76,12 +111,21 @@ def _restored(time_s: FloatArray, drive: FloatArray, near_s: float) -> FloatArra
         for side in (-1.0, 1.0)
     )
     if abs(after - before) < LEAST_JUMP:
-        return drive
+        return None
     inside = np.abs(time_s - time_s[place]) <= RINGING_S
     # where the share of the way that is left adds up to is where the jump lies
     left = (after - drive[inside]) / (after - before)
     step_s = time_s[1] - time_s[0]
-    at_s = time_s[inside][0] - 0.5 * step_s + step_s * float(np.sum(left))
+    at_s = float(time_s[inside][0] - 0.5 * step_s + step_s * np.sum(left))
+    return _Jump(inside, at_s, before, after)
+
+
+def _restored(time_s: FloatArray, drive: FloatArray, near_s: float) -> FloatArray:
+    """Return a drive in which the jump near a time is within a sample; the levels beside it are those measured."""
+    jump = _jump_near(time_s, drive, near_s)
+    if jump is None:
+        return drive
     restored = drive.copy()
-    restored[inside] = np.where(time_s[inside] <= at_s + 0.5 * step_s, before, after)
+    half_s = 0.5 * float(time_s[1] - time_s[0])
+    restored[jump.inside] = np.where(time_s[jump.inside] <= jump.at_s + half_s, jump.before, jump.after)
     return restored

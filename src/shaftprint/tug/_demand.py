@@ -31,7 +31,7 @@ def demanded_speed(tug: Tug, voltage_v: FloatArray) -> FloatArray:
 
 
 class Demand:
-    """Stream of the speed demand in the ECU on half steps: late, quantised and rate-limited if the truth says so."""
+    """Stream of the speed demand in the ECU on half steps: late, held, quantised and rate-limited if the truth says so."""
 
     def __init__(self, tug: Tug, vessel: Vessel, campaign: Campaign, *, start_s: float, step_s: float) -> None:
         self._tug = tug
@@ -69,7 +69,12 @@ class Demand:
         return demand
 
     def _late(self, time_s: FloatArray) -> FloatArray:
-        voltage = helm_voltage(self._tug, self._campaign, time_s - self._tug.set_point_latency_s)
+        sent_s = time_s - self._tug.set_point_latency_s
+        cycle_s = self._tug.demand_cycle_s
+        if cycle_s is not None:
+            # a billionth of a cycle, so that rounding does not delay a message that is due
+            sent_s = cycle_s * np.floor(sent_s / cycle_s + 1e-9)
+        voltage = helm_voltage(self._tug, self._campaign, sent_s)
         demand = demanded_speed(self._tug, voltage)
         if self._tug.demand_resolution_rpm is not None:
             resolution = rev_s_from_rpm(self._tug.demand_resolution_rpm)

@@ -143,6 +143,7 @@ def _check(tug: Tug) -> None:
         "damping_ratio",
         "motoring_torque_nm",
         "demand_resolution_rpm",
+        "demand_cycle_s",
         "demand_rate_limit_rpm_per_s",
         "inflow_time_s",
         "rack_rate_limit_per_s",

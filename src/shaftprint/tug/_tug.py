@@ -69,6 +69,8 @@ class Tug:
     """What the potentiometer adds to the voltage of the campaign [V]: at -5 V the default line gives ``n_0``."""
     demand_resolution_rpm: float | None = None
     """Step of the demand on its way to the ECU [rpm]; ``None``: not quantised."""
+    demand_cycle_s: float | None = None
+    """Time from one message with the demand to the next, which the ECU holds [s]; ``None``: it follows at once."""
     demand_rate_limit_rpm_per_s: float | None = None
     """Fastest change of the demand that the ECU follows [rpm/s]; ``None``: no limit.
 

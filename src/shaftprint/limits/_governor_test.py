@@ -1,0 +1,152 @@
+"""What the limited governor is driven by and compared with: set point, speed and engine torque of a whole test."""
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
+from shaftprint.campaign import Campaign
+from shaftprint.errors import SignalError
+from shaftprint.models import AHEAD_S
+from shaftprint.signals import Signals, deviation
+from shaftprint.time_domain import Decimator, Record, full_load_shape, jumps_of
+from shaftprint.vessel import Vessel
+
+# Samples of the record and of its drive a second [Hz]: above 10 Hz a pick-up of one pulse a revolution shows nothing.
+RATE_HZ, DRIVE_HZ = 20.0, 200.0
+# The line stands at the working point for so long before the first test [s], ...
+BEFORE_S = 5.0
+# ... and its mean over that time, less the last part [s], is where the simulation begins.
+LAST_S = 1.0
+AFTER_S = 3.0
+LEAST_SPEED = 0.1
+# Below this deviation of the speed pulses are too rare for the acceleration between them, and for this long beside [s].
+SLOW, BESIDE_S = -0.45, 1.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class GovernorTest:
+    """Signals of a test on one grid, as deviations from the working point."""
+
+    name: str
+    """Name of the recording."""
+    time_s: FloatArray
+    """Time of the recording [s], shape (samples,)."""
+    set_point: FloatArray
+    """``n_set`` [-], jumps within a sample, shape (samples,)."""
+    speed: FloatArray
+    """``n`` [-], shape (samples,)."""
+    shaft_torque: FloatArray
+    """``M_s`` [-], shape (samples,)."""
+    upstream_s: float
+    """``tau_up`` of the vessel file [s]."""
+    lost: BoolArray
+    """Where a channel is not finite, shape (samples,)."""
+    begin_s: float
+    """Where the record begins [s]."""
+    end_s: float
+    """Where it ends [s]."""
+    curve_speed: FloatArray
+    """Speeds of the full-load curve as deviations [-], shape (points,)."""
+    curve_shape: FloatArray
+    """Full-load torque over that at the working-point speed [-], shape (points,)."""
+
+    def engine_torque(self) -> FloatArray:
+        """Return ``M_b = M_s + tau_up dn/dt`` [-], shape (samples,)."""
+        return self.shaft_torque + self.upstream_s * np.gradient(self.speed, self.time_s)
+
+    def with_inertia(self, factor: float) -> "GovernorTest":
+        """Return the test as if the inertia upstream of the gauge were larger by a factor."""
+        return replace(self, upstream_s=factor * self.upstream_s)
+
+    def with_torque(self, factor: float) -> "GovernorTest":
+        """Return the test as if the torque of the working point were larger by a factor."""
+        torque = (1.0 + self.shaft_torque) / factor - 1.0
+        return replace(self, shaft_torque=frozen_float(torque), upstream_s=self.upstream_s / factor)
+
+    def record(self, *, rate_hz: float = RATE_HZ, drive_hz: float = DRIVE_HZ) -> Record:
+        """Return the record of a fit: the torque of the engine over the load, driven by set point, speed and torque."""
+        every = round(drive_hz / rate_hz)
+        decimator = Decimator(every=every)
+        count = int((self.end_s - self.begin_s) * rate_hz)
+        time = self.begin_s + (np.arange((count - 1) * every + 1 + 2 * decimator.half) - decimator.half) / drive_hz
+        torque = self.engine_torque()
+        load = np.maximum(1.0 + self.speed, LEAST_SPEED) ** 2
+        drive = {
+            "n_set": self._from(self.set_point, time),
+            "n": self._from(self.speed, time + AHEAD_S),
+            "M_b": self._from(torque, time + AHEAD_S),
+            "c": self._from(np.interp(self.speed, self.curve_speed, self.curve_shape) - 1.0, time + AHEAD_S),
+        }
+        lost = np.interp(time, self.time_s, self.lost.astype(np.float64)) > 0.0
+        used = decimator.filtered(lost.astype(np.float64)) < 1e-3
+        return Record(
+            name=self.name,
+            rate_hz=rate_hz,
+            start_s=self.begin_s,
+            inputs={name: frozen_float(decimator.filtered(values)) for name, values in drive.items()},
+            outputs={"y": frozen_float(decimator.filtered(np.interp(time, self.time_s, (1.0 + torque) / load - 1.0)))},
+            used=frozen_bool(used),
+            drive={name: frozen_float(values) for name, values in drive.items()},
+            every=every,
+        )
+
+    def _from(self, values: FloatArray, time_s: FloatArray) -> FloatArray:
+        """Return a signal at some times, steady before the first test."""
+        found = np.interp(time_s, self.time_s, values)
+        stands = time_s < self.begin_s + BEFORE_S - LAST_S
+        return np.where(stands, found[stands].mean() if stands.any() else found, found)
+
+
+def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> GovernorTest:
+    """Cut the tests out of prepared signals.
+
+    Raises
+    ------
+    SignalError
+        If the signals do not hold the tests of the campaign.
+    """
+    tests = campaign.excitations
+    time = signals.start_s + np.arange(signals.samples) / signals.rate_hz
+    begin = max(tests[0].start_s - BEFORE_S, float(time[0]) + 1.0)
+    end = min(max(test.stop_s for test in tests) + AFTER_S, float(time[-1]) - 1.0)
+    if begin > tests[0].start_s - 2.0 * LAST_S or end - begin < 2.0 * BEFORE_S:
+        raise SignalError(
+            f"{signals.recording_name}: expected {2.0 * LAST_S:g} s before the first test of campaign {campaign.name}, "
+            f"which begins at {tests[0].start_s:g} s, and tests after it; found signals from {time[0]:g} to "
+            f"{time[-1]:g} s. Check that both belong together."
+        )
+    point = signals.working_point
+    speed = deviation(signals.engine_speed.speed_rev_s, point.engine_speed_rev_s)
+    torque = deviation(signals.shaft_torque_nm, point.shaft_torque_nm)
+    asked = deviation(signals.set_point_rev_s, point.engine_speed_rev_s)
+    lost = ~(np.isfinite(speed) & np.isfinite(torque) & np.isfinite(asked))
+    lost |= _beside(speed < SLOW, round(BESIDE_S * signals.rate_hz))
+    curve = np.array(full_load_shape(vessel, point))
+    per_inertia = 2.0 * math.pi * point.engine_speed_rev_s / (vessel.gearbox.ratio * point.shaft_torque_nm)
+    return GovernorTest(
+        name=signals.recording_name,
+        time_s=frozen_float(time),
+        set_point=frozen_float(jumps_of(time, _filled(time, asked), campaign)),
+        speed=frozen_float(_filled(time, speed)),
+        shaft_torque=frozen_float(_filled(time, torque)),
+        upstream_s=per_inertia * vessel.inertia_upstream_kg_m2,
+        lost=frozen_bool(lost),
+        begin_s=begin,
+        end_s=end,
+        curve_speed=curve[:, 0],
+        curve_shape=curve[:, 1],
+    )
+
+
+def _beside(where: BoolArray, samples: int) -> BoolArray:
+    """Return where a mark is within a number of samples."""
+    sums = np.concatenate([np.zeros(samples + 1), np.cumsum(where), np.full(samples, np.count_nonzero(where))])
+    return np.asarray(sums[2 * samples + 1 :] > sums[: -2 * samples - 1])
+
+
+def _filled(time_s: FloatArray, values: FloatArray) -> FloatArray:
+    """Return a signal whose gaps are straight lines."""
+    good = np.isfinite(values)
+    return np.asarray(values) if good.all() else np.interp(time_s, time_s[good], values[good])

@@ -1,0 +1,118 @@
+"""The verb: which limits governor and engine have, and how large they are."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+
+from shaftprint.campaign import Campaign
+from shaftprint.identify import Prior
+from shaftprint.limits._governor_test import governor_test
+from shaftprint.limits._limit_fit import LimitFit
+from shaftprint.limits._numbers import Units, exclusion, numbers_of
+from shaftprint.limits._search import GOVERNOR, Fitted, Scanned, Search, fitted, schwarz
+from shaftprint.limits._suspects import IDLE, SUSPECTS, Kind, parameters_of
+from shaftprint.limits._uncertainty import spread_of
+from shaftprint.models import Structure, limited_governor
+from shaftprint.signals import Signals
+from shaftprint.vessel import Vessel
+
+# Drive of the search [Hz]; levels do not depend on milliseconds, and the reported fit has twice as much.
+COARSE_HZ = 100.0
+# Offset of the set point's line at the working point, over its speed, that a calibration leaves.
+OFFSET_STD = 5e-4
+# A level that costs so much of twice the log-likelihood is excluded.
+EXCLUDED = 15.0
+LIMITS = ("torque", "rate", "deadband", "ramp", "smoke")
+
+
+def identify_limits(
+    signals: Signals,
+    campaign: Campaign,
+    vessel: Vessel,
+    *,
+    progress: Callable[[str], None] | None = None,
+) -> LimitFit:
+    """Find the limits of governor and engine, and their levels, rates and widths with intervals.
+
+    The governor is predicted on the measured speed, so that no law of the propeller and no disturbance of the speed is
+    assumed; limits join it one after the other as long as the likelihood asks for them.
+
+    Parameters
+    ----------
+    signals, campaign, vessel
+        The prepared recording, what was asked, and the installation: inertia upstream of the gauge and full-load curve
+        are taken from it.
+    progress
+        Called with what is being done.
+
+    Raises
+    ------
+    SignalError
+        If the recording does not hold the tests of the campaign.
+    IdentificationError
+        If no governor can be simulated on the measured speed.
+    """
+    say = progress or _silent
+    test = governor_test(signals, campaign, vessel)
+    units = Units.of(signals, vessel)
+    whole = whole_governor()
+    priors = {
+        "c_set": Prior(1.0, max(signals.dc_scale_std / signals.dc_scale, 1e-4)),
+        "e_set": Prior(0.0, OFFSET_STD),
+    }
+    say("Looking for limits")
+    search = Search.of(whole, test.record(drive_hz=COARSE_HZ), campaign, full=units.full, priors=priors)
+    here, rest = search.run()
+    say("Fitting the limits")
+    best = fitted(whole, test.record(), here.values, here.kinds, priors=priors)
+    say("Finding the intervals")
+    spread = spread_of(best, test, signals, vessel)
+    return LimitFit(
+        kinds=best.kinds,
+        numbers=numbers_of(best, spread, units),
+        gains=_gains(search, here),
+        governor=tuple(
+            replace(estimate, std=spread.std(estimate.name))
+            for estimate in best.fit.parameters
+            if estimate.name in GOVERNOR
+        ),
+        not_seen=_not_seen(here, rest, units),
+        identification=best.fit,
+    )
+
+
+def whole_governor() -> Structure:
+    """Return the governor with all limits, its actuation within what engines of ships have."""
+    return limited_governor(*LIMITS).free_between(zeta=(0.1, 1.5), omega_n=(3.0, 40.0), t_sp=(0.0, 0.3))
+
+
+def _gains(search: Search, here: Fitted) -> Mapping[Kind, float]:
+    """Return what each limit brings to the others; a single one needs no further fit."""
+    if len(here.kinds) == 1:
+        return {here.kinds[0]: schwarz(search.linear()) - schwarz(here)}
+    found = {}
+    for kind in here.kinds:
+        kinds = tuple(other for other in here.kinds if other is not kind)
+        gone = {name: IDLE[name] for name in set(parameters_of([kind])) - set(parameters_of(kinds))}
+        found[kind] = schwarz(search.fit({**here.values, **gone}, kinds)) - schwarz(here)
+    return dict(sorted(found.items(), key=lambda pair: -pair[1]))
+
+
+def _not_seen(here: Fitted, rest: Sequence[Scanned], units: Units) -> Mapping[Kind, str]:
+    """Return up to which level each limit that does not act is excluded."""
+    found = {}
+    for suspect in SUSPECTS:
+        tried = [one for one in rest if one.suspect.kind is suspect.kind]
+        if suspect.kind in here.kinds or not tried:
+            continue
+        level = None
+        # the strongest limit comes first; of several starts of one level the one that costs least counts
+        for value in dict.fromkeys(one.start[suspect.level] for one in tried):
+            if max(one.gain for one in tried if one.start[suspect.level] == value) > -EXCLUDED:
+                break
+            level = value
+        found[suspect.kind] = exclusion(suspect, level, units)
+    return found
+
+
+def _silent(what: str) -> None:
+    """Say nothing."""

@@ -1,0 +1,70 @@
+"""The noun of the room: which limits a line has, their numbers, and what of them may be trusted."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from shaftprint.identify import Estimate, Identification
+from shaftprint.limits._suspects import Kind
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LimitNumber:
+    """One number of a limit, with its 95 % interval."""
+
+    kind: Kind
+    """The limit that it belongs to."""
+    name: str
+    """Symbol."""
+    unit: str
+    """Unit, ``-`` where there is none."""
+    value: float
+    """Estimate."""
+    std: float
+    """Standard deviation: of the fit, and of what the data were divided by."""
+    lower: float
+    """Lower end of the interval; minus infinity where the data set none."""
+    upper: float
+    """Upper end of the interval; infinity where the data set none."""
+    meaning: str
+    """What it is."""
+    at_bound: bool = False
+    """Whether the search stopped at a bound."""
+    doubt: str = ""
+    """Why the number is not trusted; empty where it is."""
+
+    @property
+    def trusted(self) -> bool:
+        """Whether the number may be used."""
+        return not self.doubt
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class LimitFit:
+    """The limits of a line."""
+
+    kinds: tuple[Kind, ...]
+    """The limits that act, the strongest evidence first."""
+    numbers: tuple[LimitNumber, ...]
+    """Their levels, rates and widths; the first of each limit is the one by which it is known."""
+    gains: Mapping[Kind, float]
+    """Fall of minus twice the log-likelihood that each limit brings to the others."""
+    governor: tuple[Estimate, ...]
+    """Governor and delays that go with them, with their standard deviations."""
+    not_seen: Mapping[Kind, str]
+    """For each limit that does not act: up to which level the data exclude it, in words."""
+    identification: Identification
+    """The fit."""
+
+    @property
+    def trusted(self) -> tuple[LimitNumber, ...]:
+        """The numbers that may be used."""
+        return tuple(number for number in self.numbers if number.trusted)
+
+    @property
+    def sentence(self) -> str:
+        """All limits in a sentence."""
+        if not self.kinds:
+            return "No limit acts in this test: governor and engine are linear beyond what its noise hides."
+        named = [f"a {kind.value}" for kind in self.kinds]
+        listed = named[0] if len(named) == 1 else f"{', '.join(named[:-1])} and {named[-1]}"
+        return f"Governor and engine show {listed}: a linear model does not hold where they act."

@@ -1,0 +1,190 @@
+"""Numbers of limits in the units of the ship, and whether they may be trusted."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.limits._limit_fit import LimitNumber
+from shaftprint.limits._search import Fitted
+from shaftprint.limits._suspects import SUSPECTS, Kind, Suspect
+from shaftprint.limits._uncertainty import LevelInterval, Spread, profile_interval
+from shaftprint.normal import NORMAL_95
+from shaftprint.signals import Signals
+from shaftprint.units import rpm_from_rev_s
+from shaftprint.vessel import Vessel
+
+# A number whose interval is wider than this share of it is hardly known.
+HARDLY_KNOWN = 0.6
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Scale:
+    """One way to print a parameter."""
+
+    name: str
+    """Symbol."""
+    unit: str
+    """Unit."""
+    meaning: str
+    """What it is."""
+    factor: float = 1.0
+    """Its value over that of the parameter."""
+    share_std: float = 0.0
+    """Standard deviation of the factor, as a share of it."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Units:
+    """What turns normalised numbers into those of a ship."""
+
+    brake_nm: float
+    """Brake torque of the working point [N m]."""
+    full: float
+    """Full-load torque of the vessel file over it [-]."""
+    speed_rpm: float
+    """Engine speed of the working point [rpm]."""
+    gauge_std: float
+    """Standard deviation of the torque gauge's scale [-]."""
+
+    @classmethod
+    def of(cls, signals: Signals, vessel: Vessel) -> "Units":
+        """Return the units of a test."""
+        point = signals.working_point
+        brake = point.shaft_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
+        speed = rpm_from_rev_s(point.engine_speed_rev_s)
+        curve = np.array(vessel.engine.full_load_speed_rpm), np.array(vessel.engine.full_load_torque_nm)
+        return cls(
+            brake_nm=brake,
+            full=float(np.interp(speed, *curve)) / brake,
+            speed_rpm=speed,
+            gauge_std=vessel.sensors.shaft_torque.scale_std_fraction or 0.0,
+        )
+
+    def scales(self, name: str) -> tuple[Scale, ...]:
+        """Return the ways in which a parameter is printed, the clearest first."""
+        gauge, brake, rpm = self.gauge_std, self.brake_nm, self.speed_rpm
+        match name:
+            case "m_max":
+                return (
+                    Scale(
+                        name="share",
+                        unit="-",
+                        meaning="highest torque over the full-load curve of the vessel file",
+                        factor=1.0 / self.full,
+                        share_std=gauge,
+                    ),
+                    Scale(name="m_max", unit="-", meaning="the same over the brake torque of the working point"),
+                    Scale(
+                        name="M_max",
+                        unit="N m",
+                        meaning="the same at the working-point speed",
+                        factor=brake,
+                        share_std=gauge,
+                    ),
+                )
+            case "m_min":
+                return (
+                    Scale(name="m_min", unit="-", meaning="lowest brake torque over that of the working point"),
+                    Scale(
+                        name="M_min", unit="N m", meaning="torque of the motored engine", factor=brake, share_std=gauge
+                    ),
+                )
+            case "r_x":
+                return (
+                    Scale(name="r_x", unit="1/s", meaning="fastest change of the rack over that of the working point"),
+                    Scale(name="R_x", unit="N m/s", meaning="the same as brake torque", factor=brake, share_std=gauge),
+                )
+            case "r_s":
+                return (
+                    Scale(name="r_s_rpm", unit="rpm/s", meaning="fastest change of the set point", factor=rpm),
+                    Scale(name="r_s", unit="1/s", meaning="the same over the speed of the working point"),
+                )
+            case "d_e":
+                return (
+                    Scale(
+                        name="d_e_rpm",
+                        unit="rpm",
+                        meaning="speed error within which the governor does nothing, half of the band",
+                        factor=rpm,
+                    ),
+                    Scale(name="d_e", unit="-", meaning="the same over the speed of the working point"),
+                )
+            case "a_0":
+                return (Scale(name="a_0", unit="-", meaning="torque without boost over full-load torque"),)
+            case "tau_tc":
+                return (Scale(name="tau_tc", unit="s", meaning="time in which the boost follows the torque"),)
+            case _:
+                return (
+                    Scale(name="T_aw", unit="s", meaning="time in which the integrator is led back at a limit"),
+                )
+
+
+def numbers_of(found: Fitted, spread: Spread, units: Units) -> tuple[LimitNumber, ...]:
+    """Return the numbers of all limits, with profile intervals."""
+    by_kind = {suspect.kind: suspect for suspect in SUSPECTS}
+    done = set[str]()
+    rows: list[LimitNumber] = []
+    for kind in found.kinds:
+        for name in (by_kind[kind].level, *by_kind[kind].companions):
+            if name not in done:
+                done.add(name)
+                rows += _printed(found, spread, units, kind, name)
+    return tuple(rows)
+
+
+def _printed(found: Fitted, spread: Spread, units: Units, kind: Kind, name: str) -> Iterator[LimitNumber]:
+    parameter = next(p for p in found.term.structure.free if p.name == name)
+    value = found.values[name]
+    at_bound = value in (parameter.lower, parameter.upper)
+    interval = profile_interval(found, spread, name)
+    doubt = _doubt(value, interval, at_bound=at_bound)
+    for scale in units.scales(name):
+        more = NORMAL_95 * scale.share_std * abs(value)
+        lower, upper = (_widened(value, end, more) for end in (interval.lower, interval.upper))
+        yield LimitNumber(
+            kind=kind,
+            name=scale.name,
+            unit=scale.unit,
+            value=scale.factor * value,
+            std=scale.factor * float(np.hypot(spread.std(name), scale.share_std * value)),
+            lower=-np.inf if interval.lower_open else scale.factor * lower,
+            upper=np.inf if interval.upper_open else scale.factor * upper,
+            meaning=scale.meaning,
+            at_bound=at_bound,
+            doubt=doubt,
+        )
+
+
+def _widened(value: float, end: float, more: float) -> float:
+    """Return the end of an interval further out by another independent cause."""
+    return value + float(np.sign(end - value) * np.hypot(end - value, more))
+
+
+def _doubt(value: float, interval: LevelInterval, *, at_bound: bool) -> str:
+    """Return why a number is not trusted; nothing where it is."""
+    if at_bound:
+        return "at its bound: the search stopped there"
+    if interval.lower_open or interval.upper_open:
+        side = "lower" if interval.lower_open else "upper"
+        return f"the data set no {side} end"
+    if interval.upper - interval.lower > HARDLY_KNOWN * abs(value):
+        return "hardly known: the interval is wider than 60 % of the value"
+    return ""
+
+
+def exclusion(suspect: Suspect, level: float | None, units: Units) -> str:
+    """Return up to which level the data exclude a limit, in words."""
+    if level is None:
+        return f"{suspect.kind.value}: not seen, and no level of it is excluded"
+    scale = units.scales(suspect.level)[0]
+    side = {
+        Kind.TORQUE: "none below",
+        Kind.MOTORING: "none above",
+        Kind.RATE: "none slower than",
+        Kind.RAMP: "none slower than",
+        Kind.DEADBAND: "none wider than",
+        Kind.SMOKE: "none below",
+    }[suspect.kind]
+    unit = "" if scale.unit == "-" else f" {scale.unit}"
+    return f"{suspect.kind.value}: not seen, {side} {scale.name} = {scale.factor * level:.3g}{unit}"

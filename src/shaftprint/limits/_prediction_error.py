@@ -1,0 +1,207 @@
+"""The likelihood of a governor: one-step prediction errors of the engine's torque, white at their best colour."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, FloatArray, frozen_float
+from shaftprint.errors import IdentificationError
+from shaftprint.identify import LineTest, Repeats, Term, TermTest
+from shaftprint.limits._noise_colour import Innovations, innovations
+from shaftprint.models import Structure
+from shaftprint.time_domain import ExactDelays, NoiseModel, Record, RecordFit, record_fit, simulated_on
+
+# Longest step of the simulation [s].
+LONGEST_STEP_S = 0.01
+# Cost of a simulation that runs away.
+AWAY = 1e9
+OUTPUT = "y"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class PredictionError(Term):
+    """A governor with some free limits, and the test that it is fitted to."""
+
+    structure: Structure
+    """The structure; what is not free has the values in ``held``."""
+    whole: Structure
+    """The same with everything free: one compiled simulation serves all limits."""
+    record: Record
+    """The data."""
+    held: FloatArray
+    """Values of all parameters; the free ones are replaced, shape (parameters,)."""
+    free: tuple[int, ...]
+    """Places of the free parameters among the structure's."""
+    places: tuple[int, ...]
+    """Places of the same among all parameters of the objective."""
+    columns: tuple[int, ...]
+    """Places of the same among the free parameters of the objective."""
+    scale: float = 1.0
+    """Standard deviation of the innovations, by which they are divided."""
+
+    @classmethod
+    def of(cls, whole: Structure, record: Record, values: Mapping[str, float], free: Sequence[str]) -> "PredictionError":
+        """Return the likelihood in which some parameters are free, from values of all on.
+
+        Parameters
+        ----------
+        whole
+            The structure with all limits.
+        values
+            Value of every parameter; those that are not free stay, also beyond their bounds.
+        free
+            Names of the free ones.
+        """
+        bounds = {p.name: (p.lower, p.upper) for p in whole.parameters}
+        fixed = {name: float(np.clip(values[name], *bounds[name])) for name in whole.names if name not in free}
+        structure = whole.held_at(**fixed)
+        places = tuple(whole.names.index(p.name) for p in structure.free)
+        return cls(
+            structure=structure,
+            whole=whole,
+            record=record,
+            held=frozen_float(np.array([values[name] for name in whole.names])),
+            free=places,
+            places=places,
+            columns=tuple(range(len(places))),
+        )
+
+    @property
+    def name(self) -> str:
+        """What messages call the data."""
+        return f"recording {self.record.name}"
+
+    @property
+    def data_count(self) -> int:
+        """Number of used samples."""
+        return int(np.count_nonzero(self.record.used))
+
+    @property
+    def row_count(self) -> int:
+        """Number of rows of a sensitivity: they are made as short as they can be."""
+        return 1 + len(self.free)
+
+    @property
+    def is_likelihood(self) -> bool:
+        """Whether residuals are weighted by their noise: always."""
+        return True
+
+    @property
+    def least_deviation(self) -> float:
+        """Infinite: the noise of a torque is never small in every sample."""
+        return np.inf
+
+    @property
+    def cost_of_nothing(self) -> float:
+        """Half the square sum of the innovations of the measured torque itself."""
+        return 0.5 * innovations(self._measured, self.record.used).squares / self.scale**2
+
+    @property
+    def _measured(self) -> FloatArray:
+        return np.asarray(self.record.outputs[OUTPUT])
+
+    def placed(self, names: Sequence[str], free: Sequence[str]) -> "PredictionError":
+        """Return the term as part of an objective of these parameters."""
+        return replace(
+            self,
+            places=tuple(names.index(p.name) for p in self.structure.free),
+            columns=tuple(free.index(p.name) for p in self.structure.free),
+        )
+
+    def with_floor(self, floor: float) -> "PredictionError":
+        """Return the term itself."""
+        return self
+
+    def with_scale_at(self, own: FloatArray) -> "PredictionError":
+        """Return the term with the innovations of some parameters as its unit.
+
+        Raises
+        ------
+        IdentificationError
+            If the simulation runs away there.
+        """
+        found = self.innovations(own)
+        if found is None:
+            raise IdentificationError(f"{self.name}: the simulation of {self.structure.name} runs away.")
+        return replace(self, scale=float(np.sqrt(found.squares / found.count)))
+
+    def innovations(self, own: FloatArray) -> Innovations | None:
+        """Return the innovations at all parameters of the structure; None where the simulation runs away."""
+        simulated = self._simulated(own, ())
+        return None if simulated is None else innovations(self._measured - simulated[0], self.record.used)
+
+    def predicted(self, own: FloatArray) -> FloatArray:
+        """Return the predicted torque over the load, shape (samples,); infinite where the simulation runs away."""
+        simulated = self._simulated(own, ())
+        return np.full(self.record.samples, np.inf) if simulated is None else simulated[0]
+
+    def left(self, own: FloatArray) -> FloatArray:
+        """Return what the prediction leaves of the measured torque over the load, shape (samples,)."""
+        return np.asarray(self._measured - self.predicted(own))
+
+    def rows(self, own: FloatArray) -> FloatArray | None:
+        """Return innovations over their deviation and below them their derivatives, shape (1 + free, innovations)."""
+        simulated = self._simulated(own, [self.whole.names[place] for place in self.free])
+        if simulated is None:
+            return None
+        found = innovations(self._measured - simulated[0], self.record.used)
+        return np.concatenate([found.values[None], found.filtered(-simulated[1:])]) / self.scale
+
+    def table(self, theta: FloatArray, repeats: Repeats | None = None) -> FloatArray:
+        """Return turned innovations and derivatives, shape (starts, 1 + free, 1 + free)."""
+        found = np.zeros((theta.shape[0], self.row_count, self.row_count))
+        for start, own in enumerate(self.complete(theta)):
+            rows = self.rows(own)
+            if rows is None:
+                found[start, 0, 0] = np.sqrt(2.0 * AWAY)
+            else:
+                found[start] = np.linalg.qr(rows.T, mode="r").T
+        return found
+
+    def evaluable(self, theta: FloatArray) -> BoolArray:
+        """Return whether the simulation of each start stays within bounds, shape (starts,)."""
+        return np.array([self._simulated(own, ()) is not None for own in self.complete(theta)])
+
+    def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
+        """Return the turned derivatives; information and variance of the slope are the same."""
+        rows = self.table(theta[None, :])[0, 1:]
+        return rows, rows
+
+    def judged(self, values: FloatArray, number: int) -> tuple[RecordFit, TermTest]:
+        """Return FitPercent and innovations; whether they are small has no meaning, they are the unit."""
+        own = self.own(values)
+        simulated, found = self._simulated(own, ()), self.innovations(own)
+        if simulated is None or found is None:
+            raise IdentificationError(
+                f"{self.name}: the simulation of {self.structure.name} runs away at the parameters that were found."
+            )
+        noise = NoiseModel(
+            coefficients=frozen_float(-found.taps[1:, None, None]),
+            covariance=frozen_float(np.array([[found.squares / found.count]])),
+        )
+        part = record_fit(
+            self.structure,
+            self.record,
+            noise,
+            measured=self._measured[:, None],
+            model=simulated[0][:, None],
+            whitened=(found.values / self.scale)[:, None],
+        )
+        count = found.count
+        distance = found.squares / self.scale**2
+        line = LineTest(
+            experiment=number, name=self.record.name, distance=distance, data_count=count, excess=float(np.inf)
+        )
+        return part, TermTest(
+            chi_square=distance, count=count, mean=float(count), variance=2.0 * count, lines=(line,)
+        )
+
+    def redrawn(self, values: FloatArray, count: int, rng: np.random.Generator) -> Repeats:
+        """Refuse: the speed that drives the governor holds the noise that would have to be drawn anew."""
+        raise IdentificationError(f"{self.name}: repeats of a governor on its measured speed cannot be drawn.")
+
+    def _simulated(self, own: FloatArray, wanted: Sequence[str]) -> FloatArray | None:
+        """Return prediction and derivatives, shape (1 + wanted, samples); None where it runs away."""
+        found = simulated_on(ExactDelays(longest_step_s=LONGEST_STEP_S), self.whole, own, self.record, wanted)
+        return None if found is None else found[:, :, 0]

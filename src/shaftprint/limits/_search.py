@@ -1,0 +1,264 @@
+"""Which limits act: one after the other they join the governor, as long as chance does not explain the gain."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, FloatArray, frozen_bool
+from shaftprint.campaign import Campaign
+from shaftprint.errors import IdentificationError
+from shaftprint.identify import Draw, Identification, Prior, Settings, identify_jointly
+from shaftprint.limits._prediction_error import OUTPUT, PredictionError
+from shaftprint.limits._suspects import IDLE, SUSPECTS, Kind, Suspect, parameters_of, starts_of
+from shaftprint.models import Structure
+from shaftprint.time_domain import Record
+
+GOVERNOR: Mapping[str, float] = {
+    "K_p": 5.0,
+    "K_i": 4.0,
+    "t_d": 0.07,
+    "omega_n": 11.0,
+    "zeta": 0.55,
+    "t_sp": 0.05,
+    "c_set": 1.0,
+    "e_set": 0.0,
+}
+"""What is always free, and where the search begins."""
+# Gain of twice the log-likelihood over what Schwarz' criterion asks that a limit must bring to be named.
+LEAST_GAIN = 25.0
+FAST = ("t_d", "omega_n", "zeta", "t_sp")
+"""What slow sines tell too little of."""
+MOST_LIMITS = 4
+# Candidates of a round that are fitted.
+POLISHED, POLISHED_CALM = 2, 4
+# Iterations of a fit that is compared with others, and of one that is reported.
+ROUGH, FINE = 6, 15
+# Share of the tests, the calmest first, whose torque changes so little that no limit is near.
+CALM = 0.5
+PUSH_S, LEAST_FALL = 0.03, 0.5
+SMALLEST = 1e-12
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class One(Draw):
+    """A single start."""
+
+    values: FloatArray
+    """Free parameters, shape (free,)."""
+
+    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
+        """Return it within the bounds."""
+        return np.tile(np.clip(self.values, lower, upper), (count, 1))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Fitted:
+    """A governor with some limits at its best."""
+
+    kinds: tuple[Kind, ...]
+    """Its limits, in the order in which they joined."""
+    term: PredictionError
+    """Its likelihood, in units of its own innovations."""
+    values: Mapping[str, float]
+    """Every parameter."""
+    fit: Identification
+    """The fit."""
+    priors: Mapping[str, Prior]
+    """What was known beforehand."""
+
+    @property
+    def own(self) -> FloatArray:
+        """All parameters in the structure's order, shape (parameters,)."""
+        return np.array([self.values[name] for name in self.term.whole.names])
+
+    @property
+    def log_squares(self) -> float:
+        """``N log`` of the sum of squared innovations and the priors: minus twice the log-likelihood, but for a constant."""
+        found = self.term.innovations(self.own)
+        known = sum(((self.values[name] - prior.mean) / prior.std) ** 2 for name, prior in self.priors.items())
+        return np.inf if found is None else found.count * float(np.log(found.squares)) + known
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Scanned:
+    """One level of a suspect, the governor following to first order."""
+
+    suspect: Suspect
+    """The suspect."""
+    start: Mapping[str, float]
+    """Every parameter, with its level."""
+    gain: float
+    """Fall of minus twice the log-likelihood; negative where the level contradicts the data."""
+
+
+def values_without_limits(whole: Structure) -> dict[str, float]:
+    """Return the value of every parameter of a governor that nothing limits."""
+    default = {p.name: p.value for p in whole.parameters}
+    # a slope of zero is a small one: a round zero would be another simulation
+    return {**default, **GOVERNOR, **IDLE, "g": 1e-12}
+
+
+def fitted(
+    whole: Structure,
+    record: Record,
+    values: Mapping[str, float],
+    kinds: Sequence[Kind],
+    *,
+    priors: Mapping[str, Prior],
+    iterations: int = FINE,
+    held: Sequence[str] = (),
+) -> Fitted:
+    """Return the best governor with some limits, from given values on.
+
+    Parameters
+    ----------
+    priors
+        What is known of the set point's scale and offset.
+    held
+        Names of parameters that stay although they would be free.
+    """
+    free = [name for name in (*GOVERNOR, *parameters_of(kinds)) if name not in held]
+    term = PredictionError.of(whole, record, values, free)
+    own = np.array([values[name] for name in whole.names])
+    term = term.with_scale_at(own)
+    draw = One(np.array([values[p.name] for p in term.structure.free]))
+    settings = Settings(priors=priors, starts=1, draw=draw, max_iterations=iterations, stability="ignored")
+    fit = identify_jointly([term], rng=np.random.default_rng(0), settings=settings)
+    found = {**values, **{estimate.name: estimate.value for estimate in fit.parameters}}
+    best = term.with_scale_at(np.array([found[name] for name in whole.names]))
+    return Fitted(kinds=tuple(kinds), term=best, values=found, fit=fit, priors=priors)
+
+
+def calm_part(record: Record, campaign: Campaign) -> Record:
+    """Return the record with only the sines in use in which the torque changes least: no limit is near in them."""
+    rate = np.abs(np.gradient(record.outputs[OUTPUT], 1.0 / record.rate_hz))
+    inside = {sine.name: _inside(record, sine.settled_s, sine.stop_s) for sine in campaign.sines}
+    inside = {name: where for name, where in inside.items() if where.any()}
+    if len(inside) < 2:
+        return record
+    order = sorted(inside, key=lambda name: float(np.mean(rate[inside[name]])))
+    kept = np.any([inside[name] for name in order[: max(round(CALM * len(order)), 2)]], axis=0)
+    return replace(record, used=frozen_bool(kept))
+
+
+def _inside(record: Record, begin_s: float, end_s: float) -> BoolArray:
+    return np.asarray(record.used & (record.time_s >= begin_s) & (record.time_s < end_s))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Search:
+    """A search for limits, and what it always needs."""
+
+    whole: Structure
+    """The governor with all limits."""
+    record: Record
+    """The test."""
+    full: float
+    """Full-load torque of the vessel file over the brake torque of the working point."""
+    priors: Mapping[str, Prior]
+    """What is known of the set point's scale and offset."""
+    calm: Mapping[str, float]
+    """Governor of the calm part of the test.
+
+    A governor without limits that has to explain limited steps is too slow to reach the limit, and hides it.
+    """
+
+    @classmethod
+    def of(
+        cls, whole: Structure, record: Record, campaign: Campaign, *, full: float, priors: Mapping[str, Prior]
+    ) -> "Search":
+        """Return a search, its calm governor found."""
+        start = values_without_limits(whole)
+        calm = fitted(whole, calm_part(record, campaign), start, (), priors=priors, iterations=ROUGH, held=FAST)
+        return cls(whole=whole, record=record, full=full, priors=priors, calm={name: calm.values[name] for name in GOVERNOR})
+
+    def linear(self) -> Fitted:
+        """Return the best governor without limits."""
+        return self._pushed(self.fit({**values_without_limits(self.whole), **self.calm}, ()))
+
+    def run(self) -> tuple[Fitted, list[Scanned]]:
+        """Let limits join the governor until chance explains what the next one would gain.
+
+        Returns
+        -------
+        The governor with its limits, and the levels of those that did not join, tried at the end.
+        """
+        here = self.linear()
+        while True:
+            rest = self.scanned(here)
+            better = self._joined(here, rest) if len(here.kinds) < MOST_LIMITS else None
+            if better is None:
+                return here, rest
+            here = self._without_idle(better)
+
+    def scanned(self, here: Fitted) -> list[Scanned]:
+        """Return what each level of each limit that is not present would gain over a governor."""
+        return self._scan_from(here, here.values)
+
+    def _scan_from(self, here: Fitted, base: Mapping[str, float]) -> list[Scanned]:
+        """Return the gains, the governor following to first order from some values."""
+        term = here.term
+        own = np.array([base[name] for name in self.whole.names])
+        rows, now, best = term.rows(own), term.innovations(own), term.innovations(here.own)
+        if rows is None or now is None or best is None:
+            raise IdentificationError(f"{term.name}: the simulation runs away where it was fitted.")
+        basis, _ = np.linalg.qr(rows[1:].T)
+        simulated = term.predicted(own)
+        load = np.maximum(1.0 + self.record.decimator.thinned(self.record.drive["n"][:, None])[:, 0], 0.1) ** 2
+        found = []
+        for suspect in SUSPECTS:
+            if suspect.kind in here.kinds or (suspect.kind is Kind.TORQUE and Kind.SMOKE in here.kinds):
+                continue
+            for start in starts_of(suspect, base, (1.0 + simulated) * load, self.full):
+                values = {**base, **start}
+                there = term.predicted(np.array([values[name] for name in self.whole.names]))
+                moved = now.values + now.filtered((simulated - there)[None])[0]
+                moved = moved - basis @ (basis.T @ moved)
+                squares = max(float(moved @ moved), SMALLEST)
+                gain = best.count * float(np.log(best.squares / squares)) if np.isfinite(squares) else -np.inf
+                found.append(Scanned(suspect=suspect, start={**base, **start}, gain=gain))
+        return found
+
+    def _joined(self, here: Fitted, scanned: Sequence[Scanned]) -> Fitted | None:
+        """Return the governor with the one more limit that gains most; None where none gains enough."""
+        starts = _strongest(scanned, POLISHED)
+        if not here.kinds:
+            calm = {**here.values, **self.calm}
+            starts += _strongest(self._scan_from(here, calm), POLISHED_CALM)
+        tries = [self.fit(one.start, (*here.kinds, one.suspect.kind)) for one in starts]
+        winner = self._pushed(min(tries, key=schwarz)) if tries else here
+        return winner if schwarz(here) - schwarz(winner) > LEAST_GAIN else None
+
+    def _without_idle(self, here: Fitted) -> Fitted:
+        """Return the governor without limits that later ones have made idle."""
+        for kind in here.kinds[:-1]:
+            kinds = tuple(other for other in here.kinds if other is not kind)
+            gone = {name: IDLE[name] for name in set(parameters_of([kind])) - set(parameters_of(kinds))}
+            without = self.fit({**here.values, **gone}, kinds)
+            if schwarz(without) - schwarz(here) < LEAST_GAIN:
+                here = without
+        return here
+
+    def _pushed(self, here: Fitted) -> Fitted:
+        """Return the best after a push along the valley in which the delays inside the loop and before it trade."""
+        for by_s in (-PUSH_S, PUSH_S):
+            delays = {"t_d": max(here.values["t_d"] + by_s, 0.005), "t_sp": max(here.values["t_sp"] - by_s, 0.005)}
+            moved = self.fit({**here.values, **delays}, here.kinds)
+            if moved.log_squares < here.log_squares - LEAST_FALL:
+                here = moved
+        return here
+
+    def fit(self, values: Mapping[str, float], kinds: Sequence[Kind]) -> Fitted:
+        return fitted(self.whole, self.record, values, kinds, priors=self.priors, iterations=ROUGH)
+
+
+def schwarz(one: Fitted) -> float:
+    """Return minus twice the log-likelihood with Schwarz' penalty for each parameter."""
+    return one.log_squares + len(one.term.free) * float(np.log(one.term.data_count))
+
+
+def _strongest(scanned: Sequence[Scanned], count: int) -> list[Scanned]:
+    """Return the best level of each limit, of the limits that gain most."""
+    best = {one.suspect.kind: one for one in sorted(scanned, key=lambda one: one.gain)}
+    return sorted(best.values(), key=lambda one: one.gain, reverse=True)[:count]

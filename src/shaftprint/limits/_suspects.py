@@ -1,0 +1,101 @@
+"""The limits that are looked for: parameters of the one governor that has them all, and levels to try."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+
+
+class Kind(Enum):
+    """A limit that is fitted; the value is its name in words."""
+
+    TORQUE = "torque limit"
+    MOTORING = "motoring limit"
+    SMOKE = "smoke limit"
+    RATE = "rate limit of the fuel rack"
+    RAMP = "rate limit of the set point"
+    DEADBAND = "deadband"
+
+
+# Values with which a limit does nothing. None of them is a round zero, for that would be another simulation.
+IDLE: Mapping[str, float] = {
+    "m_max": 60.0,
+    "m_min": -60.0,
+    "T_aw": 0.5,
+    "r_x": 1e5,
+    "d_e": 1e-12,
+    "a_0": 1.0,
+    "tau_tc": 1.0,
+    "r_s": 1e5,
+}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Suspect:
+    """One limit that may act."""
+
+    kind: Kind
+    """What it is."""
+    level: str
+    """Parameter of its level, rate or width."""
+    companions: tuple[str, ...] = ()
+    """Further parameters that are fitted with it."""
+    shares: tuple[float, ...] = ()
+    """Levels to try, strongest limit first, as shares of the extreme torque that the governor asks for."""
+    levels: tuple[float, ...] = ()
+    """The same as values of the parameter."""
+
+
+SUSPECTS: tuple[Suspect, ...] = (
+    Suspect(
+        kind=Kind.TORQUE, level="m_max", companions=("T_aw",), shares=(0.4, 0.5, 0.6, 0.7, 0.8, 0.87, 0.93, 0.97)
+    ),
+    Suspect(kind=Kind.MOTORING, level="m_min", companions=("T_aw",), shares=(0.05, 0.3, 0.6, 0.85)),
+    Suspect(kind=Kind.RATE, level="r_x", levels=tuple(np.geomspace(0.5, 30.0, 9).tolist())),
+    Suspect(kind=Kind.RAMP, level="r_s", levels=tuple(np.geomspace(0.01, 4.0, 12).tolist())),
+    Suspect(kind=Kind.DEADBAND, level="d_e", levels=(0.016, 0.011, 0.0075, 0.005, 0.0033, 0.0022, 0.0015)),
+    Suspect(
+        kind=Kind.SMOKE, level="a_0", companions=("tau_tc", "T_aw"), levels=(0.3, 0.42, 0.55, 0.7, 0.85, 0.95)
+    ),
+)
+"""In the order in which they are tried."""
+
+LAGS_S = (0.6, 1.6)
+"""Lags of the turbocharger that are tried with each torque without boost [s]."""
+
+
+def starts_of(suspect: Suspect, values: Mapping[str, float], torque: FloatArray, full: float) -> list[dict[str, float]]:
+    """Return the values of its parameters to try, the strongest limit first.
+
+    Parameters
+    ----------
+    values
+        Present value of every parameter.
+    torque
+        Brake torque that the governor asks for, over that of the working point, shape (samples,).
+    full
+        Full-load torque of the vessel file over the brake torque of the working point.
+    """
+    match suspect.kind:
+        case Kind.TORQUE:
+            # below the torque of steady running there is no line that could be tested
+            highest = float(np.max(torque))
+            tried = [max(share * highest, 1.02) for share in suspect.shares]
+            return [{"m_max": level} for level in dict.fromkeys(tried)]
+        case Kind.MOTORING:
+            lowest = float(np.min(torque))
+            return [{"m_min": share * lowest} for share in suspect.shares] if lowest < -0.05 else []
+        case Kind.SMOKE:
+            limit = values["m_max"] if values["m_max"] < IDLE["m_max"] else full
+            return [{"a_0": a, "tau_tc": lag, "m_max": limit} for a in suspect.levels for lag in LAGS_S]
+        case _:
+            return [{suspect.level: level} for level in suspect.levels]
+
+
+def parameters_of(kinds: Sequence[Kind]) -> tuple[str, ...]:
+    """Return the free parameters of some limits."""
+    present = [suspect for suspect in SUSPECTS if suspect.kind in kinds]
+    return tuple(dict.fromkeys(name for one in present for name in (one.level, *one.companions)))

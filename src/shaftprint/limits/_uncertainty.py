@@ -1,0 +1,173 @@
+"""How far the numbers of a limit can be trusted: scatter of the slopes, what was taken for granted, profile ends.
+
+The noise of the torque is not the same all the time, and a record that ends at 10 Hz lets a little of the future into
+what should be new at each sample. The variance of the slope of the likelihood is therefore that of its sums over
+blocks much longer than the memory of the loop (White, Maximum likelihood estimation of misspecified models, 1982):
+``H^-1 (sum_b g_b g_b^T) H^-1``. What the fit takes for granted is moved by its standard deviation, one after the other,
+and the parameters follow to first order. The level of a limit has a profile besides: a limit that acts for seconds
+bends its likelihood.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import IdentificationError
+from shaftprint.limits._governor_test import GovernorTest
+from shaftprint.limits._prediction_error import PredictionError
+from shaftprint.limits._search import Fitted, fitted
+from shaftprint.normal import NORMAL_95
+from shaftprint.signals import Signals
+from shaftprint.vessel import Vessel
+
+# Sums of slopes over this time are independent of each other [s]: loop and hunting have forgotten it.
+BLOCK_S = 10.0
+# Deviation of the slope of the engine's torque with speed that the fit takes to be zero.
+SLOPE_STD = 0.1
+# Steps towards the end of a profile, and how near the end they must come, as a share of the threshold.
+MOST_STEPS, NEAR = 4, 0.1
+PROFILE_ITERATIONS = 4
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Spread:
+    """Standard deviations of the free parameters of a governor."""
+
+    names: tuple[str, ...]
+    """Free parameters."""
+    noise: FloatArray
+    """From the noise, shape (free,)."""
+    model: FloatArray
+    """The same if noise were as the noise model has it, shape (free,)."""
+    systematic: FloatArray
+    """From what was taken for granted, shape (free,)."""
+
+    def std(self, name: str) -> float:
+        """Return the standard deviation of a parameter, all of it."""
+        place = self.names.index(name)
+        return float(np.hypot(self.noise[place], self.systematic[place]))
+
+
+def spread_of(found: Fitted, test: GovernorTest, signals: Signals, vessel: Vessel) -> Spread:
+    """Return the standard deviations of a governor's parameters."""
+    term, own = found.term, found.own
+    rows = term.rows(own)
+    if rows is None:
+        raise IdentificationError(f"{term.name}: the simulation runs away where it was fitted.")
+    slopes = rows[1:]
+    names = tuple(p.name for p in term.structure.free)
+    known = np.array([1.0 / found.priors[name].std if name in found.priors else 0.0 for name in names])
+    nothing = np.linalg.norm(slopes, axis=1) == 0.0
+    size = np.where(nothing, 1.0, np.linalg.norm(slopes, axis=1))
+    information = (slopes @ slopes.T + np.diag(known**2)) / np.outer(size, size)
+    inverse = np.linalg.pinv(information, hermitian=True) / np.outer(size, size)
+    block = max(round(BLOCK_S * term.record.rate_hz), 1)
+    sums = np.add.reduceat(slopes * rows[0], np.arange(0, rows.shape[1], block), axis=1)
+    scatter = np.sqrt(np.maximum(np.diag(inverse @ (sums @ sums.T + np.diag(known**2)) @ inverse), 0.0))
+    model = np.sqrt(np.maximum(np.diag(inverse), 0.0))
+    follows = np.array(
+        [inverse @ (slopes @ change) for change in _taken_for_granted(found, test, signals, vessel)]
+    )
+    return Spread(
+        names=names,
+        noise=np.where(nothing, np.inf, np.maximum(scatter, model)),
+        model=np.where(nothing, np.inf, model),
+        systematic=np.linalg.norm(follows, axis=0),
+    )
+
+
+def _taken_for_granted(
+    found: Fitted, test: GovernorTest, signals: Signals, vessel: Vessel
+) -> Sequence[FloatArray]:
+    """Return the change of the innovations with each thing that the fit takes for granted, at its deviation."""
+    term, own = found.term, found.own
+    now = term.innovations(own)
+    if now is None:
+        return []
+    point = signals.working_point
+    drive_hz = term.record.drive_rate_hz
+    inertia = 1.0 + vessel.inertia_upstream_std_kg_m2 / vessel.inertia_upstream_kg_m2
+    torque = 1.0 + point.shaft_torque_std_nm / point.shaft_torque_nm
+    left = term.left(own)
+    moved = [test.with_inertia(inertia), test.with_torque(torque)]
+    changes = [_with_record(term, one, drive_hz).left(own) - left for one in moved]
+    sloped = {**found.values, "g": SLOPE_STD}
+    changes.append(term.left(np.array([sloped[name] for name in term.whole.names])) - left)
+    return [now.filtered(change[None])[0] / term.scale for change in changes]
+
+
+def _with_record(term: PredictionError, test: GovernorTest, drive_hz: float) -> PredictionError:
+    return replace(term, record=test.record(drive_hz=drive_hz))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LevelInterval:
+    """95 % interval of one number."""
+
+    lower: float
+    """Lower end."""
+    upper: float
+    """Upper end."""
+    lower_open: bool
+    """Whether the data set no lower end."""
+    upper_open: bool
+    """Whether the data set no upper end."""
+
+
+def profile_interval(found: Fitted, spread: Spread, name: str) -> LevelInterval:
+    """Return the profile-likelihood interval of one parameter, widened by scatter and by what was taken for granted."""
+    place = spread.names.index(name)
+    parameter = next(p for p in found.term.structure.free if p.name == name)
+    # the likelihood is that of the noise model: its ends are further out by as much as the scatter is larger
+    reach = NORMAL_95 * float(spread.noise[place] / spread.model[place])
+    value = found.values[name]
+    ends, is_open = [], []
+    for side, bound in ((-1.0, parameter.lower), (1.0, parameter.upper)):
+        end, free = _end(found, name, value, side * spread.model[place], reach, bound)
+        noise = end - value
+        ends.append(value + side * float(np.hypot(noise, NORMAL_95 * spread.systematic[place])))
+        is_open.append(free)
+    return LevelInterval(lower=ends[0], upper=ends[1], lower_open=is_open[0], upper_open=is_open[1])
+
+
+def _end(
+    found: Fitted, name: str, value: float, std: float, reach: float, bound: float
+) -> tuple[float, bool]:
+    """Return where the root of twice the rise of the cost is ``reach``, and whether the bound comes first."""
+    distance: Callable[[float], float] = _distance(found, name)
+    far = reach * std
+    for _ in range(MOST_STEPS):
+        at = value + far
+        beyond = (at - bound) * np.sign(std) >= 0.0
+        at = bound if beyond else at
+        far = at - value
+        there = distance(at)
+        if beyond and there < reach:
+            return bound, True
+        if abs(there - reach) <= NEAR * reach:
+            break
+        # the root of a parabola's rise is a straight line through the estimate
+        step = far * float(np.clip(reach / max(there, 1e-3), 0.3, 3.0))
+        far = step
+    return value + far, False
+
+
+def _distance(found: Fitted, name: str) -> Callable[[float], float]:
+    base = found.log_squares
+
+    def distance(at: float) -> float:
+        values: Mapping[str, float] = {**found.values, name: at}
+        there = fitted(
+            found.term.whole,
+            found.term.record,
+            values,
+            found.kinds,
+            priors=found.priors,
+            iterations=PROFILE_ITERATIONS,
+            held=(name,),
+        )
+        return float(np.sqrt(max(there.log_squares - base, 0.0)))
+
+    return distance

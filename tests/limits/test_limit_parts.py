@@ -1,0 +1,109 @@
+"""Parts of the search for limits, each against what follows without them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from shaftprint.campaign import Campaign
+from shaftprint.limits import limit_hints
+from shaftprint.limits._noise_colour import ORDER, innovations
+from shaftprint.limits._numbers import _doubt
+from shaftprint.limits._uncertainty import LevelInterval
+from shaftprint.spectra import Harmonics
+from shaftprint.time_domain import jumps_of
+from shaftprint.tug import Tug, simulate_signals
+
+
+def test_a_jump_lies_where_it_is_between_two_samples():
+    campaign = Campaign.model_validate(
+        {"name": "step", "duration_s": 20.0, "offset_v": -5.0, "sample_rate_hz": 2000.0}
+        | {"staircases": [{"name": "St1", "levels_v": (-4.0, -5.0), "dwell_s": 5.0, "start_s": 5.0}]}
+    )
+    time = np.arange(4000) / 200.0
+    # a filter that rings for 40 ms keeps the area of a jump at 10.0013 s
+    fine = np.arange(0.0, 20.0, 1e-4)
+    exact = np.where(fine < 10.0013, 0.2, 0.0)
+    kernel = np.hanning(401)
+    smooth = np.convolve(exact, kernel / kernel.sum(), "same")
+    found = jumps_of(time, np.interp(time, fine, smooth), campaign)
+    near = (time > 9.5) & (time < 10.5)
+    # what the jump takes away from 9.5 s on: 0.2 for 0.5013 s
+    assert np.sum(found[near]) / 200.0 == pytest.approx(0.2 * 0.5013, abs=0.2 * 0.0025 + 2e-4)
+    moving = np.flatnonzero(np.abs(np.diff(found[near])) > 1e-3)
+    assert moving.size <= 2
+
+
+def test_innovations_of_known_noise_are_its_source():
+    rng = np.random.default_rng(3)
+    source = rng.standard_normal(40000)
+    noise = np.empty(source.size)
+    noise[:2] = source[:2]
+    for place in range(2, source.size):
+        noise[place] = 1.2 * noise[place - 1] - 0.5 * noise[place - 2] + source[place]
+    used = np.ones(noise.size, dtype=bool)
+    used[20000:20010] = False
+    broken = np.where(used, noise, 1e3)
+    found = innovations(broken, used)
+    assert found.count == noise.size - ORDER - 10 - ORDER
+    np.testing.assert_allclose(found.taps[:3], [1.0, -1.2, 0.5], atol=0.03)
+    assert found.squares / found.count == pytest.approx(1.0, abs=0.03)
+    left = found.values[found.kept] - source[ORDER:][found.kept]
+    assert np.std(left) < 0.05
+
+
+@pytest.mark.parametrize(
+    ("interval", "at_bound", "doubt"),
+    [
+        ((0.9, 1.1, False, False), False, ""),
+        ((0.9, 1.1, False, False), True, "bound"),
+        ((0.9, 5.0, False, True), False, "no upper end"),
+        ((0.6, 1.5, False, False), False, "hardly known"),
+    ],
+)
+def test_numbers_that_are_not_known_are_not_trusted(interval, at_bound, doubt):
+    said = _doubt(1.0, _interval(*interval), at_bound=at_bound)
+    assert (said == "") if doubt == "" else (doubt in said)
+
+
+def _interval(lower, upper, lower_open, upper_open):
+    return LevelInterval(lower=lower, upper=upper, lower_open=lower_open, upper_open=upper_open)
+
+
+def harmonics(third):
+    return Harmonics(
+        lines=("S1", "S2"),
+        outputs=("n", "M_s"),
+        orders=(2, 3),
+        fundamental=np.full((2, 2), 0.1),
+        amplitude=np.array([[[0.004, 0.0], [0.005, 0.0]], [[0.004, 0.0], [0.005, third]]]),
+        standard_deviation=np.full((2, 2, 2), 5e-4),
+        expected_second_torque=np.full(2, 0.005),
+    )
+
+
+def test_a_third_harmonic_points_to_limits_and_a_second_does_not():
+    (quiet,) = limit_hints(harmonics(5e-4))
+    assert "shaftprint limits" not in quiet
+    (hint,) = limit_hints(harmonics(8e-3))
+    assert "S2, M_s 8.0 %" in hint
+    assert "S1" not in hint
+    assert "shaftprint limits" in hint
+
+
+def test_a_held_demand_comes_late_by_half_a_message(vessel):
+    """A ramp of the set point in messages of 80 ms: the speed follows as if 40 ms later."""
+    campaign = Campaign.model_validate(
+        {"name": "slow", "duration_s": 60.0, "offset_v": -5.0, "sample_rate_hz": 2000.0}
+        | {"sines": [{"name": "S1", "frequency_hz": 0.1, "amplitude_v": 0.4, "start_s": 5.0, "settled_s": 20.0,
+                      "stop_s": 50.1}]}
+    )  # fmt: skip
+    tug = Tug()
+    phases = []
+    for one in (tug, replace(tug, demand_cycle_s=0.08)):
+        ideal = simulate_signals(vessel, campaign, tug=one, rate_hz=100.0)
+        inside = (ideal.time_s >= 20.0) & (ideal.time_s < 50.0)
+        turn = np.exp(-2j * np.pi * 0.1 * ideal.time_s[inside])
+        phases.append(np.angle(np.sum(turn * ideal.engine_speed_rev_s[inside])))
+    late_s = (phases[0] - phases[1]) / (2.0 * np.pi * 0.1)
+    assert late_s == pytest.approx(0.04, abs=0.002)
