@@ -224,7 +224,7 @@ def table(results: Sequence[Result]) -> str:
     for kind in (*KINDS, "all"):
         own = [one for one in results if kind in (one.kind, "all")]
         named = [one for one in own if one.named]
-        level = {name for name in (LEVEL[one.kind] for one in own)}
+        level = {LEVEL[one.kind] for one in own}
         inside = [one.inside[name] for one in named for name in level if name in one.inside]
         width = [one.width[name] for one in named for name in level if name in one.width]
         also = sum(bool(one.also) for one in own)

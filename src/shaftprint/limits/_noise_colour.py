@@ -52,7 +52,7 @@ class Innovations:
 def innovations(residual: FloatArray, used: BoolArray) -> Innovations:
     """Fit the colour of a residual, shape (samples,), and take it away."""
     windows = np.lib.stride_tricks.sliding_window_view(residual, ORDER + 1)
-    kept = np.lib.stride_tricks.sliding_window_view(used, ORDER + 1).all(axis=1)
+    kept = np.asarray(np.lib.stride_tricks.sliding_window_view(used, ORDER + 1).all(axis=1), dtype=np.bool_)
     past = np.ascontiguousarray(windows[:, :ORDER][:, ::-1]) * kept[:, None]
     now = windows[:, ORDER] * kept
     gram = past.T @ past

@@ -115,9 +115,7 @@ class Units:
             case "tau_tc":
                 return (Scale(name="tau_tc", unit="s", meaning="time in which the boost follows the torque"),)
             case _:
-                return (
-                    Scale(name="T_aw", unit="s", meaning="time in which the integrator is led back at a limit"),
-                )
+                return (Scale(name="T_aw", unit="s", meaning="time in which the integrator is led back at a limit"),)
 
 
 def numbers_of(found: Fitted, spread: Spread, units: Units) -> tuple[LimitNumber, ...]:

@@ -7,16 +7,50 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import LineTest, Repeats, Term, TermTest
+from shaftprint.identify import FittedTerm, LineTest, Repeats, Term, TermCheck, TermTest, fit_percent
 from shaftprint.limits._noise_colour import Innovations, innovations
 from shaftprint.models import Structure
-from shaftprint.time_domain import ExactDelays, NoiseModel, Record, RecordFit, record_fit, simulated_on
+from shaftprint.time_domain import ExactDelays, Record, simulated_on
 
 # Longest step of the simulation [s].
 LONGEST_STEP_S = 0.01
 # Cost of a simulation that runs away.
 AWAY = 1e9
 OUTPUT = "y"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class PredictedTorque(FittedTerm):
+    """The torque over the load as a governor predicts it."""
+
+    structure: Structure
+    """The structure, with its held and free parameters."""
+    record: Record
+    """The data."""
+    predicted: FloatArray
+    """Predicted torque over the load [-], shape (samples,)."""
+    fit_percent: Mapping[str, float]
+    """FitPercent of the torque (thesis eq. 2.41)."""
+
+    @property
+    def fit_ceiling(self) -> Mapping[str, float]:
+        """The same: all that the governor leaves of the torque counts as noise."""
+        return self.fit_percent
+
+    @property
+    def seconds(self) -> float:
+        """Length of the used samples [s]."""
+        return int(self.record.used.sum()) / self.record.rate_hz
+
+    @property
+    def checks(self) -> tuple[TermCheck, ...]:
+        """Nothing: which limits act is what the search compares."""
+        return ()
+
+    @property
+    def name(self) -> str:
+        """What messages call the data."""
+        return f"recording {self.record.name}"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -41,7 +75,9 @@ class PredictionError(Term):
     """Standard deviation of the innovations, by which they are divided."""
 
     @classmethod
-    def of(cls, whole: Structure, record: Record, values: Mapping[str, float], free: Sequence[str]) -> "PredictionError":
+    def of(
+        cls, whole: Structure, record: Record, values: Mapping[str, float], free: Sequence[str]
+    ) -> "PredictionError":
         """Return the likelihood in which some parameters are free, from values of all on.
 
         Parameters
@@ -156,7 +192,8 @@ class PredictionError(Term):
             if rows is None:
                 found[start, 0, 0] = np.sqrt(2.0 * AWAY)
             else:
-                found[start] = np.linalg.qr(rows.T, mode="r").T
+                triangle: FloatArray = np.linalg.qr(rows.T, mode="r")  # type: ignore[assignment]
+                found[start] = triangle.T
         return found
 
     def evaluable(self, theta: FloatArray) -> BoolArray:
@@ -168,34 +205,28 @@ class PredictionError(Term):
         rows = self.table(theta[None, :])[0, 1:]
         return rows, rows
 
-    def judged(self, values: FloatArray, number: int) -> tuple[RecordFit, TermTest]:
-        """Return FitPercent and innovations; whether they are small has no meaning, they are the unit."""
+    def judged(self, values: FloatArray, number: int) -> tuple[PredictedTorque, TermTest]:
+        """Return FitPercent; whether the innovations are small has no meaning, for they are the unit."""
         own = self.own(values)
         simulated, found = self._simulated(own, ()), self.innovations(own)
         if simulated is None or found is None:
             raise IdentificationError(
                 f"{self.name}: the simulation of {self.structure.name} runs away at the parameters that were found."
             )
-        noise = NoiseModel(
-            coefficients=frozen_float(-found.taps[1:, None, None]),
-            covariance=frozen_float(np.array([[found.squares / found.count]])),
-        )
-        part = record_fit(
-            self.structure,
-            self.record,
-            noise,
-            measured=self._measured[:, None],
-            model=simulated[0][:, None],
-            whitened=(found.values / self.scale)[:, None],
+        used = self.record.used
+        pair = (values[used].astype(np.complex128) for values in (self._measured, simulated[0]))
+        part = PredictedTorque(
+            structure=self.structure,
+            record=self.record,
+            predicted=frozen_float(simulated[0]),
+            fit_percent={OUTPUT: fit_percent(*pair)},
         )
         count = found.count
         distance = found.squares / self.scale**2
         line = LineTest(
             experiment=number, name=self.record.name, distance=distance, data_count=count, excess=float(np.inf)
         )
-        return part, TermTest(
-            chi_square=distance, count=count, mean=float(count), variance=2.0 * count, lines=(line,)
-        )
+        return part, TermTest(chi_square=distance, count=count, mean=float(count), variance=2.0 * count, lines=(line,))
 
     def redrawn(self, values: FloatArray, count: int, rng: np.random.Generator) -> Repeats:
         """Refuse: the speed that drives the governor holds the noise that would have to be drawn anew."""

@@ -74,7 +74,7 @@ class Fitted:
 
     @property
     def log_squares(self) -> float:
-        """``N log`` of the sum of squared innovations and the priors: minus twice the log-likelihood, but for a constant."""
+        """``N log`` of the squared innovations, and the priors: minus twice the log-likelihood but for a constant."""
         found = self.term.innovations(self.own)
         known = sum(((self.values[name] - prior.mean) / prior.std) ** 2 for name, prior in self.priors.items())
         return np.inf if found is None else found.count * float(np.log(found.squares)) + known
@@ -171,7 +171,9 @@ class Search:
         """Return a search, its calm governor found."""
         start = values_without_limits(whole)
         calm = fitted(whole, calm_part(record, campaign), start, (), priors=priors, iterations=ROUGH, held=FAST)
-        return cls(whole=whole, record=record, full=full, priors=priors, calm={name: calm.values[name] for name in GOVERNOR})
+        return cls(
+            whole=whole, record=record, full=full, priors=priors, calm={name: calm.values[name] for name in GOVERNOR}
+        )
 
     def linear(self) -> Fitted:
         """Return the best governor without limits."""

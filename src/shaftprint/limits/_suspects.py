@@ -50,16 +50,12 @@ class Suspect:
 
 
 SUSPECTS: tuple[Suspect, ...] = (
-    Suspect(
-        kind=Kind.TORQUE, level="m_max", companions=("T_aw",), shares=(0.4, 0.5, 0.6, 0.7, 0.8, 0.87, 0.93, 0.97)
-    ),
+    Suspect(kind=Kind.TORQUE, level="m_max", companions=("T_aw",), shares=(0.4, 0.5, 0.6, 0.7, 0.8, 0.87, 0.93, 0.97)),
     Suspect(kind=Kind.MOTORING, level="m_min", companions=("T_aw",), shares=(0.05, 0.3, 0.6, 0.85)),
     Suspect(kind=Kind.RATE, level="r_x", levels=tuple(np.geomspace(0.5, 30.0, 9).tolist())),
     Suspect(kind=Kind.RAMP, level="r_s", levels=tuple(np.geomspace(0.01, 4.0, 12).tolist())),
     Suspect(kind=Kind.DEADBAND, level="d_e", levels=(0.016, 0.011, 0.0075, 0.005, 0.0033, 0.0022, 0.0015)),
-    Suspect(
-        kind=Kind.SMOKE, level="a_0", companions=("tau_tc", "T_aw"), levels=(0.3, 0.42, 0.55, 0.7, 0.85, 0.95)
-    ),
+    Suspect(kind=Kind.SMOKE, level="a_0", companions=("tau_tc", "T_aw"), levels=(0.3, 0.42, 0.55, 0.7, 0.85, 0.95)),
 )
 """In the order in which they are tried."""
 

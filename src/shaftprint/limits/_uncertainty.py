@@ -67,9 +67,7 @@ def spread_of(found: Fitted, test: GovernorTest, signals: Signals, vessel: Vesse
     sums = np.add.reduceat(slopes * rows[0], np.arange(0, rows.shape[1], block), axis=1)
     scatter = np.sqrt(np.maximum(np.diag(inverse @ (sums @ sums.T + np.diag(known**2)) @ inverse), 0.0))
     model = np.sqrt(np.maximum(np.diag(inverse), 0.0))
-    follows = np.array(
-        [inverse @ (slopes @ change) for change in _taken_for_granted(found, test, signals, vessel)]
-    )
+    follows = np.array([inverse @ (slopes @ change) for change in _taken_for_granted(found, test, signals, vessel)])
     return Spread(
         names=names,
         noise=np.where(nothing, np.inf, np.maximum(scatter, model)),
@@ -78,9 +76,7 @@ def spread_of(found: Fitted, test: GovernorTest, signals: Signals, vessel: Vesse
     )
 
 
-def _taken_for_granted(
-    found: Fitted, test: GovernorTest, signals: Signals, vessel: Vessel
-) -> Sequence[FloatArray]:
+def _taken_for_granted(found: Fitted, test: GovernorTest, signals: Signals, vessel: Vessel) -> Sequence[FloatArray]:
     """Return the change of the innovations with each thing that the fit takes for granted, at its deviation."""
     term, own = found.term, found.own
     now = term.innovations(own)
@@ -132,9 +128,7 @@ def profile_interval(found: Fitted, spread: Spread, name: str) -> LevelInterval:
     return LevelInterval(lower=ends[0], upper=ends[1], lower_open=is_open[0], upper_open=is_open[1])
 
 
-def _end(
-    found: Fitted, name: str, value: float, std: float, reach: float, bound: float
-) -> tuple[float, bool]:
+def _end(found: Fitted, name: str, value: float, std: float, reach: float, bound: float) -> tuple[float, bool]:
     """Return where the root of twice the rise of the cost is ``reach``, and whether the bound comes first."""
     distance: Callable[[float], float] = _distance(found, name)
     far = reach * std

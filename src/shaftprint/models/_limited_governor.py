@@ -44,9 +44,7 @@ LEAST_SPEED = 0.1
 E_SET = Parameter("e_set", "-", -0.05, 0.05, 0.0, "offset of the measured set point")
 
 
-def limited_governor(
-    *limits: str, period_s: float = 0.0, name: str = ""
-) -> Structure:
+def limited_governor(*limits: str, period_s: float = 0.0, name: str = "") -> Structure:
     """Return governor and engine with some limits, from set point, speed and torque to the torque over the load.
 
     Inputs are the set point ``n_set`` and, ``AHEAD_S`` early, speed ``n``, engine torque ``M_b`` and the full-load
@@ -75,8 +73,7 @@ def limited_governor(
         further=("n", "M_b", "c"),
     )
     paths = {
-        source: diagram.port("y", "" if source == diagram.input else source) * Delay(T_SP)
-        for source in diagram.inputs
+        source: diagram.port("y", "" if source == diagram.input else source) * Delay(T_SP) for source in diagram.inputs
     }
     return Structure(
         name=name or f"GOVERNOR-{'-'.join(limits).upper() or 'UNLIMITED'}",
@@ -105,8 +102,6 @@ class _PredictedTorque:
         """Return the torque at the gauge over the load of the propeller, a deviation."""
         speed, torque = _late(flow, "n"), _late(flow, "M_b")
         demand = p.c_set * set_point + p.e_set
-        brake, _ = self._engine(
-            flow, demand, speed, p, observer=lambda burnt: OBSERVER_PER_S * (torque - burnt)
-        )
+        brake, _ = self._engine(flow, demand, speed, p, observer=lambda burnt: OBSERVER_PER_S * (torque - burnt))
         turned = maximum(1.0 + speed, LEAST_SPEED)
         return {"y": (1.0 + brake) / (turned * turned) - 1.0}

@@ -25,10 +25,11 @@ from shaftprint.time_domain._nonlinear_settings import NonlinearSettings
 from shaftprint.time_domain._nonlinear_structure import LimitedModel, full_load_shape, structure_for
 from shaftprint.time_domain._output_error import OutputError
 from shaftprint.time_domain._record import Record, record_from_arrays
-from shaftprint.time_domain._record_fit import RecordFit, record_fit
+from shaftprint.time_domain._record_fit import RecordFit
 from shaftprint.time_domain._record_repeats import RecordRepeats
 from shaftprint.time_domain._records_of import records_of
-from shaftprint.time_domain._simulator import ExactDelays, Simulator, on_record as simulated_on
+from shaftprint.time_domain._simulator import ExactDelays, Simulator
+from shaftprint.time_domain._simulator import on_record as simulated_on
 from shaftprint.time_domain._spectrum import Spectrum, spectrum_of
 from shaftprint.time_domain._spectrum_term import FittedSpectrum, SpectrumRepeats, SpectrumTerm
 from shaftprint.time_domain._whiteness import whiteness_p_value
@@ -63,7 +64,6 @@ __all__ = [
     "jumps_of",
     "limit_numbers",
     "output_error",
-    "record_fit",
     "record_from_arrays",
     "records_of",
     "simulated_on",

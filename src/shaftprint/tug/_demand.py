@@ -31,7 +31,7 @@ def demanded_speed(tug: Tug, voltage_v: FloatArray) -> FloatArray:
 
 
 class Demand:
-    """Stream of the speed demand in the ECU on half steps: late, held, quantised and rate-limited if the truth says so."""
+    """Stream of the speed demand in the ECU on half steps: late, held, quantised, rate-limited if the truth says so."""
 
     def __init__(self, tug: Tug, vessel: Vessel, campaign: Campaign, *, start_s: float, step_s: float) -> None:
         self._tug = tug
