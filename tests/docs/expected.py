@@ -94,6 +94,7 @@ def expect_identification(folder, printed, words):
     found = read_fingerprint(place / "fingerprint.json")
     own = "--structure" in words
     assert found.structure == ("MY-LOOP" if own else "GAUGE-CLOSED")
+    assert "shaftprint limits" in printed or "Nothing hints at a limit" in printed
     assert re.search(rf"^Fingerprint: {place.name}.fingerprint\.json$", printed, flags=re.MULTILINE)
     page = (place / "index.html").read_text(encoding="utf-8")
     assert all(f"figures/{path.name}" in page for path in (place / "figures").iterdir())

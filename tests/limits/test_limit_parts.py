@@ -85,10 +85,18 @@ def harmonics(third):
 def test_a_third_harmonic_points_to_limits_and_a_second_does_not():
     (quiet,) = limit_hints(harmonics(5e-4))
     assert "shaftprint limits" not in quiet
-    (hint,) = limit_hints(harmonics(8e-3))
+    hint, where = limit_hints(harmonics(8e-3))
     assert "S2, M_s 8.0 %" in hint
     assert "S1" not in hint
-    assert "shaftprint limits" in hint
+    assert "shaftprint limits" in where
+
+
+def test_steps_that_a_model_of_sines_fails_point_to_limits():
+    hint, where = limit_hints(harmonics(5e-4), ["St1 step 1", "St1 step 7"])
+    assert "St1 step 1, St1 step 7" in hint
+    assert "shaftprint limits" in where
+    (quiet,) = limit_hints(harmonics(5e-4), [])
+    assert "shaftprint limits" not in quiet
 
 
 def test_a_held_demand_comes_late_by_half_a_message(vessel):

@@ -8,7 +8,7 @@ import click
 from shaftprint.cli._chain import fingerprint_of, fit, measure
 from shaftprint.cli._comparison_tables import print_comparison
 from shaftprint.cli._comparisons import comparisons_of
-from shaftprint.cli._fingerprint_tables import print_fingerprint
+from shaftprint.cli._fingerprint_tables import print_findings, print_fingerprint
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
 from shaftprint.cli._fit_tables import print_fits
 from shaftprint.cli._inputs import campaign_option, load_trial, structure_sources, vessel_option
@@ -16,7 +16,8 @@ from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._results import print_paths, write_results
-from shaftprint.cli._validations import validations_of
+from shaftprint.cli._validations import failed_steps, validations_of
+from shaftprint.limits import limit_hints
 
 
 @click.command("identify")
@@ -74,6 +75,7 @@ def command(
             validations=validations,
         )
     print_fingerprint(fingerprint)
+    print_findings("Limits", limit_hints(measurement.spectra.harmonics, failed_steps(validations)))
     if len(fits) > 1:
         print_fits("All structures", fits)
     for comparison in comparisons:

@@ -1,5 +1,7 @@
 """The identified model against chirps and staircases of the same recording, for the report."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from shaftprint.cli._chain import Measurement
@@ -43,3 +45,10 @@ def validations_of(
     except ValidationError as error:
         echo(f"The model is not validated: {error}")
         return ()
+
+
+def failed_steps(validations: Sequence[Validation]) -> list[str] | None:
+    """Return the steps that a model does not predict, by record and title; None where it was held against none."""
+    steps = [one for found in validations for one in found.comparisons if one.excerpt.kind == "step"]
+    failed = [f"{one.excerpt.record} {one.excerpt.title}" for one in steps if one.outcome == "fails"]
+    return failed if steps else None

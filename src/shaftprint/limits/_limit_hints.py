@@ -1,8 +1,11 @@
-"""The cheap check for limits: a third harmonic, which a propeller does not make and a limit does.
+"""The cheap check for limits: third harmonics, and steps that a linear model does not predict.
 
 Torque with the square of the speed gives a second harmonic and a mean; saturation, rate limits and deadbands act up and
-down alike and give odd ones (Gelb and Vander Velde, Multiple-Input Describing Functions, 1968, chapter 2).
+down alike and give odd ones (Gelb and Vander Velde, Multiple-Input Describing Functions, 1968, chapter 2). Steps are
+larger than sines and reach limits that sines do not.
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -13,28 +16,44 @@ LEAST_POWER, LEAST_SHARE = 14.0, 0.02
 THIRD = 3
 
 
-def limit_hints(harmonics: Harmonics) -> tuple[str, ...]:
-    """Return whether the sines of a test hint at a limit, in words; levels are not looked for.
+def limit_hints(harmonics: Harmonics, failed_steps: Sequence[str] | None = None) -> tuple[str, ...]:
+    """Return whether sines and steps of a test hint at a limit, in words; levels are not looked for.
 
     Parameters
     ----------
     harmonics
         Those of the test lines, from ``estimate_spectra``.
+    failed_steps
+        Steps that a model identified from the sines does not predict; None where no model was held against them.
     """
+    found = _third_harmonics(harmonics)
+    hints = []
+    if found:
+        hints.append(
+            f"Third harmonics stand out of the noise ({'; '.join(found)} of the line): a limit or a deadband acts "
+            "there, which a propeller does not do."
+        )
+    if failed_steps:
+        hints.append(
+            f"The model of the sines does not predict larger moves ({', '.join(failed_steps)}): a limit may act there."
+        )
+    if hints:
+        return (*hints, "shaftprint limits names what acts and finds its level.")
+    if failed_steps is None:
+        return ("No sine has a third harmonic above the noise: if a limit acts, then in the steps alone.",)
+    return ("Nothing hints at a limit: no sine has a third harmonic above the noise, and no step fails the model.",)
+
+
+def _third_harmonics(harmonics: Harmonics) -> list[str]:
+    """Return the third harmonics that are above the noise, in words."""
     place = harmonics.orders.index(THIRD)
     amplitude, std = harmonics.amplitude[:, :, place], harmonics.standard_deviation[:, :, place]
     with np.errstate(divide="ignore", invalid="ignore"):
         share = amplitude / harmonics.fundamental
         seen = (0.5 * (amplitude / std) ** 2 > LEAST_POWER) & (share > LEAST_SHARE)
-    found = [
+    return [
         f"{line}, {output} {100.0 * share[i, j]:.1f} %"
         for i, line in enumerate(harmonics.lines)
         for j, output in enumerate(harmonics.outputs)
         if seen[i, j]
     ]
-    if not found:
-        return ("No sine has a third harmonic above the noise: if a limit acts, then in the steps alone.",)
-    return (
-        f"Third harmonics stand out of the noise ({'; '.join(found)} of the line): a limit or a deadband acts there, "
-        "which a propeller does not do. shaftprint limits names it and finds its level.",
-    )
