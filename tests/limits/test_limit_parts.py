@@ -11,7 +11,7 @@ from shaftprint.limits._noise_colour import ORDER, innovations
 from shaftprint.limits._numbers import _doubt
 from shaftprint.limits._uncertainty import LevelInterval
 from shaftprint.spectra import Harmonics
-from shaftprint.time_domain import jumps_of
+from shaftprint.time_domain import jumps_in, with_jumps
 from shaftprint.tug import Tug, simulate_signals
 
 
@@ -26,7 +26,9 @@ def test_a_jump_lies_where_it_is_between_two_samples():
     exact = np.where(fine < 10.0013, 0.2, 0.0)
     kernel = np.hanning(401)
     smooth = np.convolve(exact, kernel / kernel.sum(), "same")
-    found = jumps_of(time, np.interp(time, fine, smooth), campaign)
+    drive = np.interp(time, fine, smooth)
+    jumps = jumps_in(time, drive, campaign)
+    found = with_jumps(time, drive, jumps)
     near = (time > 9.5) & (time < 10.5)
     # what the jump takes away from 9.5 s on: 0.2 for 0.5013 s
     assert np.sum(found[near]) / 200.0 == pytest.approx(0.2 * 0.5013, abs=0.2 * 0.0025 + 2e-4)

@@ -1,6 +1,7 @@
 """What the limited governor is driven by and compared with: set point, speed and engine torque of a whole test."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
 from shaftprint.models import AHEAD_S
 from shaftprint.signals import Signals, deviation
-from shaftprint.time_domain import Decimator, Record, full_load_shape, jumps_of
+from shaftprint.time_domain import Decimator, Jump, Record, full_load_shape, jumps_in, with_jumps
 from shaftprint.vessel import Vessel
 
 # Samples of the record and of its drive a second [Hz]: above 10 Hz a pick-up of one pulse a revolution shows nothing.
@@ -33,8 +34,12 @@ class GovernorTest:
     """Name of the recording."""
     time_s: FloatArray
     """Time of the recording [s], shape (samples,)."""
-    set_point: FloatArray
-    """``n_set`` [-], jumps within a sample, shape (samples,)."""
+    without_jumps: FloatArray
+    """``n_set`` [-] less its jumps, shape (samples,)."""
+    jumps: tuple[Jump, ...]
+    """Jumps of the set point, where they were recorded."""
+    late_s: FloatArray
+    """By how much each jump comes later than it was recorded [s], shape (jumps,)."""
     speed: FloatArray
     """``n`` [-], shape (samples,)."""
     shaft_torque: FloatArray
@@ -65,6 +70,10 @@ class GovernorTest:
         torque = (1.0 + self.shaft_torque) / factor - 1.0
         return replace(self, shaft_torque=frozen_float(torque), upstream_s=self.upstream_s / factor)
 
+    def with_late_jumps(self, late_s: FloatArray) -> "GovernorTest":
+        """Return the test as if each jump of the set point came later than it was recorded [s], shape (jumps,)."""
+        return replace(self, late_s=frozen_float(late_s))
+
     def record(self, *, rate_hz: float = RATE_HZ, drive_hz: float = DRIVE_HZ) -> Record:
         """Return the record of a fit: the torque of the engine over the load, driven by set point, speed and torque."""
         every = round(drive_hz / rate_hz)
@@ -74,7 +83,7 @@ class GovernorTest:
         torque = self.engine_torque()
         load = np.maximum(1.0 + self.speed, LEAST_SPEED) ** 2
         drive = {
-            "n_set": self._from(self.set_point, time),
+            "n_set": self._from(self.without_jumps, time) + self._jumped(time),
             "n": self._from(self.speed, time + AHEAD_S),
             "M_b": self._from(torque, time + AHEAD_S),
             "c": self._from(np.interp(self.speed, self.curve_speed, self.curve_shape) - 1.0, time + AHEAD_S),
@@ -91,6 +100,10 @@ class GovernorTest:
             drive={name: frozen_float(values) for name, values in drive.items()},
             every=every,
         )
+
+    def _jumped(self, time_s: FloatArray) -> FloatArray:
+        """Return the sum of all jumps that have passed [-], shape (samples,)."""
+        return sum_of_jumps(time_s, self.jumps, self.late_s)
 
     def _from(self, values: FloatArray, time_s: FloatArray) -> FloatArray:
         """Return a signal at some times, steady before the first test."""
@@ -124,11 +137,16 @@ def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> Gover
     lost = ~(np.isfinite(speed) & np.isfinite(torque) & np.isfinite(asked))
     lost |= _beside(speed < SLOW, round(BESIDE_S * signals.rate_hz))
     curve = np.array(full_load_shape(vessel, point))
+    asked = _filled(time, asked)
+    jumps = jumps_in(time, asked, campaign)
+    on_time = np.zeros(len(jumps))
     per_inertia = 2.0 * math.pi * point.engine_speed_rev_s / (vessel.gearbox.ratio * point.shaft_torque_nm)
     return GovernorTest(
         name=signals.recording_name,
         time_s=frozen_float(time),
-        set_point=frozen_float(jumps_of(time, _filled(time, asked), campaign)),
+        without_jumps=frozen_float(with_jumps(time, asked, jumps) - sum_of_jumps(time, jumps, on_time)),
+        jumps=jumps,
+        late_s=frozen_float(on_time),
         speed=frozen_float(_filled(time, speed)),
         shaft_torque=frozen_float(_filled(time, torque)),
         upstream_s=per_inertia * vessel.inertia_upstream_kg_m2,
@@ -138,6 +156,20 @@ def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> Gover
         curve_speed=curve[:, 0],
         curve_shape=curve[:, 1],
     )
+
+
+def sum_of_jumps(time_s: FloatArray, jumps: Sequence[Jump], late_s: FloatArray) -> FloatArray:
+    """Return the sum of all jumps of a set point that have passed [-], on any grid, shape (samples,).
+
+    Parameters
+    ----------
+    late_s
+        By how much each comes later than it was recorded [s], shape (jumps,).
+    """
+    passed = np.zeros(time_s.size)
+    for jump, late in zip(jumps, late_s.tolist(), strict=True):
+        passed += (jump.after - jump.before) * jump.passed(time_s, late_s=late)
+    return passed
 
 
 def _beside(where: BoolArray, samples: int) -> BoolArray:

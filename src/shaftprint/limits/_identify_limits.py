@@ -7,9 +7,10 @@ from shaftprint.campaign import Campaign
 from shaftprint.identify import Prior
 from shaftprint.limits._governor_test import governor_test
 from shaftprint.limits._limit_fit import LimitFit
-from shaftprint.limits._numbers import Units, exclusion, numbers_of
-from shaftprint.limits._search import GOVERNOR, Fitted, Scanned, Search, fitted, schwarz
-from shaftprint.limits._suspects import IDLE, SUSPECTS, Kind, parameters_of
+from shaftprint.limits._messages import Messages
+from shaftprint.limits._numbers import Units, exclusion, messages_exclusion, numbers_of
+from shaftprint.limits._search import GOVERNOR, Fitted, Scanned, Search, fitted, schwarz, with_messages
+from shaftprint.limits._suspects import SUSPECTS, Kind
 from shaftprint.limits._uncertainty import spread_of
 from shaftprint.models import Structure, limited_governor
 from shaftprint.signals import Signals
@@ -60,10 +61,11 @@ def identify_limits(
         "e_set": Prior(0.0, OFFSET_STD),
     }
     say("Looking for limits")
-    search = Search.of(whole, test.record(drive_hz=COARSE_HZ), campaign, full=units.full, priors=priors)
+    search = Search.of(whole, test, campaign, drive_hz=COARSE_HZ, full=units.full, priors=priors)
     here, rest = search.run()
     say("Fitting the limits")
-    best = fitted(whole, test.record(), here.values, here.kinds, priors=priors)
+    test = with_messages(test, here.messages)
+    best = fitted(whole, test.record(), here.values, here.kinds, priors=priors, messages=here.messages)
     say("Finding the intervals")
     spread = spread_of(best, test, signals, vessel)
     return LimitFit(
@@ -75,7 +77,7 @@ def identify_limits(
             for estimate in best.fit.parameters
             if estimate.name in GOVERNOR
         ),
-        not_seen=_not_seen(here, rest, units),
+        not_seen=_not_seen(here, rest, search.messages(here), units),
         identification=best.fit,
     )
 
@@ -89,15 +91,11 @@ def _gains(search: Search, here: Fitted) -> Mapping[Kind, float]:
     """Return what each limit brings to the others; a single one needs no further fit."""
     if len(here.kinds) == 1:
         return {here.kinds[0]: schwarz(search.linear()) - schwarz(here)}
-    found = {}
-    for kind in here.kinds:
-        kinds = tuple(other for other in here.kinds if other is not kind)
-        gone = {name: IDLE[name] for name in set(parameters_of([kind])) - set(parameters_of(kinds))}
-        found[kind] = schwarz(search.fit({**here.values, **gone}, kinds)) - schwarz(here)
+    found = {kind: schwarz(search.without(here, kind)) - schwarz(here) for kind in here.kinds}
     return dict(sorted(found.items(), key=lambda pair: -pair[1]))
 
 
-def _not_seen(here: Fitted, rest: Sequence[Scanned], units: Units) -> Mapping[Kind, str]:
+def _not_seen(here: Fitted, rest: Sequence[Scanned], messages: Messages | None, units: Units) -> Mapping[Kind, str]:
     """Return up to which level each limit that does not act is excluded."""
     found = {}
     for suspect in SUSPECTS:
@@ -111,6 +109,8 @@ def _not_seen(here: Fitted, rest: Sequence[Scanned], units: Units) -> Mapping[Ki
                 break
             level = value
         found[suspect.kind] = exclusion(suspect, level, units)
+    if Kind.HELD not in here.kinds:
+        found[Kind.HELD] = messages_exclusion(None if messages is None else messages.excluded_beyond(EXCLUDED))
     return found
 
 

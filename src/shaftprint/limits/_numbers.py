@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.limits._limit_fit import LimitNumber
+from shaftprint.limits._messages import Messages
 from shaftprint.limits._search import Fitted
 from shaftprint.limits._suspects import SUSPECTS, Kind, Suspect
 from shaftprint.limits._uncertainty import LevelInterval, Spread, profile_interval
@@ -124,6 +125,9 @@ def numbers_of(found: Fitted, spread: Spread, units: Units) -> tuple[LimitNumber
     done = set[str]()
     rows: list[LimitNumber] = []
     for kind in found.kinds:
+        if kind is Kind.HELD and found.messages is not None:
+            rows.append(_cycle(found.messages))
+            continue
         for name in (by_kind[kind].level, *by_kind[kind].companions):
             if name not in done:
                 done.add(name)
@@ -152,6 +156,23 @@ def _printed(found: Fitted, spread: Spread, units: Units, kind: Kind, name: str)
             at_bound=at_bound,
             doubt=doubt,
         )
+
+
+def _cycle(messages: Messages) -> LimitNumber:
+    """Return the cycle of the messages between which the set point is held."""
+    lower, value, upper = (messages.quantile(share) for share in (0.025, 0.5, 0.975))
+    interval = LevelInterval(lower=lower, upper=upper, lower_open=False, upper_open=False)
+    return LimitNumber(
+        kind=Kind.HELD,
+        name="T_set",
+        unit="s",
+        value=value,
+        std=0.5 * (upper - lower) / NORMAL_95,
+        lower=lower,
+        upper=upper,
+        meaning="time from one message with the set point to the next, the last one held between them",
+        doubt=_doubt(value, interval, at_bound=False),
+    )
 
 
 def _widened(value: float, end: float, more: float) -> float:
@@ -186,3 +207,10 @@ def exclusion(suspect: Suspect, level: float | None, units: Units) -> str:
     }[suspect.kind]
     unit = "" if scale.unit == "-" else f" {scale.unit}"
     return f"{suspect.kind.value}: not seen, {side} {scale.name} = {scale.factor * level:.3g}{unit}"
+
+
+def messages_exclusion(cycle_s: float | None) -> str:
+    """Return up to which cycle of messages the jumps exclude a held set point, in words."""
+    if cycle_s is None:
+        return f"{Kind.HELD.value}: not seen, and no cycle of it is excluded"
+    return f"{Kind.HELD.value}: not seen, none longer than T_set = {cycle_s:.3g} s"

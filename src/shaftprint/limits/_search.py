@@ -9,6 +9,8 @@ from shaftprint.arrays import BoolArray, FloatArray, frozen_bool
 from shaftprint.campaign import Campaign
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Draw, Identification, Prior, Settings, identify_jointly
+from shaftprint.limits._governor_test import GovernorTest
+from shaftprint.limits._messages import Messages, messages_of
 from shaftprint.limits._prediction_error import OUTPUT, PredictionError
 from shaftprint.limits._suspects import IDLE, SUSPECTS, Kind, Suspect, parameters_of, starts_of
 from shaftprint.models import Structure
@@ -37,6 +39,9 @@ ROUGH, FINE = 6, 15
 # Share of the tests, the calmest first, whose torque changes so little that no limit is near.
 CALM = 0.5
 PUSH_S, LEAST_FALL = 0.03, 0.5
+# Gain of held messages, to first order, from which on they are fitted; rounds in which delays and governor follow.
+PROMISING, ROUNDS = 10.0, 2
+LEAST_SPEED = 0.1
 SMALLEST = 1e-12
 
 
@@ -66,6 +71,8 @@ class Fitted:
     """The fit."""
     priors: Mapping[str, Prior]
     """What was known beforehand."""
+    messages: Messages | None = None
+    """Delays of the set point's jumps, where it is held between messages."""
 
     @property
     def own(self) -> FloatArray:
@@ -77,7 +84,19 @@ class Fitted:
         """``N log`` of the squared innovations, and the priors: minus twice the log-likelihood but for a constant."""
         found = self.term.innovations(self.own)
         known = sum(((self.values[name] - prior.mean) / prior.std) ** 2 for name, prior in self.priors.items())
+        known += 0.0 if self.messages is None else self.messages.cost
         return np.inf if found is None else found.count * float(np.log(found.squares)) + known
+
+    @property
+    def parameters(self) -> int:
+        """Number of parameters that were fitted: of held messages the cycle."""
+        return len(self.term.free) + (self.messages is not None)
+
+    @property
+    def known(self) -> FloatArray:
+        """One over the prior deviation of each free parameter, 0 without prior, shape (free,)."""
+        names = [p.name for p in self.term.structure.free]
+        return np.array([1.0 / self.priors[name].std if name in self.priors else 0.0 for name in names])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -108,11 +127,14 @@ def fitted(
     priors: Mapping[str, Prior],
     iterations: int = FINE,
     held: Sequence[str] = (),
+    messages: Messages | None = None,
 ) -> Fitted:
     """Return the best governor with some limits, from given values on.
 
     Parameters
     ----------
+    record
+        The test; of a held set point with the jumps as late as the messages have them.
     priors
         What is known of the set point's scale and offset.
     held
@@ -127,7 +149,7 @@ def fitted(
     fit = identify_jointly([term], rng=np.random.default_rng(0), settings=settings)
     found = {**values, **{estimate.name: estimate.value for estimate in fit.parameters}}
     best = term.with_scale_at(np.array([found[name] for name in whole.names]))
-    return Fitted(kinds=tuple(kinds), term=best, values=found, fit=fit, priors=priors)
+    return Fitted(kinds=tuple(kinds), term=best, values=found, fit=fit, priors=priors, messages=messages)
 
 
 def calm_part(record: Record, campaign: Campaign) -> Record:
@@ -152,8 +174,10 @@ class Search:
 
     whole: Structure
     """The governor with all limits."""
-    record: Record
+    test: GovernorTest
     """The test."""
+    drive_hz: float
+    """Samples of its drive a second [Hz]."""
     full: float
     """Full-load torque of the vessel file over the brake torque of the working point."""
     priors: Mapping[str, Prior]
@@ -166,13 +190,25 @@ class Search:
 
     @classmethod
     def of(
-        cls, whole: Structure, record: Record, campaign: Campaign, *, full: float, priors: Mapping[str, Prior]
+        cls,
+        whole: Structure,
+        test: GovernorTest,
+        campaign: Campaign,
+        *,
+        drive_hz: float,
+        full: float,
+        priors: Mapping[str, Prior],
     ) -> "Search":
         """Return a search, its calm governor found."""
-        start = values_without_limits(whole)
-        calm = fitted(whole, calm_part(record, campaign), start, (), priors=priors, iterations=ROUGH, held=FAST)
+        start, record = values_without_limits(whole), calm_part(test.record(drive_hz=drive_hz), campaign)
+        calm = fitted(whole, record, start, (), priors=priors, iterations=ROUGH, held=FAST)
         return cls(
-            whole=whole, record=record, full=full, priors=priors, calm={name: calm.values[name] for name in GOVERNOR}
+            whole=whole,
+            test=test,
+            drive_hz=drive_hz,
+            full=full,
+            priors=priors,
+            calm={name: calm.values[name] for name in GOVERNOR},
         )
 
     def linear(self) -> Fitted:
@@ -189,8 +225,9 @@ class Search:
         here = self.linear()
         while True:
             rest = self.scanned(here)
-            better = self._joined(here, rest) if len(here.kinds) < MOST_LIMITS else None
-            if better is None:
+            tries = [self._joined(here, rest), self.held(here)] if len(here.kinds) < MOST_LIMITS else []
+            better = min((one for one in tries if one is not None), key=schwarz, default=here)
+            if schwarz(here) - schwarz(better) <= LEAST_GAIN:
                 return here, rest
             here = self._without_idle(better)
 
@@ -207,7 +244,8 @@ class Search:
             raise IdentificationError(f"{term.name}: the simulation runs away where it was fitted.")
         basis, _ = np.linalg.qr(rows[1:].T)
         simulated = term.predicted(own)
-        load = np.maximum(1.0 + self.record.decimator.thinned(self.record.drive["n"][:, None])[:, 0], 0.1) ** 2
+        speed = term.record.decimator.thinned(term.record.drive["n"][:, None])[:, 0]
+        load = np.maximum(1.0 + speed, LEAST_SPEED) ** 2
         found = []
         for suspect in SUSPECTS:
             if suspect.kind in here.kinds or (suspect.kind is Kind.TORQUE and Kind.SMOKE in here.kinds):
@@ -223,41 +261,82 @@ class Search:
         return found
 
     def _joined(self, here: Fitted, scanned: Sequence[Scanned]) -> Fitted | None:
-        """Return the governor with the one more limit that gains most; None where none gains enough."""
+        """Return the governor with the one more limit that gains most; None where there is none to try."""
         starts = _strongest(scanned, POLISHED)
         if not here.kinds:
             calm = {**here.values, **self.calm}
             starts += _strongest(self._scan_from(here, calm), POLISHED_CALM)
-        tries = [self.fit(one.start, (*here.kinds, one.suspect.kind)) for one in starts]
-        winner = self._pushed(min(tries, key=schwarz)) if tries else here
-        return winner if schwarz(here) - schwarz(winner) > LEAST_GAIN else None
+        tries = [self.fit(one.start, (*here.kinds, one.suspect.kind), here.messages) for one in starts]
+        return self._pushed(min(tries, key=schwarz)) if tries else None
+
+    def held(self, here: Fitted) -> Fitted | None:
+        """Return the governor with a set point that is held between messages; None where the jumps speak against it."""
+        late, kinds = np.zeros(len(self.test.jumps)), (*here.kinds, Kind.HELD)
+        if Kind.HELD in here.kinds:
+            return None
+        for _ in range(ROUNDS):
+            messages = messages_of(here.term, here.own, self.test, late, here.known)
+            if messages is None or messages.gain < PROMISING:
+                return None
+            late = messages.late_s
+            here = self.fit(here.values, kinds, messages)
+        return here
+
+    def messages(self, here: Fitted) -> Messages | None:
+        """Return what the jumps tell of messages, to first order; None where they are too few."""
+        return here.messages or messages_of(here.term, here.own, self.test, np.zeros(len(self.test.jumps)), here.known)
+
+    def without(self, here: Fitted, kind: Kind) -> Fitted:
+        """Return the best governor with one limit less."""
+        kinds = tuple(other for other in here.kinds if other is not kind)
+        gone = {name: IDLE[name] for name in set(parameters_of([kind])) - set(parameters_of(kinds))}
+        return self.fit({**here.values, **gone}, kinds, here.messages if Kind.HELD in kinds else None)
 
     def _without_idle(self, here: Fitted) -> Fitted:
         """Return the governor without limits that later ones have made idle."""
         for kind in here.kinds[:-1]:
-            kinds = tuple(other for other in here.kinds if other is not kind)
-            gone = {name: IDLE[name] for name in set(parameters_of([kind])) - set(parameters_of(kinds))}
-            without = self.fit({**here.values, **gone}, kinds)
+            without = self.without(here, kind)
             if schwarz(without) - schwarz(here) < LEAST_GAIN:
                 here = without
         return here
 
     def _pushed(self, here: Fitted) -> Fitted:
-        """Return the best after a push along the valley in which the delays inside the loop and before it trade."""
-        for by_s in (-PUSH_S, PUSH_S):
-            delays = {"t_d": max(here.values["t_d"] + by_s, 0.005), "t_sp": max(here.values["t_sp"] - by_s, 0.005)}
-            moved = self.fit({**here.values, **delays}, here.kinds)
+        """Return the best after pushes out of the places where a fit is known to stop.
+
+        Delays inside the loop and before it trade along a valley. A line that rests near a limit has one optimum with
+        the limit acting at rest and one without, the set point's offset to either side.
+        """
+        for move in (*_delay_moves(here), *self._set_point_moves()):
+            moved = self.fit({**here.values, **move}, here.kinds, here.messages)
             if moved.log_squares < here.log_squares - LEAST_FALL:
                 here = moved
         return here
 
-    def fit(self, values: Mapping[str, float], kinds: Sequence[Kind]) -> Fitted:
-        return fitted(self.whole, self.record, values, kinds, priors=self.priors, iterations=ROUGH)
+    def _set_point_moves(self) -> list[dict[str, float]]:
+        """Return scale and offset of the set point as calibrated, and the offset to either side."""
+        scale, offset = self.priors["c_set"].mean, self.priors["e_set"]
+        return [{"c_set": scale, "e_set": offset.mean + side * offset.std} for side in (-2.0, 2.0)]
+
+    def fit(self, values: Mapping[str, float], kinds: Sequence[Kind], messages: Messages | None = None) -> Fitted:
+        """Return the best governor with some limits, from given values on."""
+        record = with_messages(self.test, messages).record(drive_hz=self.drive_hz)
+        return fitted(self.whole, record, values, kinds, priors=self.priors, iterations=ROUGH, messages=messages)
+
+
+def with_messages(test: GovernorTest, messages: Messages | None) -> GovernorTest:
+    """Return a test with the jumps of the set point as late as messages bring them."""
+    return test if messages is None else test.with_late_jumps(messages.late_s)
+
+
+def _delay_moves(here: Fitted) -> list[dict[str, float]]:
+    """Return the delays inside the loop and before it, moved from one to the other both ways."""
+    late, before = here.values["t_d"], here.values["t_sp"]
+    return [{"t_d": max(late + by_s, 0.005), "t_sp": max(before - by_s, 0.005)} for by_s in (-PUSH_S, PUSH_S)]
 
 
 def schwarz(one: Fitted) -> float:
     """Return minus twice the log-likelihood with Schwarz' penalty for each parameter."""
-    return one.log_squares + len(one.term.free) * float(np.log(one.term.data_count))
+    return one.log_squares + one.parameters * float(np.log(one.term.data_count))
 
 
 def _strongest(scanned: Sequence[Scanned], count: int) -> list[Scanned]:

@@ -18,6 +18,7 @@ class Kind(Enum):
     RATE = "rate limit of the fuel rack"
     RAMP = "rate limit of the set point"
     DEADBAND = "deadband"
+    HELD = "held set point"
 
 
 # Values with which a limit does nothing. None of them is a round zero, for that would be another simulation.

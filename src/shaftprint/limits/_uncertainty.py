@@ -58,7 +58,7 @@ def spread_of(found: Fitted, test: GovernorTest, signals: Signals, vessel: Vesse
         raise IdentificationError(f"{term.name}: the simulation runs away where it was fitted.")
     slopes = rows[1:]
     names = tuple(p.name for p in term.structure.free)
-    known = np.array([1.0 / found.priors[name].std if name in found.priors else 0.0 for name in names])
+    known = found.known
     nothing = np.linalg.norm(slopes, axis=1) == 0.0
     size = np.where(nothing, 1.0, np.linalg.norm(slopes, axis=1))
     information = (slopes @ slopes.T + np.diag(known**2)) / np.outer(size, size)
@@ -161,6 +161,7 @@ def _distance(found: Fitted, name: str) -> Callable[[float], float]:
             priors=found.priors,
             iterations=PROFILE_ITERATIONS,
             held=(name,),
+            messages=found.messages,
         )
         return float(np.sqrt(max(there.log_squares - base, 0.0)))
 

@@ -16,7 +16,7 @@ from shaftprint.time_domain._identify_chirp import identify_chirp, spectrum_term
 from shaftprint.time_domain._identify_in_time import TimeSettings, identify_in_time, output_error, with_noise_at
 from shaftprint.time_domain._known_start import KnownStart
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise, white_noise
-from shaftprint.time_domain._nonlinear_drive import jumps_of
+from shaftprint.time_domain._nonlinear_drive import Jump, jumps_in, with_jumps
 from shaftprint.time_domain._nonlinear_fit import NonlinearFit, identify_nonlinear
 from shaftprint.time_domain._nonlinear_fragile import Fragile
 from shaftprint.time_domain._nonlinear_numbers import LimitNumber, limit_numbers
@@ -40,6 +40,7 @@ __all__ = [
     "ExactDelays",
     "FittedSpectrum",
     "Fragile",
+    "Jump",
     "KnownStart",
     "LimitNumber",
     "LimitedModel",
@@ -61,7 +62,7 @@ __all__ = [
     "identify_chirp",
     "identify_in_time",
     "identify_nonlinear",
-    "jumps_of",
+    "jumps_in",
     "limit_numbers",
     "output_error",
     "record_from_arrays",
@@ -72,6 +73,7 @@ __all__ = [
     "structure_for",
     "white_noise",
     "whiteness_p_value",
+    "with_jumps",
     "with_noise_at",
     "without_orders",
 ]

@@ -15,7 +15,7 @@ In a chirp the limit turns where the rack that is asked for crosses the one that
 its next step: half a step early, 1.2 ms at 400 Hz. Hence the finer grid.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -57,24 +57,46 @@ def sharpened(record: Record, campaign: Campaign, *, rate_hz: float = DRIVE_RATE
     return replace(record, drive=drive, every=every)
 
 
-def jumps_of(time_s: FloatArray, drive: FloatArray, campaign: Campaign) -> FloatArray:
-    """Return a set point whose jumps are within one sample, on the grid that it has.
+@dataclass(frozen=True, slots=True, eq=False)
+class Jump:
+    """A jump of a filtered set point."""
 
-    The sample in which a jump lies gets the share of the jump that keeps its area: for small signals it lies where it
-    was, to a small share of a sample.
+    inside: BoolArray
+    """Samples in which the filter rings, shape (samples,)."""
+    at_s: float
+    """Where the jump lies [s]."""
+    before: float
+    """Level before it."""
+    after: float
+    """Level after it."""
+
+    def passed(self, time_s: FloatArray, *, late_s: float = 0.0) -> FloatArray:
+        """Return the share of the jump that each sample has, shape (samples,).
+
+        The sample in which the jump lies gets the share that keeps the jump's area: for small signals it lies where it
+        was, to a small share of a sample.
+        """
+        step_s = float(time_s[1] - time_s[0])
+        return np.clip((time_s - self.at_s - late_s) / step_s + 0.5, 0.0, 1.0)
+
+
+def jumps_in(time_s: FloatArray, drive: FloatArray, campaign: Campaign) -> tuple[Jump, ...]:
+    """Return the jumps of a set point that the staircases of a campaign make.
 
     Parameters
     ----------
     time_s, drive
         Times [s] and the set point, shape (samples,).
     """
-    step_s = float(time_s[1] - time_s[0])
-    for near_s in _jumps(campaign, float(time_s[0]), float(time_s[-1])):
-        jump = _jump_near(time_s, drive, near_s)
-        if jump is not None:
-            passed = np.clip((time_s[jump.inside] - jump.at_s) / step_s + 0.5, 0.0, 1.0)
-            drive = drive.copy()
-            drive[jump.inside] = jump.before + (jump.after - jump.before) * passed
+    near = (_jump_near(time_s, drive, near_s) for near_s in _jumps(campaign, float(time_s[0]), float(time_s[-1])))
+    return tuple(jump for jump in near if jump is not None)
+
+
+def with_jumps(time_s: FloatArray, drive: FloatArray, jumps: Sequence[Jump]) -> FloatArray:
+    """Return a set point whose jumps are within one sample, on the grid that it has."""
+    drive = drive.copy()
+    for jump in jumps:
+        drive[jump.inside] = jump.before + (jump.after - jump.before) * jump.passed(time_s[jump.inside])
     return drive
 
 
@@ -88,21 +110,7 @@ def _jumps(campaign: Campaign, begin_s: float, end_s: float) -> Iterator[float]:
                 yield time_s
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _Jump:
-    """A jump of a filtered set point."""
-
-    inside: BoolArray
-    """Samples in which the filter rings, shape (samples,)."""
-    at_s: float
-    """Where the jump lies [s]."""
-    before: float
-    """Level before it."""
-    after: float
-    """Level after it."""
-
-
-def _jump_near(time_s: FloatArray, drive: FloatArray, near_s: float) -> _Jump | None:
+def _jump_near(time_s: FloatArray, drive: FloatArray, near_s: float) -> Jump | None:
     """Return the jump near a time; None where there is hardly one."""
     around = np.flatnonzero(np.abs(time_s - near_s) <= NEAR_S)
     place = around[0] + int(np.argmax(np.abs(np.diff(drive[around]))))
@@ -117,7 +125,7 @@ def _jump_near(time_s: FloatArray, drive: FloatArray, near_s: float) -> _Jump | 
     left = (after - drive[inside]) / (after - before)
     step_s = time_s[1] - time_s[0]
     at_s = float(time_s[inside][0] - 0.5 * step_s + step_s * np.sum(left))
-    return _Jump(inside, at_s, before, after)
+    return Jump(inside, at_s, before, after)
 
 
 def _restored(time_s: FloatArray, drive: FloatArray, near_s: float) -> FloatArray:

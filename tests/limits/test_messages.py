@@ -1,0 +1,53 @@
+"""A set point held between messages: what the delays of the jumps tell of the cycle."""
+
+import numpy as np
+import pytest
+
+from shaftprint.limits._governor_test import sum_of_jumps
+from shaftprint.limits._messages import explained
+from shaftprint.time_domain import Jump
+
+STD_S = np.full(8, 2e-3)
+
+
+def drawn(rng, cycle_s):
+    """Delays of eight jumps that wait for a message each, known to 2 ms."""
+    return 0.05 + cycle_s * rng.uniform(size=STD_S.size) + STD_S * rng.standard_normal(STD_S.size)
+
+
+def test_the_cycle_is_in_its_interval_as_often_as_stated():
+    rng = np.random.default_rng(2)
+    inside = 0
+    for _ in range(200):
+        cycle_s = rng.uniform(0.02, 0.1)
+        messages = explained(drawn(rng, cycle_s), STD_S)
+        inside += messages.quantile(0.025) <= cycle_s <= messages.quantile(0.975)
+    # 95 % of 200, and three standard deviations of that count
+    assert 180 <= inside <= 200
+
+
+def test_jumps_of_one_delay_show_no_cycle():
+    rng = np.random.default_rng(3)
+    gains = [explained(drawn(rng, 0.0), STD_S).gain for _ in range(200)]
+    # half a chi square of one degree of freedom: above 10 once in 1300
+    assert np.max(gains) < 12.0
+
+
+def test_a_jump_that_is_not_seen_tells_nothing():
+    rng = np.random.default_rng(4)
+    late = drawn(rng, 0.05)
+    known = explained(late, STD_S)
+    more = explained(np.append(late, 9.0), np.append(STD_S, np.inf))
+    np.testing.assert_allclose(more.density, known.density)
+    assert known.excluded_beyond(15.0) > known.quantile(0.975)
+
+
+@pytest.mark.parametrize("late_s", [0.0, 0.0031, -0.0173])
+@pytest.mark.parametrize("begin_s", [0.0, 0.0044])
+def test_a_late_jump_keeps_its_area_on_any_grid(late_s, begin_s):
+    time = begin_s + np.arange(0.0, 4.0, 0.01)
+    jump = Jump(inside=np.ones(1, dtype=bool), at_s=2.0013, before=0.0, after=0.2)
+    passed = sum_of_jumps(time, [jump], np.array([late_s]))
+    # samples stand for half a step on either side
+    end_s = time[-1] + 0.005
+    assert np.sum(passed) * 0.01 == pytest.approx(0.2 * (end_s - 2.0013 - late_s), abs=1e-9)
