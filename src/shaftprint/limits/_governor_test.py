@@ -57,6 +57,11 @@ class GovernorTest:
     curve_shape: FloatArray
     """Full-load torque over that at the working-point speed [-], shape (points,)."""
 
+    @property
+    def step_s(self) -> float:
+        """Time from one sample to the next [s]."""
+        return float(self.time_s[1] - self.time_s[0])
+
     def engine_torque(self) -> FloatArray:
         """Return ``M_b = M_s + tau_up dn/dt`` [-], shape (samples,)."""
         return self.shaft_torque + self.upstream_s * np.gradient(self.speed, self.time_s)
@@ -70,9 +75,21 @@ class GovernorTest:
         torque = (1.0 + self.shaft_torque) / factor - 1.0
         return replace(self, shaft_torque=frozen_float(torque), upstream_s=self.upstream_s / factor)
 
-    def with_late_jumps(self, late_s: FloatArray) -> "GovernorTest":
-        """Return the test as if each jump of the set point came later than it was recorded [s], shape (jumps,)."""
-        return replace(self, late_s=frozen_float(late_s))
+    def held(self, cycle_s: float, late_s: FloatArray) -> "GovernorTest":
+        """Return the test as if the set point were held between messages.
+
+        Parameters
+        ----------
+        cycle_s
+            Time between two messages [s]: what does not jump is the mean over it, at its middle.
+        late_s
+            By how much each jump comes later than it was recorded [s], shape (jumps,).
+        """
+        sums = np.concatenate([[0.0], np.cumsum(self.without_jumps)]) * self.step_s
+        edges = np.append(self.time_s, self.time_s[-1] + self.step_s) - 0.5 * self.step_s
+        ends = [np.clip(self.time_s + side * 0.5 * cycle_s, edges[0], edges[-1]) for side in (-1.0, 1.0)]
+        area = np.interp(ends[1], edges, sums) - np.interp(ends[0], edges, sums)
+        return replace(self, without_jumps=frozen_float(area / (ends[1] - ends[0])), late_s=frozen_float(late_s))
 
     def record(self, *, rate_hz: float = RATE_HZ, drive_hz: float = DRIVE_HZ) -> Record:
         """Return the record of a fit: the torque of the engine over the load, driven by set point, speed and torque."""

@@ -1,14 +1,14 @@
 """A set point that reaches the governor in messages: each jump waits for the next one.
 
-Between two messages the governor holds the last set point. Half a cycle is a delay like any other and is in ``t_sp``.
-What shows the cycle are the jumps: each comes late by another part of it, evenly spread over one cycle ``T``. With
-``d`` the delay of a jump behind the recording, known to ``s``, and ``m`` the mean of all::
+Between two messages the governor holds the last set point. Of sines that is seen as a delay of half a cycle and, where
+they are fast, as a smaller amplitude: both are those of the mean of the set point over one cycle ``T``. A jump comes
+late by another part of the cycle each time, evenly spread over it. With ``d`` the delay of a jump behind ``t_sp``, that
+of the sines, known to ``s``, and ``m`` what jumps and sines may differ by in all::
 
     p(d | T, m) = (Phi((d - m + T / 2) / s) - Phi((d - m - T / 2) / s)) / T
 
 The phase of the messages at a jump counts as drawn by chance, since no clock of a bus is stable enough to foretell it
-after a minute. A uniform ``m`` and a ``T`` uniform in its logarithm make the interval of ``T`` exact where the delays
-are known well, because both are the invariant priors of place and width.
+after a minute. ``T`` is uniform in its logarithm, the invariant prior of a width, and ``m`` normal about zero.
 """
 
 from dataclasses import dataclass, replace
@@ -22,13 +22,15 @@ from shaftprint.limits._prediction_error import PredictionError
 
 # Cycles that are looked for [s]: below, no delay is known so well; above, steps would be seen in the recorded speed.
 SHORTEST_S, LONGEST_S, CYCLES = 2e-3, 0.25, 160
-MEANS = 240
+MEANS = 121
 # Deviation of a delay that the recorded jump and a model that is not exact leave [s].
 LEAST_STD_S = 1e-3
 # Fewer jumps than this do not tell a cycle; the torque answers a jump within this time [s], which must be in use.
 FEWEST, ANSWERS_S = 4, 0.4
 TRIED_S = 2e-3
 LONGEST_MOVE_S = 0.04
+# Deviation of the delay of all jumps from that of the sines which a model that is not exact leaves [s].
+LEAST_MEAN_STD_S = 3e-3
 SMALLEST = 1e-300
 
 
@@ -48,6 +50,11 @@ class Messages:
     """The same of one delay for all jumps."""
     density: FloatArray
     """Probability of each cycle, shape (cycles,)."""
+
+    @property
+    def best_cycle_s(self) -> float:
+        """The cycle that explains the delays best [s]."""
+        return float(self.cycle_s[int(np.argmax(self.log_likelihood))])
 
     @property
     def gain(self) -> float:
@@ -71,19 +78,15 @@ class Messages:
         return None if last + 1 >= self.cycle_s.size else float(self.cycle_s[last + 1])
 
 
-def messages_of(
-    term: PredictionError, own: FloatArray, test: GovernorTest, late_s: FloatArray, known: FloatArray
-) -> Messages | None:
-    """Return the delays of the jumps, to first order from given ones, and the cycles that explain them.
+def messages_of(term: PredictionError, own: FloatArray, test: GovernorTest, known: FloatArray) -> Messages | None:
+    """Return the delays of the jumps, to first order from those of a test, and the cycles that explain them.
 
     Parameters
     ----------
     term, own
-        Likelihood and parameters of a governor, on the record with the jumps that late.
+        Likelihood and parameters of a governor, on the record of the test.
     test
-        The test as recorded.
-    late_s
-        Delays to begin with [s], shape (jumps,).
+        The test, with the jumps as late as they were thought to be.
     known
         One over the prior deviation of each free parameter, shape (free,).
 
@@ -94,7 +97,7 @@ def messages_of(
     rows, now = term.rows(own), term.innovations(own)
     if rows is None or now is None:
         return None
-    changes = _change_by_jump(term, own, test, late_s)
+    changes = _change_by_jump(term, own, test)
     columns = now.filtered(-changes) / term.scale
     precision = np.einsum("ij,ij->i", columns, columns)
     std = np.hypot(1.0 / np.sqrt(np.maximum(precision, 1e-12)), LEAST_STD_S)
@@ -105,35 +108,46 @@ def messages_of(
     slopes = np.concatenate([rows[1:], columns[seen]])
     normal = slopes @ slopes.T
     normal[np.diag_indices(free)] += known**2
-    step = -np.linalg.pinv(normal, hermitian=True) @ (slopes @ rows[0])
-    moved = late_s.copy()
+    covariance = np.linalg.pinv(normal, hermitian=True)
+    step = -covariance @ (slopes @ rows[0])
+    moved = test.late_s.copy()
     moved[seen] += np.clip(step[free:], -LONGEST_MOVE_S, LONGEST_MOVE_S)
-    return explained(moved, np.where(seen, std, np.inf))
+    weight = precision[seen] / np.sum(precision[seen])
+    mean_variance = weight @ covariance[free:, free:] @ weight - 1.0 / np.sum(precision[seen])
+    mean_std = float(np.hypot(np.sqrt(max(mean_variance, 0.0)), LEAST_MEAN_STD_S))
+    return explained(moved, np.where(seen, std, np.inf), mean_std)
 
 
-def explained(late_s: FloatArray, std_s: FloatArray) -> Messages:
-    """Return which cycles explain delays of jumps [s]; those of infinite deviation do not count."""
+def explained(late_s: FloatArray, std_s: FloatArray, mean_std_s: float) -> Messages:
+    """Return which cycles explain delays of jumps.
+
+    Parameters
+    ----------
+    late_s, std_s
+        Delays behind the sines and their deviations [s]; those of an infinite one do not count, shape (jumps,).
+    mean_std_s
+        Deviation that all have in common [s].
+    """
     seen = np.isfinite(std_s)
     late, std = late_s[seen], std_s[seen]
     cycle = np.geomspace(SHORTEST_S, LONGEST_S, CYCLES)
-    mean = np.linspace(late.min() - 0.5 * LONGEST_S, late.max() + 0.5 * LONGEST_S, MEANS)
-    mean = np.concatenate([mean, np.linspace(late.min(), late.max(), MEANS)])
-    mean.sort()
+    mean = mean_std_s * np.linspace(-4.0, 4.0, MEANS)
+    prior = -0.5 * (mean / mean_std_s) ** 2
     off = late[:, None, None] - mean[None, None, :]
     half = 0.5 * cycle[None, :, None]
     within = ndtr((off + half) / std[:, None, None]) - ndtr((off - half) / std[:, None, None])
     sharpest = std[:, None, None] * np.sqrt(2.0 * np.pi)
-    logs = np.sum(np.log(np.maximum(within * sharpest / cycle[None, :, None], SMALLEST)), axis=0)
+    logs = prior + np.sum(np.log(np.maximum(within * sharpest / cycle[None, :, None], SMALLEST)), axis=0)
     at_best = logs.max(axis=1)
-    marginal = at_best + np.log(np.trapezoid(np.exp(logs - at_best[:, None]), mean, axis=1))
+    marginal = at_best + np.log(np.sum(np.exp(logs - at_best[:, None]), axis=1))
     density = np.exp(marginal - marginal.max())
-    alike = (late - np.sum(late / std**2) / np.sum(1.0 / std**2)) / std
+    alike = (late[:, None] - mean) / std[:, None]
     return Messages(
-        late_s=frozen_float(np.where(seen, late_s, float(np.mean(late)))),
+        late_s=frozen_float(np.where(seen, late_s, 0.0)),
         std_s=frozen_float(std_s),
         cycle_s=frozen_float(cycle),
         log_likelihood=frozen_float(at_best),
-        one_delay=-0.5 * float(np.sum(alike**2)),
+        one_delay=float(np.max(prior - 0.5 * np.sum(alike**2, axis=0))),
         density=frozen_float(density / density.sum()),
     )
 
@@ -145,10 +159,10 @@ def _seen(term: PredictionError, test: GovernorTest) -> BoolArray:
     return np.array([bool(where.any() and used[where].all()) for where in answers], dtype=np.bool_)
 
 
-def _change_by_jump(term: PredictionError, own: FloatArray, test: GovernorTest, late_s: FloatArray) -> FloatArray:
+def _change_by_jump(term: PredictionError, own: FloatArray, test: GovernorTest) -> FloatArray:
     """Return the change of the predicted torque with the delay of each jump [1/s], shape (jumps, samples)."""
     drive_hz = term.record.drive_rate_hz
-    later = test.with_late_jumps(late_s + TRIED_S).record(drive_hz=drive_hz)
+    later = replace(test, late_s=frozen_float(test.late_s + TRIED_S)).record(drive_hz=drive_hz)
     before = term.predicted(own)
     change = (replace(term, record=later).predicted(own) - before) / TRIED_S
     begins = np.array([jump.at_s for jump in test.jumps])

@@ -40,7 +40,7 @@ ROUGH, FINE = 6, 15
 CALM = 0.5
 PUSH_S, LEAST_FALL = 0.03, 0.5
 # Gain of held messages, to first order, from which on they are fitted; rounds in which delays and governor follow.
-PROMISING, ROUNDS = 10.0, 2
+PROMISING, ROUNDS = 10.0, 3
 LEAST_SPEED = 0.1
 SMALLEST = 1e-12
 
@@ -271,20 +271,20 @@ class Search:
 
     def held(self, here: Fitted) -> Fitted | None:
         """Return the governor with a set point that is held between messages; None where the jumps speak against it."""
-        late, kinds = np.zeros(len(self.test.jumps)), (*here.kinds, Kind.HELD)
+        test, kinds = self.test, (*here.kinds, Kind.HELD)
         if Kind.HELD in here.kinds:
             return None
         for _ in range(ROUNDS):
-            messages = messages_of(here.term, here.own, self.test, late, here.known)
+            messages = messages_of(here.term, here.own, test, here.known)
             if messages is None or messages.gain < PROMISING:
                 return None
-            late = messages.late_s
+            test = with_messages(self.test, messages)
             here = self.fit(here.values, kinds, messages)
         return here
 
     def messages(self, here: Fitted) -> Messages | None:
         """Return what the jumps tell of messages, to first order; None where they are too few."""
-        return here.messages or messages_of(here.term, here.own, self.test, np.zeros(len(self.test.jumps)), here.known)
+        return here.messages or messages_of(here.term, here.own, self.test, here.known)
 
     def without(self, here: Fitted, kind: Kind) -> Fitted:
         """Return the best governor with one limit less."""
@@ -324,8 +324,8 @@ class Search:
 
 
 def with_messages(test: GovernorTest, messages: Messages | None) -> GovernorTest:
-    """Return a test with the jumps of the set point as late as messages bring them."""
-    return test if messages is None else test.with_late_jumps(messages.late_s)
+    """Return a test with the set point held between messages, if there are any."""
+    return test if messages is None else test.held(messages.best_cycle_s, messages.late_s)
 
 
 def _delay_moves(here: Fitted) -> list[dict[str, float]]:
