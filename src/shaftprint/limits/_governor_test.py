@@ -14,8 +14,9 @@ from shaftprint.signals import Signals, deviation
 from shaftprint.time_domain import Decimator, Jump, Record, full_load_shape, jumps_in, with_jumps
 from shaftprint.vessel import Vessel
 
-# Samples of the record and of its drive a second [Hz]: above 10 Hz a pick-up of one pulse a revolution shows nothing.
-RATE_HZ, DRIVE_HZ = 20.0, 200.0
+# Samples of the record and of its drive a second [Hz]. Above 6 Hz a governor hardly acts, and what a pick-up of one
+# pulse a revolution adds to the speed is in the acceleration too: the fit takes it for an answer of the governor.
+RATE_HZ, DRIVE_HZ = 12.5, 200.0
 # The line stands at the working point for so long before the first test [s], ...
 BEFORE_S = 5.0
 # ... and its mean over that time, less the last part [s], is where the simulation begins.
@@ -24,6 +25,8 @@ AFTER_S = 3.0
 LEAST_SPEED = 0.1
 # Below this deviation of the speed pulses are too rare for the acceleration between them, and for this long beside [s].
 SLOW, BESIDE_S = -0.45, 1.0
+# After a stretch that is not known the integrator of the governor is not either, until the observer leads it back [s].
+SETTLED_S = 25.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -152,7 +155,8 @@ def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> Gover
     torque = deviation(signals.shaft_torque_nm, point.shaft_torque_nm)
     asked = deviation(signals.set_point_rev_s, point.engine_speed_rev_s)
     lost = ~(np.isfinite(speed) & np.isfinite(torque) & np.isfinite(asked))
-    lost |= _beside(speed < SLOW, round(BESIDE_S * signals.rate_hz))
+    beside, settled = round(BESIDE_S * signals.rate_hz), round(SETTLED_S * signals.rate_hz)
+    lost = _within(lost | _within(speed < SLOW, beside, beside), 0, settled)
     curve = np.array(full_load_shape(vessel, point))
     asked = _filled(time, asked)
     jumps = jumps_in(time, asked, campaign)
@@ -189,10 +193,10 @@ def sum_of_jumps(time_s: FloatArray, jumps: Sequence[Jump], late_s: FloatArray) 
     return passed
 
 
-def _beside(where: BoolArray, samples: int) -> BoolArray:
-    """Return where a mark is within a number of samples."""
-    sums = np.concatenate([np.zeros(samples + 1), np.cumsum(where), np.full(samples, np.count_nonzero(where))])
-    return np.asarray(sums[2 * samples + 1 :] > sums[: -2 * samples - 1])
+def _within(where: BoolArray, before: int, after: int) -> BoolArray:
+    """Return where a mark is, so many samples before it and after it."""
+    sums = np.concatenate([np.zeros(after + 1), np.cumsum(where), np.full(before, np.count_nonzero(where))])
+    return np.asarray(sums[before + after + 1 :] > sums[: -before - after - 1])
 
 
 def _filled(time_s: FloatArray, values: FloatArray) -> FloatArray:

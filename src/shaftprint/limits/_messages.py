@@ -25,8 +25,10 @@ SHORTEST_S, LONGEST_S, CYCLES = 2e-3, 0.25, 160
 MEANS = 121
 # Deviation of a delay that the recorded jump and a model that is not exact leave [s].
 LEAST_STD_S = 1e-3
-# Fewer jumps than this do not tell a cycle; the torque answers a jump within this time [s], which must be in use.
-FEWEST, ANSWERS_S = 4, 0.4
+# Fewer jumps than this whose delays are known to this [s] do not tell a cycle: those of a slow set point are not.
+FEWEST, KNOWN_S = 4, 0.03
+# The torque answers a jump within this time [s], which must be in use.
+ANSWERS_S = 0.4
 TRIED_S = 2e-3
 LONGEST_MOVE_S = 0.04
 # Deviation of the delay of all jumps from that of the sines which a model that is not exact leaves [s].
@@ -101,7 +103,7 @@ def messages_of(term: PredictionError, own: FloatArray, test: GovernorTest, know
     columns = now.filtered(-changes) / term.scale
     precision = np.einsum("ij,ij->i", columns, columns)
     std = np.hypot(1.0 / np.sqrt(np.maximum(precision, 1e-12)), LEAST_STD_S)
-    seen = _seen(term, test)
+    seen = _answered(term, test) & (std < KNOWN_S)
     if np.count_nonzero(seen) < FEWEST:
         return None
     free = rows.shape[0] - 1
@@ -152,7 +154,7 @@ def explained(late_s: FloatArray, std_s: FloatArray, mean_std_s: float) -> Messa
     )
 
 
-def _seen(term: PredictionError, test: GovernorTest) -> BoolArray:
+def _answered(term: PredictionError, test: GovernorTest) -> BoolArray:
     """Return whether the answer to each jump is in use, shape (jumps,)."""
     time, used = term.record.time_s, term.record.used
     answers = [(time >= jump.at_s) & (time < jump.at_s + ANSWERS_S) for jump in test.jumps]

@@ -13,8 +13,8 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
 
-# Coefficients: 1.5 s of memory at 20 Hz.
-ORDER = 30
+# Coefficients: 1.6 s of memory at 12.5 Hz.
+ORDER = 20
 RIDGE = 1e-10
 
 

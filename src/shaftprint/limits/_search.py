@@ -39,6 +39,8 @@ ROUGH, FINE = 6, 15
 # Share of the tests, the calmest first, whose torque changes so little that no limit is near.
 CALM = 0.5
 PUSH_S, LEAST_FALL = 0.03, 0.5
+# The push of the set point's offset, over its deviation, and of the level of a torque limit with it.
+REST_PUSH, LEVEL_SHARES = 4.0, (0.9, 1.0, 1.1)
 # Gain of held messages, to first order, from which on they are fitted; rounds in which delays and governor follow.
 PROMISING, ROUNDS = 10.0, 3
 LEAST_SPEED = 0.1
@@ -303,19 +305,23 @@ class Search:
     def _pushed(self, here: Fitted) -> Fitted:
         """Return the best after pushes out of the places where a fit is known to stop.
 
-        Delays inside the loop and before it trade along a valley. A line that rests near a limit has one optimum with
-        the limit acting at rest and one without, the set point's offset to either side.
+        Delays inside the loop and before it trade along a valley. A line that rests near its torque limit has an
+        optimum with the limit acting at rest, a lower level and a lower set point, and one without.
         """
-        for move in (*_delay_moves(here), *self._set_point_moves()):
+        for move in (*_delay_moves(here), *self._rest_moves(here)):
             moved = self.fit({**here.values, **move}, here.kinds, here.messages)
             if moved.log_squares < here.log_squares - LEAST_FALL:
                 here = moved
         return here
 
-    def _set_point_moves(self) -> list[dict[str, float]]:
-        """Return scale and offset of the set point as calibrated, and the offset to either side."""
+    def _rest_moves(self, here: Fitted) -> list[dict[str, float]]:
+        """Return offsets of the set point to either side of its calibration, of a torque limit with other levels."""
         scale, offset = self.priors["c_set"].mean, self.priors["e_set"]
-        return [{"c_set": scale, "e_set": offset.mean + side * offset.std} for side in (-2.0, 2.0)]
+        levels = [{}]
+        if "m_max" in parameters_of(here.kinds):
+            levels = [{"m_max": share * here.values["m_max"]} for share in LEVEL_SHARES]
+        offsets = [offset.mean + side * REST_PUSH * offset.std for side in (-1.0, 1.0)]
+        return [{"c_set": scale, "e_set": off, **level} for off in offsets for level in levels]
 
     def fit(self, values: Mapping[str, float], kinds: Sequence[Kind], messages: Messages | None = None) -> Fitted:
         """Return the best governor with some limits, from given values on."""

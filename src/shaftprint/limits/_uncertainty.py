@@ -1,6 +1,6 @@
 """How far the numbers of a limit can be trusted: scatter of the slopes, what was taken for granted, profile ends.
 
-The noise of the torque is not the same all the time, and a record that ends at 10 Hz lets a little of the future into
+The noise of the torque is not the same all the time, and a record that ends at 6 Hz lets a little of the future into
 what should be new at each sample. The variance of the slope of the likelihood is therefore that of its sums over
 blocks much longer than the memory of the loop (White, Maximum likelihood estimation of misspecified models, 1982):
 ``H^-1 (sum_b g_b g_b^T) H^-1``. What the fit takes for granted is moved by its standard deviation, one after the other,
