@@ -215,7 +215,8 @@ class Search:
 
     def linear(self) -> Fitted:
         """Return the best governor without limits."""
-        return self._pushed(self.fit({**values_without_limits(self.whole), **self.calm}, ()))
+        here = self.fit({**values_without_limits(self.whole), **self.calm}, ())
+        return self._pushed(here, _delay_moves(here))
 
     def run(self) -> tuple[Fitted, list[Scanned]]:
         """Let limits join the governor until chance explains what the next one would gain.
@@ -229,9 +230,13 @@ class Search:
             rest = self.scanned(here)
             tries = [self._joined(here, rest), self.held(here)] if len(here.kinds) < MOST_LIMITS else []
             better = min((one for one in tries if one is not None), key=schwarz, default=here)
-            if schwarz(here) - schwarz(better) <= LEAST_GAIN:
+            if schwarz(here) - schwarz(better) > LEAST_GAIN:
+                here = self._without_idle(better)
+                continue
+            other = self._pushed(here, self._rest_moves(here))
+            if other is here:
                 return here, rest
-            here = self._without_idle(better)
+            here = other
 
     def scanned(self, here: Fitted) -> list[Scanned]:
         """Return what each level of each limit that is not present would gain over a governor."""
@@ -269,7 +274,10 @@ class Search:
             calm = {**here.values, **self.calm}
             starts += _strongest(self._scan_from(here, calm), POLISHED_CALM)
         tries = [self.fit(one.start, (*here.kinds, one.suspect.kind), here.messages) for one in starts]
-        return self._pushed(min(tries, key=schwarz)) if tries else None
+        if not tries:
+            return None
+        best = min(tries, key=schwarz)
+        return self._pushed(best, _delay_moves(best))
 
     def held(self, here: Fitted) -> Fitted | None:
         """Return the governor with a set point that is held between messages; None where the jumps speak against it."""
@@ -302,22 +310,22 @@ class Search:
                 here = without
         return here
 
-    def _pushed(self, here: Fitted) -> Fitted:
-        """Return the best after pushes out of the places where a fit is known to stop.
-
-        Delays inside the loop and before it trade along a valley. A line that rests near its torque limit has an
-        optimum with the limit acting at rest, a lower level and a lower set point, and one without.
-        """
-        for move in (*_delay_moves(here), *self._rest_moves(here)):
+    def _pushed(self, here: Fitted, moves: Sequence[Mapping[str, float]]) -> Fitted:
+        """Return the best of a governor and of fits that begin where moves put some of its parameters."""
+        best = here
+        for move in moves:
             moved = self.fit({**here.values, **move}, here.kinds, here.messages)
-            if moved.log_squares < here.log_squares - LEAST_FALL:
-                here = moved
-        return here
+            best = moved if moved.log_squares < best.log_squares - LEAST_FALL else best
+        return best
 
     def _rest_moves(self, here: Fitted) -> list[dict[str, float]]:
-        """Return offsets of the set point to either side of its calibration, of a torque limit with other levels."""
+        """Return offsets of the set point to either side of its calibration, of a torque limit with other levels.
+
+        A line that rests near its torque limit has an optimum with the limit acting at rest, a lower level and a lower
+        set point, and one without.
+        """
         scale, offset = self.priors["c_set"].mean, self.priors["e_set"]
-        levels = [{}]
+        levels: list[dict[str, float]] = [{}]
         if "m_max" in parameters_of(here.kinds):
             levels = [{"m_max": share * here.values["m_max"]} for share in LEVEL_SHARES]
         offsets = [offset.mean + side * REST_PUSH * offset.std for side in (-1.0, 1.0)]
@@ -335,7 +343,7 @@ def with_messages(test: GovernorTest, messages: Messages | None) -> GovernorTest
 
 
 def _delay_moves(here: Fitted) -> list[dict[str, float]]:
-    """Return the delays inside the loop and before it, moved from one to the other both ways."""
+    """Return the delays inside the loop and before it, moved from one to the other: they trade along a valley."""
     late, before = here.values["t_d"], here.values["t_sp"]
     return [{"t_d": max(late + by_s, 0.005), "t_sp": max(before - by_s, 0.005)} for by_s in (-PUSH_S, PUSH_S)]
 
