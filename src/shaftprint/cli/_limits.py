@@ -44,7 +44,10 @@ def print_limits(found: LimitFit) -> None:
     print_table(
         "Governor that goes with them",
         ("symbol", "value +/- 1 std", "unit"),
-        [(e.name, with_uncertainty(e.value, e.std), e.unit) for e in found.governor],
+        [
+            (e.name, f"{with_uncertainty(e.value, e.std)}{' at bound' if e.at_bound else ''}", e.unit)
+            for e in found.governor
+        ],
     )
     trusted = ", ".join(number.name for number in found.trusted) or "none"
     doubted = [f"{number.name}: {number.doubt}." for number in found.numbers if not number.trusted]

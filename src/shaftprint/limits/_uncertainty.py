@@ -91,6 +91,9 @@ def _taken_for_granted(found: Fitted, test: GovernorTest, signals: Signals, vess
     changes = [_with_record(term, one, drive_hz).left(own) - left for one in moved]
     sloped = {**found.values, "g": SLOPE_STD}
     changes.append(term.left(np.array([sloped[name] for name in term.whole.names])) - left)
+    # a rate limit turns at whole steps of the simulation: half as long ones move the rate by as much as noise does
+    finer = replace(term, record=test.record(drive_hz=2.0 * drive_hz))
+    changes.append(term.predicted(own) - finer.predicted(own))
     return [now.filtered(change[None])[0] / term.scale for change in changes]
 
 
