@@ -17,6 +17,8 @@ from shaftprint.vessel import Vessel
 
 # A number whose interval is wider than this share of it is hardly known.
 HARDLY_KNOWN = 0.6
+# A simulated set point with a limited rate turns at whole steps: three of five intervals missed the true rate.
+SEVERAL_OPTIMA = "its likelihood has several optima close together, of which the interval spans one"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -141,6 +143,8 @@ def _printed(found: Fitted, spread: Spread, units: Units, kind: Kind, name: str)
     at_bound = value in (parameter.lower, parameter.upper)
     interval = profile_interval(found, spread, name)
     doubt = _doubt(value, interval, at_bound=at_bound)
+    if kind is Kind.RAMP:
+        doubt = doubt or SEVERAL_OPTIMA
     for scale in units.scales(name):
         more = NORMAL_95 * scale.share_std * abs(value)
         lower, upper = (_widened(value, end, more) for end in (interval.lower, interval.upper))

@@ -40,7 +40,7 @@ ROUGH, FINE = 6, 15
 CALM = 0.5
 PUSH_S, LEAST_FALL = 0.03, 0.5
 # The push of the set point's offset, over its deviation, and of the level of a torque limit with it.
-REST_PUSH, LEVEL_SHARES = 4.0, (0.9, 1.0, 1.1)
+REST_PUSH, LEVEL_SHARES = 4.0, (0.9, 1.0, 1.1, 1.2)
 # Gain of held messages, to first order, from which on they are fitted; rounds in which delays and governor follow.
 PROMISING, ROUNDS = 10.0, 3
 LEAST_SPEED = 0.1
