@@ -14,7 +14,7 @@ from shaftprint.fingerprint import Fingerprint, Quantity
 from shaftprint.models import structure
 
 OMEGA = np.array([0.2, 1.0, 5.0])
-K_P = Quantity(name="K_p", unit="-", value=4.6, std=0.4, interval_95=(4.1, 5.9), meaning="gain, of the governor")
+K_P = Quantity(name="K_p", unit="-", value=4.6, std=0.4, interval_95=(3.9, 5.5), meaning="gain, of the governor")
 K_I = Quantity(name="K_i", unit="1/s", value=3.8, std=float("inf"))
 T_D = Quantity(
     name="t_d", unit="s", value=0.1, std=0.02, interval_95=(0.0, 0.13), interval_open=(True, False), at_bound=True
@@ -57,7 +57,7 @@ def test_parameters_have_value_and_interval(fingerprint, tmp_path):
     rows = {row["name"]: row for row in rows_of(written.parameters)}
     assert rows["K_p"]["meaning"] == "gain, of the governor"
     assert (float(rows["K_p"]["value"]), float(rows["K_p"]["std"])) == (4.6, 0.4)
-    assert (rows["K_p"]["lower_95"], rows["K_p"]["upper_95"]) == ("4.1", "5.9")
+    assert (rows["K_p"]["lower_95"], rows["K_p"]["upper_95"]) == ("3.9", "5.5")
     assert rows["K_p"]["interval_from_profile"] == "yes"
     assert (rows["K_i"]["std"], rows["K_i"]["lower_95"], rows["K_i"]["upper_95"]) == ("", "", "")
     # the data did not set the lower end

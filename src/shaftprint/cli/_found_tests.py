@@ -36,6 +36,7 @@ def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign) -> None:
     echo("Proposal for the campaign file: these tests in place of those that it has\n")
     for line in text.splitlines():
         echo(line)
+    echo()
 
 
 def campaign_text(campaign: Campaign) -> str:
