@@ -1,12 +1,14 @@
 """Parts of the search for limits, each against what follows without them."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from shaftprint.campaign import Campaign
 from shaftprint.limits import limit_hints
+from shaftprint.limits._identify_limits import LEAST_OFFSET_STD, _offset_std
 from shaftprint.limits._noise_colour import ORDER, innovations
 from shaftprint.limits._numbers import _doubt
 from shaftprint.limits._uncertainty import LevelInterval
@@ -117,3 +119,14 @@ def test_a_held_demand_comes_late_by_half_a_message(vessel):
         phases.append(np.angle(np.sum(turn * ideal.engine_speed_rev_s[inside])))
     late_s = (phases[0] - phases[1]) / (2.0 * np.pi * 0.1)
     assert late_s == pytest.approx(0.04, abs=0.002)
+
+
+def test_the_offset_of_the_set_point_is_as_unknown_as_its_line():
+    """A line ``n = a U + b`` with whose errors cancel but for 0.02 rev/s at 4 V, of 20 rev/s: 0.1 %."""
+    covariance = np.array([[1e-4, -5.25e-4], [-5.25e-4, 3e-3]])
+    # 16 * 1e-4 - 8 * 5.25e-4 + 3e-3 = 4e-4
+    signals = SimpleNamespace(
+        working_point=SimpleNamespace(set_point_v=4.0, engine_speed_rev_s=20.0),
+        calibration=SimpleNamespace(covariance=covariance),
+    )
+    assert _offset_std(signals) == pytest.approx(np.hypot(0.001, LEAST_OFFSET_STD), rel=1e-9)

@@ -3,6 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from shaftprint.campaign import Campaign
 from shaftprint.identify import Prior
 from shaftprint.limits._governor_test import governor_test
@@ -18,8 +20,8 @@ from shaftprint.vessel import Vessel
 
 # Drive of the search [Hz]; levels do not depend on milliseconds, and the reported fit has twice as much.
 COARSE_HZ = 100.0
-# Offset of the set point's line at the working point, over its speed, that a calibration leaves.
-OFFSET_STD = 5e-4
+# Offset of the set point's line at the working point, over its speed, that a good calibration leaves.
+LEAST_OFFSET_STD = 5e-4
 # A level that costs so much of twice the log-likelihood is excluded.
 EXCLUDED = 15.0
 LIMITS = ("torque", "rate", "deadband", "ramp", "smoke")
@@ -58,7 +60,7 @@ def identify_limits(
     whole = whole_governor()
     priors = {
         "c_set": Prior(1.0, max(signals.dc_scale_std / signals.dc_scale, 1e-4)),
-        "e_set": Prior(0.0, OFFSET_STD),
+        "e_set": Prior(0.0, _offset_std(signals)),
     }
     say("Looking for limits")
     search = Search.of(whole, test, campaign, drive_hz=COARSE_HZ, full=units.full, priors=priors)
@@ -80,6 +82,17 @@ def identify_limits(
         not_seen=_not_seen(here, rest, search.messages(here), units),
         identification=best.fit,
     )
+
+
+def _offset_std(signals: Signals) -> float:
+    """Return the deviation of the set point's line at the working point, over its speed.
+
+    Where large sines meet a torque limit the mean speed falls behind the set point, and the line with it.
+    """
+    point = signals.working_point
+    at = np.array([point.set_point_v, 1.0])
+    line_std = float(np.sqrt(at @ signals.calibration.covariance @ at)) / point.engine_speed_rev_s
+    return float(np.hypot(line_std, LEAST_OFFSET_STD))
 
 
 def whole_governor() -> Structure:

@@ -18,6 +18,9 @@ from shaftprint.vessel import Vessel
 # A number whose interval is wider than this share of it is hardly known.
 HARDLY_KNOWN = 0.6
 # A simulated set point with a limited rate turns at whole steps: three of five intervals missed the true rate.
+# Deviation of the set point's line at the working point, over its speed, up to which the search tells a line that rests
+# at its torque limit from one that does not: of two recordings beyond it the search missed the right one in one.
+LARGEST_LINE_STD = 0.003
 SEVERAL_OPTIMA = "its likelihood has several optima close together, of which the interval spans one"
 
 
@@ -145,6 +148,12 @@ def _printed(found: Fitted, spread: Spread, units: Units, kind: Kind, name: str)
     doubt = _doubt(value, interval, at_bound=at_bound)
     if kind is Kind.RAMP:
         doubt = doubt or SEVERAL_OPTIMA
+    line_std = found.priors["e_set"].std
+    if kind in (Kind.TORQUE, Kind.SMOKE) and line_std > LARGEST_LINE_STD:
+        doubt = doubt or (
+            f"the speed fell behind the set point so often that their line is known to {100.0 * line_std:.2g} % only, "
+            "and the likelihood may have a second optimum at another line: test again with smaller sines"
+        )
     for scale in units.scales(name):
         more = NORMAL_95 * scale.share_std * abs(value)
         lower, upper = (_widened(value, end, more) for end in (interval.lower, interval.upper))

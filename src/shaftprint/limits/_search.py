@@ -40,7 +40,7 @@ ROUGH, FINE = 6, 15
 CALM = 0.5
 PUSH_S, LEAST_FALL = 0.03, 0.5
 # The push of the set point's offset, over its deviation, and of the level of a torque limit with it.
-REST_PUSH, LEVEL_SHARES = 4.0, (0.9, 1.0, 1.1, 1.2)
+REST_PUSH, LEVEL_SHARES = 1.0, (0.8, 0.9, 1.0, 1.1, 1.2, 1.35)
 # Gain of held messages, to first order, from which on they are fitted; rounds in which delays and governor follow.
 PROMISING, ROUNDS = 10.0, 3
 LEAST_SPEED = 0.1
@@ -273,11 +273,9 @@ class Search:
         if not here.kinds:
             calm = {**here.values, **self.calm}
             starts += _strongest(self._scan_from(here, calm), POLISHED_CALM)
-        tries = [self.fit(one.start, (*here.kinds, one.suspect.kind), here.messages) for one in starts]
-        if not tries:
-            return None
-        best = min(tries, key=schwarz)
-        return self._pushed(best, _delay_moves(best))
+        tries = [self._tried(one.start, (*here.kinds, one.suspect.kind), here.messages) for one in starts]
+        best = min((one for one in tries if one is not None), key=schwarz, default=None)
+        return None if best is None else self._pushed(best, _delay_moves(best))
 
     def held(self, here: Fitted) -> Fitted | None:
         """Return the governor with a set point that is held between messages; None where the jumps speak against it."""
@@ -314,22 +312,31 @@ class Search:
         """Return the best of a governor and of fits that begin where moves put some of its parameters."""
         best = here
         for move in moves:
-            moved = self.fit({**here.values, **move}, here.kinds, here.messages)
-            best = moved if moved.log_squares < best.log_squares - LEAST_FALL else best
+            moved = self._tried({**here.values, **move}, here.kinds, here.messages)
+            if moved is not None and moved.log_squares < best.log_squares - LEAST_FALL:
+                best = moved
         return best
 
     def _rest_moves(self, here: Fitted) -> list[dict[str, float]]:
         """Return offsets of the set point to either side of its calibration, of a torque limit with other levels.
 
-        A line that rests near its torque limit has an optimum with the limit acting at rest, a lower level and a lower
-        set point, and one without.
+        A line that rests near its torque limit has an optimum with the limit acting at rest, a lower level, a lower set
+        point and a slower governor, and one without.
         """
         scale, offset = self.priors["c_set"].mean, self.priors["e_set"]
         levels: list[dict[str, float]] = [{}]
         if "m_max" in parameters_of(here.kinds):
-            levels = [{"m_max": share * here.values["m_max"]} for share in LEVEL_SHARES]
+            gains = {name: self.calm[name] for name in ("K_p", "K_i")}
+            levels = [{"m_max": share * here.values["m_max"], **gains} for share in LEVEL_SHARES]
         offsets = [offset.mean + side * REST_PUSH * offset.std for side in (-1.0, 1.0)]
         return [{"c_set": scale, "e_set": off, **level} for off in offsets for level in levels]
+
+    def _tried(self, values: Mapping[str, float], kinds: Sequence[Kind], messages: Messages | None) -> Fitted | None:
+        """Return the best governor from given values on; None where the simulation runs away from them."""
+        try:
+            return self.fit(values, kinds, messages)
+        except IdentificationError:
+            return None
 
     def fit(self, values: Mapping[str, float], kinds: Sequence[Kind], messages: Messages | None = None) -> Fitted:
         """Return the best governor with some limits, from given values on."""
