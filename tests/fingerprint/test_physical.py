@@ -121,22 +121,3 @@ def test_a_zero_that_the_fit_has_found_is_off_the_torque_coefficient(fit, truth,
     # beside it what the vessel file knows of the zero: 25 of 1725 N m
     zero = numbers["gauge zero share"]
     assert (zero.expected, zero.expected_std) == (0.0, pytest.approx(1.44928, rel=1e-5))
-
-
-@pytest.mark.parametrize(
-    ("physical", "parameter"),
-    [("governor proportional action", "K_p"), ("governor integral action", "K_i"), ("I_dn", "tau_dn")],
-)
-def test_a_multiple_reaches_to_the_sides_to_which_its_parameter_does(fingerprint, physical, parameter):
-    """A one-sided interval of K_p makes one of the action of the governor, not a symmetrical one."""
-
-    def sides(quantity):
-        lower, upper = quantity.interval_95
-        return quantity.value - lower, upper - quantity.value
-
-    multiple, own = fingerprint.quantity(physical), fingerprint.quantity(parameter)
-    down, up = sides(multiple)
-    assert up / down == pytest.approx(sides(own)[1] / sides(own)[0], rel=0.1)
-    # as wide as the deviations say that it is wider
-    ratio = multiple.std / own.std
-    assert up + down == pytest.approx(ratio * sum(sides(own)), rel=0.1)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from shaftprint.fingerprint._fingerprint import Quantity, gives_interval
+from shaftprint.fingerprint._fingerprint import Quantity
 from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER
 from shaftprint.identify import Budget, Estimate, Identification, Profile, doubts_of
@@ -103,9 +103,9 @@ def _hardly_known(identification: Identification, profile: Profile | None) -> li
     for estimate in identification.parameters:
         if estimate.name not in doubts or estimate.name in identification.settings.priors or estimate.at_bound:
             continue
-        text = f"{estimate.name} = {_written(estimate, profile)} is hardly known from this test"
+        text = f"{estimate.name} = {_written(estimate)} is hardly known from this test"
         better = [c for c in identification.combinations if _is_better(c, estimate, identification)]
-        known = ", ".join(f"{c.name} = {_written(c, profile)}" for c in better)
+        known = ", ".join(f"{c.name} = {_written(c)}" for c in better)
         found.append(text + (f"; known is {known}." if better else "."))
     return found
 
@@ -171,13 +171,8 @@ def _against_expected(physical: tuple[Quantity, ...]) -> list[str]:
     return found
 
 
-def _written(estimate: Estimate, profile: Profile | None) -> str:
-    """Return a number with its standard deviation, or with its interval where that says something else."""
-    interval = None if profile is None else profile.intervals.get(estimate.name)
-    ends = None if interval is None else (interval.lower, interval.upper)
-    if ends is None or not np.isfinite(estimate.std) or gives_interval(estimate.value, estimate.std, ends):
-        return f"{estimate.value:.4g} +/- {estimate.std:.2g}{_unit(estimate)}"
-    return f"{estimate.value:.4g}{_unit(estimate)} (95 % from {ends[0]:.4g} to {ends[1]:.4g})"
+def _written(estimate: Estimate) -> str:
+    return f"{estimate.value:.4g} +/- {estimate.std:.2g}{_unit(estimate)}"
 
 
 def _unit(number: Estimate | Quantity) -> str:

@@ -26,14 +26,6 @@ SCHEMA_VERSION: Final = 1
 ENDS_ALIKE: Final = 0.25
 
 
-def gives_interval(value: float, std: float, interval_95: tuple[float, float]) -> bool:
-    """Return whether the ends of a 95 % interval are where a standard deviation puts them."""
-    lower, upper = interval_95
-    tolerance = ENDS_ALIKE * (upper - lower)
-    below, above = value - NORMAL_95 * std, value + NORMAL_95 * std
-    return abs(below - lower) <= tolerance and abs(above - upper) <= tolerance
-
-
 class _Record(BaseModel):
     """A frozen part of a fingerprint; fields that it does not know are refused."""
 
@@ -85,7 +77,13 @@ class Quantity(_Record):
             return None
         if self.interval_95 is None or not math.isfinite(self.std) or any(self.interval_open):
             return self.std
-        return self.std if gives_interval(self.value, self.std, self.interval_95) else None
+        lower, upper = self.interval_95
+        tolerance = ENDS_ALIKE * (upper - lower)
+        alike = (
+            abs(self.value - NORMAL_95 * self.std - lower) <= tolerance
+            and abs(self.value + NORMAL_95 * self.std - upper) <= tolerance
+        )
+        return self.std if alike else None
 
 
 class SourceFile(_Record):

@@ -14,9 +14,8 @@ windows and the prior, and multiplies what is found, so that it cancels here (``
 made of it: there the wander of the load counts.
 """
 
-import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,7 +23,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.fingerprint._fingerprint import Quantity
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER, shares_over_torque, shifts_of_working_point
-from shaftprint.identify import Budget, BudgetRow, Identification, Interval, budget
+from shaftprint.identify import Budget, Identification, budget
 from shaftprint.models import Combination, Structure
 from shaftprint.units import SECONDS_PER_MINUTE
 
@@ -36,7 +35,6 @@ PERCENT = 100.0
 IDEAL_SLOPE = 2.0
 GAUGE_ZERO = "gauge zero share"
 """Name of the zero offset of the torque gauge over the working-point torque."""
-NO_INTERVALS: Mapping[str, Interval] = {}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -45,8 +43,6 @@ class PhysicalNumber:
 
     number: Combination
     """Its name, unit and formula."""
-    multiple_of: str | None = None
-    """The parameter of which it is a multiple; its interval reaches to the same sides."""
     direct: Mapping[str, float] = field(default_factory=dict)
     """Change, with sign, for one standard deviation of a source that enters the conversion."""
     expected: float | None = None
@@ -68,10 +64,12 @@ def physical_numbers(
         if set(needs) <= set(named):
             value = float(plan.number.of(named))
             found.append(
-                replace(
-                    plan,
+                PhysicalNumber(
+                    number=plan.number,
                     direct=({"gauge scale": value * scale} if scale else {})
                     | {source: -value * share for source, share in shares_over_torque(working_point).items()},
+                    expected=plan.expected,
+                    expected_std=plan.expected_std,
                 )
             )
     return (
@@ -82,11 +80,7 @@ def physical_numbers(
 
 
 def physical_quantities(
-    identification: Identification,
-    working_point: "WorkingPoint",
-    vessel: "Vessel",
-    stated: Budget | None = None,
-    intervals: Mapping[str, Interval] = NO_INTERVALS,
+    identification: Identification, working_point: "WorkingPoint", vessel: "Vessel", stated: Budget | None = None
 ) -> tuple[Quantity, ...]:
     """Return physical values with standard deviations, beside the values of the vessel file where it has them.
 
@@ -96,8 +90,6 @@ def physical_quantities(
         The fit, where it was made, and what was tested.
     stated
         The uncertainty budget with the physical numbers among its rows; made here when not given.
-    intervals
-        Profile-likelihood intervals of the parameters, by name.
     """
     numbers = physical_numbers(identification, working_point, vessel)
     if stated is None:
@@ -107,45 +99,18 @@ def physical_quantities(
     found = []
     for item in numbers:
         row = stated.row(item.number.name)
-        interval = _stretched(identification, item.multiple_of, row, intervals)
         found.append(
             Quantity(
                 name=row.name,
                 unit=row.unit,
                 value=row.value,
                 std=row.std,
-                interval_95=None if interval is None else (interval.lower, interval.upper),
-                interval_open=(False, False) if interval is None else (interval.lower_open, interval.upper_open),
                 expected=item.expected,
                 expected_std=item.expected_std,
                 meaning=item.number.meaning,
             )
         )
     return tuple(found)
-
-
-def _stretched(
-    identification: Identification, parameter: str | None, row: BudgetRow, intervals: Mapping[str, Interval]
-) -> Interval | None:
-    """Return the interval of a multiple of a parameter.
-
-    The standard deviation of the multiple has what the conversion adds and what cancels in it; the interval of the
-    parameter has the sides to which the likelihood reaches. Its ends are scaled by the ratio of both deviations.
-    """
-    interval = None if parameter is None else intervals.get(parameter)
-    estimate = next((e for e in identification.parameters if e.name == parameter), None)
-    if interval is None or estimate is None or estimate.at_bound or not estimate.value:
-        return None
-    if not 0.0 < estimate.std < math.inf or not math.isfinite(row.std):
-        return None
-    ratio = row.std / estimate.std
-    return Interval(
-        name=row.name,
-        lower=row.value + ratio * (interval.lower - estimate.value),
-        upper=row.value + ratio * (interval.upper - estimate.value),
-        lower_open=interval.lower_open,
-        upper_open=interval.upper_open,
-    )
 
 
 def _inertias(working_point: "WorkingPoint", vessel: "Vessel") -> Iterator[tuple[tuple[str, ...], PhysicalNumber]]:
@@ -159,7 +124,7 @@ def _inertias(working_point: "WorkingPoint", vessel: "Vessel") -> Iterator[tuple
         ("I", "tau_n", upstream, "inertia that the thesis' shaft loop implies, at the propeller shaft"),
     ):
         number = Combination(name=name, unit="kg m2", of=_product(factor, tau), meaning=meaning)
-        yield (tau,), PhysicalNumber(number=number, multiple_of=tau, expected=expected, expected_std=expected_std)
+        yield (tau,), PhysicalNumber(number=number, expected=expected, expected_std=expected_std)
 
 
 def _governor_actions(working_point: "WorkingPoint") -> Iterator[tuple[tuple[str, ...], PhysicalNumber]]:
@@ -171,9 +136,7 @@ def _governor_actions(working_point: "WorkingPoint") -> Iterator[tuple[tuple[str
         text = f"{meaning}, at the propeller shaft, for one rpm of engine-speed error"
         yield (
             (gain, "v"),
-            PhysicalNumber(
-                number=Combination(name=name, unit=unit, of=_product(factor, "v", gain), meaning=text), multiple_of=gain
-            ),
+            PhysicalNumber(number=Combination(name=name, unit=unit, of=_product(factor, "v", gain), meaning=text)),
         )
 
 

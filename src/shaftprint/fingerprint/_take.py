@@ -1,8 +1,8 @@
 """The verb of the room: from an identification to the record that is kept."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING
 
@@ -33,7 +33,7 @@ from shaftprint.fingerprint._working_point_share import (
     widened,
     widened_covariance,
 )
-from shaftprint.identify import Budget, Estimate, Identification, Interval, Profile, assess, budget, profile
+from shaftprint.identify import Budget, Estimate, Identification, Interval, assess, budget, profile
 from shaftprint.models import Combination
 from shaftprint.units import SECONDS_PER_MINUTE
 
@@ -81,16 +81,15 @@ def take_fingerprint(
     rack_share = 0.0 if rack is None else rack.working_point_std / rack.working_point
     shifts = shifts_of_working_point(identification, signals.working_point, rack_share)
     stated = _budget(identification, signals.working_point, vessel, margins, shifts)
+    physical = physical_quantities(identification, signals.working_point, vessel, stated)
     left_out = _left_out(identification)
     profiled = profile(identification, margins) if identification.is_likelihood else None
-    intervals = {} if profiled is None else profiled.intervals
-    physical = physical_quantities(identification, signals.working_point, vessel, stated, intervals)
-    reported = _Reported(stated, intervals, _meanings(identification))
+    reported = _Reported(stated, {} if profiled is None else profiled.intervals, _meanings(identification))
     conditions = _conditions(identification, signals, vessel, campaign, left_out)
     margin = margin_quantities(identification, profiled, stated)
     verdict = assess(
         identification,
-        profile=None if profiled is None else _with_intervals_of(profiled, physical),
+        profile=profiled,
         signal_to_noise=signal_to_noise,
         reasons=contradictions(physical, signals.working_point, vessel),
         further=[_estimate(q) for q in (*physical, *margin, conditions.engine_speed, conditions.shaft_torque)],
@@ -119,22 +118,6 @@ def take_fingerprint(
         verdict=verdict,
         findings=findings_of(identification, physical, stated, left_out, profiled),
     )
-
-
-def _with_intervals_of(profiled: Profile, quantities: Iterable[Quantity]) -> Profile:
-    """Return a profile with the intervals of further numbers."""
-    further = {
-        q.name: Interval(
-            name=q.name,
-            lower=q.interval_95[0],
-            upper=q.interval_95[1],
-            lower_open=q.interval_open[0],
-            upper_open=q.interval_open[1],
-        )
-        for q in quantities
-        if q.interval_95 is not None
-    }
-    return replace(profiled, intervals={**profiled.intervals, **further})
 
 
 def _estimate(quantity: Quantity) -> Estimate:
