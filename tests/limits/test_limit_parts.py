@@ -122,11 +122,6 @@ def test_a_held_demand_comes_late_by_half_a_message(vessel):
 
 
 def test_the_offset_of_the_set_point_is_as_unknown_as_its_line():
-    """A line ``n = a U + b`` with whose errors cancel but for 0.02 rev/s at 4 V, of 20 rev/s: 0.1 %."""
-    covariance = np.array([[1e-4, -5.25e-4], [-5.25e-4, 3e-3]])
-    # 16 * 1e-4 - 8 * 5.25e-4 + 3e-3 = 4e-4
-    signals = SimpleNamespace(
-        working_point=SimpleNamespace(set_point_v=4.0, engine_speed_rev_s=20.0),
-        calibration=SimpleNamespace(covariance=covariance),
-    )
+    """A line that is known to 0.02 rev/s at the working point, of 20 rev/s: 0.1 %."""
+    signals = SimpleNamespace(working_point=SimpleNamespace(engine_speed_rev_s=20.0, engine_speed_std_rev_s=0.02))
     assert _offset_std(signals) == pytest.approx(np.hypot(0.001, LEAST_OFFSET_STD), rel=1e-9)

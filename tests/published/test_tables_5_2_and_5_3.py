@@ -6,6 +6,7 @@ line has the covariance that the signal-to-noise ratios of table 3.7 give.
 
 import numpy as np
 import pytest
+from benchmarks.thesis_tables import CLOSED_LOOP, IN_TIME, NAMES, OPEN_LOOP
 
 from shaftprint.identify import MaximumLikelihood, Settings, Uniform, Unweighted, fit_percent, identify
 from shaftprint.models import structure
@@ -24,23 +25,11 @@ SNR_DB = {
     "n": [40.6, 40.4, 44.9, 45.3, 45.7, 25.6, 38.0, 41.3, 38.5, 35.9, 31.9, 17.0, 7.8, -11.6, -18.3, -22.4],
     "M_s": [18.4, 25.3, 20.7, 22.7, 23.5, 24.2, 23.6, 27.2, 34.9, 34.3, 31.9, 17.2, 9.0, 4.6, -23.9, -23.0],
 }
-# Tables 5.2 and 5.3, as printed
+# Tables 5.2 and 5.3, as printed, without FitPercent and without CL2, which is fitted in time
 PRINTED = {
-    "OL1": {"tau_n": "0.3897"},
-    "OL2": {"K_p": "1.003", "K_i": "4.2725"},
-    "OL3": {"K_p": "3.4363", "K_i": "4.2639", "t_d": "0.4022"},
-    "OL4": {"K_p": "2.902", "K_i": "4.2699", "omega_n": "8.2912", "zeta": "0.5616"},
-    "OL5": {"K_p": "4.36", "K_i": "4.2664", "t_d": "0.1023", "omega_n": "8.202", "zeta": "0.88"},
-    "CL1": {"tau_n": "0.278", "K_p": "0.01", "K_i": "5.99"},
-    "CL3": {"tau_n": "0.3537", "K_p": "1.1833", "K_i": "5.3967", "omega_n": "7.2133", "zeta": "0.4"},
-    "CL4": {
-        "tau_n": "0.3290",
-        "K_p": "1.6004",
-        "K_i": "4.4388",
-        "t_d": "0.1161",
-        "omega_n": "9.7705",
-        "zeta": "0.4",
-    },
+    name: {parameter: text for parameter, text in printed.items() if parameter in NAMES}
+    for name, printed in {**OPEN_LOOP, **CLOSED_LOOP}.items()
+    if name != IN_TIME
 }
 
 

@@ -87,12 +87,11 @@ def identify_limits(
 def _offset_std(signals: Signals) -> float:
     """Return the deviation of the set point's line at the working point, over its speed.
 
-    Where large sines meet a torque limit the mean speed falls behind the set point, and the line with it.
+    The speed of the working point is that of the line. Where large sines meet a torque limit the mean speed falls
+    behind the set point, and the line with it.
     """
     point = signals.working_point
-    at = np.array([point.set_point_v, 1.0])
-    line_std = float(np.sqrt(at @ signals.calibration.covariance @ at)) / point.engine_speed_rev_s
-    return float(np.hypot(line_std, LEAST_OFFSET_STD))
+    return float(np.hypot(point.engine_speed_std_rev_s / point.engine_speed_rev_s, LEAST_OFFSET_STD))
 
 
 def whole_governor() -> Structure:

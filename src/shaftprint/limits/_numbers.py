@@ -17,10 +17,10 @@ from shaftprint.vessel import Vessel
 
 # A number whose interval is wider than this share of it is hardly known.
 HARDLY_KNOWN = 0.6
-# A simulated set point with a limited rate turns at whole steps: three of five intervals missed the true rate.
 # Deviation of the set point's line at the working point, over its speed, up to which the search tells a line that rests
 # at its torque limit from one that does not: of two recordings beyond it the search missed the right one in one.
 LARGEST_LINE_STD = 0.003
+# A simulated set point with a limited rate turns at whole steps: three of five intervals missed the true rate.
 SEVERAL_OPTIMA = "its likelihood has several optima close together, of which the interval spans one"
 
 
