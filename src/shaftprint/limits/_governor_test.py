@@ -9,9 +9,10 @@ import numpy as np
 from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
+from shaftprint.limits._set_point import GovernorRecord
 from shaftprint.models import AHEAD_S
 from shaftprint.signals import Signals, deviation
-from shaftprint.time_domain import Decimator, Jump, Record, full_load_shape, jumps_in, with_jumps
+from shaftprint.time_domain import Decimator, Jump, full_load_shape, jumps_in, with_jumps
 from shaftprint.vessel import Vessel
 
 # Samples of the record and of its drive a second [Hz]. Above 6 Hz a governor hardly acts, and what a pick-up of one
@@ -94,7 +95,7 @@ class GovernorTest:
         area = np.interp(ends[1], edges, sums) - np.interp(ends[0], edges, sums)
         return replace(self, without_jumps=frozen_float(area / (ends[1] - ends[0])), late_s=frozen_float(late_s))
 
-    def record(self, *, rate_hz: float = RATE_HZ, drive_hz: float = DRIVE_HZ) -> Record:
+    def record(self, *, rate_hz: float = RATE_HZ, drive_hz: float = DRIVE_HZ) -> GovernorRecord:
         """Return the record of a fit: the torque of the engine over the load, driven by set point, speed and torque."""
         every = round(drive_hz / rate_hz)
         decimator = Decimator(every=every)
@@ -110,7 +111,8 @@ class GovernorTest:
         }
         lost = np.interp(time, self.time_s, self.lost.astype(np.float64)) > 0.0
         used = decimator.filtered(lost.astype(np.float64)) < 1e-3
-        return Record(
+        corner_time, corner_value = self._corners(time[0], time[-1])
+        return GovernorRecord(
             name=self.name,
             rate_hz=rate_hz,
             start_s=self.begin_s,
@@ -119,7 +121,22 @@ class GovernorTest:
             used=frozen_bool(used),
             drive={name: frozen_float(values) for name, values in drive.items()},
             every=every,
+            corner_time_s=frozen_float(corner_time),
+            corner_value=frozen_float(corner_value),
         )
+
+    def _corners(self, begin_s: float, end_s: float) -> tuple[FloatArray, FloatArray]:
+        """Return times [s] and values [-] of the corners of the set point, jumps as late as they are."""
+        inside = (self.time_s > begin_s) & (self.time_s < end_s)
+        at = np.array([jump.at_s for jump in self.jumps]) + self.late_s
+        time = np.concatenate([[begin_s], self.time_s[inside], np.repeat(at, 2), [end_s]])
+        # at a jump the corner before it comes first
+        passed = np.concatenate([np.zeros(1 + np.count_nonzero(inside)), np.tile([0.0, 1.0], at.size), [0.0]])
+        order = np.lexsort([passed, time])
+        time, value = time[order], self._from(self.without_jumps, time[order])
+        for jump, jump_s in zip(self.jumps, at.tolist(), strict=True):
+            value += (jump.after - jump.before) * ((time > jump_s) | ((time == jump_s) & (passed[order] > 0.0)))
+        return time, value
 
     def _jumped(self, time_s: FloatArray) -> FloatArray:
         """Return the sum of all jumps that have passed [-], shape (samples,)."""

@@ -20,8 +20,9 @@ HARDLY_KNOWN = 0.6
 # Deviation of the set point's line at the working point, over its speed, up to which the search tells a line that rests
 # at its torque limit from one that does not: of two recordings beyond it the search missed the right one in one.
 LARGEST_LINE_STD = 0.003
-# A simulated set point with a limited rate turns at whole steps: three of five intervals missed the true rate.
-SEVERAL_OPTIMA = "its likelihood has several optima close together, of which the interval spans one"
+# Of 17 simulated set points with a limited rate the rate came out 0.6 % high, 0.8 % in the root mean square, with
+# noise of 0.4 %: between two samples of 12.5 Hz a governor already answers what disturbs the speed.
+RAMP_STD = 7e-3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -103,8 +104,19 @@ class Units:
                 )
             case "r_s":
                 return (
-                    Scale(name="r_s_rpm", unit="rpm/s", meaning="fastest change of the set point", factor=rpm),
-                    Scale(name="r_s", unit="1/s", meaning="the same over the speed of the working point"),
+                    Scale(
+                        name="r_s_rpm",
+                        unit="rpm/s",
+                        meaning="fastest change of the set point",
+                        factor=rpm,
+                        share_std=RAMP_STD,
+                    ),
+                    Scale(
+                        name="r_s",
+                        unit="1/s",
+                        meaning="the same over the speed of the working point",
+                        share_std=RAMP_STD,
+                    ),
                 )
             case "d_e":
                 return (
@@ -146,8 +158,6 @@ def _printed(found: Fitted, spread: Spread, units: Units, kind: Kind, name: str)
     at_bound = value in (parameter.lower, parameter.upper)
     interval = profile_interval(found, spread, name)
     doubt = _doubt(value, interval, at_bound=at_bound)
-    if kind is Kind.RAMP:
-        doubt = doubt or SEVERAL_OPTIMA
     line_std = found.priors["e_set"].std
     if kind in (Kind.TORQUE, Kind.SMOKE) and line_std > LARGEST_LINE_STD:
         doubt = doubt or (

@@ -9,6 +9,8 @@ from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import FittedTerm, LineTest, Repeats, Term, TermCheck, TermTest, fit_percent
 from shaftprint.limits._noise_colour import Innovations, innovations
+from shaftprint.limits._set_point import GovernorRecord
+from shaftprint.limits._suspects import IDLE
 from shaftprint.models import Structure
 from shaftprint.time_domain import ExactDelays, Record, simulated_on
 
@@ -17,6 +19,9 @@ LONGEST_STEP_S = 0.01
 # Cost of a simulation that runs away.
 AWAY = 1e9
 OUTPUT = "y"
+EXACT = ExactDelays(longest_step_s=LONGEST_STEP_S)
+# The rate limit of the set point acts before the equations; the step of its derivative, as a share of it.
+RATE, RATE_STEP = "r_s", 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -61,7 +66,7 @@ class PredictionError(Term):
     """The structure; what is not free has the values in ``held``."""
     whole: Structure
     """The same with everything free: one compiled simulation serves all limits."""
-    record: Record
+    record: GovernorRecord
     """The data."""
     held: FloatArray
     """Values of all parameters; the free ones are replaced, shape (parameters,)."""
@@ -76,7 +81,7 @@ class PredictionError(Term):
 
     @classmethod
     def of(
-        cls, whole: Structure, record: Record, values: Mapping[str, float], free: Sequence[str]
+        cls, whole: Structure, record: GovernorRecord, values: Mapping[str, float], free: Sequence[str]
     ) -> "PredictionError":
         """Return the likelihood in which some parameters are free, from values of all on.
 
@@ -234,5 +239,31 @@ class PredictionError(Term):
 
     def _simulated(self, own: FloatArray, wanted: Sequence[str]) -> FloatArray | None:
         """Return prediction and derivatives, shape (1 + wanted, samples); None where it runs away."""
-        found = simulated_on(ExactDelays(longest_step_s=LONGEST_STEP_S), self.whole, own, self.record, wanted)
-        return None if found is None else found[:, :, 0]
+        inside = [name for name in wanted if name != RATE]
+        found = simulated_on(EXACT, self.whole, own, self._record_at(own), inside)
+        if found is None or len(inside) == len(wanted):
+            return None if found is None else found[:, :, 0]
+        change = self._change_with_rate(own)
+        return None if change is None else np.insert(found[:, :, 0], 1 + list(wanted).index(RATE), change, axis=0)
+
+    def _record_at(self, own: FloatArray) -> Record:
+        """Return the record with the set point as its limited rate leaves it."""
+        rate = float(own[self.whole.names.index(RATE)])
+        if rate >= IDLE[RATE]:
+            return self.record
+        # the rate is that of the demand, which is the recorded set point times its scale
+        limited = self.record.set_point_at(rate / float(own[self.whole.names.index("c_set")]))
+        return replace(self.record, drive={**self.record.drive, "n_set": limited})
+
+    def _change_with_rate(self, own: FloatArray) -> FloatArray | None:
+        """Return the change of the prediction with the rate of the set point, shape (samples,): no equation has it."""
+        place = self.whole.names.index(RATE)
+        ends = []
+        for side in (-1.0, 1.0):
+            moved = own.copy()
+            moved[place] *= 1.0 + side * RATE_STEP
+            found = simulated_on(EXACT, self.whole, moved, self._record_at(moved), ())
+            if found is None:
+                return None
+            ends.append(found[0, :, 0])
+        return np.asarray((ends[1] - ends[0]) / (2.0 * RATE_STEP * own[place]))

@@ -12,9 +12,9 @@ from shaftprint.identify import Draw, Identification, Prior, Settings, identify_
 from shaftprint.limits._governor_test import GovernorTest
 from shaftprint.limits._messages import Messages, messages_of
 from shaftprint.limits._prediction_error import OUTPUT, PredictionError
+from shaftprint.limits._set_point import GovernorRecord
 from shaftprint.limits._suspects import IDLE, SUSPECTS, Kind, Suspect, parameters_of, starts_of
 from shaftprint.models import Structure
-from shaftprint.time_domain import Record
 
 GOVERNOR: Mapping[str, float] = {
     "K_p": 5.0,
@@ -122,7 +122,7 @@ def values_without_limits(whole: Structure) -> dict[str, float]:
 
 def fitted(
     whole: Structure,
-    record: Record,
+    record: GovernorRecord,
     values: Mapping[str, float],
     kinds: Sequence[Kind],
     *,
@@ -154,7 +154,7 @@ def fitted(
     return Fitted(kinds=tuple(kinds), term=best, values=found, fit=fit, priors=priors, messages=messages)
 
 
-def calm_part(record: Record, campaign: Campaign) -> Record:
+def calm_part(record: GovernorRecord, campaign: Campaign) -> GovernorRecord:
     """Return the record with only the sines in use in which the torque changes least: no limit is near in them."""
     rate = np.abs(np.gradient(record.outputs[OUTPUT], 1.0 / record.rate_hz))
     inside = {sine.name: _inside(record, sine.settled_s, sine.stop_s) for sine in campaign.sines}
@@ -166,7 +166,7 @@ def calm_part(record: Record, campaign: Campaign) -> Record:
     return replace(record, used=frozen_bool(kept))
 
 
-def _inside(record: Record, begin_s: float, end_s: float) -> BoolArray:
+def _inside(record: GovernorRecord, begin_s: float, end_s: float) -> BoolArray:
     return np.asarray(record.used & (record.time_s >= begin_s) & (record.time_s < end_s))
 
 

@@ -54,7 +54,8 @@ def limited_governor(*limits: str, period_s: float = 0.0, name: str = "") -> Str
     Parameters
     ----------
     limits, period_s
-        As in ``limited``.
+        As in ``limited``. The rate limit ``"ramp"`` is a parameter that no equation has: it acts on the set point
+        before the governor, and whoever drives the model gives ``n_set`` as the limit leaves it.
     name
         What to call it; from the limits if not given.
 
@@ -64,11 +65,12 @@ def limited_governor(*limits: str, period_s: float = 0.0, name: str = "") -> Str
         If there is no limit of a name, or a smoke limit without a torque limit.
     """
     extra = parameters_of(limits)
+    inside = tuple(limit for limit in limits if limit != "ramp")
     diagram = Diagram(
         name="limited governor",
         input="n_set",
         outputs=("y",),
-        equations=_PredictedTorque(LimitedEngine(limits, _measured_shape, period_s)),
+        equations=_PredictedTorque(LimitedEngine(inside, _measured_shape, period_s)),
         of=(C_SET, E_SET, GAUGE_K_P, GAUGE_K_I, V_ONE, T_D, GAUGE_OMEGA_N, GAUGE_ZETA, G, T_SP, DROOP, *extra),
         further=("n", "M_b", "c"),
     )
