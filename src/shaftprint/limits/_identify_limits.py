@@ -10,7 +10,15 @@ from shaftprint.identify import Prior
 from shaftprint.limits._governor_test import governor_test
 from shaftprint.limits._limit_fit import LimitFit
 from shaftprint.limits._messages import Messages
-from shaftprint.limits._numbers import Units, exclusion, messages_exclusion, numbers_of
+from shaftprint.limits._numbers import (
+    Units,
+    exclusion,
+    messages_exclusion,
+    numbers_of,
+    quantum_exclusion,
+    quantum_number,
+)
+from shaftprint.limits._quantum import quantum_of
 from shaftprint.limits._search import GOVERNOR, Fitted, Scanned, Search, fitted, schwarz, with_messages
 from shaftprint.limits._suspects import SUSPECTS, Kind
 from shaftprint.limits._uncertainty import spread_of
@@ -70,16 +78,23 @@ def identify_limits(
     best = fitted(whole, test.record(), here.values, here.kinds, priors=priors, messages=here.messages)
     say("Finding the intervals")
     spread = spread_of(best, test, signals, vessel)
+    numbers, gains = numbers_of(best, spread, units), _gains(search, here)
+    not_seen = _not_seen(here, rest, search.messages(here), units)
+    quantum = quantum_of(best, test, campaign)
+    if quantum is not None and quantum.acts:
+        numbers, gains = (*numbers, quantum_number(quantum, units)), {**gains, Kind.QUANTUM: quantum.gain}
+    else:
+        not_seen = {**not_seen, Kind.QUANTUM: quantum_exclusion(quantum, units)}
     return LimitFit(
-        kinds=best.kinds,
-        numbers=numbers_of(best, spread, units),
-        gains=_gains(search, here),
+        kinds=tuple(gains),
+        numbers=numbers,
+        gains=gains,
         governor=tuple(
             replace(estimate, std=spread.std(estimate.name))
             for estimate in best.fit.parameters
             if estimate.name in GOVERNOR
         ),
-        not_seen=_not_seen(here, rest, search.messages(here), units),
+        not_seen=not_seen,
         identification=best.fit,
     )
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from shaftprint.limits._limit_fit import LimitNumber
 from shaftprint.limits._messages import Messages
+from shaftprint.limits._quantum import Quantum
 from shaftprint.limits._search import Fitted
 from shaftprint.limits._suspects import SUSPECTS, Kind, Suspect
 from shaftprint.limits._uncertainty import LevelInterval, Spread, profile_interval
@@ -198,6 +199,27 @@ def _cycle(messages: Messages) -> LimitNumber:
     )
 
 
+def quantum_number(quantum: Quantum, units: Units) -> LimitNumber:
+    """Return the step of a quantised set point."""
+    value, std = units.speed_rpm * quantum.step, units.speed_rpm * quantum.std
+    lower, upper = value - NORMAL_95 * std, value + NORMAL_95 * std
+    interval = LevelInterval(lower=lower, upper=upper, lower_open=False, upper_open=False)
+    doubt = _doubt(value, interval, at_bound=False)
+    if not quantum.is_only_one:
+        doubt = doubt or "another step explains the test nearly as well"
+    return LimitNumber(
+        kind=Kind.QUANTUM,
+        name="q_rpm",
+        unit="rpm",
+        value=value,
+        std=std,
+        lower=lower,
+        upper=upper,
+        meaning="step of the set point",
+        doubt=doubt,
+    )
+
+
 def _widened(value: float, end: float, more: float) -> float:
     """Return the end of an interval further out by another independent cause."""
     return value + float(np.sign(end - value) * np.hypot(end - value, more))
@@ -237,3 +259,12 @@ def messages_exclusion(cycle_s: float | None) -> str:
     if cycle_s is None:
         return f"{Kind.HELD.value}: not seen, and no cycle of it is excluded"
     return f"{Kind.HELD.value}: not seen, none longer than T_set = {cycle_s:.3g} s"
+
+
+def quantum_exclusion(quantum: Quantum | None, units: Units) -> str:
+    """Return up to which step the sines exclude a quantised set point, in words."""
+    if quantum is None or quantum.excluded_beyond is None:
+        return f"{Kind.QUANTUM.value}: not seen, and no step of it is excluded"
+    return (
+        f"{Kind.QUANTUM.value}: not seen, none coarser than q_rpm = {units.speed_rpm * quantum.excluded_beyond:.3g} rpm"
+    )

@@ -19,6 +19,7 @@ class Kind(Enum):
     RAMP = "rate limit of the set point"
     DEADBAND = "deadband"
     HELD = "held set point"
+    QUANTUM = "quantised set point"
 
 
 # Values with which a limit does nothing. None of them is a round zero, for that would be another simulation.
