@@ -275,7 +275,22 @@ class Search:
             starts += _strongest(self._scan_from(here, calm), POLISHED_CALM)
         tries = [self._tried(one.start, (*here.kinds, one.suspect.kind), here.messages) for one in starts]
         best = min((one for one in tries if one is not None), key=schwarz, default=None)
-        return None if best is None else self._pushed(best, _delay_moves(best))
+        if best is None:
+            return None
+        if Kind.SMOKE in best.kinds and Kind.SMOKE not in here.kinds:
+            best = self._torque_limit_or(best, scanned)
+        return self._pushed(best, _delay_moves(best))
+
+    def _torque_limit_or(self, smoke: Fitted, scanned: Sequence[Scanned]) -> Fitted:
+        """Return a torque limit alone where a smoke limit gains hardly more than chance over it.
+
+        Of a line that rests near its torque limit the wrong one of two optima is worse than any smoke limit.
+        """
+        starts = _strongest([one for one in scanned if one.suspect.kind is Kind.TORQUE], 1)
+        kinds = tuple(Kind.TORQUE if kind is Kind.SMOKE else kind for kind in smoke.kinds)
+        tries = [self._tried(one.start, kinds, smoke.messages) for one in starts]
+        torque = next((self._pushed(one, self._rest_moves(one)) for one in tries if one is not None), smoke)
+        return torque if schwarz(torque) - schwarz(smoke) < LEAST_GAIN else smoke
 
     def held(self, here: Fitted) -> Fitted | None:
         """Return the governor with a set point that is held between messages; None where the jumps speak against it."""
