@@ -46,7 +46,6 @@ _ROOMS = (
     "kernels",
     "limits",
     "models",
-    "nonlinearity",
     "normal",
     "propeller",
     "publication",

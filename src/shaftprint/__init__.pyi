@@ -12,7 +12,6 @@ from shaftprint import identify as identify
 from shaftprint import kernels as kernels
 from shaftprint import limits as limits
 from shaftprint import models as models
-from shaftprint import nonlinearity as nonlinearity
 from shaftprint import normal as normal
 from shaftprint import propeller as propeller
 from shaftprint import publication as publication

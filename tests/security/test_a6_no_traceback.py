@@ -209,7 +209,6 @@ VERBS = {
     "spectra": ["estimate_response", "estimate_spectra"],
     "identify": ["identify", "assess", "compare_structures"],
     "time_domain": ["identify_in_time"],
-    "nonlinearity": ["detect"],
     "simulation": ["simulate"],
     "validation": ["validate"],
     "fingerprint": ["take_fingerprint", "read_fingerprint"],

@@ -121,7 +121,7 @@ def test_sines_add_what_they_know_and_nothing_of_the_limit(found, sines):
 
 
 def test_without_the_limit_the_steps_give_wrong_numbers_and_more_noise(found, tests):
-    """The test of fit asks linear questions and does not see it: that is what ``nonlinearity`` is for."""
+    """The test of fit asks linear questions and does not see it: that is what ``limits`` is for."""
     linear = structure("GAUGE-CLOSED").held_at(**KNOWN)
     start = {name: value for name, value in TRUTH.items() if name != "m_max"}
     fit = identify_in_time(

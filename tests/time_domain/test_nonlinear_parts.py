@@ -27,18 +27,6 @@ POINT = WorkingPoint(
 
 
 @dataclass(frozen=True)
-class Number:
-    name: str
-    value: float
-
-
-@dataclass(frozen=True)
-class Finding:
-    kind: str
-    estimates: tuple[Number, ...] = ()
-
-
-@dataclass(frozen=True)
 class Fit:
     parameters: tuple[Estimate, ...]
 
@@ -135,26 +123,21 @@ def test_orders_of_the_shaft_leave_the_torque_and_slow_motion_stays(vessel):
     assert np.all(np.isnan(without_orders(lost, vessel).shaft_torque_nm))
 
 
-def test_findings_choose_the_structure_and_its_start(vessel):
-    found = (
-        Finding("torque limit", (Number("m_max", 2.8), Number("limit", 1.0))),
-        Finding("rate limit of the fuel rack", (Number("r_x", 3.8),)),
-        Finding("quantised set point", (Number("q", 0.01),)),
-    )
-    model = structure_for(found, vessel, POINT)
+def test_what_is_known_of_the_limits_is_where_they_start(vessel):
+    known = {"m_max": 2.8, "r_x": 3.8, "d_e": 0.01, "K_p": 5.0}
+    model = structure_for(("torque", "rate"), vessel, POINT, start=known)
     assert model.limits == ("torque", "rate")
-    assert model.start == {"m_max": 2.8, "r_x": 3.8}
-    assert model.left_out == ("quantised set point",)
+    assert model.start["m_max"] == 2.8
+    assert model.start["r_x"] == 3.8
+    assert "d_e" not in model.start
     # nothing brakes the line visibly: the lower limit is out of the way
     assert model.names == ("m_max", "T_aw", "r_x")
     lowest = next(p for p in model.structure.parameters if p.name == "m_min")
     assert (lowest.held, lowest.value) == (True, -2.0)
 
 
-def test_a_motoring_limit_is_negative_and_free(vessel):
-    found = (Finding("motoring limit", (Number("m_min", 0.64),)), Finding("turbocharger lag", (Number("air", 0.5),)))
-    model = structure_for(found, vessel, POINT)
-    assert model.limits == ("torque", "smoke")
+def test_a_motoring_limit_that_is_known_is_free(vessel):
+    model = structure_for(("torque", "smoke"), vessel, POINT, start={"m_min": -0.64, "a_0": 0.5})
     assert model.start == {"m_min": -0.64, "a_0": 0.5}
     assert set(model.names) == {"m_max", "m_min", "T_aw", "a_0", "tau_tc"}
 
@@ -164,8 +147,6 @@ def test_limits_by_name(vessel):
     assert structure_for(("deadband",), vessel, POINT).names == ("d_e",)
     with pytest.raises(IdentificationError, match="expected some of torque, rate, deadband, smoke, found speed"):
         structure_for(("speed",), vessel, POINT)
-    with pytest.raises(IdentificationError, match="found quadratic propeller only, for which no limited structure"):
-        structure_for((Finding("quadratic propeller only"),), vessel, POINT)
     with pytest.raises(IdentificationError, match="found none"):
         structure_for((), vessel, POINT)
 

@@ -13,6 +13,8 @@ torque ``M_b``      -         of the engine, deviation over ``M_b0 = M_s0 / (i e
 ``d_e``             -         speed error over ``n_0`` within which the governor does nothing
 ``a_0``             -         torque without boost over full-load torque
 ``tau_tc``          s         time in which the boost follows the torque
+``T_set``           s         time from one message with the set point to the next
+``q_rpm``           rpm       step of a quantised set point
 =================== ========= ==========================================================================
 """
 

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from shaftprint.identify import Estimate, Identification
-from shaftprint.limits._suspects import Kind
+from shaftprint.limits._prediction_error import PredictedTorque
+from shaftprint.limits._suspects import STRUCTURE_LIMITS, Kind, parameters_of
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -59,6 +60,25 @@ class LimitFit:
     def trusted(self) -> tuple[LimitNumber, ...]:
         """The numbers that may be used."""
         return tuple(number for number in self.numbers if number.trusted)
+
+    @property
+    def predicted(self) -> PredictedTorque:
+        """The data with the torque over the load as governor and limits predict it."""
+        (part,) = self.identification.parts
+        if not isinstance(part, PredictedTorque):
+            raise TypeError(f"{part.name}: expected the torque of a governor.")
+        return part
+
+    @property
+    def structure_limits(self) -> tuple[str, ...]:
+        """The limits that act, by the names of ``time_domain.structure_for``, for a fit of the whole line with them."""
+        return tuple(dict.fromkeys(name for kind in self.kinds for name in STRUCTURE_LIMITS.get(kind, ())))
+
+    @property
+    def start(self) -> Mapping[str, float]:
+        """Values of the limits' parameters, from which such a fit may start."""
+        names = parameters_of(self.kinds)
+        return {one.name: one.value for one in self.identification.parameters if one.name in names}
 
     @property
     def sentence(self) -> str:

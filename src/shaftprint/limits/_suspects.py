@@ -22,6 +22,15 @@ class Kind(Enum):
     QUANTUM = "quantised set point"
 
 
+STRUCTURE_LIMITS: Mapping[Kind, tuple[str, ...]] = {
+    Kind.TORQUE: ("torque",),
+    Kind.MOTORING: ("torque",),
+    Kind.SMOKE: ("torque", "smoke"),
+    Kind.RATE: ("rate",),
+    Kind.DEADBAND: ("deadband",),
+}
+"""Limits of ``time_domain.structure_for``; what happens to the set point before the governor has no place in it."""
+
 # Values with which a limit does nothing. None of them is a round zero, for that would be another simulation.
 IDLE: Mapping[str, float] = {
     "m_max": 60.0,

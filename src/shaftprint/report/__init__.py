@@ -50,8 +50,8 @@ from shaftprint.report._inertia_tables import (
     two_mass_sentence,
     water_table,
 )
+from shaftprint.report._limits_figure import plot_limits
 from shaftprint.report._mode_figure import plot_modes
-from shaftprint.report._nonlinearity_figure import plot_nonlinearities
 from shaftprint.report._nyquist import plot_nyquist
 from shaftprint.report._outlier_figure import plot_outliers
 from shaftprint.report._render import render_report
@@ -113,10 +113,10 @@ __all__ = [
     "plot_differences",
     "plot_excitation",
     "plot_governor_fits",
+    "plot_limits",
     "plot_line_selection",
     "plot_missing_damping",
     "plot_modes",
-    "plot_nonlinearities",
     "plot_nyquist",
     "plot_open_loop_comparison",
     "plot_open_loop_responses",

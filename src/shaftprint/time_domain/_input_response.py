@@ -5,7 +5,7 @@ input explains of them is no noise: the noise model is taken from the rest, so t
 and its size is a test of the structure (Ljung, System Identification: Theory for the User, second edition, section
 16.6). It asks linear questions: what a limit of engine or governor leaves is explained by no linear response, is taken
 for noise, and passes. Responses from the cube of the input did not find a torque limit that moved ``k_q`` by twenty of
-its standard deviations (p = 0.15); looking for limits is the task of ``nonlinearity``.
+its standard deviations (p = 0.15); looking for limits is the task of ``limits``.
 """
 
 import numpy as np

@@ -52,8 +52,6 @@ class NonlinearFit:
     """Number of starts."""
     reached: tuple[int, int]
     """How many of those that went on reached the optimum that led to the one that won, and how many went on."""
-    left_out: tuple[str, ...]
-    """Findings that the structure has no place for."""
     fragile: tuple[Fragile, ...] = ()
     """Stretches of records that were not fitted, because noise decides in them what the line does."""
 
@@ -125,7 +123,6 @@ def identify_nonlinear(
         records=(*before, *names),
         starts=how.starts,
         reached=reached,
-        left_out=model.left_out,
         fragile=task.fragile(found),
     )
 
