@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 
 from shaftprint.campaign import load_campaign
+from shaftprint.catalogue import structure
 from shaftprint.identify import Identification, Settings, Unweighted, identify, priors_from_vessel, profile_intervals
-from shaftprint.models import structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import Signals, prepare_signals
 from shaftprint.spectra import ExactBin, estimate_response, open_loop

@@ -22,11 +22,11 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from benchmarks.monte_carlo_cases import GAUGE, KNOWN, THESIS, TRUTH, TUG, Case, Noise
 from benchmarks.monte_carlo_responses import draw
 from shaftprint.arrays import FloatArray, IntArray
+from shaftprint.catalogue import structure
 from shaftprint.errors import ShaftprintError
 from shaftprint.identify import Identification, Interval, Settings, identify, profile
 from shaftprint.identify.search._levenberg_marquardt import descend
 from shaftprint.identify.uncertainty._numbers import Numbers, all_numbers
-from shaftprint.models import structure
 from shaftprint.normal import NORMAL_95
 
 SEED = 34

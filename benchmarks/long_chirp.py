@@ -8,8 +8,8 @@ from scipy.signal import StateSpace, lsim, tf2ss
 from benchmarks.thesis_case import TRUTH
 from benchmarks.timing import Spread, cpu_seconds, print_table
 from shaftprint.arrays import FloatArray
+from shaftprint.catalogue import structure
 from shaftprint.identify import Identification
-from shaftprint.models import structure
 from shaftprint.time_domain import Record, identify_chirp, record_from_arrays
 
 SAMPLES, DURATION_S = 300_000, 1650.0

@@ -7,7 +7,8 @@ import numpy as np
 
 from benchmarks.thesis_case import FREQUENCY_HZ, SNR_M_S_DB, SNR_N_DB
 from shaftprint.arrays import ComplexArray, FloatArray, IntArray
-from shaftprint.models import Structure, structure
+from shaftprint.catalogue import structure
+from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 
 # Signal-to-noise ratio of a fuel rack that is logged in steps of a percent [dB].

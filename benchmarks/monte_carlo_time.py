@@ -22,8 +22,8 @@ from benchmarks.monte_carlo_tables import write_between_marks
 from benchmarks.validation import MOTORING_NM, STRONGER
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import load_campaign
+from shaftprint.catalogue import structure
 from shaftprint.identify import Identification, Settings, identify
-from shaftprint.models import structure
 from shaftprint.normal import NORMAL_95
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals

@@ -14,8 +14,8 @@ import numpy as np
 
 from benchmarks.timing import Spread, print_table
 from shaftprint.campaign import Campaign
+from shaftprint.catalogue import structure
 from shaftprint.identify import Identification, Settings, identify, priors_from_vessel
-from shaftprint.models import structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import Signals, prepare_signals
 from shaftprint.spectra import estimate_response

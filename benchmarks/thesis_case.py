@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.models import Structure, structure
+from shaftprint.catalogue import structure
+from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 
 # Thesis table 3.5, selected frequencies.

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, identify, priors_from_vessel
-from shaftprint.models import structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.spectra import estimate_response

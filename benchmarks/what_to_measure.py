@@ -16,6 +16,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import load_campaign
+from shaftprint.catalogue import structure
 from shaftprint.identify import (
     STAN_TUG_NOISE,
     Draw,
@@ -33,7 +34,7 @@ from shaftprint.identify import (
     priors_from_vessel,
     profile,
 )
-from shaftprint.models import Structure, structure
+from shaftprint.models import Structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.spectra import FrequencyResponse, estimate_response

@@ -17,6 +17,7 @@ import numpy as np
 
 from benchmarks.what_to_measure import FLAT_ENGINE, GAUGE, TRUTH, TVC, lines, together
 from shaftprint.campaign import load_campaign
+from shaftprint.catalogue import structure
 from shaftprint.errors import ShaftprintError
 from shaftprint.identify import (
     STAN_TUG_NOISE,
@@ -28,7 +29,6 @@ from shaftprint.identify import (
     predict_accuracy,
     priors_from_vessel,
 )
-from shaftprint.models import structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import Signals, prepare_signals
 from shaftprint.spectra import FrequencyResponse, estimate_response, estimate_spectra

@@ -29,7 +29,7 @@ def fingerprint_of(tug, seed):
         with sp.recording.read_recording(path) as recording:
             signals = sp.signals.prepare_signals(recording, vessel, campaign)
     measured = sp.spectra.estimate_spectra(signals, campaign)
-    line = sp.models.structure("GAUGE-CLOSED")
+    line = sp.catalogue.structure("GAUGE-CLOSED")
     settings = sp.identify.Settings(priors=sp.identify.priors_from_vessel(line, vessel, signals.working_point))
     return sp.fingerprint.take_fingerprint(
         sp.identify.identify(line, measured.response, rng=np.random.default_rng(seed), settings=settings),

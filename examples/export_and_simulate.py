@@ -16,7 +16,7 @@ import numpy as np
 import shaftprint as sp
 
 vessel, campaign = sp.vessel.load_vessel("stan-tug-1205"), sp.campaign.load_campaign("short")
-line = sp.models.structure("GAUGE-CLOSED")
+line = sp.catalogue.structure("GAUGE-CLOSED")
 with TemporaryDirectory() as folder:
     path = Path(folder) / "recording.nc"
     sp.tug.sail(vessel, campaign, path, seed=3)

@@ -25,7 +25,7 @@ for line, frequency, used in zip(response.lines, response.frequency_hz, response
 
 # A test of speed and shaft torque cannot tell the slope g of the engine torque from the inertia time tau_up of the
 # engine: something must be known of both, and the vessel file knows it from the torsional vibration calculation.
-gauge = sp.models.structure("GAUGE-CLOSED")
+gauge = sp.catalogue.structure("GAUGE-CLOSED")
 priors = sp.identify.priors_from_vessel(gauge, vessel, point)
 for name, prior in priors.items():
     print(f"known beforehand: {name} = {prior.mean:.4f} +/- {prior.std:.4f}")

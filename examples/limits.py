@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from shaftprint.models import limited, structure
+from shaftprint.catalogue import limited, structure
 from shaftprint.report import SimulatedSignal, plot_simulation, save_figure
 from shaftprint.simulation import simulate
 

@@ -10,8 +10,8 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from shaftprint.campaign import Campaign, Staircase, load_campaign
+from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, assess, priors_from_vessel
-from shaftprint.models import structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.time_domain import identify_chirp, records_of

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint import campaign, identify, models, recording, signals, spectra, vessel
+from shaftprint import campaign, catalogue, identify, recording, signals, spectra, vessel
 from shaftprint.models import Block, Delay, Parameter, Shaft, Structure
 
 
@@ -65,7 +65,7 @@ if __name__ == "__main__":
         prepared = signals.prepare_signals(raw, tug, test)
     _, core = spectra.open_loop(spectra.estimate_response(prepared, test))
 
-    stiff, elastic = models.structure("GAUGE-CORE"), elastic_core()
+    stiff, elastic = catalogue.structure("GAUGE-CORE"), elastic_core()
     known = identify.Settings(priors=identify.priors_from_vessel(elastic, tug, prepared.working_point))
     comparison = identify.compare_structures([stiff, elastic], core, rng=np.random.default_rng(1), settings=known)
     for candidate in comparison.candidates:

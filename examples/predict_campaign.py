@@ -9,7 +9,7 @@ import numpy as np
 
 import shaftprint as sp
 
-line = sp.models.structure("GAUGE-CLOSED")
+line = sp.catalogue.structure("GAUGE-CLOSED")
 print(sp.identify.identifiability(line, rng=np.random.default_rng(1)).text)
 print()
 

@@ -10,8 +10,8 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from shaftprint.campaign import load_campaign
+from shaftprint.catalogue import KnownPropeller, structure, with_known_propeller
 from shaftprint.identify import identifiability, identify
-from shaftprint.models import KnownPropeller, structure, with_known_propeller
 from shaftprint.propeller import ka4_70_in_19a
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals

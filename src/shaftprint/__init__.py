@@ -12,7 +12,8 @@ room            nouns                       verbs
 ``clocks``      ``ClockMap``                ``align``
 ``signals``     ``Signals``                 ``prepare_signals``, ``inspect_channels``
 ``spectra``     ``FrequencyResponse``       ``estimate_response``, ``response_from_arrays``, ``plant_from_closed_loop``
-``models``      ``Structure``, ``Parameter`` ``structure``, ``margins``, ``limited``
+``models``      ``Structure``, ``Parameter`` ``margins``, ``is_stable``
+``catalogue``                               ``structure``, ``limited``
 ``identify``    ``Identification``,         ``identify``, ``assess``, ``profile``, ``identifiability``,
                 ``Verdict``                 ``predict_accuracy``, ``compare_structures``
 ``time_domain`` ``Record``                  ``records_of``, ``identify_in_time``, ``identify_nonlinear``
@@ -36,6 +37,7 @@ _ROOMS = (
     "arguments",
     "arrays",
     "campaign",
+    "catalogue",
     "clocks",
     "errors",
     "escape",

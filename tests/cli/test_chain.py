@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.cli._chain import response_of, responses_of
 from shaftprint.errors import StructureError
-from shaftprint.models import Gain, Parameter, Structure, structure
+from shaftprint.models import Gain, Parameter, Structure
 from shaftprint.spectra import FrequencyResponse
 
 S = 2j * np.pi * np.array([0.1, 0.4, 1.5])

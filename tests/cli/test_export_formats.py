@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from scipy.io import loadmat
 
+from shaftprint.catalogue import structure
 from shaftprint.cli._export import FORMATS
 from shaftprint.fingerprint import read_fingerprint
-from shaftprint.models import structure
 
 
 @pytest.mark.parametrize("name", FORMATS)

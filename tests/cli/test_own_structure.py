@@ -30,7 +30,8 @@ LOOP = """
 
     import numpy as np
 
-    from shaftprint.models import Parameter, structure
+    from shaftprint.catalogue import structure
+    from shaftprint.models import Parameter
 
 
     @dataclass
@@ -178,7 +179,7 @@ def test_the_file_may_import_one_beside_it(written):
     written(
         """
         from my_numbers import GAIN
-        from shaftprint.models import structure
+        from shaftprint.catalogue import structure
 
         line = structure("OL2").held_at(K_p=GAIN)
         """

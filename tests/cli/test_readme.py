@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.cli._command_group import COMMANDS
-from shaftprint.models import structure
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

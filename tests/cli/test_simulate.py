@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import load_campaign, setpoint
-from shaftprint.models import limited, structure
+from shaftprint.catalogue import limited, structure
 from shaftprint.simulation import simulate, simulate_exactly
 
 OWN = """

@@ -1,6 +1,6 @@
 """``shaftprint structures`` lists what can be fitted."""
 
-from shaftprint.models import STRUCTURES
+from shaftprint.catalogue import STRUCTURES
 
 
 def test_every_structure_is_listed(run):

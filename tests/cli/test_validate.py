@@ -9,10 +9,10 @@ from dataclasses import replace
 import pytest
 
 from shaftprint.campaign import load_campaign
+from shaftprint.catalogue import structure
 from shaftprint.cli._fingerprint_model import fingerprint_model
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint import read_fingerprint
-from shaftprint.models import structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.vessel import load_vessel

@@ -15,7 +15,7 @@ pytest.register_assert_rewrite("expected", "expected_exports")
 IDENTIFY = "identify log.csv --vessel mine.toml --campaign test.toml -o result"
 MY_SHIP = """
 import dataclasses
-from shaftprint.models import structure
+from shaftprint.catalogue import structure
 
 my_loop = dataclasses.replace(structure("GAUGE-CLOSED"), name="MY-LOOP")
 """

@@ -14,8 +14,8 @@ import pytest
 from expected_exports import EXPORTS
 
 from shaftprint.campaign import load_campaign
+from shaftprint.catalogue import structure
 from shaftprint.fingerprint import read_fingerprint
-from shaftprint.models import structure
 from shaftprint.recording import read_recording
 from shaftprint.tug import read_truth
 from shaftprint.vessel import load_vessel

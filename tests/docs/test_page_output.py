@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from pages import shown
 
+from shaftprint.catalogue import structure
 from shaftprint.clocks import Alignment, ClockMap, LoggerClock, Stretch
 from shaftprint.fingerprint import ClockInfluence
-from shaftprint.models import structure
 from shaftprint.report._clocks import clock_sentences
 
 NUMBER = re.compile(r"(?<![\w.])[-−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")

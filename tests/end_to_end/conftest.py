@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import load_campaign
+from shaftprint.catalogue import structure
 from shaftprint.identify import Identification, Prior, Settings, identify
-from shaftprint.models import structure
 from shaftprint.recording import read_recording, write_recording
 from shaftprint.signals import Signals, prepare_signals
 from shaftprint.spectra import Spectra, estimate_spectra

@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import load_campaign
+from shaftprint.catalogue import structure
 from shaftprint.clocks import align
 from shaftprint.fingerprint import Fingerprint, SourceFile, read_fingerprint, take_fingerprint, write_fingerprint
 from shaftprint.identify import Settings, Uniform, Unweighted, identify, profile_intervals
-from shaftprint.models import structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import Signals, content_of, prepare_signals
 from shaftprint.spectra import ExactBin, FrequencyResponse, estimate_response, open_loop

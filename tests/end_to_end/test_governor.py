@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, identify, priors_from_vessel
-from shaftprint.models import structure
 from shaftprint.normal import NORMAL_95
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals

@@ -5,8 +5,8 @@ import pytest
 from scipy.special import chdtrc
 from tests.measured_truth import as_measured
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, identify
-from shaftprint.models import structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.spectra import estimate_response

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import Campaign
+from shaftprint.catalogue import structure
 from shaftprint.identify import identify
-from shaftprint.models import structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import SetPointCalibration, Signals, SpeedSignal, WorkingPoint, prepare_signals
 from shaftprint.spectra import estimate_response

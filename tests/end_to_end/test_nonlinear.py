@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import Campaign
+from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, identify, priors_from_vessel
-from shaftprint.models import structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import Signals, prepare_signals
 from shaftprint.spectra import estimate_response

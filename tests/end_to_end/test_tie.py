@@ -7,7 +7,7 @@ functions of normalised parameters, worked out here from inertia, torque and spe
 import numpy as np
 import pytest
 
-from shaftprint.models import structure
+from shaftprint.catalogue import structure
 from shaftprint.tug import Tug, linearised_response
 from shaftprint.tug._truth import normalised_truth
 

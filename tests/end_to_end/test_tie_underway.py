@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.models import KnownPropeller, structure, with_known_propeller
+from shaftprint.catalogue import KnownPropeller, structure, with_known_propeller
 from shaftprint.propeller import ka4_70_in_19a
 from shaftprint.tug import Sailing, Tug, linearised_response
 from shaftprint.tug._truth import normalised_truth

@@ -6,10 +6,10 @@ import sys
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import STRUCTURES, structure
 from shaftprint.errors import ExportError
 from shaftprint.export import to_control, to_xarray
 from shaftprint.export._control import pade
-from shaftprint.models import STRUCTURES, structure
 
 control = pytest.importorskip("control", reason="python-control gets the models")
 OMEGA = np.geomspace(0.1, 30.0, 25)

@@ -7,9 +7,10 @@ import zipfile
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import limited, structure
 from shaftprint.errors import ExportError
 from shaftprint.export import PLATFORMS, write_fmu
-from shaftprint.models import Parameter, limited, structure
+from shaftprint.models import Parameter
 from shaftprint.simulation import simulate
 
 SPEED_RPM, TORQUE_NM = 1183.8, 1740.0

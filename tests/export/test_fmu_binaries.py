@@ -9,8 +9,8 @@ from pathlib import PurePosixPath
 
 import pytest
 
+from shaftprint.catalogue import limited
 from shaftprint.export import PLATFORMS, write_fmu
-from shaftprint.models import limited
 
 TORQUE = limited("torque"), {"t_d": 0.0437, "t_sp": 0.1133, "m_max": 1.1}
 CPUS = {"darwin64": 0x01000007, "darwin-arm64": 0x0100000C}

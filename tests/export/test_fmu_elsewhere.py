@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import limited, structure
 from shaftprint.export import PLATFORMS
-from shaftprint.models import limited, structure
 
 SPEED_RPM, TORQUE_NM = 1183.8, 1740.0
 SET_POINT = "engine_speed_set_point"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.models import limited, structure
+from shaftprint.catalogue import limited, structure
 from shaftprint.simulation import simulate, simulate_exactly
 
 SPEED_RPM, TORQUE_NM = 1183.8, 1740.0

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from scipy.io import loadmat
 
+from shaftprint.catalogue import limited, structure
 from shaftprint.errors import ExportError
 from shaftprint.export import write_matlab
-from shaftprint.models import limited, structure
 from shaftprint.spectra import FrequencyResponse
 
 OCTAVE = shutil.which("octave-cli") or shutil.which("octave")

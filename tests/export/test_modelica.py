@@ -7,23 +7,13 @@ from functools import cache
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import STRUCTURES, limited, structure
 from shaftprint.errors import ExportError
 from shaftprint.escape import modelica_string
 from shaftprint.export import write_modelica
 from shaftprint.export._modelica import modelica_text
 from shaftprint.export._modelica_text import modelica_name, modelica_number
-from shaftprint.models import (
-    STRUCTURES,
-    Diagram,
-    Parameter,
-    Shaft,
-    Structure,
-    clip,
-    firing_delay,
-    first_order_lag,
-    limited,
-    structure,
-)
+from shaftprint.models import Diagram, Parameter, Shaft, Structure, clip, firing_delay, first_order_lag
 from shaftprint.simulation import simulate
 
 OMEGA = np.array([0.11, 0.9, 3.7, 12.0, 33.0])

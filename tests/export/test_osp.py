@@ -5,8 +5,8 @@ from xml.etree import ElementTree as ET
 
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.export import write_fmu, write_osp
-from shaftprint.models import structure
 
 # What the schema of OspModelDescription 1.0 says: its namespace and version, the order of the groups used here, and
 # that each group has a name of its own.

@@ -8,10 +8,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import ExportError, FingerprintError
 from shaftprint.export import to_control, to_xarray, write_csv, write_json
 from shaftprint.fingerprint import Fingerprint, Quantity
-from shaftprint.models import structure
 
 OMEGA = np.array([0.2, 1.0, 5.0])
 K_P = Quantity(name="K_p", unit="-", value=4.6, std=0.4, interval_95=(3.9, 5.5), meaning="gain, of the governor")

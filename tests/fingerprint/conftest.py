@@ -7,9 +7,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.fingerprint import SourceFile, take_fingerprint
 from shaftprint.identify import Cluster, Prior, Settings, identify
-from shaftprint.models import structure
 from shaftprint.signals import Repair, SetPointCalibration, Signals, SpeedSignal, StripAngles, WorkingPoint
 from shaftprint.spectra import FrequencyResponse, SignalToNoise
 from shaftprint.vessel import load_vessel

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint import Fingerprint, Quantity, identified_model
-from shaftprint.models import structure
 
 
 @pytest.fixture

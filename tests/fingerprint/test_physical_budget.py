@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.fingerprint import physical_quantities
 from shaftprint.identify import Prior, Settings, identify, priors_from_vessel, refit
-from shaftprint.models import structure
 
 TESTS = 800
 # A standard deviation from so many tests is known to 2.5 %; three of them, and two percent that first order leaves.

@@ -5,9 +5,9 @@ from datetime import UTC, datetime
 
 import numpy as np
 
+from shaftprint.catalogue import structure
 from shaftprint.fingerprint import read_fingerprint, take_fingerprint, write_fingerprint
 from shaftprint.identify import Settings, Unweighted, identify
-from shaftprint.models import structure
 
 
 def test_a_trustworthy_fit_says_which_numbers_may_be_used(fingerprint):

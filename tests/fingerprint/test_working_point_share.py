@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.fingerprint import physical_quantities
 from shaftprint.fingerprint._physical import physical_numbers
 from shaftprint.fingerprint._working_point_share import (
@@ -17,7 +18,6 @@ from shaftprint.fingerprint._working_point_share import (
     widened_covariance,
 )
 from shaftprint.identify import Prior, Settings, budget, identify, priors_from_vessel
-from shaftprint.models import structure
 
 MORE = 0.01
 

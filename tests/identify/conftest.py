@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.models import structure
+from shaftprint.catalogue import structure
 from shaftprint.spectra import FrequencyResponse
 
 # The lines of the thesis up to S13 (table 3.5): what is below the Nyquist frequency of a pulse a revolution.

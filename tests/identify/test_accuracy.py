@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import load_campaign
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import (
     STAN_TUG_NOISE,
@@ -20,7 +21,7 @@ from shaftprint.identify import (
     predict_intervals,
     predict_joint_accuracy,
 )
-from shaftprint.models import Combination, Delay, Parameter, SecondOrderLag, Structure, structure
+from shaftprint.models import Combination, Delay, Parameter, SecondOrderLag, Structure
 
 TRUTH = {
     "K_p": 5.7, "K_i": 4.27, "t_d": 0.0703, "omega_n": 10.3, "zeta": 0.47, "tau_dn": 0.32, "tau_up": 1.016,

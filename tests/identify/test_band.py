@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import (
     Settings,
@@ -13,7 +14,7 @@ from shaftprint.identify import (
     response_band,
     step_band,
 )
-from shaftprint.models import Delay, Gain, Parameter, Structure, step_response, structure
+from shaftprint.models import Delay, Gain, Parameter, Structure, step_response
 
 BENCHMARK = {"tau_n": 0.4, "K_p": 4.0, "K_i": 5.0, "g": -0.5, "v": 1.0}
 TESTS = 300

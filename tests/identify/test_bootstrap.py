@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import (
     Prior,
@@ -16,7 +17,7 @@ from shaftprint.identify import (
     profile_intervals,
 )
 from shaftprint.identify.likelihood._wishart import estimated_shapes
-from shaftprint.models import Combination, Gain, Parameter, Structure, structure
+from shaftprint.models import Combination, Gain, Parameter, Structure
 
 GAUGE = {"tau_dn": 0.32, "tau_up": 1.016, "k_q": 2.0, "g": 0.0, "v": 1.0, "K_p": 5.7, "K_i": 4.27, "t_d": 0.07}
 GAUGE |= {"t_sp": 0.05, "omega_n": 10.3, "zeta": 0.47, "c_set": 1.0, "t_gauge": 0.0}

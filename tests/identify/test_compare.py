@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Foretold, Prior, Settings, Unweighted, compare_fits, compare_structures, identify
 from shaftprint.identify.comparison._comparison_words import comparison_words
-from shaftprint.models import Gain, Parameter, PIGovernor, Structure, structure
+from shaftprint.models import Gain, Parameter, PIGovernor, Structure
 
 CL3 = {"tau_n": 0.35, "K_p": 1.6, "K_i": 4.4, "omega_n": 9.8, "zeta": 0.5}
 SETTINGS = Settings(starts=12)

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import Prior, Settings, StudentT, Unweighted, criteria_of, identify
-from shaftprint.models import structure
 
 
 def fitted(make_response, name, wanted, *, seed=1, noise=0.02, **settings):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import fit_ceiling, fit_percent, identify
-from shaftprint.models import structure
 
 
 def test_fit_percent_by_hand():

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import scipy.stats
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import FitTest, Prior, Settings, Unweighted, identify
-from shaftprint.models import structure
 
 
 def rng():

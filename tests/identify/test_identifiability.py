@@ -10,11 +10,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import STRUCTURES, structure
 from shaftprint.errors import StructureError
 from shaftprint.identify import identifiability
 from shaftprint.identify.foresight._formulas import unit_of
 from shaftprint.models import (
-    STRUCTURES,
     Delay,
     FunctionBlock,
     Gain,
@@ -24,7 +24,6 @@ from shaftprint.models import (
     Sensitivity,
     Shaft,
     Structure,
-    structure,
 )
 
 S = 1j * np.geomspace(0.01, 100.0, 40)

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Estimate, Settings, Unweighted, identify
-from shaftprint.models import margins, structure
+from shaftprint.models import margins
 
 
 @pytest.fixture

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 import scipy.optimize
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Draw, LatinHypercube, MaximumLikelihood, Prior, Settings, Unweighted, identify
-from shaftprint.models import Delay, Parameter, PIGovernor, Sensitivity, Shaft, Structure, structure, unstable_poles
+from shaftprint.models import Delay, Parameter, PIGovernor, Sensitivity, Shaft, Structure, unstable_poles
 
 S1_TO_S16_HZ = np.array(
     [

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import (
     MaximumLikelihood,
@@ -17,7 +18,7 @@ from shaftprint.identify import (
     refit,
 )
 from shaftprint.identify.likelihood._build_objective import build_joint_objective
-from shaftprint.models import Constant, Delay, Gain, Parameter, PIGovernor, Sensitivity, Shaft, Structure, structure
+from shaftprint.models import Constant, Delay, Gain, Parameter, PIGovernor, Sensitivity, Shaft, Structure
 from shaftprint.spectra import FrequencyResponse
 
 

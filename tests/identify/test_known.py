@@ -4,8 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import PRIOR_OF_G, Prior, priors_from_vessel
-from shaftprint.models import structure
 from shaftprint.vessel import load_vessel
 
 

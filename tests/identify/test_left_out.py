@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.identify.comparison._left_out import foretold
-from shaftprint.models import structure
 
 SETTINGS = Settings(starts=6, stability="ignored")
 

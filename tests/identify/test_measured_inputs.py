@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import scipy.stats
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Prior, Settings, identify
-from shaftprint.models import structure
 from shaftprint.spectra import FrequencyResponse
 
 FREQUENCY_HZ = np.array([0.02, 0.04, 0.08, 0.16, 0.3, 0.6, 1.0, 1.6, 2.4, 3.4])

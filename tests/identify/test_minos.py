@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from iminuit import Minuit
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import Prior, Settings, identify, profile_intervals
-from shaftprint.models import structure
 
 BENCHMARK = {"tau_n": 0.4, "K_p": 4.0, "K_i": 5.0, "g": -0.5, "v": 1.0}
 GAUGE = {"tau_dn": 0.32, "tau_up": 1.016, "k_q": 2.0, "g": 0.0, "v": 1.0, "K_p": 5.7, "K_i": 4.27, "t_d": 0.07}

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.identify.judgement._misfit import explained, misfit_words, worst_lines
-from shaftprint.models import structure
 
 
 def fitted(response, name="CL4", **settings):

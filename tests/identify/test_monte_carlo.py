@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import Draw, Prior, Settings, identify, profile_intervals
-from shaftprint.models import structure
 from shaftprint.spectra import FrequencyResponse
 
 TESTS = 200

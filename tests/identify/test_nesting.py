@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, identify
 from shaftprint.identify.comparison._nesting import nesting
-from shaftprint.models import Gain, Parameter, PIGovernor, RationalBlock, Structure, structure
+from shaftprint.models import Gain, Parameter, PIGovernor, RationalBlock, Structure
 
 SETTINGS = Settings(starts=20)
 

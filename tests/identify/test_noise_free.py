@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import Prior, Settings, Unweighted, identify
 from shaftprint.identify.likelihood._build_objective import build_objective
 from shaftprint.identify.search._search import _floors
-from shaftprint.models import structure
 from shaftprint.spectra import FrequencyResponse
 
 FREQUENCY_HZ = np.array(

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted, identify
 from shaftprint.identify.likelihood._build_objective import build_objective
-from shaftprint.models import structure
 
 NOTHING = {"priors": {}, "regularisation": {}}
 

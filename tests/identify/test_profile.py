@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Prior, Settings, Unweighted, identify, profile, profile_intervals
-from shaftprint.models import Combination, Constant, Gain, Parameter, Structure, structure
+from shaftprint.models import Combination, Constant, Gain, Parameter, Structure
 
 # Half the 95 % point of chi-square with one degree of freedom.
 RISE = 1.9207294103470636

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings, Unweighted, identify, profile_curve, profile_intervals
-from shaftprint.models import Combination, Gain, Parameter, Structure, structure
+from shaftprint.models import Combination, Gain, Parameter, Structure
 
 
 def test_of_a_linear_structure_is_its_parabola(make_response):

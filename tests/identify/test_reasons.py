@@ -6,9 +6,9 @@ from typing import get_args
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import Prior, Settings, assess, identify, profile
 from shaftprint.identify.judgement._hanging import ALL, HANGING, ROLES, by_weight, hangs_on
-from shaftprint.models import structure
 from shaftprint.reasons import Reason, ReasonKind
 
 LINES_HZ = np.geomspace(0.0044, 3.4, 24)

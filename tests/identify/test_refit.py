@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from shaftprint.arrays import ComplexArray
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, Prior, Settings, identify, refit
-from shaftprint.models import Structure, structure
+from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 
 FREQUENCY_HZ = np.geomspace(0.01, 3.0, 12)

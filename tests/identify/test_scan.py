@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 import scipy.optimize
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted, identify, scan, scan_response
-from shaftprint.models import Delay, Gain, Parameter, PIGovernor, Structure, structure
+from shaftprint.models import Delay, Gain, Parameter, PIGovernor, Structure
 from shaftprint.spectra import FrequencyResponse
 
 S1_TO_S16_HZ = np.array(

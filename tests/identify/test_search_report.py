@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import Cluster, Draw, Settings, Unweighted, identify, report_search, scan
-from shaftprint.models import Delay, Gain, Parameter, PIGovernor, Sensitivity, Shaft, Structure, structure
+from shaftprint.models import Delay, Gain, Parameter, PIGovernor, Sensitivity, Shaft, Structure
 from shaftprint.spectra import FrequencyResponse
 
 

@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Draw, Settings, identify, identify_jointly
 from shaftprint.identify.search._border import beside_border
 from shaftprint.identify.search._levenberg_marquardt import Descent, descend
 from shaftprint.identify.search._stability import stable_models
-from shaftprint.models import Delay, Parameter, PIGovernor, Sensitivity, Shaft, Structure, is_stable, structure
+from shaftprint.models import Delay, Parameter, PIGovernor, Sensitivity, Shaft, Structure, is_stable
 
 DURING = Settings(stability="during")
 UNSTABLE = {"tau_n": 0.3897, "K_p": 3.4363, "K_i": 4.2639, "t_d": 0.4022}

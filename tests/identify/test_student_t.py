@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import MaximumLikelihood, Settings, StudentT, identify, profile_intervals, refit
 from shaftprint.identify.fit._covariance import estimate_covariance
-from shaftprint.models import structure
 
 REPEATS = 2000
 TRUTHS = {

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import Prior, Settings, identify, identify_jointly, suspects_of
-from shaftprint.models import Delay, Gain, Parameter, Structure, structure
+from shaftprint.models import Delay, Gain, Parameter, Structure
 from shaftprint.spectra import FrequencyResponse
 
 GAUGE = {

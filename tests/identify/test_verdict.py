@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import Prior, Requirements, Settings, Unweighted, assess, identify, identify_jointly, profile
-from shaftprint.models import Delay, Gain, Parameter, PIGovernor, Sensitivity, Shaft, Structure, structure
+from shaftprint.models import Delay, Gain, Parameter, PIGovernor, Sensitivity, Shaft, Structure
 from shaftprint.spectra import FrequencyResponse, SignalToNoise
 
 LINES_HZ = np.geomspace(0.0044, 3.4, 24)

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings, identify, identify_jointly
-from shaftprint.models import Gain, Integrator, Parameter, Structure, structure
+from shaftprint.models import Gain, Integrator, Parameter, Structure
 from shaftprint.spectra import FrequencyResponse
 
 K = Parameter("K", "-", 0.1, 10.0, 1.0, "gain")
@@ -35,7 +36,7 @@ def data(inputs=("u",), outputs=("y",)):
         ),
         (
             lambda rng: identify("CL4", data(), rng=rng),
-            "found str and FrequencyResponse; models.structure.. gives a shipp",
+            "found str and FrequencyResponse; catalogue.structure.. gives a shipp",
         ),
         (lambda rng: identify(alone(), data(), rng=1), r"rng: expected numpy\.random\.default_rng\(seed\), found 1"),
         (

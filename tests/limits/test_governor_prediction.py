@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import load_campaign
-from shaftprint.models import AHEAD_S, limited_governor
+from shaftprint.catalogue import AHEAD_S, limited_governor
 from shaftprint.simulation import simulate
 from shaftprint.tug import Tug, simulate_signals
 

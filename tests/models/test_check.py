@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import STRUCTURES, structure
 from shaftprint.errors import StructureError
 from shaftprint.models import (
-    STRUCTURES,
     Block,
     Delay,
     FunctionBlock,
@@ -17,7 +17,6 @@ from shaftprint.models import (
     RationalBlock,
     Structure,
     check_structure,
-    structure,
 )
 
 T = Parameter("T", "s", 0.0, 2.0, 0.5, "time constant")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from mpmath import mp
 
-from shaftprint.models import STRUCTURES, structure
+from shaftprint.catalogue import STRUCTURES, structure
 
 DIGITS = 50
 OMEGA = np.array([0.01, 0.0276, 0.691, 4.91, 10.29, 31.0, 94.31, 200.0])

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import KnownPropeller, structure, with_known_propeller
 from shaftprint.errors import PropellerError, StructureError
-from shaftprint.models import KnownPropeller, structure, with_known_propeller
 from shaftprint.propeller import ka4_70_in_19a, wageningen_b
 
 OMEGA_RAD_S = np.geomspace(0.02, 10.0, 25)

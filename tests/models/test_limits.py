@@ -5,7 +5,7 @@ import warnings
 import numpy as np
 import pytest
 
-from shaftprint.models import STRUCTURES, structure
+from shaftprint.catalogue import STRUCTURES, structure
 
 with warnings.catch_warnings():
     warnings.simplefilter("ignore")

@@ -6,6 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
 from shaftprint.models import (
     Delay,
@@ -23,7 +24,6 @@ from shaftprint.models import (
     is_stable,
     margins,
     stable_rows,
-    structure,
     unstable_poles,
 )
 

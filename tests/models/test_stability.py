@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import scipy.special
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
 from shaftprint.models import (
     Delay,
@@ -23,7 +24,6 @@ from shaftprint.models import (
     loop_gain,
     margins,
     poles,
-    structure,
     unstable_poles,
 )
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
-from shaftprint.models import Delay, Gain, Integrator, Parameter, Structure, feedback, step_response, structure
+from shaftprint.models import Delay, Gain, Integrator, Parameter, Structure, feedback, step_response
 
 GAIN = Parameter("K", "1/s", 0.0, 7.0, 1.0, "gain")
 DELAY = Parameter("T", "s", 0.0, 5.0, 0.5, "delay")

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import STRUCTURES, structure
 from shaftprint.errors import StructureError
 from shaftprint.models import (
-    STRUCTURES,
     Block,
     Combination,
     Constant,
@@ -28,7 +28,6 @@ from shaftprint.models import (
     is_stable,
     margins,
     poles,
-    structure,
     unstable_poles,
 )
 

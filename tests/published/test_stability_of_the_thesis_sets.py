@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from shaftprint.models import Delay, Parameter, PIGovernor, Shaft, Structure, feedback, margins, structure
+from shaftprint.catalogue import structure
+from shaftprint.models import Delay, Parameter, PIGovernor, Shaft, Structure, feedback, margins
 
 FIRST = {"g": 0.0, "v": 1.0}
 CL3 = {"tau_n": 0.3537, "K_p": 1.1833, "K_i": 5.3967, "omega_n": 7.2133, "zeta": 0.4}

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from benchmarks.thesis_tables import CLOSED_LOOP, IN_TIME, NAMES, OPEN_LOOP
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import MaximumLikelihood, Settings, Uniform, Unweighted, fit_percent, identify
-from shaftprint.models import structure
 from shaftprint.spectra import FrequencyResponse
 
 # Table 3.5

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import Campaign, setpoint
+from shaftprint.catalogue import structure
 from shaftprint.fingerprint import SourceFile, take_fingerprint
 from shaftprint.identify import LatinHypercube, Prior, Settings, identify
-from shaftprint.models import structure
 from shaftprint.recording import Channel, Recording
 from shaftprint.signals import (
     Repair,

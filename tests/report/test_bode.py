@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from shaftprint.models import structure
+from shaftprint.catalogue import structure
 from shaftprint.report import Curve, plot_bode, plot_closed_loop_response, plot_governor_fits, plot_line_selection
 from shaftprint.report._bode_parts import measured_phase_deg, trace_of
 

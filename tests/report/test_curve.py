@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
-from shaftprint.models import structure
 from shaftprint.report import Curve, closed_loop_curve, open_loop_curve
 
 S = 1j * np.geomspace(0.05, 30.0, 30)

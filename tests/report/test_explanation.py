@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings, Unweighted, identify
-from shaftprint.models import structure
 from shaftprint.report import (
     SET_POINT_OFF,
     ThesisMode,

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import AHEAD_S
 from shaftprint.limits import Kind, LimitNumber
-from shaftprint.models import AHEAD_S
 from shaftprint.report import plot_limits
 
 RATE_HZ = 12.5

@@ -3,8 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
-from shaftprint.models import loop_gain, structure
+from shaftprint.models import loop_gain
 from shaftprint.report import Curve, plot_correlation, plot_nyquist, plot_residuals, plot_sensitivity, thesis_families
 from shaftprint.report._residual_figure import line_chi_square, normalised_residuals
 from shaftprint.report._sensitivity import parameter_steps

@@ -9,8 +9,8 @@ import sys
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import ReportError
-from shaftprint.models import structure
 from shaftprint.report import Curve
 from shaftprint.report._shorter_svg import shorter_svg
 from shaftprint.report.plots import (

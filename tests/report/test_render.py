@@ -7,8 +7,8 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, Unweighted, identify
-from shaftprint.models import structure
 from shaftprint.report import ThesisMode, render_report
 from shaftprint.report import _page as page_module
 from shaftprint.report import _render as render_module

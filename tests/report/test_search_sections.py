@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, Unweighted, compare_fits, identify, scan
-from shaftprint.models import structure
 from shaftprint.report import plot_scan
 from shaftprint.report._search_sections import comparison_section, search_section
 from shaftprint.report._verdict_sections import verdict_section

@@ -1,7 +1,7 @@
 import matplotlib as mpl
 import pytest
 
-from shaftprint.models import structure
+from shaftprint.catalogue import structure
 from shaftprint.report import Curve, plot_bode, save_figure
 from shaftprint.report._style import LOOKS, house_style, legend_below, new_figure
 from shaftprint.report._symbols import mathtext, with_unit

@@ -2,8 +2,8 @@ import math
 
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.fingerprint import Quantity
-from shaftprint.models import structure
 from shaftprint.report._fingerprint_tables import (
     combination_table,
     expected_text,

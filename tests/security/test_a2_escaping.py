@@ -28,10 +28,10 @@ from rich.console import Console
 
 import shaftprint.cli
 from shaftprint import escape
+from shaftprint.catalogue import structure
 from shaftprint.cli._tables import literal
 from shaftprint.cli._terminal import echo
 from shaftprint.export import ExportedModel, write_fmu, write_matlab, write_modelica, write_osp, write_ssv
-from shaftprint.models import structure
 
 CHROMIUM = Path("/usr/bin/chromium")
 EXAMPLES = int(os.environ.get("SHAFTPRINT_EXAMPLES", "25"))

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
 from shaftprint.models import (
     Delay,
@@ -18,7 +19,6 @@ from shaftprint.models import (
     feedback,
     maximum,
     minimum,
-    structure,
     table,
 )
 from shaftprint.simulation import simulate

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import limited
 from shaftprint.errors import StructureError
 from shaftprint.models import (
     Diagram,
@@ -14,7 +15,6 @@ from shaftprint.models import (
     firing_delay,
     first_order_lag,
     full_load,
-    limited,
     limited_pi,
     maximum,
     quadratic_propeller,

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import limited, structure
 from shaftprint.errors import StructureError
-from shaftprint.models import Diagram, Parameter, Structure, choose, limited, maximum, minimum, structure, table
+from shaftprint.models import Diagram, Parameter, Structure, choose, maximum, minimum, table
 from shaftprint.simulation import equilibrium, linearise
 
 TRUTH = {

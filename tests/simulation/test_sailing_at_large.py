@@ -3,17 +3,9 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import KnownPropeller, pitch_actuator, sailing_at_large, structure, with_known_propeller
 from shaftprint.errors import StructureError
-from shaftprint.models import (
-    Diagram,
-    KnownPropeller,
-    Parameter,
-    Structure,
-    pitch_actuator,
-    sailing_at_large,
-    structure,
-    with_known_propeller,
-)
+from shaftprint.models import Diagram, Parameter, Structure
 from shaftprint.propeller import ka4_70_in_19a
 from shaftprint.simulation import equilibrium, simulate
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import limited, structure
 from shaftprint.errors import StructureError
 from shaftprint.models import (
     Delay,
@@ -14,8 +15,6 @@ from shaftprint.models import (
     Structure,
     choose,
     clip,
-    limited,
-    structure,
     table,
 )
 from shaftprint.simulation import simulate

@@ -5,18 +5,9 @@ from math import factorial
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import limited, structure
 from shaftprint.errors import StructureError
-from shaftprint.models import (
-    Delay,
-    FirstOrderLag,
-    Gain,
-    Integrator,
-    Parameter,
-    Sensitivity,
-    Structure,
-    limited,
-    structure,
-)
+from shaftprint.models import Delay, FirstOrderLag, Gain, Integrator, Parameter, Sensitivity, Structure
 from shaftprint.simulation import simulate, simulate_exactly
 
 K = Parameter("k", "1/s", 0.0, 5.0, 1.0, "gain")

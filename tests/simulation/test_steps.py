@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import limited, two_mass_line
 from shaftprint.errors import StructureError
 from shaftprint.models import (
     Delay,
@@ -16,9 +17,7 @@ from shaftprint.models import (
     Sensitivity,
     Structure,
     ZeroOrderHold,
-    limited,
     rate_limited,
-    two_mass_line,
 )
 from shaftprint.simulation import simulate
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from shaftprint.models import limited
+from shaftprint.catalogue import limited
 from shaftprint.time_domain import Decimator, ExactDelays, NoiseModel, Whitening, output_error, record_from_arrays
 from shaftprint.time_domain._nonlinear_fragile import Fragile, fragile_stretches, without_fragile
 from shaftprint.time_domain._simulator import on_record

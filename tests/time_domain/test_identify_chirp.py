@@ -8,6 +8,7 @@ from numba import njit
 from scipy.signal import firwin, oaconvolve
 
 from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError, SignalError
 from shaftprint.identify import (
     Settings,
@@ -18,7 +19,6 @@ from shaftprint.identify import (
     identify_jointly,
     profile_intervals,
 )
-from shaftprint.models import structure
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain import identify_chirp, record_from_arrays, spectrum_of, spectrum_term
 from shaftprint.time_domain._bands import bands_of

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from shaftprint.catalogue import limited, structure
 from shaftprint.identify import Settings
-from shaftprint.models import limited, structure
 from shaftprint.simulation import simulate_exactly
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain import identify_in_time, output_error, record_from_arrays, with_noise_at

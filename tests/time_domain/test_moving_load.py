@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import limited
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings
-from shaftprint.models import limited
 from shaftprint.time_domain import ExactDelays, identify_in_time, output_error, record_from_arrays
 from shaftprint.time_domain._simulator import on_record
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import Campaign
+from shaftprint.catalogue import limited
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Estimate
-from shaftprint.models import limited
 from shaftprint.signals import SetPointCalibration, Signals, SpeedSignal, WorkingPoint
 from shaftprint.time_domain import NonlinearSettings, limit_numbers, record_from_arrays, structure_for, without_orders
 from shaftprint.time_domain._nonlinear_drive import sharpened

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from shaftprint.models import structure
+from shaftprint.catalogue import structure
 from shaftprint.time_domain import ExactDelays, TimeSettings, output_error, record_from_arrays
 
 RATE, OMEGA = 20.0, 2.0 * np.pi * 0.5

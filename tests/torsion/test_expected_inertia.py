@@ -5,8 +5,8 @@ import math
 
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.identify import priors_from_vessel
-from shaftprint.models import structure
 from shaftprint.signals import WorkingPoint
 from shaftprint.torsion import (
     Blades,

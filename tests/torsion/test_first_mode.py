@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.signal import chirp
 
+from shaftprint.catalogue import two_mass_line
 from shaftprint.identify import Settings, identify
-from shaftprint.models import two_mass_line
 from shaftprint.spectra import response_from_arrays
 from shaftprint.torsion import modes, simulate_line, two_masses
 

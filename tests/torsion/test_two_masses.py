@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy.signal import TransferFunction, freqresp
 
-from shaftprint.models import check_structure, two_mass_line
+from shaftprint.catalogue import two_mass_line
+from shaftprint.models import check_structure
 from shaftprint.torsion import forced_response, modes, two_masses
 
 CYLINDERS = tuple(f"Cylinder {number}" for number in range(1, 7))

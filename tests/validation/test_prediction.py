@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import ValidationError
-from shaftprint.models import structure
 from shaftprint.validation import linear_prediction, simulated_prediction
 from shaftprint.validation._low_pass import low_pass
 from shaftprint.validation._prediction import with_square

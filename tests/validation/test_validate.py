@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import load_campaign, setpoint
+from shaftprint.catalogue import structure
 from shaftprint.errors import ValidationError
 from shaftprint.identify import Prior, Settings, identify
-from shaftprint.models import structure
 from shaftprint.signals import Gap
 from shaftprint.spectra import estimate_response
 from shaftprint.tug import Noise, Tug, simulate_signals

@@ -10,10 +10,11 @@ import numpy as np
 from tests.wrong_recordings.cases import Case
 from tests.wrong_recordings.trial import Trial, clean
 
+from shaftprint.catalogue import structure
 from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import Fingerprint, Quantity, take_fingerprint
 from shaftprint.identify import Settings, identify, priors_from_vessel
-from shaftprint.models import margins, structure
+from shaftprint.models import margins
 from shaftprint.normal import NORMAL_95
 from shaftprint.signals import prepare_signals
 from shaftprint.spectra import estimate_spectra

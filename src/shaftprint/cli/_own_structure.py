@@ -11,9 +11,10 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import NewType
 
+from shaftprint.catalogue import STRUCTURES, shipped_structure
 from shaftprint.errors import ShaftprintError, StructureError
 from shaftprint.fingerprint import Fingerprint, named_structure
-from shaftprint.models import STRUCTURES, Structure, check_structure, shipped_structure
+from shaftprint.models import Structure, check_structure
 
 SUFFIX = ".py"
 OWN_FILE_HELP = "a shipped one, or my_ship.py:my_loop for one of your own file, which is Python and is run"

@@ -8,6 +8,7 @@ import click
 import numpy as np
 
 from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.catalogue import structure
 from shaftprint.cli._chain import known_beforehand, measure
 from shaftprint.cli._inputs import NAMES, campaign_option, load_trial
 from shaftprint.cli._known_values import hold_option, named_value, prior_option, rpm_per_volt_option
@@ -27,7 +28,7 @@ from shaftprint.identify import (
     predict_intervals,
     priors_from_vessel,
 )
-from shaftprint.models import Structure, structure
+from shaftprint.models import Structure
 from shaftprint.signals import WorkingPoint
 from shaftprint.spectra import FrequencyResponse, open_loop
 from shaftprint.units import rev_s_from_rpm

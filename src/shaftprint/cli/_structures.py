@@ -2,10 +2,11 @@
 
 import click
 
+from shaftprint.catalogue import STRUCTURES
 from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo
-from shaftprint.models import STRUCTURES, Parameter, Structure
+from shaftprint.models import Parameter, Structure
 
 
 @click.command("structures")

@@ -3,11 +3,11 @@
 from dataclasses import replace
 from pathlib import Path
 
+from shaftprint.catalogue import structure
 from shaftprint.cli._chain import Measurement, fit, known_beforehand, measure, responses_of
 from shaftprint.cli._inputs import Trial
 from shaftprint.cli._progress import Steps
 from shaftprint.identify import Identification, Settings, Uniform, Unweighted
-from shaftprint.models import structure
 from shaftprint.report import SET_POINT_OFF, ThesisMode
 from shaftprint.spectra import FrequencyResponse
 

@@ -6,17 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.models import (
-    Late,
-    Program,
-    Quantity,
-    Structure,
-    derivatives,
-    evaluate,
-    maximum,
-    postorder,
-    program_of,
-)
+from shaftprint.models import Late, Program, Quantity, Structure, derivatives, evaluate, maximum, postorder, program_of
 
 _COMPARED = ("minimum", "maximum", "choose")
 

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.catalogue import shipped_structure
 from shaftprint.errors import FingerprintError, StructureError
 from shaftprint.escape import printable
 from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.models import Structure, shipped_structure
+from shaftprint.models import Structure
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

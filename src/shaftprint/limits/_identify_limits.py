@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from shaftprint.campaign import Campaign
+from shaftprint.catalogue import limited_governor
 from shaftprint.identify import Prior
 from shaftprint.limits._governor_test import governor_test
 from shaftprint.limits._limit_fit import LimitFit
@@ -22,7 +23,7 @@ from shaftprint.limits._quantum import quantum_of
 from shaftprint.limits._search import GOVERNOR, Fitted, Scanned, Search, fitted, schwarz, with_messages
 from shaftprint.limits._suspects import SUSPECTS, Kind
 from shaftprint.limits._uncertainty import spread_of
-from shaftprint.models import Structure, limited_governor
+from shaftprint.models import Structure
 from shaftprint.signals import Signals
 from shaftprint.vessel import Vessel
 

@@ -31,7 +31,6 @@ from shaftprint.models._blocks import (
     SecondOrderLag,
 )
 from shaftprint.models._calculus import derivatives, postorder, rebuilt, replaced
-from shaftprint.models._catalogue import STRUCTURES, structure
 from shaftprint.models._check import check_structure
 from shaftprint.models._combination import Combination
 from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor, ZeroOrderHold
@@ -42,9 +41,6 @@ from shaftprint.models._expression import Constant, Expression, Inverse, Sensiti
 from shaftprint.models._flow import Flow
 from shaftprint.models._free_response import free_responses
 from shaftprint.models._held import Held
-from shaftprint.models._known_propeller import KnownPropeller, with_known_propeller
-from shaftprint.models._limited_catalogue import limited
-from shaftprint.models._limited_governor import AHEAD_S, limited_governor
 from shaftprint.models._limits import (
     Governed,
     deadband,
@@ -59,20 +55,14 @@ from shaftprint.models._own_blocks import FunctionBlock, RationalBlock
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._program import Computed, Late, Program, program_of
 from shaftprint.models._quantity import Quantity, choose, clip, maximum, minimum, table
-from shaftprint.models._sailing_at_large import pitch_actuator, sailing_at_large
-from shaftprint.models._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
 from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
-from shaftprint.models._shipped import shipped_structure
 from shaftprint.models._small_signal import SmallSignal
 from shaftprint.models._step_response import step_response
 from shaftprint.models._structure import Structure
 from shaftprint.models._tabulated import Tabulated
 from shaftprint.models._tie import Tie
-from shaftprint.models._two_masses import two_mass_line
 
 __all__ = [
-    "AHEAD_S",
-    "STRUCTURES",
     "Block",
     "Combination",
     "Computed",
@@ -92,24 +82,19 @@ __all__ = [
     "Inertia",
     "Integrator",
     "Inverse",
-    "KnownPropeller",
     "Late",
     "Leaves",
     "Margins",
     "PIGovernor",
     "PadeDelay",
     "Parameter",
-    "PitchSpeed",
     "Port",
     "Program",
     "Quantity",
     "RationalBlock",
-    "SailingShaft",
-    "SailingTorque",
     "SecondOrderLag",
     "Sensitivity",
     "Shaft",
-    "ShipSpeed",
     "SmallSignal",
     "SpeedSensor",
     "Structure",
@@ -130,14 +115,11 @@ __all__ = [
     "free_responses",
     "full_load",
     "is_stable",
-    "limited",
-    "limited_governor",
     "limited_pi",
     "loop_gain",
     "margins",
     "maximum",
     "minimum",
-    "pitch_actuator",
     "poles",
     "postorder",
     "program_of",
@@ -145,14 +127,9 @@ __all__ = [
     "rate_limited",
     "rebuilt",
     "replaced",
-    "sailing_at_large",
     "second_order_lag",
-    "shipped_structure",
     "stable_rows",
     "step_response",
-    "structure",
     "table",
-    "two_mass_line",
     "unstable_poles",
-    "with_known_propeller",
 ]

@@ -5,8 +5,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from shaftprint.catalogue import STRUCTURES, structure
 from shaftprint.errors import ReportError
-from shaftprint.models import STRUCTURES, structure
 from shaftprint.report._bode import plot_bode
 from shaftprint.report._comparison_cover import comparison_cover, not_alike
 from shaftprint.report._comparison_tables import beside_table, condition_table, difference_table

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.models import AHEAD_S
+from shaftprint.catalogue import AHEAD_S
 from shaftprint.normal import NORMAL_95
 from shaftprint.report._style import (
     DATA,

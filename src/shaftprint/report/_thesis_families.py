@@ -3,7 +3,8 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from shaftprint.models import Gain, PIGovernor, Shaft, Structure, structure
+from shaftprint.catalogue import structure
+from shaftprint.models import Gain, PIGovernor, Shaft, Structure
 
 Data = Literal["core", "governor"]
 

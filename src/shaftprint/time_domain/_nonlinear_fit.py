@@ -10,9 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.campaign import Campaign
+from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, Prior, Settings, identify, priors_from_vessel
-from shaftprint.models import Structure, structure
+from shaftprint.models import Structure
 from shaftprint.signals import Signals
 from shaftprint.spectra import FrequencyResponse, estimate_response
 from shaftprint.time_domain._identify_in_time import TimeSettings, output_error, with_noise_at

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from shaftprint.catalogue import limited
 from shaftprint.errors import IdentificationError
-from shaftprint.models import Structure, limited
+from shaftprint.models import Structure
 from shaftprint.signals import WorkingPoint
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel

@@ -4,7 +4,7 @@ Values of thesis tables 5.2 and 5.3 and of the benchmark, with the lag ``2 zeta 
 OL1+OL4 and OL1+OL5 are open-loop fits put into the closed loops of CL3 and CL4.
 """
 
-from shaftprint.models import structure
+from shaftprint.catalogue import structure
 from shaftprint.validation._model import Model, model_of
 
 _SETS = {

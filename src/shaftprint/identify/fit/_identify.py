@@ -154,7 +154,7 @@ def _expect_right_kinds(pairs: Sequence[Source], rng: np.random.Generator) -> No
         if not (issubclass(kinds[0], Structure) and issubclass(kinds[1], FrequencyResponse)):
             raise IdentificationError(
                 f"fit: expected a Structure and a FrequencyResponse, found {' and '.join(k.__name__ for k in kinds)}; "
-                "models.structure() gives a shipped structure by its name."
+                "catalogue.structure() gives a shipped structure by its name."
             )
     if not isinstance(rng, np.random.Generator):
         raise IdentificationError(f"rng: expected numpy.random.default_rng(seed), found {rng!r}.")

@@ -1,7 +1,7 @@
 """The limited governor and its engine on the measured speed: no law of the propeller, no disturbance of the speed.
 
 Upstream of the gauge the torque of the engine is known without any propeller, ``M_b = M_s + tau_up dn/dt``. The
-governor of ``_limited_catalogue``, fed with the measured speed, predicts the same torque, here over the load::
+governor of ``_limited``, fed with the measured speed, predicts the same torque, here over the load::
 
     y = (1 + M_b) / (1 + n)^2 - 1
 
@@ -17,10 +17,7 @@ places on the grid of the simulation. Speed and torque are given ``AHEAD_S`` ear
 from collections.abc import Mapping
 from typing import Any
 
-from shaftprint.models._delays import Delay
-from shaftprint.models._diagram import Diagram
-from shaftprint.models._flow import Flow
-from shaftprint.models._gauge_catalogue import (
+from shaftprint.catalogue._gauge import (
     C_SET,
     GAUGE_K_I,
     GAUGE_K_P,
@@ -31,7 +28,10 @@ from shaftprint.models._gauge_catalogue import (
     V_ONE,
     G,
 )
-from shaftprint.models._limited_catalogue import DROOP, LimitedEngine, parameters_of
+from shaftprint.catalogue._limited import DROOP, LimitedEngine, parameters_of
+from shaftprint.models._delays import Delay
+from shaftprint.models._diagram import Diagram
+from shaftprint.models._flow import Flow
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._quantity import Quantity, maximum
 from shaftprint.models._structure import Structure

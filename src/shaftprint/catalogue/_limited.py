@@ -1,6 +1,6 @@
 """The gauge-aware closed loop at large: quadratic propeller, and the limits of governor and engine.
 
-The free bodies are those of ``_gauge_catalogue``; for small signals the structures are ``GAUGE-CLOSED``::
+The free bodies are those of ``_gauge``; for small signals the structures are ``GAUGE-CLOSED``::
 
     governor    e = DB(RL(c_set n_set) - n)                 X = RL(clip(K_p e + I, X_min, X_max))
     engine      M_b = clip(v F X(t - t_d) + g n, m_min, m_max(n))
@@ -17,13 +17,7 @@ simulated would change with ``t_sp`` in jumps of a step, its derivative zero.
 from collections.abc import Callable, Mapping
 from typing import Any, TypeAlias
 
-from shaftprint.errors import StructureError
-from shaftprint.models._blocks import FirstOrderLag, Gain
-from shaftprint.models._delays import Delay, SpeedSensor
-from shaftprint.models._diagram import Diagram
-from shaftprint.models._engine_parts import boosted, quadratic_propeller
-from shaftprint.models._flow import Flow
-from shaftprint.models._gauge_catalogue import (
+from shaftprint.catalogue._gauge import (
     C_SET,
     GAUGE_K_I,
     GAUGE_K_P,
@@ -43,6 +37,12 @@ from shaftprint.models._gauge_catalogue import (
     G,
     gauge_combinations,
 )
+from shaftprint.errors import StructureError
+from shaftprint.models._blocks import FirstOrderLag, Gain
+from shaftprint.models._delays import Delay, SpeedSensor
+from shaftprint.models._diagram import Diagram
+from shaftprint.models._engine_parts import boosted, quadratic_propeller
+from shaftprint.models._flow import Flow
 from shaftprint.models._limits import deadband, limited_pi, rate_limited, second_order_lag
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._quantity import Number, Quantity, clip, table

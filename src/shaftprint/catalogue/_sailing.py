@@ -8,11 +8,7 @@ with the torque of the propeller times ``k_q / 2`` where the zero of the gauge i
 they are the gauge-aware structures.
 """
 
-from shaftprint.models._blocks import FirstOrderLag, Gain, PIGovernor, SecondOrderLag
-from shaftprint.models._combination import Combination
-from shaftprint.models._delays import Delay, SpeedSensor
-from shaftprint.models._expression import Expression, Inverse, Sensitivity
-from shaftprint.models._gauge_catalogue import (
+from shaftprint.catalogue._gauge import (
     C_SET,
     GAUGE_K_I,
     GAUGE_K_P,
@@ -31,8 +27,12 @@ from shaftprint.models._gauge_catalogue import (
     V_ONE,
     G,
 )
+from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
+from shaftprint.models._blocks import FirstOrderLag, Gain, PIGovernor, SecondOrderLag
+from shaftprint.models._combination import Combination
+from shaftprint.models._delays import Delay, SpeedSensor
+from shaftprint.models._expression import Expression, Inverse, Sensitivity
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
 from shaftprint.models._shaft_blocks import Inertia
 from shaftprint.models._structure import Structure
 

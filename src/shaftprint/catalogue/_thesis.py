@@ -6,6 +6,17 @@ those of thesis table 5.1; for the initial linear model and the benchmark those 
 
 from collections.abc import Callable, Mapping
 
+from shaftprint.catalogue._gauge import (
+    T_D,
+    engine,
+    gauge_closed,
+    gauge_core,
+    gauge_ecu,
+    gauge_inflow,
+    gauge_open,
+    governor,
+)
+from shaftprint.catalogue._sailing import free_closed, free_core, free_log, free_pitch, free_ship
 from shaftprint.errors import StructureError
 from shaftprint.models._blocks import (
     FilteredDerivative,
@@ -17,18 +28,7 @@ from shaftprint.models._blocks import (
 from shaftprint.models._combination import Combination
 from shaftprint.models._delays import Delay, PadeDelay
 from shaftprint.models._expression import Expression, Sensitivity
-from shaftprint.models._gauge_catalogue import (
-    T_D,
-    engine,
-    gauge_closed,
-    gauge_core,
-    gauge_ecu,
-    gauge_inflow,
-    gauge_open,
-    governor,
-)
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._sailing_catalogue import free_closed, free_core, free_log, free_pitch, free_ship
 from shaftprint.models._shaft_blocks import Shaft, TorqueBalance
 from shaftprint.models._structure import Structure
 

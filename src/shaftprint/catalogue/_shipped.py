@@ -3,8 +3,8 @@
 The gauge-aware closed loop with limits is named by these: ``GAUGE-QUADRATIC``, ``GAUGE-TORQUE-RATE``.
 """
 
-from shaftprint.models._catalogue import STRUCTURES, structure
-from shaftprint.models._limited_catalogue import limited
+from shaftprint.catalogue._limited import limited
+from shaftprint.catalogue._thesis import STRUCTURES, structure
 from shaftprint.models._structure import Structure
 
 _PREFIX, _NONE = "GAUGE-", "QUADRATIC"

@@ -15,12 +15,7 @@ FREE-LOG with the slopes that the curves have at ``J_0``.
 from collections.abc import Mapping
 from typing import Any
 
-from shaftprint.errors import StructureError
-from shaftprint.models._blocks import FirstOrderLag, Gain
-from shaftprint.models._delays import Delay, SpeedSensor
-from shaftprint.models._diagram import Diagram
-from shaftprint.models._flow import Flow
-from shaftprint.models._gauge_catalogue import (
+from shaftprint.catalogue._gauge import (
     C_SET,
     GAUGE_K_I,
     GAUGE_K_P,
@@ -38,12 +33,17 @@ from shaftprint.models._gauge_catalogue import (
     V_ONE,
     G,
 )
-from shaftprint.models._known_propeller import HIGHEST_WAKE, KnownPropeller
-from shaftprint.models._limited_catalogue import DROOP, LimitedLoop, parameters_of
+from shaftprint.catalogue._known_propeller import HIGHEST_WAKE, KnownPropeller
+from shaftprint.catalogue._limited import DROOP, LimitedLoop, parameters_of
+from shaftprint.catalogue._sailing import K_Q_HELD, SIGMA, T_LOG, TAU_U, E
+from shaftprint.errors import StructureError
+from shaftprint.models._blocks import FirstOrderLag, Gain
+from shaftprint.models._delays import Delay, SpeedSensor
+from shaftprint.models._diagram import Diagram
+from shaftprint.models._flow import Flow
 from shaftprint.models._limits import first_order_lag, rate_limited
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._quantity import Number, Quantity, number, quantity
-from shaftprint.models._sailing_catalogue import K_Q_HELD, SIGMA, T_LOG, TAU_U, E
 from shaftprint.models._structure import Structure
 
 

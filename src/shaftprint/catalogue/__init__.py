@@ -1,0 +1,31 @@
+"""The structures that come with the package: those of the thesis, the gauge-aware ones, with limits, under way.
+
+The language in which they are written, blocks and structures, is ``models``; symbols and signs are explained there.
+"""
+
+from shaftprint.catalogue._known_propeller import KnownPropeller, with_known_propeller
+from shaftprint.catalogue._limited import limited
+from shaftprint.catalogue._limited_governor import AHEAD_S, limited_governor
+from shaftprint.catalogue._sailing_at_large import pitch_actuator, sailing_at_large
+from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
+from shaftprint.catalogue._shipped import shipped_structure
+from shaftprint.catalogue._thesis import STRUCTURES, structure
+from shaftprint.catalogue._two_masses import two_mass_line
+
+__all__ = [
+    "AHEAD_S",
+    "STRUCTURES",
+    "KnownPropeller",
+    "PitchSpeed",
+    "SailingShaft",
+    "SailingTorque",
+    "ShipSpeed",
+    "limited",
+    "limited_governor",
+    "pitch_actuator",
+    "sailing_at_large",
+    "shipped_structure",
+    "structure",
+    "two_mass_line",
+    "with_known_propeller",
+]
