@@ -24,14 +24,13 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from benchmarks.monte_carlo_tables import table, write_between_marks  # noqa: E402
-from shaftprint.cli._chain import fingerprint_of, fit, known_beforehand, measure  # noqa: E402
-from shaftprint.cli._inputs import Trial, load_trial  # noqa: E402
-from shaftprint.cli._progress import Steps  # noqa: E402
+from shaftprint.catalogue import structure  # noqa: E402
 from shaftprint.errors import ShaftprintError  # noqa: E402
 from shaftprint.fingerprint import Fingerprint, Quantity  # noqa: E402
 from shaftprint.identify import PRIOR_OF_G, Settings  # noqa: E402
-from shaftprint.models import margins, structure  # noqa: E402
+from shaftprint.models import margins  # noqa: E402
 from shaftprint.normal import NORMAL_95  # noqa: E402
+from shaftprint.survey import Trial, fingerprint_of, fit, load_trial, measure, priors_of  # noqa: E402
 from shaftprint.tug import Noise, Truth, Tug, sail  # noqa: E402
 from shaftprint.tug._truth import normalised_truth  # noqa: E402
 from shaftprint.vessel import Vessel  # noqa: E402
@@ -246,10 +245,10 @@ def rows_of(found: Fingerprint, true: Mapping[str, float]) -> dict[str, Row]:
 
 def identified(path: Path, trial: Trial, seed: int, name: str = NAME) -> Fingerprint:
     """Return what ``shaftprint identify --structure NAME`` writes for a recording."""
-    steps, chosen = Steps(bars=None), structure(name)
-    measurement = measure(path, trial, mode="shaftprint", steps=steps)
-    settings = Settings(priors=known_beforehand(chosen, trial.vessel, measurement.signals, {}))
-    fits = fit([chosen], measurement, settings={name: settings}, seed=seed, steps=steps)
+    chosen = structure(name)
+    measurement = measure(path, trial, mode="shaftprint")
+    settings = Settings(priors=priors_of(chosen, trial.vessel, measurement.signals))
+    fits = fit([chosen], measurement, settings={name: settings}, rng=np.random.default_rng(seed))
     return fingerprint_of(fits[0], measurement, trial)
 
 

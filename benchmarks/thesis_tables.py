@@ -20,14 +20,19 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
 from benchmarks.thesis_case import FREQUENCY_HZ  # noqa: E402
-from shaftprint.cli._chain import measure  # noqa: E402
-from shaftprint.cli._inputs import Trial, load_trial  # noqa: E402
-from shaftprint.cli._progress import Steps  # noqa: E402
-from shaftprint.cli._thesis_way import GAUGE, thesis_way, weighted_fits  # noqa: E402
+from shaftprint.catalogue import structure  # noqa: E402
 from shaftprint.identify import Identification, Settings, identify  # noqa: E402
-from shaftprint.models import structure  # noqa: E402
-from shaftprint.report import SET_POINT_OFF, ThesisMode  # noqa: E402
 from shaftprint.spectra import FrequencyResponse  # noqa: E402
+from shaftprint.survey import (  # noqa: E402
+    GAUGE,
+    SET_POINT_OFF,
+    ThesisMode,
+    Trial,
+    load_trial,
+    measure,
+    thesis_way,
+    weighted_fits,
+)
 from shaftprint.tug import read_truth, sail, truth_path  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "thesis.md"
@@ -94,10 +99,10 @@ def sailed(path: Path) -> Path:
 
 def tables(recording: Path) -> str:
     """Return both tables of one recording, in Markdown."""
-    trial, steps = _trial(), Steps(bars=None)
-    measured = measure(recording, trial, mode="shaftprint", steps=steps)
-    weighted = {fit.structure.name: fit for fit in weighted_fits(measured, trial, seed=SEED, steps=steps)}
-    thesis = thesis_way(recording, trial, seed=SEED, steps=steps)
+    trial, rng = _trial(), np.random.default_rng(SEED)
+    measured = measure(recording, trial, mode="shaftprint")
+    weighted = {fit.structure.name: fit for fit in weighted_fits(measured, trial, rng=rng)}
+    thesis = thesis_way(recording, trial, rng=rng)
     truth = read_truth(truth_path(recording)).normalised
     known = [("GAUGE-CLOSED", *_found("shaftprint, weighted", weighted[GAUGE], tau="tau_dn"))]
     known.append(("truth", *_truth({**truth, "tau_n": truth["tau_dn"]})))

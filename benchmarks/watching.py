@@ -26,14 +26,12 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
-from shaftprint.cli._chain import fingerprint_of, fit, known_beforehand, measure  # noqa: E402
-from shaftprint.cli._inputs import Trial, load_trial  # noqa: E402
-from shaftprint.cli._progress import Steps  # noqa: E402
+from shaftprint.catalogue import structure  # noqa: E402
 from shaftprint.fingerprint import GAUGE_ZERO, Fingerprint  # noqa: E402
 from shaftprint.identify import Settings  # noqa: E402
-from shaftprint.models import structure  # noqa: E402
 from shaftprint.normal import NORMAL_95  # noqa: E402
 from shaftprint.report import Difference, differences  # noqa: E402
+from shaftprint.survey import Trial, fingerprint_of, fit, load_trial, measure, priors_of  # noqa: E402
 from shaftprint.tug import Noise, Tug, sail  # noqa: E402
 from shaftprint.vessel import Vessel  # noqa: E402
 
@@ -175,16 +173,16 @@ def zero_taken(trial: Trial, tug: Tug, rng: np.random.Generator, seed: int) -> T
 
 def tested(tug: Tug, campaign: str, seed: int) -> Fingerprint:
     """Return the fingerprint of one test of a ship, as ``shaftprint identify`` makes it."""
-    trial, chosen, steps = load_trial("stan-tug-1205", campaign), structure(STRUCTURE), Steps(bars=None)
+    trial, chosen = load_trial("stan-tug-1205", campaign), structure(STRUCTURE)
     rng = np.random.default_rng([SEED, seed])
     tug = other_day(tug, rng)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "recording.nc"
         sail(trial.vessel, trial.campaign, path, tug=tug, seed=seed)
         trial = zero_taken(trial, tug, rng, seed)
-        measured = measure(path, trial, mode="shaftprint", steps=steps)
-    settings = {STRUCTURE: Settings(priors=known_beforehand(chosen, trial.vessel, measured.signals, {}))}
-    (found,) = fit([chosen], measured, settings=settings, seed=seed, steps=steps)
+        measured = measure(path, trial, mode="shaftprint")
+    settings = {STRUCTURE: Settings(priors=priors_of(chosen, trial.vessel, measured.signals))}
+    (found,) = fit([chosen], measured, settings=settings, rng=np.random.default_rng(seed))
     return fingerprint_of(found, measured, trial)
 
 

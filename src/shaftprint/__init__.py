@@ -21,6 +21,7 @@ room            nouns                       verbs
 ``validation``  ``Validation``              ``validate``
 ``fingerprint`` ``Fingerprint``             ``take_fingerprint``, ``read_fingerprint``, ``write_fingerprint``
 ``export``      ``ExportedModel``           ``exported_model``, ``write_fmu``, ``write_matlab``, ``write_modelica``
+``survey``      ``Survey``                  ``open_survey``, ``survey.run``
 ``report``                                  ``render_report``, ``plot_bode``
 ``tug``         ``Truth``                   ``sail``
 =============== =========================== ==========================================================================
@@ -29,7 +30,7 @@ Verbs take the noun first and the rest by keyword. Errors that a user can mend a
 """
 
 import importlib
-from types import ModuleType
+from typing import Any
 
 __version__ = "0.1.0"
 
@@ -58,6 +59,7 @@ _ROOMS = (
     "signals",
     "simulation",
     "spectra",
+    "survey",
     "time_domain",
     "torsion",
     "tug",
@@ -66,8 +68,11 @@ _ROOMS = (
     "vessel",
 )
 
+_VERB = "open_survey"
+"""All of ``shaftprint identify`` in one call, ``survey.run``."""
 
-def __getattr__(name: str) -> ModuleType:
+
+def __getattr__(name: str) -> Any:
     """Load a room when it is first used: all of them together take seconds.
 
     Raises
@@ -75,10 +80,12 @@ def __getattr__(name: str) -> ModuleType:
     AttributeError
         If there is no room of that name.
     """
+    if name == _VERB:
+        return importlib.import_module("shaftprint.survey").run
     if name not in _ROOMS:
         raise AttributeError(f"module 'shaftprint' has no attribute {name!r}; its rooms are {', '.join(_ROOMS)}.")
     return importlib.import_module(f"shaftprint.{name}")
 
 
 def __dir__() -> list[str]:
-    return ["__version__", *_ROOMS]
+    return ["__version__", _VERB, *_ROOMS]

@@ -3,9 +3,9 @@
 import tomllib
 from pathlib import Path
 
-from shaftprint.cli._inputs import load_trial
 from shaftprint.fingerprint import read_fingerprint
 from shaftprint.recording import read_recording
+from shaftprint.survey import load_trial
 from shaftprint.tug import read_truth
 
 

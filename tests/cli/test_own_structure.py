@@ -247,7 +247,7 @@ def test_one_file_is_run_once_and_a_changed_one_again(written):
             "my_ship.py, line 3: parameter K: expected lower bound < upper bound, found 2.0 and 1.0.",
         ),
         (
-            "from shaftprint.models import structure\n\nCL4 = structure('CL4').held_at(zeta=0.5)",
+            "from shaftprint.catalogue import structure\n\nCL4 = structure('CL4').held_at(zeta=0.5)",
             "my_ship.py:CL4",
             "my_ship.py:CL4: its name CL4 is that of a shipped structure; give it its own, with "
             'dataclasses.replace(structure, name="...").',

@@ -100,7 +100,7 @@ def test_structure_of_ones_own(run, tmp_path):
     path = tmp_path / "my_ship.py"
     path.write_text(
         "from dataclasses import replace\n"
-        "from shaftprint.models import structure\n"
+        "from shaftprint.catalogue import structure\n"
         "my_loop = replace(structure('CL1'), name='MINE')\n"
     )
     result = run("predict", *GIVEN, "--structure", f"{path}:my_loop")

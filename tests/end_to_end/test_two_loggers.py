@@ -7,12 +7,10 @@ import pytest
 from click.testing import CliRunner
 
 from shaftprint.cli import shaftprint
-from shaftprint.cli._chain import measure
-from shaftprint.cli._inputs import load_trial
-from shaftprint.cli._progress import progress
 from shaftprint.clocks import align, clock_attributes, logger_clocks
 from shaftprint.recording import read_recording, write_recording
 from shaftprint.signals import content_of
+from shaftprint.survey import load_trial, measure
 
 
 @pytest.fixture(scope="module")
@@ -68,10 +66,7 @@ def test_a_clock_that_is_known_badly_becomes_a_finding(merged, tmp_path):
         bad = replace(clock, alignment=replace(clock.alignment, map=line))
         write_recording(tmp_path / "bad.nc", recording.channels.values(), attributes=clock_attributes([bad]))
     trial = load_trial("stan-tug-1205", "short")
-    with progress(hidden=True) as steps:
-        good, poor = (
-            measure(path, trial, mode="shaftprint", steps=steps).signals for path in (merged, tmp_path / "bad.nc")
-        )
+    good, poor = (measure(path, trial).signals for path in (merged, tmp_path / "bad.nc"))
     (finding,) = set(poor.findings) - set(good.findings)
     assert finding.startswith("The clock of shaft.nc is known to 5 ms only: parameters may be off by up to ")
 

@@ -20,6 +20,7 @@ from shaftprint.signals import (
     WorkingPoint,
 )
 from shaftprint.spectra import FrequencyResponse, Harmonics, SignalToNoise, Spectra, open_loop, plan_windows
+from shaftprint.survey import Measurement, Survey, Trial
 from shaftprint.vessel import load_vessel
 
 TRUTH = {
@@ -311,4 +312,14 @@ def fingerprint(identification, signals, spectra, vessel, campaign):
         campaign=campaign,
         settings_files=(SourceFile(role="vessel", name="stan-tug-1205", sha256="cd" * 32),),
         now=datetime(2026, 1, 2, 3, 4, tzinfo=UTC),
+    )
+
+
+@pytest.fixture(scope="session")
+def survey(fingerprint, identification, signals, spectra, vessel, campaign):
+    return Survey(
+        trial=Trial(vessel=vessel, campaign=campaign),
+        measurement=Measurement(signals=signals, spectra=spectra, responses=(spectra.response,)),
+        fits=(identification,),
+        fingerprint=fingerprint,
     )

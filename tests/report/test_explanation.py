@@ -10,8 +10,6 @@ from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.report import (
-    SET_POINT_OFF,
-    ThesisMode,
     damping_table,
     explain_thesis,
     explanation_sentences,
@@ -22,6 +20,7 @@ from shaftprint.report import (
 )
 from shaftprint.report._integral_gain import integral_gain
 from shaftprint.spectra import open_loop
+from shaftprint.survey import SET_POINT_OFF, ThesisMode
 
 # truth of tests/report/conftest.py
 GOVERNORS = ("OL2", "OL3", "OL4", "OL5")

@@ -9,10 +9,11 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, Unweighted, identify
-from shaftprint.report import ThesisMode, render_report
 from shaftprint.report import _page as page_module
 from shaftprint.report import _render as render_module
+from shaftprint.report import render_report
 from shaftprint.report._measurement_sections import time_section
+from shaftprint.survey import ThesisMode
 
 VOID = {"meta", "img", "br", "link"}
 
@@ -71,26 +72,13 @@ def thesis(signals, spectra, open_responses):
 
 
 @pytest.fixture(scope="session")
-def nouns(fingerprint, identification, signals, spectra, vessel, campaign):
-    return {
-        "fingerprint": fingerprint,
-        "identification": identification,
-        "signals": signals,
-        "spectra": spectra,
-        "vessel": vessel,
-        "campaign": campaign,
-    }
-
-
-@pytest.fixture(scope="session")
-def report(tmp_path_factory, nouns, recording, fits, thesis, response):
+def report(tmp_path_factory, survey, recording, fits, thesis, response):
     folder = tmp_path_factory.mktemp("out") / "report"
     told = []
     page = render_report(
         folder,
-        **nouns,
+        replace(survey, fits=(*survey.fits, *(fits[name] for name in ("OL1", "OL2", "BENCHMARK")))),
         recording=recording,
-        fits={name: fits[name] for name in ("OL1", "OL2", "BENCHMARK")},
         thesis=thesis,
         truth={"tau_dn": 0.32, "K_p": 5.7, "K_i": 4.27, "t_d": 0.07, "t_sp": 0.05, "k_q": 9.0, "I_dn": 17.0},
         line_selection={"fit": response, "bin": response},
@@ -138,9 +126,9 @@ def test_the_page_asks_for_nothing_outside(report, page):
     assert policy.replace("style-src-attr 'unsafe-inline'", "").count("unsafe") == 0
 
 
-def test_without_interactive_figures_the_page_runs_no_script(tmp_path, nouns, monkeypatch):
+def test_without_interactive_figures_the_page_runs_no_script(tmp_path, survey, monkeypatch):
     monkeypatch.setattr(render_module, "_sections", lambda inputs: [render_module.fit_section(inputs)])
-    report = render_report(tmp_path / "static", **nouns, interactive=False)
+    report = render_report(tmp_path / "static", survey, interactive=False)
     page = Page(report.read_text(encoding="utf-8"))
     assert not page.all("script")
     assert len(page.all("img")) == 3
@@ -225,12 +213,13 @@ def test_why_thesis_mode_differs(page):
     assert "S15 and S16 lie above 9.87 Hz" in page.text
 
 
-def test_a_report_of_the_bare_nouns(tmp_path, nouns):
-    bare = nouns | {
-        "signals": replace(nouns["signals"], strips=(), step_delays=(), repairs=()),
-        "campaign": nouns["campaign"].model_copy(update={"chirps": (), "staircases": ()}),
-    }
-    page = Page(render_report(tmp_path / "bare", **bare).read_text(encoding="utf-8"))
+def test_a_report_of_a_bare_survey(tmp_path, survey):
+    bare = replace(
+        survey,
+        measurement=replace(survey.measurement, signals=replace(survey.signals, strips=(), step_delays=(), repairs=())),
+        trial=replace(survey.trial, campaign=survey.campaign.model_copy(update={"chirps": (), "staircases": ()})),
+    )
+    page = Page(render_report(tmp_path / "bare", bare).read_text(encoding="utf-8"))
     assert "truth within" not in page.text
     assert "thesis-mode" not in page.ids
     assert "time" not in page.ids
@@ -246,61 +235,61 @@ def test_tests_that_ended_before_the_recording_began_are_not_drawn(campaign, sig
     assert time_section(SimpleNamespace(campaign=campaign, signals=replace(signals, start_s=700.0))) == []
 
 
-def test_names_of_users_are_escaped(tmp_path, nouns, monkeypatch):
+def test_names_of_users_are_escaped(tmp_path, survey, monkeypatch):
     monkeypatch.setattr(render_module, "_sections", lambda inputs: [render_module.summary_section(inputs)])
     evil = "<b>Tug & Co</b>"
-    fingerprint = nouns["fingerprint"]
+    fingerprint = survey.fingerprint
     renamed = fingerprint.model_copy(
         update={
             "conditions": fingerprint.conditions.model_copy(update={"vessel": evil}),
             "findings": ("k_q is <script>alert(1)</script>",),
         }
     )
-    text = render_report(tmp_path / "evil", **(nouns | {"fingerprint": renamed})).read_text(encoding="utf-8")
+    text = render_report(tmp_path / "evil", replace(survey, fingerprint=renamed)).read_text(encoding="utf-8")
     assert "<b>" not in text
     assert "<script>alert" not in text
     assert "&lt;b&gt;Tug &amp; Co" in text
     assert "<i>k</i><sub>q</sub> is &lt;script&gt;" in text
 
 
-def test_an_earlier_report_is_kept_unless_overwriting_is_asked_for(tmp_path, nouns, monkeypatch):
+def test_an_earlier_report_is_kept_unless_overwriting_is_asked_for(tmp_path, survey, monkeypatch):
     monkeypatch.setattr(render_module, "_sections", lambda inputs: [])
     (tmp_path / "recording.nc").write_text("raw")
-    first = render_report(tmp_path, **nouns).read_bytes()
+    first = render_report(tmp_path, survey).read_bytes()
     (tmp_path / "figures").mkdir()
     (tmp_path / "figures" / "old.svg").write_text("old")
     with pytest.raises(FileExistsError, match=r"index\.html exists already"):
-        render_report(tmp_path, **nouns)
+        render_report(tmp_path, survey)
     assert (tmp_path / "index.html").read_bytes() == first
-    render_report(tmp_path, **nouns, overwrite=True)
+    render_report(tmp_path, survey, overwrite=True)
     # a report without pictures has no folder of them
     assert sorted(file.name for file in tmp_path.iterdir()) == ["index.html", "plots", "recording.nc"]
 
 
-def test_a_report_that_fails_leaves_nothing(tmp_path, nouns, monkeypatch):
+def test_a_report_that_fails_leaves_nothing(tmp_path, survey, monkeypatch):
     def fail(*_):
         raise OSError("disk full")
 
     monkeypatch.setattr(page_module, "_written_still", fail)
     with pytest.raises(OSError, match="disk full"):
-        render_report(tmp_path / "report", **nouns)
+        render_report(tmp_path / "report", survey)
     assert not list(tmp_path.iterdir())
 
 
-def test_a_large_picture_becomes_png(tmp_path, nouns, monkeypatch):
+def test_a_large_picture_becomes_png(tmp_path, survey, monkeypatch):
     sections = [render_module.fit_section]
     monkeypatch.setattr(page_module, "LARGEST_SVG_BYTES", 10)
     monkeypatch.setattr(render_module, "_sections", lambda inputs: [make(inputs) for make in sections])
-    page = render_report(tmp_path / "report", **nouns)
+    page = render_report(tmp_path / "report", survey)
     images = Page(page.read_text(encoding="utf-8")).all("img")
     assert {image["src"] for image in images} == {"figures/fit.png", "figures/residuals.png", "figures/step.png"}
     for image in images:
         assert (page.parent / image["src"]).read_bytes().startswith(b"\x89PNG")
 
 
-def test_a_structure_without_feedback_has_no_stability_section(tmp_path, nouns, fits, monkeypatch):
+def test_a_structure_without_feedback_has_no_stability_section(tmp_path, survey, fits, monkeypatch):
     found = render_module.stability_section
     inputs = []
     monkeypatch.setattr(render_module, "_sections", lambda given: inputs.append(given) or [])
-    render_report(tmp_path / "report", **nouns)
+    render_report(tmp_path / "report", survey)
     assert found(replace(inputs[0], identification=fits["OL1"])) == []

@@ -3,8 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from shaftprint.report import ThesisMode
 from shaftprint.report._thesis_mode import calculated_inertia_time_s, thesis_findings, thesis_fit_table
+from shaftprint.survey import ThesisMode
 
 
 def test_inertia_time_of_eq_5_1(signals, spectra, vessel):

@@ -70,7 +70,7 @@ def test_the_option_still_takes_a_file(command, run, forged, tmp_path, monkeypat
     monkeypatch.chdir(tmp_path)
     text = (
         "from dataclasses import replace\n"
-        "from shaftprint.models import structure\n"
+        "from shaftprint.catalogue import structure\n"
         "loop = replace(structure('GAUGE-CLOSED'), name='MY-LOOP')\n"
     )
     Path("ship.py").write_text(text, encoding="utf-8")

@@ -5,13 +5,13 @@ from pathlib import Path
 import click
 import numpy as np
 
-from shaftprint.cli._chain import measure, response_of
 from shaftprint.cli._comparison_tables import print_comparison
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
-from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
+from shaftprint.cli._inputs import campaign_option, vessel_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.identify import compare_structures, expect_comparable
+from shaftprint.survey import load_trial, measure, response_of
 
 
 @click.command("compare-structures")
@@ -54,14 +54,14 @@ def command(
     expect_comparable(structures)
     trial = load_trial(vessel, campaign)
     with progress(hidden=no_progress) as steps:
-        measurement = measure(recording, trial, mode=options.mode, steps=steps)
-        settings = settings_of(structures, measurement, trial, options)
+        measurement = measure(recording, trial, mode=options.mode, progress=steps)
+        how = settings_of(structures, options)
         steps.begin("Comparing the structures")
         comparison = compare_structures(
             structures,
             response_of(structures[0], measurement.responses),
             rng=np.random.default_rng(options.seed),
-            settings=settings,
+            settings={one.name: how(one, measurement, trial) for one in structures},
             folds=folds,
         )
     print_comparison(comparison)

@@ -1,29 +1,32 @@
 """``shaftprint demo``: the whole way, from a ship whose truth is known to its fingerprint."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import click
+import numpy as np
 
-from shaftprint.cli._chain import Measurement, fingerprint_of, measure
 from shaftprint.cli._comparison_tables import print_comparison
-from shaftprint.cli._comparisons import comparisons_of
 from shaftprint.cli._demo_summary import print_summary
 from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_tables import print_fits
-from shaftprint.cli._inputs import Trial, load_trial, settings_text
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._progress import Steps, no_progress_option, progress
 from shaftprint.cli._results import print_paths, write_results
 from shaftprint.cli._signal_tables import print_lines
 from shaftprint.cli._terminal import echo
-from shaftprint.cli._thesis_way import thesis_way, weighted_fits
-from shaftprint.cli._validations import validations_of
-from shaftprint.fingerprint import Fingerprint
-from shaftprint.identify import Identification
-from shaftprint.report import ThesisMode
+from shaftprint.survey import (
+    Survey,
+    ThesisMode,
+    Trial,
+    load_trial,
+    measure,
+    settings_text,
+    survey_of,
+    thesis_way,
+    weighted_fits,
+)
 from shaftprint.tug import Truth, sail
 
 VESSEL = "stan-tug-1205"
@@ -50,37 +53,16 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
     trial = load_trial(VESSEL, campaign)
     with output_folder(output, of="demo", force=force) as folder, progress(hidden=no_progress) as steps:
         truth = _sail(folder, trial, campaign, seed=seed, steps=steps)
-        found = _identify(folder / RECORDING, trial, seed=seed, steps=steps)
-        true = fingerprint_truth(truth, found.fits[0].structure, found.measurement.signals)
-        comparisons = comparisons_of(found.fits, seed=seed, steps=steps)
-        write_results(
-            folder,
-            folder / RECORDING,
-            trial,
-            found.measurement,
-            found.fits,
-            found.fingerprint,
-            steps=steps,
-            comparisons=comparisons,
-            thesis=found.thesis,
-            truth=true,
-            validations=validations_of(found.fits[0], found.measurement, trial, seed=seed, steps=steps),
-        )
-    _print(found, true)
-    for comparison in comparisons:
+        survey, thesis = _identify(folder / RECORDING, trial, seed=seed, steps=steps)
+        true = fingerprint_truth(truth, survey.identification.structure, survey.signals)
+        write_results(folder, folder / RECORDING, survey, steps=steps, thesis=thesis, truth=true)
+    for remark in survey.remarks:
+        echo(remark)
+    _print(survey, thesis, true)
+    for comparison in survey.comparisons:
         print_comparison(comparison)
-    print_summary(found.fingerprint, true, found.thesis.identifications["OL1"])
+    print_summary(survey.fingerprint, true, thesis.identifications["OL1"])
     _print_paths(output)
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class _Found:
-    """What was identified from the recording alone."""
-
-    measurement: Measurement
-    fits: tuple[Identification, ...]
-    thesis: ThesisMode
-    fingerprint: Fingerprint
 
 
 def _sail(folder: Path, trial: Trial, campaign: str, *, seed: int, steps: Steps) -> Truth:
@@ -92,27 +74,22 @@ def _sail(folder: Path, trial: Trial, campaign: str, *, seed: int, steps: Steps)
     return truth
 
 
-def _identify(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> _Found:
+def _identify(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> tuple[Survey, ThesisMode]:
     """Identify the gauge-aware structure and those of the thesis, and the latter once more the thesis' way."""
-    measurement = measure(recording, trial, mode="shaftprint", steps=steps)
-    fits = weighted_fits(measurement, trial, seed=seed, steps=steps)
-    thesis = thesis_way(recording, trial, seed=seed, steps=steps)
-    steps.begin("Finding the intervals")
-    return _Found(
-        measurement=measurement,
-        fits=fits,
-        thesis=thesis,
-        fingerprint=fingerprint_of(fits[0], measurement, trial),
-    )
+    rng = np.random.default_rng(seed)
+    measurement = measure(recording, trial, progress=steps)
+    fits = weighted_fits(measurement, trial, rng=rng, progress=steps)
+    thesis = thesis_way(recording, trial, rng=rng, progress=steps)
+    return survey_of(fits, measurement, trial, rng=rng, progress=steps), thesis
 
 
-def _print(found: _Found, true: Mapping[str, float]) -> None:
-    print_lines(found.measurement.spectra)
-    print_fits("Structures of the thesis, on the same signals, weighted by their noise", found.fits[1:])
+def _print(survey: Survey, thesis: ThesisMode, true: Mapping[str, float]) -> None:
+    print_lines(survey.spectra)
+    print_fits("Structures of the thesis, on the same signals, weighted by their noise", survey.fits[1:])
     print_fits(
-        "Structures of the thesis, signals and fits done the thesis' way", tuple(found.thesis.identifications.values())
+        "Structures of the thesis, signals and fits done the thesis' way", tuple(thesis.identifications.values())
     )
-    print_fingerprint(found.fingerprint, truth=true)
+    print_fingerprint(survey.fingerprint, truth=true)
 
 
 def _print_paths(output: Path) -> None:

@@ -3,15 +3,14 @@
 from pathlib import Path
 
 import click
+import numpy as np
 
-from shaftprint.cli._chain import fingerprint_of, measure
-from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
+from shaftprint.cli._inputs import campaign_option, vessel_option
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._report_tables import on_terminal, print_report_table
 from shaftprint.cli._results import print_paths, write_results
 from shaftprint.cli._terminal import echo
-from shaftprint.cli._thesis_way import thesis_way, weighted_fits
 from shaftprint.report import (
     Explanation,
     damping_table,
@@ -21,6 +20,7 @@ from shaftprint.report import (
     inertia_table,
     integral_table,
 )
+from shaftprint.survey import load_trial, measure, survey_of, thesis_way, weighted_fits
 
 
 @click.command("explain")
@@ -40,17 +40,17 @@ def command(
     inertia time that is too small, the damping that is missing between 1 and 10 rad/s, the K_p that
     drifts and the K_i that is always the same come from. With --output the whole report is written too.
     """
-    trial = load_trial(vessel, campaign)
+    trial, rng = load_trial(vessel, campaign), np.random.default_rng(seed)
     with progress(hidden=no_progress) as steps:
-        measurement = measure(recording, trial, mode="shaftprint", steps=steps)
-        fits = weighted_fits(measurement, trial, seed=seed, steps=steps)
-        thesis = thesis_way(recording, trial, seed=seed, steps=steps)
-    by_name = {found.structure.name: found for found in fits}
+        measurement = measure(recording, trial, progress=steps)
+        fits = weighted_fits(measurement, trial, rng=rng, progress=steps)
+        thesis = thesis_way(recording, trial, rng=rng, progress=steps)
+    by_name = {fit.structure.name: fit for fit in fits}
     explanation = explain_thesis(thesis, by_name, measurement.spectra.response, trial.vessel)
     if output is not None:
         with output_folder(output, of="explain", force=force) as folder, progress(hidden=no_progress) as steps:
-            fingerprint = fingerprint_of(fits[0], measurement, trial)
-            write_results(folder, recording, trial, measurement, fits, fingerprint, steps=steps, thesis=thesis)
+            survey = survey_of(fits, measurement, trial, rng=rng, progress=steps)
+            write_results(folder, recording, survey, steps=steps, thesis=thesis)
     _print(explanation)
     if output is not None:
         print_paths(output)

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._chain import measure, response_of
 from shaftprint.cli._exported import (
     file_to_write,
     fingerprint_argument,
@@ -14,13 +13,14 @@ from shaftprint.cli._exported import (
     structure_option,
 )
 from shaftprint.cli._fingerprint_file import fingerprint_at
-from shaftprint.cli._inputs import NAMES, load_trial
+from shaftprint.cli._inputs import NAMES
 from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._terminal import echo
 from shaftprint.export import write_matlab
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
+from shaftprint.survey import load_trial, measure, response_of
 
 
 @click.command("matlab")
@@ -77,5 +77,5 @@ def _measured(
     """Return the measured response that the structure describes, prepared as for the fingerprint."""
     mode = fingerprint_at(fingerprint).conditions.mode
     with progress(hidden=no_progress) as steps:
-        measurement = measure(recording, load_trial(vessel, campaign), mode=mode, steps=steps)
+        measurement = measure(recording, load_trial(vessel, campaign), mode=mode, progress=steps)
     return response_of(structure, measurement.responses)

@@ -7,14 +7,13 @@ from typing import Any
 
 import click
 
-from shaftprint.cli._chain import Measurement, known_beforehand, response_of
-from shaftprint.cli._inputs import Trial
 from shaftprint.cli._known_values import hold_option, prior_option
 from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.errors import StructureError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted
 from shaftprint.models import Structure
 from shaftprint.signals import Mode
+from shaftprint.survey import Measurement, SettingsOf, Trial, priors_of, response_of
 
 _OPTIONS = (
     prior_option,
@@ -111,36 +110,30 @@ def held_structures(chosen: Sequence[Structure], options: FitOptions) -> tuple[S
     return taken
 
 
-def settings_of(
-    structures: Sequence[Structure],
-    measurement: Measurement,
-    trial: Trial,
-    options: FitOptions,
-) -> dict[str, Settings]:
-    """Return how each structure is fitted, by name: with what the vessel file knows of it and what the user states.
+def settings_of(structures: Sequence[Structure], options: FitOptions) -> SettingsOf:
+    """Return what gives how a structure is fitted: with the vessel file's priors and what the user states.
 
-    Raises
-    ------
-    StructureError
-        If the recording does not give the response that a structure describes.
+    The function that is returned takes a structure, the measurement and the trial.
     """
-    found = {}
-    for chosen in structures:
+
+    def settings(chosen: Structure, measurement: Measurement, trial: Trial) -> Settings:
+        # refused before anything is fitted, if the recording does not give what the structure describes
         response_of(chosen, measurement.responses)
-        given = _given(chosen, structures, dict(options.priors))
-        known = known_beforehand(chosen, trial.vessel, measurement.signals, given)
-        found[chosen.name] = Settings(
+        stated = _stated(chosen, structures, dict(options.priors))
+        priors = priors_of(chosen, trial.vessel, measurement.signals, stated)
+        return Settings(
             weighting=Unweighted() if options.unweighted else MaximumLikelihood(),
             starts=options.starts,
-            priors={name: prior for name, prior in known.items() if name not in options.freed},
+            priors={name: prior for name, prior in priors.items() if name not in options.freed},
         )
-    return found
+
+    return settings
 
 
-def _given(chosen: Structure, structures: Sequence[Structure], given: Mapping[str, Prior]) -> dict[str, Prior]:
+def _stated(chosen: Structure, structures: Sequence[Structure], stated: Mapping[str, Prior]) -> dict[str, Prior]:
     """Return the priors that concern a structure; one that no structure has is passed on, to be refused."""
     free, anywhere = _free_names([chosen]), _free_names(structures)
-    return {name: prior for name, prior in given.items() if name in free or name not in anywhere}
+    return {name: prior for name, prior in stated.items() if name in free or name not in anywhere}
 
 
 def _free_names(structures: Sequence[Structure]) -> set[str]:

@@ -1,23 +1,21 @@
 """``shaftprint identify``: from a recording to a fingerprint."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import click
+import numpy as np
 
-from shaftprint.cli._chain import fingerprint_of, fit, measure
 from shaftprint.cli._comparison_tables import print_comparison
-from shaftprint.cli._comparisons import comparisons_of
 from shaftprint.cli._fingerprint_tables import print_findings, print_fingerprint
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
 from shaftprint.cli._fit_tables import print_fits
-from shaftprint.cli._inputs import campaign_option, load_trial, structure_sources, vessel_option
+from shaftprint.cli._inputs import campaign_option, structure_sources, vessel_option
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._results import print_paths, write_results
-from shaftprint.cli._validations import failed_steps, validations_of
-from shaftprint.limits import limit_hints
+from shaftprint.cli._terminal import echo
+from shaftprint.survey import run
 
 
 @click.command("identify")
@@ -53,31 +51,25 @@ def command(
     --structure, --prior, --free and --hold may be repeated.
     """
     structures = structures_of(names, options)
-    trial = load_trial(vessel, campaign)
-    trial = replace(trial, sources=(*trial.sources, *structure_sources(names)))
     with output_folder(output, of="identify", force=force) as folder, progress(hidden=no_progress) as steps:
-        measurement = measure(recording, trial, mode=options.mode, steps=steps)
-        settings = settings_of(structures, measurement, trial, options)
-        fits = fit(structures, measurement, settings=settings, seed=options.seed, steps=steps)
-        steps.begin("Finding the intervals")
-        fingerprint = fingerprint_of(fits[0], measurement, trial)
-        comparisons = comparisons_of(fits, seed=options.seed, steps=steps)
-        validations = validations_of(fits[0], measurement, trial, seed=options.seed, steps=steps)
-        write_results(
-            folder,
+        survey = run(
             recording,
-            trial,
-            measurement,
-            fits,
-            fingerprint,
-            steps=steps,
-            comparisons=comparisons,
-            validations=validations,
+            vessel,
+            campaign,
+            structures=structures,
+            settings=settings_of(structures, options),
+            mode=options.mode,
+            sources=structure_sources(names),
+            rng=np.random.default_rng(options.seed),
+            progress=steps,
         )
-    print_fingerprint(fingerprint)
-    print_findings("Limits", limit_hints(measurement.spectra.harmonics, failed_steps(validations)))
-    if len(fits) > 1:
-        print_fits("All structures", fits)
-    for comparison in comparisons:
+        write_results(folder, recording, survey, steps=steps)
+    for remark in survey.remarks:
+        echo(remark)
+    print_fingerprint(survey.fingerprint)
+    print_findings("Limits", survey.limit_hints)
+    if len(survey.fits) > 1:
+        print_fits("All structures", survey.fits)
+    for comparison in survey.comparisons:
         print_comparison(comparison)
     print_paths(output)

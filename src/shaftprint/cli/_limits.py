@@ -4,13 +4,13 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._chain import measure
 from shaftprint.cli._fingerprint_tables import print_findings
-from shaftprint.cli._inputs import campaign_option, load_trial, vessel_option
+from shaftprint.cli._inputs import campaign_option, vessel_option
 from shaftprint.cli._numbers import with_uncertainty
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._tables import print_table
 from shaftprint.limits import LimitFit, LimitNumber, identify_limits
+from shaftprint.survey import load_trial, measure
 
 
 @click.command("limits")
@@ -26,7 +26,7 @@ def command(recording: Path, vessel: str, campaign: str, no_progress: bool) -> N
     """
     trial = load_trial(vessel, campaign)
     with progress(hidden=no_progress) as steps:
-        measurement = measure(recording, trial, mode="shaftprint", steps=steps)
+        measurement = measure(recording, trial, mode="shaftprint", progress=steps)
         found = identify_limits(measurement.signals, trial.campaign, trial.vessel, progress=steps.begin)
     print_limits(found)
 

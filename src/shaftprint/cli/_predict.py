@@ -9,8 +9,7 @@ import numpy as np
 
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.catalogue import structure
-from shaftprint.cli._chain import known_beforehand, measure
-from shaftprint.cli._inputs import NAMES, campaign_option, load_trial
+from shaftprint.cli._inputs import NAMES, campaign_option
 from shaftprint.cli._known_values import hold_option, named_value, prior_option, rpm_per_volt_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._prediction_tables import print_prediction
@@ -31,6 +30,7 @@ from shaftprint.identify import (
 from shaftprint.models import Structure
 from shaftprint.signals import WorkingPoint
 from shaftprint.spectra import FrequencyResponse, open_loop
+from shaftprint.survey import load_trial, measure, priors_of
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel, load_vessel
 
@@ -131,7 +131,7 @@ def _recorded(path: Path, vessel: str, campaign: str, chosen: Structure, *, no_p
     """Return what a recording tells of the noise, and what it and the vessel file know."""
     trial = load_trial(vessel, campaign)
     with progress(hidden=no_progress) as steps:
-        measurement = measure(path, trial, mode="shaftprint", steps=steps)
+        measurement = measure(path, trial, mode="shaftprint", progress=steps)
     signals = measurement.signals
     slope = abs(signals.calibration.slope_rev_s_per_v) * signals.dc_scale
     noise = noise_levels(
@@ -139,7 +139,7 @@ def _recorded(path: Path, vessel: str, campaign: str, chosen: Structure, *, no_p
         trial.campaign,
         set_point_per_v=slope / signals.working_point.engine_speed_rev_s,
     )
-    priors = known_beforehand(chosen, trial.vessel, signals, {})
+    priors = priors_of(chosen, trial.vessel, signals)
     return _Ship(priors=priors, noise=noise, words=f"noise of {path.name}")
 
 

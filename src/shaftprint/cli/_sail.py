@@ -4,10 +4,10 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._inputs import load_trial
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._terminal import echo
 from shaftprint.recording import expect_known_ending
+from shaftprint.survey import load_trial
 from shaftprint.tug import sail_as, truth_path
 
 

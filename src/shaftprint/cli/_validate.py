@@ -6,11 +6,10 @@ from pathlib import Path
 import click
 import numpy as np
 
-from shaftprint.cli._chain import Measurement, fit, measure
 from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._fingerprint_model import fingerprint_model
 from shaftprint.cli._fit_options import FitOptions, fit_options, held_structures, settings_of, structures_of
-from shaftprint.cli._inputs import Trial, campaign_option, load_trial, vessel_option
+from shaftprint.cli._inputs import campaign_option, vessel_option
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
 from shaftprint.cli._progress import Steps, no_progress_option, progress
@@ -19,6 +18,7 @@ from shaftprint.cli._validation_results import write_validations
 from shaftprint.cli._validation_tables import print_compared_models, print_validation
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.models import Structure
+from shaftprint.survey import Measurement, Trial, fit, load_trial, measure
 from shaftprint.validation import Model, identified_model, thesis_models, validate
 
 DEFAULT_STRUCTURE = TypedName("GAUGE-CLOSED")
@@ -86,7 +86,7 @@ def command(
     else:
         structures = held_structures([structure_to_use(structure, kept)], options)
     with progress(hidden=no_progress) as steps:
-        measurement = measure(recording, trial, mode=options.mode, steps=steps)
+        measurement = measure(recording, trial, mode=options.mode, progress=steps)
         model = _model(kept, structures, measurement, trial, options, steps=steps)
         models: tuple[Model, ...] = (model, *(thesis_models() if thesis_sets else ()))
         steps.begin("Validating", total=float(len(models)))
@@ -124,5 +124,7 @@ def _model(
     """Return the model of a fingerprint that was kept, otherwise the one that the sines of the recording give."""
     if kept is not None:
         return fingerprint_model(kept, structures[0], measurement.signals)
-    settings = settings_of(structures, measurement, trial, options)
-    return identified_model(fit(structures, measurement, settings=settings, seed=options.seed, steps=steps)[0])
+    how = settings_of(structures, options)
+    settings = {one.name: how(one, measurement, trial) for one in structures}
+    rng = np.random.default_rng(options.seed)
+    return identified_model(fit(structures, measurement, settings=settings, rng=rng, progress=steps)[0])

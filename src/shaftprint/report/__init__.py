@@ -70,7 +70,6 @@ from shaftprint.report._strip_figure import plot_strip_angles
 from shaftprint.report._style import save_figure
 from shaftprint.report._table import Table
 from shaftprint.report._thesis_families import Family, thesis_families
-from shaftprint.report._thesis_mode import SET_POINT_OFF, ThesisMode
 from shaftprint.report._time_series import plot_chirp, plot_excitation, plot_staircase
 from shaftprint.report._validation_figure import plot_validation
 from shaftprint.report._validation_summary_figure import plot_validation_summary
@@ -78,14 +77,12 @@ from shaftprint.report._vessel_file_words import vessel_file_sentences
 
 __all__ = [
     "LOAD_REPEATABILITY",
-    "SET_POINT_OFF",
     "Curve",
     "Difference",
     "Explanation",
     "Family",
     "SimulatedSignal",
     "Table",
-    "ThesisMode",
     "change_in_words",
     "closed_loop_curve",
     "damping_table",

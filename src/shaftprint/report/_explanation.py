@@ -23,8 +23,8 @@ from shaftprint.spectra import open_loop
 
 if TYPE_CHECKING:
     from shaftprint.identify import Identification
-    from shaftprint.report._thesis_mode import ThesisMode
     from shaftprint.spectra import FrequencyResponse
+    from shaftprint.survey import ThesisMode
     from shaftprint.vessel import Vessel
 
 GAUGE = "GAUGE-CLOSED"

@@ -18,11 +18,11 @@ from typing import TYPE_CHECKING
 
 from shaftprint.report._numbers import plain, rounded, with_deviation
 from shaftprint.report._table import Table
-from shaftprint.report._thesis_mode import GOVERNOR_FITS, SET_POINT_OFF
+from shaftprint.report._thesis_mode import GOVERNOR_FITS
 
 if TYPE_CHECKING:
     from shaftprint.identify import Identification
-    from shaftprint.report._thesis_mode import ThesisMode
+    from shaftprint.survey import ThesisMode
 
 PERCENT = 100.0
 MILLISECONDS = 1000.0
@@ -39,7 +39,7 @@ class IntegralStep:
     fit_percent: float
     """Its FitPercent [%]."""
     off: float
-    """Integral gain with the set point off by ``SET_POINT_OFF`` [1/s]."""
+    """Integral gain with the set point off [1/s]."""
     off_fit_percent: float
     """Its FitPercent [%]."""
 
@@ -64,6 +64,8 @@ class IntegralGain:
     """Name of the slowest line."""
     slowest_error: float
     """Size of the error over that of the set point there [-]."""
+    off_share: float
+    """Share of itself by which the set point is off, where it is [-]."""
 
 
 def integral_gain(thesis: "ThesisMode", gauge: "Identification") -> IntegralGain:
@@ -91,6 +93,7 @@ def integral_gain(thesis: "ThesisMode", gauge: "Identification") -> IntegralGain
         seen=float(p["k_q"] / slowness),
         slowest_line=response.lines[0],
         slowest_error=float(abs(1.0 - speed)),
+        off_share=thesis.off_share,
     )
 
 
@@ -107,7 +110,7 @@ def _step(name: str, thesis: "ThesisMode") -> IntegralStep:
 
 def integral_gain_table(gain: IntegralGain) -> Table:
     """Return the integral gain structure by structure, with the set point as it is and off."""
-    off = f"set point off by {plain(PERCENT * SET_POINT_OFF, 2)} %"
+    off = f"set point off by {plain(PERCENT * gain.off_share, 2)} %"
     return Table(
         caption="The integral gain: the same in all structures, with a right set point and with one that is off",
         header=("structure", "K_i, the thesis' way", "FitPercent", f"K_i, {off}", f"FitPercent, {off}"),
@@ -142,7 +145,7 @@ def integral_gain_words(gain: IntegralGain) -> str:
         "delays lie outside the loop and add to the error that is measured: "
         f"k_q / ((k_q - g) / (v K_i) + t_sp + t_pickup) = {rounded(gain.seen, 3)} is to be seen. FitPercent hangs on "
         f"the set point: at {gain.slowest_line} the error is {plain(PERCENT * gain.slowest_error, 1)} % of it. With "
-        f"the set point off by {plain(PERCENT * SET_POINT_OFF, 2)} % the same fits reach {_range(off_percent, 3)} % "
+        f"the set point off by {plain(PERCENT * gain.off_share, 2)} % the same fits reach {_range(off_percent, 3)} % "
         f"instead of {_range(percent, 3)} %, with K_i of {_range(off, 3)}: that four values are alike does not prove "
         "them right."
     )

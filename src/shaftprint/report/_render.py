@@ -28,36 +28,22 @@ from shaftprint.report._validation_sections import validation_section
 from shaftprint.report._verdict_sections import verdict_section
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
-    from shaftprint.fingerprint import Fingerprint
-    from shaftprint.identify import Comparison, Identification
     from shaftprint.models import Structure
     from shaftprint.recording import Recording
-    from shaftprint.report._thesis_mode import ThesisMode
-    from shaftprint.signals import Signals
-    from shaftprint.spectra import FrequencyResponse, Spectra
-    from shaftprint.validation import Validation
-    from shaftprint.vessel import Vessel
+    from shaftprint.spectra import FrequencyResponse
+    from shaftprint.survey import Survey, ThesisMode
 
 
 @refusing_none(ReportError)
 def render_report(
     directory: str | Path,
+    survey: "Survey",
     *,
-    fingerprint: "Fingerprint",
-    identification: "Identification",
-    signals: "Signals",
-    spectra: "Spectra",
-    vessel: "Vessel",
-    campaign: "Campaign",
     recording: "Recording | None" = None,
-    fits: "Mapping[str, Identification] | None" = None,
     thesis: "ThesisMode | None" = None,
     truth: Mapping[str, float] | None = None,
     line_selection: "Mapping[str, FrequencyResponse] | None" = None,
-    comparisons: "Sequence[Comparison]" = (),
     sensitivity: "Sequence[Structure]" = (),
-    validations: "Sequence[Validation]" = (),
     interactive: bool = True,
     overwrite: bool = False,
     progress: Callable[[float], None] | None = None,
@@ -71,25 +57,19 @@ def render_report(
     ----------
     directory
         Where the report goes; made if it does not exist. Other files there are left alone.
-    fingerprint, identification, signals, spectra, vessel, campaign
-        The fingerprint and what it was made from.
+    survey
+        The fingerprint and what it was made from, such as ``survey.run`` gives it.
     recording
         Raw recording, open; without it the figures of raw channels are left out, and the clocks of loggers that were
         merged into it.
-    fits
-        Structures of the thesis fitted to the same responses, by name.
     thesis
         The same recording treated the thesis' way.
     truth
         True values by parameter name, in the parameters' units, where they are known.
     line_selection
         Responses by other ways to measure the sines, by name of the way, the spectra's own among them.
-    comparisons
-        Which of several structures the data want.
     sensitivity
         Structures whose Bode families are shown.
-    validations
-        The identified model, and others beside it, held against records that they have not seen.
     interactive
         Whether figures can be zoomed; without it the page runs no script.
     overwrite
@@ -107,20 +87,20 @@ def render_report(
         If figures are to be interactive and plotly is not installed.
     """
     inputs = Inputs(
-        fingerprint=fingerprint,
-        identification=identification,
-        signals=signals,
-        spectra=spectra,
-        vessel=vessel,
-        campaign=campaign,
+        fingerprint=survey.fingerprint,
+        identification=survey.identification,
+        signals=survey.signals,
+        spectra=survey.spectra,
+        vessel=survey.vessel,
+        campaign=survey.campaign,
         recording=recording,
-        fits=fits or {},
+        fits={one.structure.name: one for one in survey.fits[1:]},
         thesis=thesis,
         truth=truth or {},
         line_selection=line_selection or {},
-        comparisons=comparisons,
+        comparisons=survey.comparisons,
         sensitivity=sensitivity,
-        validations=validations,
+        validations=survey.validations,
         clocks=() if recording is None else logger_clocks(recording),
     )
     page = _page(inputs, _sections(inputs))

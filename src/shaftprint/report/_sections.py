@@ -16,10 +16,10 @@ if TYPE_CHECKING:
     from shaftprint.identify import Comparison, Identification
     from shaftprint.models import Structure
     from shaftprint.recording import Recording
-    from shaftprint.report._thesis_mode import ThesisMode
     from shaftprint.report.plots import Plot
     from shaftprint.signals import Signals
     from shaftprint.spectra import FrequencyResponse, Spectra
+    from shaftprint.survey import ThesisMode
     from shaftprint.validation import Validation
     from shaftprint.vessel import Vessel
 

@@ -1,7 +1,5 @@
 """The same recording treated the thesis' way, and why the numbers differ."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,45 +9,26 @@ from shaftprint.report._table import Cell, Table, symbol_html
 from shaftprint.spectra import open_loop
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Identification
-    from shaftprint.signals import Signals
-    from shaftprint.spectra import Spectra
+    from shaftprint.survey import ThesisMode
     from shaftprint.vessel import Vessel
 
 GOVERNOR_FITS = ("OL2", "OL3", "OL4", "OL5")
-# Share of itself by which the set point is taken to be off, to show what that does: less than the 1.05 % by which the
-# line of equation 3.2 misses the speed of the working point at -5 V (table 3.2).
-SET_POINT_OFF = -0.0085
 SHOWN = ("tau_n", "K_p", "K_i", "t_d", "omega_n", "zeta")
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ThesisMode:
-    """What the thesis' way makes of the same recording."""
-
-    signals: "Signals"
-    """Signals prepared in thesis mode."""
-    spectra: "Spectra"
-    """Spectra by bin selection."""
-    identifications: Mapping[str, "Identification"]
-    """Unweighted fits by structure name, such as OL1 to OL5, CL1, CL3, CL4 and BENCHMARK; any may be missing."""
-    set_point_off: Mapping[str, "Identification"] = field(default_factory=dict)
-    """OL2 to OL5 fitted to the same responses with the set point off by ``SET_POINT_OFF``; may be empty."""
-
-
-def calculated_inertia_time_s(thesis: ThesisMode, vessel: "Vessel") -> float:
+def calculated_inertia_time_s(thesis: "ThesisMode", vessel: "Vessel") -> float:
     """Return ``2 pi I n_s0 / M_s0`` with the inertia upstream of the gauge [s] (thesis eq. 5.1: 1.016 s)."""
     point = thesis.signals.working_point
     shaft_rev_s = point.engine_speed_rev_s / vessel.gearbox.ratio
     return 2.0 * np.pi * vessel.inertia_upstream_kg_m2 * shaft_rev_s / point.shaft_torque_nm
 
 
-def thesis_findings(thesis: ThesisMode, vessel: "Vessel") -> tuple[str, ...]:
+def thesis_findings(thesis: "ThesisMode", vessel: "Vessel") -> tuple[str, ...]:
     """Return what goes wrong in the thesis' way on this recording, and why, in words."""
     return (*_inertia(thesis, vessel), *_governor(thesis), *_aliased(thesis))
 
 
-def _inertia(thesis: ThesisMode, vessel: "Vessel") -> list[str]:
+def _inertia(thesis: "ThesisMode", vessel: "Vessel") -> list[str]:
     core = thesis.identifications.get("OL1")
     if core is None:
         return []
@@ -66,7 +45,7 @@ def _inertia(thesis: ThesisMode, vessel: "Vessel") -> list[str]:
     ]
 
 
-def _governor(thesis: ThesisMode) -> list[str]:
+def _governor(thesis: "ThesisMode") -> list[str]:
     fits = {name: thesis.identifications[name] for name in GOVERNOR_FITS if name in thesis.identifications}
     if len(fits) < 2:
         return []
@@ -84,7 +63,7 @@ def _governor(thesis: ThesisMode) -> list[str]:
     ]
 
 
-def _aliased(thesis: ThesisMode) -> list[str]:
+def _aliased(thesis: "ThesisMode") -> list[str]:
     sensor = thesis.signals.engine_speed
     response = thesis.spectra.response
     chosen = (response.frequency_hz > sensor.nyquist_hz) & response.used
@@ -98,7 +77,7 @@ def _aliased(thesis: ThesisMode) -> list[str]:
     ]
 
 
-def thesis_fit_table(thesis: ThesisMode) -> Table:
+def thesis_fit_table(thesis: "ThesisMode") -> Table:
     """Return parameters and FitPercent of the unweighted fits (as thesis tables 5.2 and 5.3)."""
     rows: list[tuple[Cell, ...]] = []
     for name, fit in thesis.identifications.items():

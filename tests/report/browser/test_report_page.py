@@ -3,6 +3,7 @@
 import itertools
 import re
 import shutil
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -26,7 +27,7 @@ PLOTS = (
 
 
 @pytest.fixture(scope="module")
-def report(browser, tmp_path_factory, fingerprint, identification, signals, spectra, vessel, campaign):
+def report(browser, tmp_path_factory, survey, identification, signals, campaign):
     settings = ValidationSettings(rest_s=6.0, zoom_after_s=8.0)
     rng = np.random.default_rng(1)
     validation = validate(identification, signals, campaign, rng=rng, records=("St1",), settings=settings)
@@ -40,13 +41,7 @@ def report(browser, tmp_path_factory, fingerprint, identification, signals, spec
         patch.setattr(render_module, "_sections", chosen)
         return render_report(
             tmp_path_factory.mktemp("browser") / "report",
-            fingerprint=fingerprint,
-            identification=identification,
-            signals=signals,
-            spectra=spectra,
-            vessel=vessel,
-            campaign=campaign,
-            validations=[validation],
+            replace(survey, validations=(validation,)),
         )
 
 

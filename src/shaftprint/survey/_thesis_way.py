@@ -3,13 +3,16 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from shaftprint.catalogue import structure
-from shaftprint.cli._chain import Measurement, fit, known_beforehand, measure, responses_of
-from shaftprint.cli._inputs import Trial
-from shaftprint.cli._progress import Steps
 from shaftprint.identify import Identification, Settings, Uniform, Unweighted
-from shaftprint.report import SET_POINT_OFF, ThesisMode
 from shaftprint.spectra import FrequencyResponse
+from shaftprint.survey._fits import fit, priors_of
+from shaftprint.survey._measurement import Measurement, measure, responses_of
+from shaftprint.survey._progress import SILENT, Progress
+from shaftprint.survey._thesis_mode import SET_POINT_OFF, ThesisMode
+from shaftprint.survey._trial import Trial
 
 GAUGE = "GAUGE-CLOSED"
 OF_THE_THESIS = ("OL1", "OL2", "OL3", "OL4", "OL5", "BENCHMARK", "CL1", "CL3", "CL4")
@@ -17,28 +20,31 @@ GOVERNORS = ("OL2", "OL3", "OL4", "OL5")
 WITH_PICK_UP = "GAUGE-CORE"
 
 
-def weighted_fits(measurement: Measurement, trial: Trial, *, seed: int, steps: Steps) -> tuple[Identification, ...]:
+def weighted_fits(
+    measurement: Measurement, trial: Trial, *, rng: np.random.Generator, progress: Progress = SILENT
+) -> tuple[Identification, ...]:
     """Return the gauge-aware structure and those of the thesis, weighted by the measured covariance."""
     structures = [structure(name) for name in (GAUGE, *OF_THE_THESIS)]
     settings = {
-        chosen.name: Settings(priors=known_beforehand(chosen, trial.vessel, measurement.signals, {}))
-        for chosen in structures
+        chosen.name: Settings(priors=priors_of(chosen, trial.vessel, measurement.signals)) for chosen in structures
     }
-    return fit(structures, measurement, settings=settings, seed=seed, steps=steps)
+    return fit(structures, measurement, settings=settings, rng=rng, progress=progress)
 
 
-def thesis_way(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> ThesisMode:
+def thesis_way(
+    recording: str | Path, trial: Trial, *, rng: np.random.Generator, progress: Progress = SILENT
+) -> ThesisMode:
     """Return the recording treated step by step as in the thesis, and besides its pick-up taken into the model."""
-    measurement = measure(recording, trial, mode="thesis", steps=steps)
+    measurement = measure(recording, trial, mode="thesis", progress=progress)
     latency = trial.vessel.sensors.shaft_torque.latency_s
     structures = [*(structure(name) for name in OF_THE_THESIS), structure(WITH_PICK_UP).held_at(t_gauge=latency)]
     unweighted = Settings(weighting=Unweighted(), draw=Uniform())
     settings = dict.fromkeys((found.name for found in structures), unweighted)
-    fits = fit(structures, measurement, settings=settings, seed=seed, steps=steps)
+    fits = fit(structures, measurement, settings=settings, rng=rng, progress=progress)
     off = set_point_scaled(measurement.spectra.response, 1.0 + SET_POINT_OFF)
     measurement_off = replace(measurement, responses=responses_of(off))
     governors = [structure(name) for name in GOVERNORS]
-    fits_off = fit(governors, measurement_off, settings=settings, seed=seed, steps=steps)
+    fits_off = fit(governors, measurement_off, settings=settings, rng=rng, progress=progress)
     return ThesisMode(
         signals=measurement.signals,
         spectra=measurement.spectra,

@@ -1,0 +1,44 @@
+"""One recording with its vessel and campaign, and everything that is identified from it.
+
+What ``shaftprint identify`` does, as a verb: ``run`` gives a ``Survey``, from which reports, tables and files are made.
+The single steps are verbs too: ``measure``, ``fit``, ``survey_of``. Numbers in a survey have the units and signs of the
+rooms that they come from.
+"""
+
+from shaftprint.survey._fits import comparisons_of, fit, priors_of
+from shaftprint.survey._measurement import Measurement, measure, response_of, responses_of
+from shaftprint.survey._progress import SILENT, Progress, Silent
+from shaftprint.survey._survey import SettingsOf, Survey, fingerprint_of, run, survey_of
+from shaftprint.survey._thesis_mode import SET_POINT_OFF, ThesisMode
+from shaftprint.survey._thesis_way import GAUGE, set_point_scaled, thesis_way, weighted_fits
+from shaftprint.survey._trial import Trial, load_trial, settings_text
+from shaftprint.survey._validations import failed_steps, validations_of
+
+__all__ = [
+    "GAUGE",
+    "SET_POINT_OFF",
+    "SILENT",
+    "Measurement",
+    "Progress",
+    "SettingsOf",
+    "Silent",
+    "Survey",
+    "ThesisMode",
+    "Trial",
+    "comparisons_of",
+    "failed_steps",
+    "fingerprint_of",
+    "fit",
+    "load_trial",
+    "measure",
+    "priors_of",
+    "response_of",
+    "responses_of",
+    "run",
+    "set_point_scaled",
+    "settings_text",
+    "survey_of",
+    "thesis_way",
+    "validations_of",
+    "weighted_fits",
+]

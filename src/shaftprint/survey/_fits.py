@@ -1,0 +1,91 @@
+"""Structures fitted to the responses of a measurement, and compared where they explain the same data."""
+
+import copy
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from shaftprint.identify import (
+    Comparison,
+    Identification,
+    Prior,
+    Settings,
+    compare_fits,
+    identify,
+    priors_from_vessel,
+)
+from shaftprint.models import Structure
+from shaftprint.signals import Signals
+from shaftprint.survey._measurement import Measurement, response_of
+from shaftprint.survey._progress import SILENT, Progress
+from shaftprint.vessel import Vessel
+
+
+def priors_of(
+    structure: Structure, vessel: Vessel, signals: Signals, stated: Mapping[str, Prior] | None = None
+) -> dict[str, Prior]:
+    """Return the priors of a structure: those of the vessel file, and what the user states instead or besides."""
+    return priors_from_vessel(structure, vessel, signals.working_point, mode=signals.mode) | dict(stated or {})
+
+
+def fit(
+    structures: Sequence[Structure],
+    measurement: Measurement,
+    *,
+    settings: Mapping[str, Settings],
+    rng: np.random.Generator,
+    progress: Progress = SILENT,
+) -> tuple[Identification, ...]:
+    """Fit every structure to the response that it describes.
+
+    Parameters
+    ----------
+    structures
+        What to fit.
+    measurement
+        What to fit it to.
+    settings
+        How to search, by name of the structure.
+    rng
+        Draws the start values; each structure begins with its state, so that no result depends on the others.
+
+    Raises
+    ------
+    StructureError
+        If the recording does not give the response that a structure describes.
+    IdentificationError
+        If a structure cannot be fitted.
+    """
+    progress.begin("Fitting the structures", total=float(len(structures)))
+    fits = []
+    for structure in structures:
+        response = response_of(structure, measurement.responses)
+        fits.append(identify(structure, response, rng=copy.deepcopy(rng), settings=settings[structure.name]))
+        progress.advance(1.0)
+    return tuple(fits)
+
+
+def comparisons_of(
+    fits: Sequence[Identification], *, rng: np.random.Generator, progress: Progress = SILENT
+) -> tuple[Comparison, ...]:
+    """Return a comparison for every group of two or more fits of the same channels, in the order of the fits.
+
+    Parameters
+    ----------
+    fits
+        Fits to responses of one recording, weighed alike.
+    rng
+        For the draws; each group begins with its state.
+    """
+    groups: dict[tuple[tuple[str, str], ...], list[Identification]] = {}
+    for one in fits:
+        groups.setdefault(one.structure.channels, []).append(one)
+    chosen = [group for group in groups.values() if len(group) > 1]
+    if not chosen:
+        return ()
+    progress.begin("Comparing the structures", total=float(len(chosen)))
+    comparisons = []
+    for group in chosen:
+        comparisons.append(compare_fits(group, rng=copy.deepcopy(rng)))
+        progress.advance(1.0)
+    return tuple(comparisons)

@@ -1,0 +1,34 @@
+"""What a long run reports while it works; whoever calls it may show it."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+
+class Progress(Protocol):
+    """The steps of a run, one after the other."""
+
+    def begin(self, text: str, total: float | None = None) -> None:
+        """Begin the next step, with its amount of work where that is known."""
+
+    def advance(self, amount: float) -> None:
+        """Add an amount of work that is done."""
+
+    def reach(self, amount: float) -> None:
+        """Set the amount of work that is done."""
+
+
+@dataclass(frozen=True, slots=True)
+class Silent:
+    """Progress that nobody looks at."""
+
+    def begin(self, text: str, total: float | None = None) -> None:
+        """Do nothing."""
+
+    def advance(self, amount: float) -> None:
+        """Do nothing."""
+
+    def reach(self, amount: float) -> None:
+        """Do nothing."""
+
+
+SILENT = Silent()

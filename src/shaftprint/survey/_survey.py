@@ -1,0 +1,173 @@
+"""The noun and the verb of the room: all that one recording gives, and the run that makes it."""
+
+import copy
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+
+from shaftprint.campaign import Campaign
+from shaftprint.catalogue import shipped_structure
+from shaftprint.fingerprint import Fingerprint, SourceFile, take_fingerprint
+from shaftprint.identify import Comparison, Identification, Settings
+from shaftprint.limits import limit_hints
+from shaftprint.models import Structure
+from shaftprint.signals import Mode, Signals
+from shaftprint.spectra import Spectra
+from shaftprint.survey._fits import comparisons_of, fit, priors_of
+from shaftprint.survey._measurement import Measurement, measure
+from shaftprint.survey._progress import SILENT, Progress
+from shaftprint.survey._trial import Trial, load_trial
+from shaftprint.survey._validations import failed_steps, validations_of
+from shaftprint.validation import Validation
+from shaftprint.vessel import Vessel
+
+SettingsOf: TypeAlias = Callable[[Structure, Measurement, Trial], Settings]
+"""Gives how a structure is fitted to a measurement of a trial."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Survey:
+    """A recording, what was tested, and all that follows from both."""
+
+    trial: Trial
+    """Vessel, campaign, and their files."""
+    measurement: Measurement
+    """Signals, spectra and responses."""
+    fits: tuple[Identification, ...]
+    """The structures that were fitted; the fingerprint is of the first."""
+    fingerprint: Fingerprint
+    """What is kept."""
+    comparisons: tuple[Comparison, ...] = ()
+    """Which of several structures the data want."""
+    validations: tuple[Validation, ...] = ()
+    """The first structure held against records that it has not seen."""
+    remarks: tuple[str, ...] = ()
+    """What could not be done, in words."""
+
+    @property
+    def vessel(self) -> Vessel:
+        """The installation."""
+        return self.trial.vessel
+
+    @property
+    def campaign(self) -> Campaign:
+        """What was asked of it."""
+        return self.trial.campaign
+
+    @property
+    def signals(self) -> Signals:
+        """The prepared recording."""
+        return self.measurement.signals
+
+    @property
+    def spectra(self) -> Spectra:
+        """Responses of the test lines."""
+        return self.measurement.spectra
+
+    @property
+    def identification(self) -> Identification:
+        """The fit that the fingerprint is of."""
+        return self.fits[0]
+
+    @property
+    def limit_hints(self) -> tuple[str, ...]:
+        """Whether sines and steps hint at a limit, in words."""
+        return limit_hints(self.spectra.harmonics, failed_steps(self.validations))
+
+
+def run(
+    recording: str | Path,
+    vessel: str | Path | Vessel,
+    campaign: str | Path | Campaign,
+    *,
+    structures: Sequence[str | Structure] = ("GAUGE-CLOSED",),
+    settings: SettingsOf | None = None,
+    mode: Mode = "shaftprint",
+    sources: Sequence[SourceFile] = (),
+    rng: np.random.Generator | None = None,
+    now: datetime | None = None,
+    progress: Progress = SILENT,
+) -> Survey:
+    """Identify a line from a recording: all that ``shaftprint identify`` does, before anything is written.
+
+    Parameters
+    ----------
+    recording
+        Path of the raw recording, in any format that is read.
+    vessel, campaign
+        What was tested and what was asked of it: paths, shipped names, or loaded.
+    structures
+        Structures, or names of shipped ones; the fingerprint is of the first, others are fitted beside it.
+    settings
+        Gives how a structure is fitted; with the priors of the vessel file where it is not given.
+    mode
+        How signals and lines are prepared; the thesis' way is there to compare.
+    sources
+        Further files that the result rests on, such as that of a structure of the user's own.
+    rng
+        For the starts of the searches; seed 1, as in the program, where it is not given.
+    now
+        When the fingerprint is made.
+
+    Raises
+    ------
+    ShaftprintError
+        If a file cannot be used, or the recording does not give what a structure describes.
+    """
+    rng = np.random.default_rng(1) if rng is None else rng
+    trial = load_trial(vessel, campaign)
+    trial = replace(trial, sources=(*trial.sources, *sources))
+    chosen = tuple(one if isinstance(one, Structure) else shipped_structure(one) for one in structures)
+    measurement = measure(recording, trial, mode=mode, progress=progress)
+    how = settings or _with_priors
+    by_name = {one.name: how(one, measurement, trial) for one in chosen}
+    fits = fit(chosen, measurement, settings=by_name, rng=rng, progress=progress)
+    return survey_of(fits, measurement, trial, rng=rng, now=now, progress=progress)
+
+
+def fingerprint_of(
+    identification: Identification, measurement: Measurement, trial: Trial, *, now: datetime | None = None
+) -> Fingerprint:
+    """Return the fingerprint of one fit."""
+    return take_fingerprint(
+        identification,
+        signals=measurement.signals,
+        signal_to_noise=measurement.spectra.signal_to_noise,
+        vessel=trial.vessel,
+        campaign=trial.campaign,
+        settings_files=trial.sources,
+        now=now or datetime.now(UTC),
+    )
+
+
+def survey_of(
+    fits: Sequence[Identification],
+    measurement: Measurement,
+    trial: Trial,
+    *,
+    rng: np.random.Generator,
+    now: datetime | None = None,
+    progress: Progress = SILENT,
+) -> Survey:
+    """Return what follows from fits: fingerprint, comparisons, validation."""
+    progress.begin("Finding the intervals")
+    fingerprint = fingerprint_of(fits[0], measurement, trial, now=now)
+    comparisons = comparisons_of(fits, rng=rng, progress=progress)
+    validations, remarks = validations_of(fits[0], measurement, trial, rng=copy.deepcopy(rng), progress=progress)
+    return Survey(
+        trial=trial,
+        measurement=measurement,
+        fits=tuple(fits),
+        fingerprint=fingerprint,
+        comparisons=comparisons,
+        validations=validations,
+        remarks=remarks,
+    )
+
+
+def _with_priors(structure: Structure, measurement: Measurement, trial: Trial) -> Settings:
+    return Settings(priors=priors_of(structure, trial.vessel, measurement.signals))

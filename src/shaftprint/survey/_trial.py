@@ -1,0 +1,57 @@
+"""What was tested and what was asked of it, with the files that say so."""
+
+import hashlib
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Literal
+
+from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.fingerprint import SourceFile
+from shaftprint.settings import shipped_names
+from shaftprint.vessel import Vessel, load_vessel
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Trial:
+    """What was tested: the vessel, the campaign and the files that describe them."""
+
+    vessel: Vessel
+    """The installation."""
+    campaign: Campaign
+    """What was asked of it."""
+    sources: tuple[SourceFile, ...] = ()
+    """The files with their hashes; none for what was made in a program."""
+
+
+def load_trial(vessel: str | Path | Vessel, campaign: str | Path | Campaign) -> Trial:
+    """Return vessel and campaign, each from a path, by a shipped name, or as it is.
+
+    Raises
+    ------
+    SettingsError
+        If one of them cannot be used.
+    """
+    sources: list[SourceFile] = []
+    if not isinstance(vessel, Vessel):
+        name = str(vessel)
+        vessel = load_vessel(name)
+        sources.append(_source("vessel", name))
+    if not isinstance(campaign, Campaign):
+        name = str(campaign)
+        campaign = load_campaign(name)
+        sources.append(_source("campaign", name))
+    return Trial(vessel=vessel, campaign=campaign, sources=tuple(sources))
+
+
+def settings_text(kind: Literal["vessel", "campaign"], path_or_name: str) -> bytes:
+    """Return the content of a settings file that has been loaded before."""
+    shipped = files(f"shaftprint.{kind}") / "shipped"
+    if path_or_name in shipped_names(shipped):
+        return (shipped / f"{path_or_name.replace('-', '_')}.toml").read_bytes()
+    return Path(path_or_name).read_bytes()
+
+
+def _source(kind: Literal["vessel", "campaign"], path_or_name: str) -> SourceFile:
+    content = settings_text(kind, path_or_name)
+    return SourceFile(role=kind, name=Path(path_or_name).name, sha256=hashlib.sha256(content).hexdigest())
