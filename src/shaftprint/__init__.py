@@ -21,12 +21,13 @@ room            nouns                       verbs
 ``validation``  ``Validation``              ``validate``
 ``fingerprint`` ``Fingerprint``             ``take_fingerprint``, ``read_fingerprint``, ``write_fingerprint``
 ``export``      ``ExportedModel``           ``exported_model``, ``write_fmu``, ``write_matlab``, ``write_modelica``
-``survey``      ``Survey``                  ``open_survey``, ``survey.run``
+``survey``      ``Survey``                  ``run``, ``measure``, ``fit``, ``survey_of``
 ``report``                                  ``render_report``, ``plot_bode``
 ``tug``         ``Truth``                   ``sail``
 =============== =========================== ==========================================================================
 
-Verbs take the noun first and the rest by keyword. Errors that a user can mend are ``errors.ShaftprintError``.
+``sp.open_survey(recording, vessel, campaign)`` is ``survey.run``: all of ``shaftprint identify`` in one call. Verbs take
+the noun first and the rest by keyword. Errors that a user can mend are ``errors.ShaftprintError``.
 """
 
 import importlib
