@@ -26,8 +26,8 @@ room            nouns                       verbs
 ``tug``         ``Truth``                   ``sail``
 =============== =========================== ==========================================================================
 
-``sp.open_survey(recording, vessel, campaign)`` is ``survey.run``: all of ``shaftprint identify`` in one call. Verbs take
-the noun first and the rest by keyword. Errors that a user can mend are ``errors.ShaftprintError``.
+``sp.open_survey(recording, vessel, campaign)`` is ``survey.run``: all of ``shaftprint identify`` in one call.
+Verbs take the noun first and the rest by keyword. Errors that a user can mend are ``errors.ShaftprintError``.
 """
 
 import importlib

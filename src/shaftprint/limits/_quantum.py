@@ -20,8 +20,8 @@ from shaftprint.limits._search import GOVERNOR, Fitted, values_without_limits
 from shaftprint.limits._set_point import GovernorRecord
 from shaftprint.limits._suspects import Kind
 
-# Steps that are looked for, over the speed of the working point. Finer ones cannot be told from what noise and deadbands
-# do; coarser ones are levels of a switch.
+# Steps that are looked for, over the speed of the working point. Finer ones cannot be told from what noise and
+# deadbands do; coarser ones are levels of a switch.
 FINEST, COARSEST = 0.007, 0.06
 # The set point is rounded at this rate [Hz]: a fast sine passes many steps in one sample of the record.
 ROUNDED_HZ = 50.0
