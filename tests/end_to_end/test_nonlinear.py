@@ -141,7 +141,6 @@ def test_what_was_fitted_and_how_is_said(limited_fit):
     assert limited_fit.records == ("St1", "St2", "St3", "St4")
     assert limited_fit.starts == 6
     assert 1 <= limited_fit.reached[0] <= limited_fit.reached[1] <= 2
-    assert limited_fit.left_out == ()
 
 
 def test_a_deadband_is_found_and_its_sines_are_records(sailed):

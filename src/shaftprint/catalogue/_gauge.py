@@ -8,13 +8,25 @@ Two free bodies cut at the gauge::
 With ``tau_up = 0`` and no latencies they are those of the thesis.
 """
 
-from shaftprint.models._blocks import FirstOrderLag, Gain, PIGovernor, SecondOrderLag
-from shaftprint.models._combination import Combination
-from shaftprint.models._delays import Delay, SpeedSensor
-from shaftprint.models._expression import Expression, Inverse, Sensitivity
-from shaftprint.models._parameter import Parameter
-from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
-from shaftprint.models._structure import Structure
+from shaftprint.models import (
+    Combination,
+    Delay,
+    DynamicInflow,
+    EntrainedWater,
+    Expression,
+    FirstOrderLag,
+    Gain,
+    Inertia,
+    Inverse,
+    Parameter,
+    PIGovernor,
+    SecondOrderLag,
+    Sensitivity,
+    Shaft,
+    SpeedSensor,
+    Structure,
+    TorqueBalance,
+)
 
 T_D = Parameter("t_d", "s", 0.0, 0.5, 0.1, "delay inside the loop: governor, injection, combustion")
 TAU_DN = Parameter("tau_dn", "s", 0.0, 2.0, 0.3, "inertia time downstream of the torque gauge")

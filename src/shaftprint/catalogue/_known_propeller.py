@@ -6,9 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.models._combination import Combination
-from shaftprint.models._parameter import Parameter
-from shaftprint.models._structure import Structure
+from shaftprint.models import Combination, Parameter, Structure
 from shaftprint.propeller import OpenWaterCurve
 
 HIGHEST_WAKE = 0.6

@@ -38,15 +38,26 @@ from shaftprint.catalogue._gauge import (
     gauge_combinations,
 )
 from shaftprint.errors import StructureError
-from shaftprint.models._blocks import FirstOrderLag, Gain
-from shaftprint.models._delays import Delay, SpeedSensor
-from shaftprint.models._diagram import Diagram
-from shaftprint.models._engine_parts import boosted, quadratic_propeller
-from shaftprint.models._flow import Flow
-from shaftprint.models._limits import deadband, limited_pi, rate_limited, second_order_lag
-from shaftprint.models._parameter import Parameter
-from shaftprint.models._quantity import Number, Quantity, clip, table
-from shaftprint.models._structure import Structure
+from shaftprint.models import (
+    Delay,
+    Diagram,
+    FirstOrderLag,
+    Flow,
+    Gain,
+    Number,
+    Parameter,
+    Quantity,
+    SpeedSensor,
+    Structure,
+    boosted,
+    clip,
+    deadband,
+    limited_pi,
+    quadratic_propeller,
+    rate_limited,
+    second_order_lag,
+    table,
+)
 
 M_MAX = Parameter("m_max", "-", 1.05, 6.0, 2.8, "torque limit of the engine over the brake torque of the working point")
 M_MIN = Parameter("m_min", "-", -2.0, 0.9, -0.6, "lowest brake torque, engine motored, over that of the working point")

@@ -29,12 +29,7 @@ from shaftprint.catalogue._gauge import (
     G,
 )
 from shaftprint.catalogue._limited import DROOP, LimitedEngine, parameters_of
-from shaftprint.models._delays import Delay
-from shaftprint.models._diagram import Diagram
-from shaftprint.models._flow import Flow
-from shaftprint.models._parameter import Parameter
-from shaftprint.models._quantity import Quantity, maximum
-from shaftprint.models._structure import Structure
+from shaftprint.models import Delay, Diagram, Flow, Parameter, Quantity, Structure, maximum
 
 # Speed and torque are given early by this time [s]: the largest latency of the set point.
 AHEAD_S = T_SP.upper

@@ -28,13 +28,21 @@ from shaftprint.catalogue._gauge import (
     G,
 )
 from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
-from shaftprint.models._blocks import FirstOrderLag, Gain, PIGovernor, SecondOrderLag
-from shaftprint.models._combination import Combination
-from shaftprint.models._delays import Delay, SpeedSensor
-from shaftprint.models._expression import Expression, Inverse, Sensitivity
-from shaftprint.models._parameter import Parameter
-from shaftprint.models._shaft_blocks import Inertia
-from shaftprint.models._structure import Structure
+from shaftprint.models import (
+    Combination,
+    Delay,
+    Expression,
+    FirstOrderLag,
+    Gain,
+    Inertia,
+    Inverse,
+    Parameter,
+    PIGovernor,
+    SecondOrderLag,
+    Sensitivity,
+    SpeedSensor,
+    Structure,
+)
 
 K_Q_HELD = K_Q.held_at(2.0)
 A = Parameter("a", "-", -6.0, 0.0, -1.0, "slope of the thrust coefficient, d ln K_T / d ln J")

@@ -37,14 +37,22 @@ from shaftprint.catalogue._known_propeller import HIGHEST_WAKE, KnownPropeller
 from shaftprint.catalogue._limited import DROOP, LimitedLoop, parameters_of
 from shaftprint.catalogue._sailing import K_Q_HELD, SIGMA, T_LOG, TAU_U, E
 from shaftprint.errors import StructureError
-from shaftprint.models._blocks import FirstOrderLag, Gain
-from shaftprint.models._delays import Delay, SpeedSensor
-from shaftprint.models._diagram import Diagram
-from shaftprint.models._flow import Flow
-from shaftprint.models._limits import first_order_lag, rate_limited
-from shaftprint.models._parameter import Parameter
-from shaftprint.models._quantity import Number, Quantity, number, quantity
-from shaftprint.models._structure import Structure
+from shaftprint.models import (
+    Delay,
+    Diagram,
+    FirstOrderLag,
+    Flow,
+    Gain,
+    Number,
+    Parameter,
+    Quantity,
+    SpeedSensor,
+    Structure,
+    first_order_lag,
+    number,
+    quantity,
+    rate_limited,
+)
 
 
 def sailing_at_large(

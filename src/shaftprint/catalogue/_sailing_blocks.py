@@ -25,9 +25,7 @@ from typing import TypeVar
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.models._block import Block
-from shaftprint.models._expression import Polynomials
-from shaftprint.models._parameter import Parameter
+from shaftprint.models import Block, Parameter, Polynomials
 
 _Value = TypeVar("_Value")
 

@@ -5,7 +5,7 @@ The gauge-aware closed loop with limits is named by these: ``GAUGE-QUADRATIC``, 
 
 from shaftprint.catalogue._limited import limited
 from shaftprint.catalogue._thesis import STRUCTURES, structure
-from shaftprint.models._structure import Structure
+from shaftprint.models import Structure
 
 _PREFIX, _NONE = "GAUGE-", "QUADRATIC"
 _LIMITS = ("TORQUE", "RATE", "DEADBAND", "SMOKE")

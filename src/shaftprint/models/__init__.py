@@ -37,7 +37,7 @@ from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor, ZeroOrderHo
 from shaftprint.models._diagram import Diagram, Port
 from shaftprint.models._engine_parts import boosted, firing_delay, full_load, quadratic_propeller
 from shaftprint.models._evaluate import Leaves, evaluate
-from shaftprint.models._expression import Constant, Expression, Inverse, Sensitivity, feedback
+from shaftprint.models._expression import Constant, Expression, Inverse, Polynomials, Sensitivity, feedback
 from shaftprint.models._flow import Flow
 from shaftprint.models._free_response import free_responses
 from shaftprint.models._held import Held
@@ -54,7 +54,7 @@ from shaftprint.models._nyquist import is_stable, loop_gain, stable_rows, unstab
 from shaftprint.models._own_blocks import FunctionBlock, RationalBlock
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._program import Computed, Late, Program, program_of
-from shaftprint.models._quantity import Quantity, choose, clip, maximum, minimum, table
+from shaftprint.models._quantity import Number, Quantity, choose, clip, maximum, minimum, number, quantity, table
 from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
 from shaftprint.models._small_signal import SmallSignal
 from shaftprint.models._step_response import step_response
@@ -85,9 +85,11 @@ __all__ = [
     "Late",
     "Leaves",
     "Margins",
+    "Number",
     "PIGovernor",
     "PadeDelay",
     "Parameter",
+    "Polynomials",
     "Port",
     "Program",
     "Quantity",
@@ -120,10 +122,12 @@ __all__ = [
     "margins",
     "maximum",
     "minimum",
+    "number",
     "poles",
     "postorder",
     "program_of",
     "quadratic_propeller",
+    "quantity",
     "rate_limited",
     "rebuilt",
     "replaced",
