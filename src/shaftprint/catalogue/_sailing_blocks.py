@@ -25,7 +25,7 @@ from typing import TypeVar
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.models import Block, Parameter, Polynomials
+from shaftprint.models import Block, Parameter
 
 _Value = TypeVar("_Value")
 
@@ -74,7 +74,7 @@ class SailingTorque(Block):
             half * b * (2.0 - a) * lag,
         )
 
-    def ratio(self, *values: float) -> Polynomials:
+    def ratio(self, *values: float) -> tuple[FloatArray, FloatArray]:
         """Return ``(k_q / 2) ((2 - b) (tau_u s + e - a) + sigma b (2 - a)) / (tau_u s + e - a)``."""
         k_q, a, b, e, tau_u, sigma = values
         top = [0.5 * k_q * (2.0 - b) * tau_u, 0.5 * k_q * ((2.0 - b) * (e - a) + sigma * b * (2.0 - a))]
@@ -118,7 +118,7 @@ class SailingShaft(Block):
         slopes = self.torque.derivatives(s, response, *propeller)
         return (*(-s * square for _ in inertia), *(-square * slope for slope in slopes), *(square for _ in engine))
 
-    def ratio(self, *values: float) -> Polynomials:
+    def ratio(self, *values: float) -> tuple[FloatArray, FloatArray]:
         """Return numerator and denominator."""
         inertia, (k_q, a, b, e, tau_u, sigma), engine = self._parted(values)
         time, slope = sum(inertia[1:], start=inertia[0]), 0.5 * k_q * (2.0 - b)
@@ -160,7 +160,7 @@ class ShipSpeed(Block):
         fall = response * lag
         return fall - sigma * lag, -fall, -s * fall, (2.0 - a) * lag
 
-    def ratio(self, *values: float) -> Polynomials:
+    def ratio(self, *values: float) -> tuple[FloatArray, FloatArray]:
         """Return ``sigma (2 - a) / (tau_u s + e - a)``."""
         a, e, tau_u, sigma = values
         return np.array([sigma * (2.0 - a)]), np.array([tau_u, e - a])
@@ -193,7 +193,7 @@ class PitchSpeed(Block):
         fall = response * lag
         return sigma * lag, fall, -fall, -s * fall, p * lag
 
-    def ratio(self, *values: float) -> Polynomials:
+    def ratio(self, *values: float) -> tuple[FloatArray, FloatArray]:
         """Return ``sigma p / (tau_u s + e - a)``."""
         p, a, e, tau_u, sigma = values
         return np.array([sigma * p]), np.array([tau_u, e - a])

@@ -37,7 +37,7 @@ from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor, ZeroOrderHo
 from shaftprint.models._diagram import Diagram, Port
 from shaftprint.models._engine_parts import boosted, firing_delay, full_load, quadratic_propeller
 from shaftprint.models._evaluate import Leaves, evaluate
-from shaftprint.models._expression import Constant, Expression, Inverse, Polynomials, Sensitivity, feedback
+from shaftprint.models._expression import Constant, Expression, Inverse, Sensitivity, feedback
 from shaftprint.models._flow import Flow
 from shaftprint.models._free_response import free_responses
 from shaftprint.models._held import Held
@@ -89,7 +89,6 @@ __all__ = [
     "PIGovernor",
     "PadeDelay",
     "Parameter",
-    "Polynomials",
     "Port",
     "Program",
     "Quantity",
