@@ -20,7 +20,7 @@ from shaftprint.report import (
     inertia_table,
     integral_table,
 )
-from shaftprint.survey import load_trial, measure, survey_of, thesis_way, weighted_fits
+from shaftprint.survey import Survey, fingerprint_of, load_trial, measure, thesis_way, weighted_fits
 
 
 @click.command("explain")
@@ -49,7 +49,9 @@ def command(
     explanation = explain_thesis(thesis, by_name, measurement.spectra.response, trial.vessel)
     if output is not None:
         with output_folder(output, of="explain", force=force) as folder, progress(hidden=no_progress) as steps:
-            survey = survey_of(fits, measurement, trial, rng=rng, progress=steps)
+            steps.begin("Finding the intervals")
+            fingerprint = fingerprint_of(fits[0], measurement, trial)
+            survey = Survey(trial=trial, measurement=measurement, fits=fits, fingerprint=fingerprint)
             write_results(folder, recording, survey, steps=steps, thesis=thesis)
     _print(explanation)
     if output is not None:
