@@ -22,7 +22,8 @@ def command(recording: Path, vessel: str, campaign: str, no_progress: bool) -> N
     """Find which limits a line has, and their levels and rates with uncertainty.
 
     Looked for are torque limit, motoring limit, smoke limiter, rate limits of rack and set point, deadband, and a set
-    point held between messages. Of what does not act it says up to which level the recording excludes it.
+    point held between messages or rounded to steps. Of what does not act it says up to which level the recording
+    excludes it.
     """
     trial = load_trial(vessel, campaign)
     with progress(hidden=no_progress) as steps:

@@ -19,7 +19,7 @@ from shaftprint.vessel import Vessel
 # A number whose interval is wider than this share of it is hardly known.
 HARDLY_KNOWN = 0.6
 # Deviation of the set point's line at the working point, over its speed, up to which the search tells a line that rests
-# at its torque limit from one that does not: of two recordings beyond it the search missed the right one in one.
+# at its torque limit from one that does not: of five recordings beyond it the level of three was wrong.
 LARGEST_LINE_STD = 0.003
 # Of 17 simulated set points with a limited rate the rate came out 0.6 % high, 0.8 % in the root mean square, with
 # noise of 0.4 %: between two samples of 12.5 Hz a governor already answers what disturbs the speed.

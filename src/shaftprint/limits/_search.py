@@ -178,6 +178,8 @@ class Search:
     """The governor with all limits."""
     test: GovernorTest
     """The test."""
+    record: GovernorRecord
+    """Its record, the set point not held: most fits begin with it."""
     drive_hz: float
     """Samples of its drive a second [Hz]."""
     full: float
@@ -202,11 +204,12 @@ class Search:
         priors: Mapping[str, Prior],
     ) -> "Search":
         """Return a search, its calm governor found."""
-        start, record = values_without_limits(whole), calm_part(test.record(drive_hz=drive_hz), campaign)
-        calm = fitted(whole, record, start, (), priors=priors, iterations=ROUGH, held=FAST)
+        start, record = values_without_limits(whole), test.record(drive_hz=drive_hz)
+        calm = fitted(whole, calm_part(record, campaign), start, (), priors=priors, iterations=ROUGH, held=FAST)
         return cls(
             whole=whole,
             test=test,
+            record=record,
             drive_hz=drive_hz,
             full=full,
             priors=priors,
@@ -355,7 +358,9 @@ class Search:
 
     def fit(self, values: Mapping[str, float], kinds: Sequence[Kind], messages: Messages | None = None) -> Fitted:
         """Return the best governor with some limits, from given values on."""
-        record = with_messages(self.test, messages).record(drive_hz=self.drive_hz)
+        record = self.record
+        if messages is not None:
+            record = with_messages(self.test, messages).record(drive_hz=self.drive_hz)
         return fitted(self.whole, record, values, kinds, priors=self.priors, iterations=ROUGH, messages=messages)
 
 

@@ -57,10 +57,10 @@ def _follow(lasts, value, rate, limited) -> None:  # type: ignore[no-untyped-def
         rise = value[k + 1] - value[k]
         if rise > reach:
             # a polyline from below passes on its way up; until then the signal comes down towards it
-            until = min(max((at - value[k]) * lasts[k] / (rise + reach), 0.0), lasts[k]) if lasts[k] > 0.0 else 0.0
+            until = min(max((at - value[k]) * lasts[k] / (rise + reach), 0.0), lasts[k])
             at += reach - 2.0 * rate * until
         elif rise < -reach:
-            until = min(max((value[k] - at) * lasts[k] / (reach - rise), 0.0), lasts[k]) if lasts[k] > 0.0 else 0.0
+            until = min(max((value[k] - at) * lasts[k] / (reach - rise), 0.0), lasts[k])
             at += 2.0 * rate * until - reach
         else:
             at += min(max(value[k + 1] - at, -reach), reach)
