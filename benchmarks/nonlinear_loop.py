@@ -18,8 +18,8 @@ from shaftprint.arrays import FloatArray
 from shaftprint.models import (
     Diagram,
     Flow,
+    Formula,
     Parameter,
-    Quantity,
     Structure,
     clip,
     limited_pi,
@@ -51,7 +51,7 @@ def loop() -> Structure:
     return Structure(name="LIMITED", title="limited loop", input="n_set", outputs=dict(diagram.ports()))
 
 
-def equations(flow: Flow, n_set: Quantity, p: Any) -> Mapping[str, Quantity]:
+def equations(flow: Flow, n_set: Formula, p: Any) -> Mapping[str, Formula]:
     """Return speed and brake torque."""
     speed = flow.state("n")
     governed = limited_pi(

@@ -204,7 +204,7 @@ def test_tables_ascend():
 
 
 def test_quantities_and_numbers_only():
-    with pytest.raises(StructureError, match="expected a quantity or a number"):
+    with pytest.raises(StructureError, match="expected a formula or a number"):
         response(lambda flow, u, p: {"y": maximum(u, "0.5")}, np.zeros_like(TIME))
 
 

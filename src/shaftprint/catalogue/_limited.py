@@ -43,10 +43,10 @@ from shaftprint.models import (
     Diagram,
     FirstOrderLag,
     Flow,
+    Formula,
     Gain,
     Number,
     Parameter,
-    Quantity,
     SpeedSensor,
     Structure,
     boosted,
@@ -137,14 +137,14 @@ def parameters_of(limits: tuple[str, ...]) -> tuple[Parameter, ...]:
     return tuple(p for limit in limits for p in OPTIONS[limit])
 
 
-Load: TypeAlias = Callable[[Flow, Quantity, Any], tuple[Quantity, Mapping[str, Quantity]]]
+Load: TypeAlias = Callable[[Flow, Formula, Any], tuple[Formula, Mapping[str, Formula]]]
 """Takes equations, shaft speed and parameters; gives the torque of the propeller, and what else there is to see."""
 
 
-Observer: TypeAlias = Callable[[Quantity], Quantity]
+Observer: TypeAlias = Callable[[Formula], Formula]
 """Takes the brake torque; gives what it adds to the rate of the governor's integrator."""
 
-Shape: TypeAlias = Callable[[Flow, Quantity], Number]
+Shape: TypeAlias = Callable[[Flow, Formula], Number]
 """Takes equations and engine speed; gives the torque limit over that at the working-point speed."""
 
 
@@ -153,7 +153,7 @@ def shape_of(curve: tuple[tuple[float, float], ...]) -> Shape:
     return lambda flow, speed: table(speed, curve) if curve else 1.0
 
 
-def bollard_load(flow: Flow, speed: Quantity, p: Any) -> tuple[Quantity, Mapping[str, Quantity]]:
+def bollard_load(flow: Flow, speed: Formula, p: Any) -> tuple[Formula, Mapping[str, Formula]]:
     """Return the torque of a propeller at the quay, and nothing else."""
     return quadratic_propeller(speed, p.k_q), {}
 
@@ -167,8 +167,8 @@ class LimitedEngine:
         self._period_s = period_s
 
     def __call__(
-        self, flow: Flow, demand: Quantity, speed: Quantity, p: Any, observer: Observer | None = None
-    ) -> tuple[Quantity, Quantity]:
+        self, flow: Flow, demand: Formula, speed: Formula, p: Any, observer: Observer | None = None
+    ) -> tuple[Formula, Formula]:
         """Return brake torque and rack.
 
         Parameters
@@ -190,7 +190,7 @@ class LimitedEngine:
         brake = flow.close(burnt, asked if lowest is None else clip(asked, lowest, highest), "engine torque")
         return brake, rack
 
-    def _torque_limits(self, flow: Flow, speed: Quantity, burnt: Quantity, p: Any) -> tuple[Quantity | None, Quantity]:
+    def _torque_limits(self, flow: Flow, speed: Formula, burnt: Formula, p: Any) -> tuple[Formula | None, Formula]:
         """Return the lowest and highest brake torque; no lowest where torque is not limited."""
         if "torque" not in self._limits:
             return None, burnt
@@ -203,13 +203,13 @@ class LimitedEngine:
     def _governor(
         self,
         flow: Flow,
-        error: Quantity,
-        speed: Quantity,
-        lowest: Quantity | None,
-        highest: Quantity,
+        error: Formula,
+        speed: Formula,
+        lowest: Formula | None,
+        highest: Formula,
         drawn: Number,
         p: Any,
-    ) -> Quantity:
+    ) -> Formula:
         """Return the rack that the governor gives."""
         if lowest is None:
             integral = flow.state("governor integral")
@@ -240,7 +240,7 @@ class LimitedLoop:
         self._engine = LimitedEngine(limits, shape_of(curve), period_s)
         self._load = load
 
-    def __call__(self, flow: Flow, demand: Quantity, p: Any) -> Mapping[str, Quantity]:
+    def __call__(self, flow: Flow, demand: Formula, p: Any) -> Mapping[str, Formula]:
         """Return speed, torque at the gauge and rack, and what the load shows."""
         speed = flow.state("n")
         brake, rack = self._engine(flow, demand, speed, p)

@@ -29,7 +29,7 @@ from shaftprint.catalogue._gauge import (
     G,
 )
 from shaftprint.catalogue._limited import DROOP, LimitedEngine, parameters_of
-from shaftprint.models import Delay, Diagram, Flow, Parameter, Quantity, Structure, maximum
+from shaftprint.models import Delay, Diagram, Flow, Formula, Parameter, Structure, maximum
 
 # Speed and torque are given early by this time [s]: the largest latency of the set point.
 AHEAD_S = T_SP.upper
@@ -80,12 +80,12 @@ def limited_governor(*limits: str, period_s: float = 0.0, name: str = "") -> Str
     )
 
 
-def _late(flow: Flow, name: str) -> Quantity:
+def _late(flow: Flow, name: str) -> Formula:
     """Return an input that is given early, as it is at the demand of the governor."""
     return flow.delayed(flow.input(name), AHEAD_S - flow.parameter(T_SP.name))
 
 
-def _measured_shape(flow: Flow, speed: Quantity) -> Quantity:
+def _measured_shape(flow: Flow, speed: Formula) -> Formula:
     return 1.0 + _late(flow, "c")
 
 
@@ -95,7 +95,7 @@ class _PredictedTorque:
     def __init__(self, engine: LimitedEngine) -> None:
         self._engine = engine
 
-    def __call__(self, flow: Flow, set_point: Quantity, p: Any) -> Mapping[str, Quantity]:
+    def __call__(self, flow: Flow, set_point: Formula, p: Any) -> Mapping[str, Formula]:
         """Return the torque at the gauge over the load of the propeller, a deviation."""
         speed, torque = _late(flow, "n"), _late(flow, "M_b")
         demand = p.c_set * set_point + p.e_set

@@ -42,15 +42,15 @@ from shaftprint.models import (
     Diagram,
     FirstOrderLag,
     Flow,
+    Formula,
     Gain,
     Number,
     Parameter,
-    Quantity,
     SpeedSensor,
     Structure,
+    as_formula,
     first_order_lag,
     number,
-    quantity,
     rate_limited,
 )
 
@@ -115,7 +115,7 @@ class SailingLoad:
         self._torque = tuple(propeller.curve.torque.powers_of_advance(pitch))
         self._advance_without_wake = propeller.ship_speed_m_s / (propeller.shaft_speed_rev_s * propeller.diameter_m)
 
-    def __call__(self, flow: Flow, speed: Quantity, p: Any) -> tuple[Quantity, Mapping[str, Quantity]]:
+    def __call__(self, flow: Flow, speed: Formula, p: Any) -> tuple[Formula, Mapping[str, Formula]]:
         """Return the torque of the propeller, a deviation, and the speed of the ship."""
         ship = flow.state("v_s")
         at_rest = self._advance_without_wake * (1.0 - p.w)
@@ -127,23 +127,23 @@ class SailingLoad:
         return 0.5 * p.k_q * (torque - 1.0), {"v_s": ship}
 
 
-def _loaded(powers: tuple[float, ...], at_rest: Quantity, speed: Quantity, ship: Quantity) -> Quantity:
+def _loaded(powers: tuple[float, ...], at_rest: Formula, speed: Formula, ship: Formula) -> Formula:
     """Return thrust or torque over its value at the working point, ``(1 + n)^2 K(J) / K(J_0)``."""
     turned = 1.0 + speed
     return turned * turned * _polynomial(powers, at_rest * (1.0 + ship) / turned) / _polynomial(powers, at_rest)
 
 
-def _polynomial(powers: tuple[float, ...], advance: Quantity) -> Quantity:
+def _polynomial(powers: tuple[float, ...], advance: Formula) -> Formula:
     """Return ``c_0 + c_1 J + c_2 J^2 + ...`` by Horner's rule."""
-    value: Quantity = number(0.0)
+    value: Formula = number(0.0)
     for coefficient in reversed(powers):
         value = value * advance + float(coefficient)
     return value
 
 
 def pitch_actuator(
-    flow: Flow, set_point: Quantity, *, lag_s: Number, fastest: Number, period_s: Number = 0.0
-) -> Quantity:
+    flow: Flow, set_point: Formula, *, lag_s: Number, fastest: Number, period_s: Number = 0.0
+) -> Formula:
     """Return the pitch that a hydraulic actuator reaches: behind a lag, and no faster than its pumps allow.
 
     ``tau_th dtheta/dt = theta_set - theta`` with ``|dtheta_set/dt| <= r``: controllable pitch propellers of ships take
@@ -165,6 +165,6 @@ def pitch_actuator(
     StructureError
         If the fastest change is the number zero.
     """
-    if quantity(fastest).equals(0.0):
+    if as_formula(fastest).equals(0.0):
         raise StructureError("pitch actuator: expected a fastest change above zero; without one the pitch never moves.")
     return first_order_lag(flow, rate_limited(flow, set_point, fastest, period_s=period_s), lag_s, "pitch")

@@ -5,7 +5,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from shaftprint.errors import ExportError
-from shaftprint.models import Quantity, postorder
+from shaftprint.models import Formula, postorder
 
 _SIGNS = {"add": "({} + {})", "multiply": "({} * {})", "divide": "({} / {})"}
 _FUNCTIONS = {"absolute": "fabs", "minimum": "least", "maximum": "most"}
@@ -40,7 +40,7 @@ def c_integers(values: Sequence[int]) -> str:
     return "{" + ", ".join(str(value) for value in [*values, 0]) + "}"
 
 
-def c_function(name: str, formulas: Sequence[Quantity], leaves: Mapping[str, Sequence[str]]) -> str:
+def c_function(name: str, formulas: Sequence[Formula], leaves: Mapping[str, Sequence[str]]) -> str:
     """Return a function that fills ``out`` with the values of formulas, each part computed once.
 
     Parameters
@@ -73,7 +73,7 @@ def c_function(name: str, formulas: Sequence[Quantity], leaves: Mapping[str, Seq
     return f"void {name}(const Values *v, double *out) {{\n{text}}}\n"
 
 
-def _leaf(node: Quantity, leaves: Mapping[str, Sequence[str]], used: dict[str, str]) -> str:
+def _leaf(node: Formula, leaves: Mapping[str, Sequence[str]], used: dict[str, str]) -> str:
     """Return the name of a leaf, and note the line that gives it its value."""
     member, *own = leaves[node.operation]
     name = own[node.place] if own else member
@@ -82,7 +82,7 @@ def _leaf(node: Quantity, leaves: Mapping[str, Sequence[str]], used: dict[str, s
     return name
 
 
-def _operation(node: Quantity, parts: list[str], lines: list[str], number: int) -> str:
+def _operation(node: Formula, parts: list[str], lines: list[str], number: int) -> str:
     if node.operation in _SIGNS:
         return _SIGNS[node.operation].format(*parts)
     if node.operation == "power":

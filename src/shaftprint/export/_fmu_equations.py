@@ -8,7 +8,7 @@ from shaftprint.escape import c_string
 from shaftprint.export._c_text import c_array, c_function, c_integers, identifier
 from shaftprint.export._fmu_program import FmuProgram
 from shaftprint.export._fmu_signals import FmuSignal
-from shaftprint.models import Quantity
+from shaftprint.models import Formula
 
 ARGUMENTS = "(const Values *v, double *out)"
 FUNCTIONS = (
@@ -114,7 +114,7 @@ class FmuEquations:
         named = f"const char model_title[] = {c_string(title)};\n"
         return "\n".join([head, named + self._tables(), *functions])
 
-    def _formulas(self) -> dict[str, list[Quantity]]:
+    def _formulas(self) -> dict[str, list[Formula]]:
         program, ready = self.ready.program, self.ready
         return {
             "rates": list(program.rates),

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.models import Late, Program, Quantity, Structure, derivatives, evaluate, maximum, postorder, program_of
+from shaftprint.models import Formula, Late, Program, Structure, derivatives, evaluate, maximum, postorder, program_of
 
 _COMPARED = ("minimum", "maximum", "choose")
 
@@ -19,7 +19,7 @@ class FmuProgram:
     """The equations; what shifts an output late is one of its pasts."""
     gone: frozenset[str]
     """Parameters that are zero for good: lags and delays that are not there."""
-    lateness: tuple[Quantity, ...]
+    lateness: tuple[Formula, ...]
     """By how much each output is later than the one that was identified, which has a time stamp in its past [s]."""
 
     @property
@@ -28,34 +28,34 @@ class FmuProgram:
         return tuple(i for i, runs in enumerate(self.program.running) if not runs)
 
     @property
-    def unknowns(self) -> list[Quantity]:
+    def unknowns(self) -> list[Formula]:
         """States, pasts and samples that steady running is to be solved for."""
         program = self.program
         return [
-            *(Quantity("state", place=i) for i in self.still),
-            *(Quantity("past", place=i) for i in range(len(program.pasts))),
-            *(Quantity("sample", place=i) for i in range(len(program.samples))),
+            *(Formula("state", place=i) for i in self.still),
+            *(Formula("past", place=i) for i in range(len(program.pasts))),
+            *(Formula("sample", place=i) for i in range(len(program.samples))),
         ]
 
     @property
-    def left_over(self) -> list[Quantity]:
+    def left_over(self) -> list[Formula]:
         """What must vanish in steady running, in the order of the unknowns."""
         program = self.program
         return [
             *(program.rates[i] for i in self.still),
-            *(p.signal - p.delay * p.drift - Quantity("past", place=i) for i, p in enumerate(program.pasts)),
-            *(taken.value - Quantity("sample", place=i) for i, taken in enumerate(program.samples)),
+            *(p.signal - p.delay * p.drift - Formula("past", place=i) for i, p in enumerate(program.pasts)),
+            *(taken.value - Formula("sample", place=i) for i, taken in enumerate(program.samples)),
         ]
 
     @property
-    def left_over_slopes(self) -> list[Quantity]:
+    def left_over_slopes(self) -> list[Formula]:
         """Their derivatives, row by row."""
         return _rows(self.left_over, self.unknowns)
 
     @property
-    def state_slopes(self) -> list[Quantity]:
+    def state_slopes(self) -> list[Formula]:
         """Derivatives of how fast states change to the states, row by row."""
-        states = [Quantity("state", place=i) for i in range(len(self.program.states))]
+        states = [Formula("state", place=i) for i in range(len(self.program.states))]
         return _rows(self.program.rates, states)
 
     @property
@@ -72,7 +72,7 @@ class FmuProgram:
         return tuple(place in found for place in range(len(program.pasts)))
 
     @property
-    def indicators(self) -> list[Quantity]:
+    def indicators(self) -> list[Formula]:
         """Differences that change sign where a limit begins or ends to act."""
         program = self.program
         formulas = [*program.rates, *(late.signal for late in program.pasts), *(s.value for s in program.samples)]
@@ -93,7 +93,7 @@ class FmuProgram:
         formulas = [*program.rates, *(late.signal for late in program.pasts), *program.signals]
         return any(node.operation == "input rate" for node in postorder(formulas))
 
-    def reached(self, formula: Quantity) -> tuple[list[int], list[int]]:
+    def reached(self, formula: Formula) -> tuple[list[int], list[int]]:
         """Return the places of the inputs and of the states on which a formula depends at once."""
         nodes = list(postorder([formula]))
         inputs = sorted({node.place for node in nodes if node.operation == "input"})
@@ -122,23 +122,23 @@ def fmu_program(structure: Structure, values: FloatArray) -> FmuProgram:
         if shift.equals(0.0):
             signals.append(signal)
             continue
-        signals.append(Quantity("past", name="past", place=len(pasts)))
+        signals.append(Formula("past", name="past", place=len(pasts)))
         pasts.append(Late(signal=signal, drift=_drift(program, signal), delay=maximum(shift, 0.0)))
     ready = replace(program, pasts=tuple(pasts), signals=tuple(signals))
     return FmuProgram(program=ready, gone=gone, lateness=tuple(lateness))
 
 
-def _drift(program: Program, signal: Quantity) -> Quantity:
+def _drift(program: Program, signal: Formula) -> Formula:
     """Return how fast a signal changes in steady running, where only sums that go on for ever do."""
-    moving = [(Quantity("state", place=i), program.rates[i]) for i, runs in enumerate(program.running) if runs]
-    moving += [(Quantity("past", place=i), late.drift) for i, late in enumerate(program.pasts)]
-    found = Quantity("number", value=0.0)
+    moving = [(Formula("state", place=i), program.rates[i]) for i, runs in enumerate(program.running) if runs]
+    moving += [(Formula("past", place=i), late.drift) for i, late in enumerate(program.pasts)]
+    found = Formula("number", value=0.0)
     for leaf, rate in moving:
         found = found + derivatives([signal], leaf)[0] * rate
     return found
 
 
-def _rows(formulas: Sequence[Quantity], leaves: Sequence[Quantity]) -> list[Quantity]:
+def _rows(formulas: Sequence[Formula], leaves: Sequence[Formula]) -> list[Formula]:
     columns = [derivatives(formulas, leaf) for leaf in leaves]
     return [column[row] for row in range(len(formulas)) for column in columns]
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import ExportError
-from shaftprint.models import Leaves, Program, Quantity, derivatives, evaluate
+from shaftprint.models import Formula, Leaves, Program, derivatives, evaluate
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -105,6 +105,6 @@ def linear_table(program: Program, leaves: Leaves) -> LinearTable:
     columns = [label for label in rows if label[0] != "output"]
     columns += [("input", i) for i in range(len(program.inputs))]
     formulas = list(rows.values())
-    slopes = [evaluate(derivatives(formulas, Quantity(kind, place=place)), leaves) for kind, place in columns]
+    slopes = [evaluate(derivatives(formulas, Formula(kind, place=place)), leaves) for kind, place in columns]
     matrix = np.array(slopes, dtype=np.float64).reshape(len(columns), len(rows)).T
     return LinearTable(rows=tuple(rows), columns=tuple(columns), matrix=matrix)

@@ -9,7 +9,7 @@ from typing import Final
 
 from shaftprint.errors import ExportError
 from shaftprint.escape import modelica_identifier
-from shaftprint.models import Quantity, postorder
+from shaftprint.models import Formula, postorder
 
 _WORDS: Final = """
 algorithm and annotation block break class connect connector constant constrainedby der discrete each else elseif
@@ -47,9 +47,7 @@ def modelica_number(value: float) -> str:
 class ModelicaText:
     """Expressions of formulas, with a variable for each part that is used more than once."""
 
-    def __init__(
-        self, formulas: Sequence[Quantity], leaf: Callable[[Quantity], str], name: Callable[[str], str]
-    ) -> None:
+    def __init__(self, formulas: Sequence[Formula], leaf: Callable[[Formula], str], name: Callable[[str], str]) -> None:
         self.shared: list[tuple[str, str, bool]] = []
         """Name and expression of each shared part, and whether it is made of parameters only."""
         self._leaf = leaf
@@ -66,15 +64,15 @@ class ModelicaText:
         for node in postorder(formulas):
             self._add(node, uses[id(node)] > 1)
 
-    def __getitem__(self, formula: Quantity) -> str:
+    def __getitem__(self, formula: Formula) -> str:
         """Return the expression of a formula."""
         return unbracketed(self._texts[id(formula)])
 
-    def is_of_parameters(self, formula: Quantity) -> bool:
+    def is_of_parameters(self, formula: Formula) -> bool:
         """Return whether a formula is made of parameters and numbers only."""
         return self._of_parameters[id(formula)]
 
-    def _add(self, node: Quantity, shared: bool) -> None:
+    def _add(self, node: Formula, shared: bool) -> None:
         constant = all(self._of_parameters[id(part)] for part in node.of)
         constant = constant and (bool(node.of) or node.operation in ("number", "parameter"))
         self._of_parameters[id(node)] = constant
@@ -93,7 +91,7 @@ class ModelicaText:
             self._opposites[id(node)] = self._texts[id(node.of[1])]
         self._texts[id(node)] = text
 
-    def _sum(self, node: Quantity) -> str:
+    def _sum(self, node: Formula) -> str:
         """Return a sum as a difference where one of its parts is the opposite of something; else nothing."""
         if node.operation != "add":
             return ""
@@ -114,7 +112,7 @@ def unbracketed(text: str) -> str:
     return text
 
 
-def expression(node: Quantity, parts: Sequence[str], *, is_constant: bool) -> str:
+def expression(node: Formula, parts: Sequence[str], *, is_constant: bool) -> str:
     """Return an operation on expressions.
 
     A choice between signals is one of ``if``, so that the moment at which a limit begins to act is found; where both

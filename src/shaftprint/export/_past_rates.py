@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from shaftprint.errors import ExportError
-from shaftprint.models import Computed, Late, Program, Quantity, derivatives, postorder, replaced
+from shaftprint.models import Computed, Formula, Late, Program, derivatives, postorder, replaced
 
 
 def without_past_rates(program: Program) -> Program:
@@ -30,10 +30,10 @@ class _Maker:
     def __init__(self, program: Program) -> None:
         self._program = program
         self._pasts = list(program.pasts)
-        self._made: dict[int, Quantity] = {}
-        self._kept: list[Quantity] = []
+        self._made: dict[int, Formula] = {}
+        self._kept: list[Formula] = []
 
-    def replaced(self, formula: Quantity) -> Quantity:
+    def replaced(self, formula: Formula) -> Formula:
         """Return a formula with late signals in the place of how fast others change."""
         return replaced([formula], self._leaf)[0]
 
@@ -46,7 +46,7 @@ class _Maker:
             place += 1
         return tuple(self._pasts)
 
-    def _leaf(self, node: Quantity) -> Quantity | None:
+    def _leaf(self, node: Formula) -> Formula | None:
         if node.operation == "input rate":
             raise ExportError(
                 f"export of {self._program.name}: the equations need how fast the input {node.name} changes, which no "
@@ -54,7 +54,7 @@ class _Maker:
             )
         return self._rate(node.place) if node.operation == "past rate" else None
 
-    def _rate(self, place: int) -> Quantity:
+    def _rate(self, place: int) -> Formula:
         if place not in self._made:
             late = self._pasts[place]
             if late.varies:
@@ -62,11 +62,11 @@ class _Maker:
                     f"export of {self._program.name}: the equations need how fast a signal changes behind a delay that "
                     "varies; hold the delay constant."
                 )
-            self._made[place] = Quantity("past", name="past", place=len(self._pasts))
-            self._pasts.append(Late(signal=self._change(late.signal), drift=Quantity("number"), delay=late.delay))
+            self._made[place] = Formula("past", name="past", place=len(self._pasts))
+            self._pasts.append(Late(signal=self._change(late.signal), drift=Formula("number"), delay=late.delay))
         return self._made[place]
 
-    def _change(self, formula: Quantity) -> Quantity:
+    def _change(self, formula: Formula) -> Formula:
         """Return how fast a formula changes."""
         leaves = {(node.operation, node.place): node for node in postorder([formula]) if not node.of}
         if any(kind == "past rate" for kind, _ in leaves):
@@ -74,12 +74,12 @@ class _Maker:
                 f"export of {self._program.name}: the equations need the second change of a late signal; put a lag "
                 "beside it."
             )
-        found = Quantity("number")
+        found = Formula("number")
         for (kind, place), leaf in leaves.items():
             if kind == "state":
                 found = found + derivatives([formula], leaf)[0] * self._program.rates[place]
             elif kind in ("past", "input"):
-                moved = Quantity(f"{kind} rate", name=leaf.name, place=place)
+                moved = Formula(f"{kind} rate", name=leaf.name, place=place)
                 found = found + derivatives([formula], leaf)[0] * moved
         self._kept.append(found)
         return found

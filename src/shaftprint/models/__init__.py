@@ -39,6 +39,7 @@ from shaftprint.models._engine_parts import boosted, firing_delay, full_load, qu
 from shaftprint.models._evaluate import Leaves, evaluate
 from shaftprint.models._expression import Constant, Expression, Inverse, Sensitivity, feedback
 from shaftprint.models._flow import Flow
+from shaftprint.models._formula import Formula, Number, as_formula, choose, clip, maximum, minimum, number, table
 from shaftprint.models._free_response import free_responses
 from shaftprint.models._held import Held
 from shaftprint.models._limits import (
@@ -54,7 +55,6 @@ from shaftprint.models._nyquist import is_stable, loop_gain, stable_rows, unstab
 from shaftprint.models._own_blocks import FunctionBlock, RationalBlock
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._program import Computed, Late, Program, program_of
-from shaftprint.models._quantity import Number, Quantity, choose, clip, maximum, minimum, number, quantity, table
 from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
 from shaftprint.models._small_signal import SmallSignal
 from shaftprint.models._step_response import step_response
@@ -75,6 +75,7 @@ __all__ = [
     "FilteredDerivative",
     "FirstOrderLag",
     "Flow",
+    "Formula",
     "FunctionBlock",
     "Gain",
     "Governed",
@@ -91,7 +92,6 @@ __all__ = [
     "Parameter",
     "Port",
     "Program",
-    "Quantity",
     "RationalBlock",
     "SecondOrderLag",
     "Sensitivity",
@@ -103,6 +103,7 @@ __all__ = [
     "Tie",
     "TorqueBalance",
     "ZeroOrderHold",
+    "as_formula",
     "boosted",
     "check_structure",
     "choose",
@@ -126,7 +127,6 @@ __all__ = [
     "postorder",
     "program_of",
     "quadratic_propeller",
-    "quantity",
     "rate_limited",
     "rebuilt",
     "replaced",

@@ -10,8 +10,8 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.models._expression import Dual, Expression, Gradient, Polynomials, Walk
 from shaftprint.models._flow import Flow
+from shaftprint.models._formula import Formula
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._quantity import Quantity
 from shaftprint.models._realisation import Ratio, coefficients, realised
 
 # Share of a parameter by which it is moved to find a derivative: errors of rounding and of the formula are alike.
@@ -63,7 +63,7 @@ class Block(Expression):
         """Whether the block does to a sum of signals what it does to each."""
         return True
 
-    def flow(self, flow: Flow, signal: Quantity) -> Quantity:
+    def flow(self, flow: Flow, signal: Formula) -> Formula:
         """Return what the block makes of a signal in time; from its ratio where it has no equations of its own.
 
         Raises

@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Iterable, Iterator
 
-from shaftprint.models._quantity import Quantity, choose, number, power
+from shaftprint.models._formula import Formula, choose, number, power
 
-Replacement = Callable[[Quantity], Quantity | None]
+Replacement = Callable[[Formula], Formula | None]
 
 
-def postorder(roots: Iterable[Quantity]) -> Iterator[Quantity]:
+def postorder(roots: Iterable[Formula]) -> Iterator[Formula]:
     """Walk over formulas and all they are made of, parts first, each object once."""
     seen: set[int] = set()
     for root in roots:
@@ -22,7 +22,7 @@ def postorder(roots: Iterable[Quantity]) -> Iterator[Quantity]:
                 stack.extend((part, False) for part in reversed(node.of))
 
 
-def rebuilt(node: Quantity, parts: tuple[Quantity, ...]) -> Quantity:
+def rebuilt(node: Formula, parts: tuple[Formula, ...]) -> Formula:
     """Return the same operation on other parts, simplified where one became a number."""
     if all(new is old for new, old in zip(parts, node.of, strict=True)):
         return node
@@ -34,10 +34,10 @@ def rebuilt(node: Quantity, parts: tuple[Quantity, ...]) -> Quantity:
         return parts[0] / parts[1]
     if node.operation == "power":
         return power(parts[0], node.value)
-    return Quantity(node.operation, parts, node.name, node.value, node.place, node.points)
+    return Formula(node.operation, parts, node.name, node.value, node.place, node.points)
 
 
-def replaced(roots: Iterable[Quantity], by: Replacement) -> list[Quantity]:
+def replaced(roots: Iterable[Formula], by: Replacement) -> list[Formula]:
     """Return formulas in which some parts stand for others; what replaces is not walked again.
 
     Parameters
@@ -46,8 +46,8 @@ def replaced(roots: Iterable[Quantity], by: Replacement) -> list[Quantity]:
         What to put in the place of a part, or None to keep it.
     """
     roots = list(roots)
-    found: dict[int, Quantity] = {}
-    keep: list[Quantity] = []
+    found: dict[int, Formula] = {}
+    keep: list[Formula] = []
     for node in postorder(roots):
         new = by(node)
         if new is None:
@@ -57,28 +57,28 @@ def replaced(roots: Iterable[Quantity], by: Replacement) -> list[Quantity]:
     return [found[id(root)] for root in roots]
 
 
-def depends(root: Quantity, on: Quantity) -> bool:
+def depends(root: Formula, on: Formula) -> bool:
     """Return whether a formula contains a leaf, other than in how fast something changes."""
     (marked,) = replaced([root], lambda node: number(0.0) if node.operation == "rate" else None)
     return any(is_leaf(node, on) for node in postorder([marked]))
 
 
-def is_leaf(node: Quantity, leaf: Quantity) -> bool:
+def is_leaf(node: Formula, leaf: Formula) -> bool:
     """Return whether two leaves stand for the same."""
     return node.operation == leaf.operation and node.place == leaf.place
 
 
-def derivative(root: Quantity, to: Quantity) -> Quantity:
+def derivative(root: Formula, to: Formula) -> Formula:
     """Return the derivative of a formula to a leaf."""
     return derivatives([root], to)[0]
 
 
-def derivatives(roots: Iterable[Quantity], to: Quantity) -> list[Quantity]:
+def derivatives(roots: Iterable[Formula], to: Formula) -> list[Formula]:
     """Return the derivatives of several formulas to one leaf."""
     return swept(roots, lambda node: number(1.0) if is_leaf(node, to) else None)
 
 
-def swept(roots: Iterable[Quantity], of_leaf: Replacement) -> list[Quantity]:
+def swept(roots: Iterable[Formula], of_leaf: Replacement) -> list[Formula]:
     """Return the derivatives of formulas along a direction.
 
     Parameters
@@ -87,7 +87,7 @@ def swept(roots: Iterable[Quantity], of_leaf: Replacement) -> list[Quantity]:
         Derivative of a leaf; None where it is zero.
     """
     roots = list(roots)
-    found: dict[int, Quantity] = {}
+    found: dict[int, Formula] = {}
     zero = number(0.0)
     for node in postorder(roots):
         if not node.of or node.operation == "rate":
@@ -99,7 +99,7 @@ def swept(roots: Iterable[Quantity], of_leaf: Replacement) -> list[Quantity]:
     return [found[id(root)] for root in roots]
 
 
-def _chain(node: Quantity, slopes: list[Quantity]) -> Quantity:
+def _chain(node: Formula, slopes: list[Formula]) -> Formula:
     """Return the derivative of an operation from those of what it operates on."""
     parts = node.of
     match node.operation:
@@ -118,8 +118,8 @@ def _chain(node: Quantity, slopes: list[Quantity]) -> Quantity:
     return _slope(node) * slopes[0]
 
 
-def _slope(node: Quantity) -> Quantity:
-    """Return the derivative of a function of one quantity to it."""
+def _slope(node: Formula) -> Formula:
+    """Return the derivative of a function of one argument to it."""
     x = node.of[0]
     match node.operation:
         case "power":
@@ -139,4 +139,4 @@ def _slope(node: Quantity) -> Quantity:
         case "absolute":
             return choose(x, 0.0, -1.0, 1.0)
     # the slope of a table is constant between its corners
-    return Quantity("table slope", (x,), points=node.points) if node.operation == "table" else number(0.0)
+    return Formula("table slope", (x,), points=node.points) if node.operation == "table" else number(0.0)

@@ -10,8 +10,8 @@ from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
 from shaftprint.models._expression import Polynomials
 from shaftprint.models._flow import Flow
+from shaftprint.models._formula import Formula
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._quantity import Quantity
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,7 +34,7 @@ class Delay(Block):
         """Return ``-s exp(-s t)``."""
         return (-s * response,)
 
-    def flow(self, flow: Flow, signal: Quantity) -> Quantity:
+    def flow(self, flow: Flow, signal: Formula) -> Formula:
         """Return what the signal was ``t`` ago."""
         return flow.delayed(signal, flow.parameter(self.time.name))
 
@@ -113,7 +113,7 @@ class ZeroOrderHold(Block):
         """Return nothing."""
         return ()
 
-    def flow(self, flow: Flow, signal: Quantity) -> Quantity:
+    def flow(self, flow: Flow, signal: Formula) -> Formula:
         """Return the mean over the last period: what the hold is without the images of its sampling."""
         return flow.mean(signal, self.period_s)
 
@@ -153,16 +153,16 @@ class SpeedSensor(Block):
             -s * response,
         )
 
-    def flow(self, flow: Flow, signal: Quantity) -> Quantity:
+    def flow(self, flow: Flow, signal: Formula) -> Formula:
         """Return the late mean."""
         return flow.delayed(self.means(flow, signal), self.lateness(flow))
 
-    def means(self, flow: Flow, signal: Quantity) -> Quantity:
+    def means(self, flow: Flow, signal: Formula) -> Formula:
         """Return the mean over both windows, which end now."""
         once = flow.mean(signal, flow.parameter(self.averaging.name))
         return flow.mean(once, flow.parameter(self.hold.name))
 
-    def lateness(self, flow: Flow) -> Quantity:
+    def lateness(self, flow: Flow) -> Formula:
         """Return the delay that the means do not have already."""
         windows = flow.parameter(self.averaging.name) + flow.parameter(self.hold.name)
         return flow.parameter(self.delay.name) - 0.5 * windows

@@ -17,12 +17,12 @@ from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
 from shaftprint.models._expression import Dual, Gradient, Walk
 from shaftprint.models._flow import Flow
+from shaftprint.models._formula import Formula, number
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._program import Program, completed
-from shaftprint.models._quantity import Quantity, number
 from shaftprint.models._small_signal import SmallSignal
 
-Equations = Callable[[Flow, Quantity, Any], Mapping[str, Quantity]]
+Equations = Callable[[Flow, Formula, Any], Mapping[str, Formula]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,7 +72,7 @@ class Diagram:
             raise StructureError(f"diagram {self.name} has no output {output}; it has {', '.join(self.outputs)}.")
         return Port(self, output, source)
 
-    def signals(self, flow: Flow, signal: Quantity) -> Mapping[str, Quantity]:
+    def signals(self, flow: Flow, signal: Formula) -> Mapping[str, Formula]:
         """Return the outputs for a signal, adding the equations to a flow.
 
         Raises
@@ -97,7 +97,7 @@ class Diagram:
             Names of parameters that are zero for good.
         """
         names = tuple(p.name for p in self.of)
-        inputs = {name: Quantity("input", name=name, place=i) for i, name in enumerate(self.inputs)}
+        inputs = {name: Formula("input", name=name, place=i) for i, name in enumerate(self.inputs)}
         flow = Flow.of_parameters(names, zeros, inputs)
         found = self.signals(flow, inputs[self.input])
         return completed(
@@ -149,7 +149,7 @@ class Port(Block):
         gradient: Gradient = {names[i]: slope for i, slope in zip(wanted, slopes, strict=True)}
         return response, gradient
 
-    def flow(self, flow: Flow, signal: Quantity) -> Quantity:
+    def flow(self, flow: Flow, signal: Formula) -> Formula:
         """Return the output in time; the equations are added once for all outputs of a diagram.
 
         They hold all inputs, so that seen from a further input nothing is left to add.

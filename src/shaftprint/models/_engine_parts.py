@@ -4,21 +4,21 @@ Speeds, torques and rack are over their values at the working point: ``n`` stand
 """
 
 from shaftprint.models._flow import Flow
+from shaftprint.models._formula import Formula, Number, as_formula, table
 from shaftprint.models._limits import first_order_lag
-from shaftprint.models._quantity import Number, Quantity, quantity, table
 
 
-def quadratic_propeller(speed: Quantity, slope: Number) -> Quantity:
+def quadratic_propeller(speed: Formula, slope: Number) -> Formula:
     """Return the torque of a propeller at the quay, ``k_q ((1 + n) |1 + n| - 1) / 2``.
 
     ``Q = rho n |n| D^5 K_Q`` with ``J = 0`` (thesis eqs 2.9, 2.12), normalised; of small signals ``k_q n``, where
     ``k_q`` is 2 as long as gauge and inflow are right.
     """
     turned = 1.0 + speed
-    return 0.5 * quantity(slope) * (turned * abs(turned) - 1.0)
+    return 0.5 * as_formula(slope) * (turned * abs(turned) - 1.0)
 
 
-def full_load(speed: Quantity, highest: Number, curve: "tuple[tuple[float, float], ...]") -> Quantity:
+def full_load(speed: Formula, highest: Number, curve: "tuple[tuple[float, float], ...]") -> Formula:
     """Return the highest brake torque at a speed, ``m_max c(n) - 1``.
 
     Parameters
@@ -29,12 +29,12 @@ def full_load(speed: Quantity, highest: Number, curve: "tuple[tuple[float, float
         Corner points of speed deviation and limit over that at the working-point speed; empty for a flat one.
     """
     shape: Number = table(speed, curve) if curve else 1.0
-    return quantity(highest) * shape - 1.0
+    return as_formula(highest) * shape - 1.0
 
 
 def boosted(
-    flow: Flow, torque: Quantity, highest: Quantity, *, at_rest: Number, unboosted: Number, lag_s: Number
-) -> Quantity:
+    flow: Flow, torque: Formula, highest: Formula, *, at_rest: Number, unboosted: Number, lag_s: Number
+) -> Formula:
     """Return the highest torque for which there is air: the smoke limit of a turbocharged engine.
 
     ``m_max(n) (a + (1 - a) b) - 1`` with the boost ``b`` late behind the torque, ``tau_tc db/dt = (1 + M_b) / m_max(n)
@@ -56,12 +56,12 @@ def boosted(
         Turbocharger lag [s]: 0.5 to 2 s at truck size, 3 to 10 s for medium speed.
     """
     full = 1.0 + highest
-    share, steady = quantity(unboosted), 1.0 / quantity(at_rest)
+    share, steady = as_formula(unboosted), 1.0 / as_formula(at_rest)
     boost = steady + first_order_lag(flow, (1.0 + torque) / full - steady, lag_s, "boost")
     return full * (share + (1.0 - share) * boost) - 1.0
 
 
-def firing_delay(speed: Quantity, cylinders: int, working_point_rev_s: float) -> Quantity:
+def firing_delay(speed: Formula, cylinders: int, working_point_rev_s: float) -> Formula:
     """Return the mean delay [s] from rack to torque of a four-stroke engine at a speed.
 
     Half a firing interval, ``1 / (Z n_e)``, until the next cylinder is due, and a quarter of a revolution for

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.models._calculus import postorder
-from shaftprint.models._quantity import Quantity
+from shaftprint.models._formula import Formula
 
 # Real; complex only where a derivative is checked by a complex step.
 Array: TypeAlias = FloatArray
@@ -27,7 +27,7 @@ _FUNCTIONS = {
 }
 
 
-def evaluate(formulas: Sequence[Quantity], leaves: Leaves) -> list[Array]:
+def evaluate(formulas: Sequence[Formula], leaves: Leaves) -> list[Array]:
     """Return the values of formulas.
 
     Parameters
@@ -47,7 +47,7 @@ def evaluate(formulas: Sequence[Quantity], leaves: Leaves) -> list[Array]:
     return [found[id(formula)] for formula in formulas]
 
 
-def _value(node: Quantity, of: list[Array]) -> Array:
+def _value(node: Formula, of: list[Array]) -> Array:
     # an ordered comparison of complex numbers, as of a complex step, is one of their real parts
     real = [np.real(value) for value in of]
     match node.operation:

@@ -10,38 +10,38 @@ from typing import Self
 
 from shaftprint.errors import StructureError
 from shaftprint.models._calculus import depends, derivative, replaced
-from shaftprint.models._quantity import Number, Quantity, number, quantity
+from shaftprint.models._formula import Formula, Number, as_formula, number
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Past:
     """A signal and the time by which it is asked for late."""
 
-    signal: Quantity
-    delay: Quantity
-    leaf: Quantity
+    signal: Formula
+    delay: Formula
+    leaf: Formula
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sampled:
     """A value that a computer takes every period and holds; ``first`` holds before the start."""
 
-    period: Quantity
-    value: Quantity
-    leaf: Quantity
+    period: Formula
+    value: Formula
+    leaf: Formula
 
 
 @dataclass(slots=True)
 class Flow:
     """Equations that blocks add to; a working object, not a result."""
 
-    parameters: Mapping[str, Quantity]
+    parameters: Mapping[str, Formula]
     """Every parameter by name, tied ones as formulas and those held at zero as numbers."""
-    inputs: Mapping[str, Quantity] = field(default_factory=dict)
+    inputs: Mapping[str, Formula] = field(default_factory=dict)
     """Every input by name, for equations of several."""
-    states: list[Quantity] = field(default_factory=list)
+    states: list[Formula] = field(default_factory=list)
     """Leaves of the states."""
-    rates: dict[int, Quantity] = field(default_factory=dict)
+    rates: dict[int, Formula] = field(default_factory=dict)
     """Rate of each state by its place."""
     running: set[int] = field(default_factory=set)
     """Places of states that go on for ever in steady running, such as an angle."""
@@ -49,32 +49,32 @@ class Flow:
     """Signals that are asked for late."""
     samples: list[Sampled] = field(default_factory=list)
     """Values that a computer holds."""
-    unknowns: dict[int, Quantity] = field(default_factory=dict)
+    unknowns: dict[int, Formula] = field(default_factory=dict)
     """What each unknown signal turned out to be."""
-    known: dict[tuple[int, int], Quantity] = field(default_factory=dict)
+    known: dict[tuple[int, int], Formula] = field(default_factory=dict)
     """What an expression makes of a signal, once asked."""
     kept: list[object] = field(default_factory=list)
     """Expressions and signals behind ``known``, so that their identities stay theirs."""
-    diagrams: dict[tuple[int, int], Mapping[str, Quantity]] = field(default_factory=dict)
+    diagrams: dict[tuple[int, int], Mapping[str, Formula]] = field(default_factory=dict)
     """Outputs of a diagram for a signal, once asked."""
     opened: int = 0
     """How many unknown signals there have been."""
 
     @classmethod
     def of_parameters(
-        cls, names: Iterable[str], zeros: Iterable[str] = (), inputs: Mapping[str, Quantity] | None = None
+        cls, names: Iterable[str], zeros: Iterable[str] = (), inputs: Mapping[str, Formula] | None = None
     ) -> Self:
         """Return a flow without equations, its parameters leaves or the number zero."""
         none = frozenset(zeros)
-        leaves = {n: Quantity("parameter", name=n, place=i) for i, n in enumerate(names)}
+        leaves = {n: Formula("parameter", name=n, place=i) for i, n in enumerate(names)}
         parameters = {n: number(0.0) if n in none else leaf for n, leaf in leaves.items()}
         return cls(parameters=parameters, inputs=inputs or {})
 
-    def parameter(self, name: str) -> Quantity:
+    def parameter(self, name: str) -> Formula:
         """Return a parameter."""
         return self.parameters[name]
 
-    def input(self, name: str) -> Quantity:
+    def input(self, name: str) -> Formula:
         """Return an input of the whole structure.
 
         Raises
@@ -86,44 +86,44 @@ class Flow:
             raise StructureError(f"expected an input {name}, found {', '.join(self.inputs) or 'none'}.")
         return self.inputs[name]
 
-    def state(self, name: str) -> Quantity:
+    def state(self, name: str) -> Formula:
         """Return a new state; give it a rate with ``rate``."""
-        leaf = Quantity("state", name=name, place=len(self.states))
+        leaf = Formula("state", name=name, place=len(self.states))
         self.states.append(leaf)
         return leaf
 
-    def rate(self, state: Quantity, value: Number) -> None:
+    def rate(self, state: Formula, value: Number) -> None:
         """Say how fast a state changes."""
-        self.rates[state.place] = quantity(value)
+        self.rates[state.place] = as_formula(value)
 
-    def running_sum(self, name: str, rate: Number) -> Quantity:
+    def running_sum(self, name: str, rate: Number) -> Formula:
         """Return a new state that starts at zero and goes on for ever in steady running, such as an angle."""
         leaf = self.state(name)
         self.rate(leaf, rate)
         self.running.add(leaf.place)
         return leaf
 
-    def delayed(self, signal: Quantity, delay: Number) -> Quantity:
+    def delayed(self, signal: Formula, delay: Number) -> Formula:
         """Return what a signal was some time ago; exactly the signal where the delay is the number zero."""
-        late = quantity(delay)
+        late = as_formula(delay)
         if late.equals(0.0) or signal.is_number:
             return signal
         for past in self.pasts:
             if past.signal is signal and past.delay is late:
                 return past.leaf
-        leaf = Quantity("past", name="past", place=len(self.pasts))
+        leaf = Formula("past", name="past", place=len(self.pasts))
         self.pasts.append(Past(signal, late, leaf))
         return leaf
 
-    def mean(self, signal: Quantity, window: Number) -> Quantity:
+    def mean(self, signal: Formula, window: Number) -> Formula:
         """Return the mean of a signal over the time window that ends now; the signal where the window is zero."""
-        width = quantity(window)
+        width = as_formula(window)
         if width.equals(0.0):
             return signal
         area = self.running_sum("running sum", signal)
         return (area - self.delayed(area, width)) / width
 
-    def sampled(self, value: Quantity | Callable[[Quantity], Quantity], period: Number) -> Quantity:
+    def sampled(self, value: Formula | Callable[[Formula], Formula], period: Number) -> Formula:
         """Return a value that is taken every period and held until the next.
 
         Parameters
@@ -133,29 +133,29 @@ class Flow:
         period
             The period [s]; 0 for every step of the simulation.
         """
-        leaf = Quantity("sample", name="sample", place=len(self.samples))
+        leaf = Formula("sample", name="sample", place=len(self.samples))
         # its place is taken before the value asks for further ones
-        self.samples.append(Sampled(quantity(period), leaf, leaf))
+        self.samples.append(Sampled(as_formula(period), leaf, leaf))
         taken = value(leaf) if callable(value) else value
-        self.samples[leaf.place] = Sampled(quantity(period), taken, leaf)
+        self.samples[leaf.place] = Sampled(as_formula(period), taken, leaf)
         return leaf
 
     @staticmethod
-    def period(period: Number) -> Quantity:
+    def period(period: Number) -> Formula:
         """Return the time between two values of a computer [s]; the step of the simulation where it is zero."""
-        given = quantity(period)
-        return Quantity("step", name="step") if given.equals(0.0) else given
+        given = as_formula(period)
+        return Formula("step", name="step") if given.equals(0.0) else given
 
-    def change(self, signal: Quantity) -> Quantity:
+    def change(self, signal: Formula) -> Formula:
         """Return how fast a signal changes."""
-        return Quantity("rate", (signal,))
+        return Formula("rate", (signal,))
 
-    def unknown(self) -> Quantity:
+    def unknown(self) -> Formula:
         """Return a signal that is to be known later; say what it is with ``close``."""
         self.opened += 1
-        return Quantity("unknown", name="unknown", place=self.opened)
+        return Formula("unknown", name="unknown", place=self.opened)
 
-    def close(self, signal: Quantity, value: Quantity, where: str) -> Quantity:
+    def close(self, signal: Formula, value: Formula, where: str) -> Formula:
         """Say what an unknown signal is, solving for it where it depends on itself at once.
 
         Raises
@@ -175,7 +175,7 @@ class Flow:
         self.unknowns[signal.place] = value
         return signal
 
-    def _without_closed(self, value: Quantity) -> Quantity:
+    def _without_closed(self, value: Formula) -> Formula:
         """Return a formula with what unknown signals turned out to be: a loop may run through one of them."""
         found = value
         while True:
@@ -184,5 +184,5 @@ class Flow:
                 return found
             found = opened
 
-    def _closed(self, node: Quantity) -> Quantity | None:
+    def _closed(self, node: Formula) -> Formula | None:
         return self.unknowns.get(node.place) if node.operation == "unknown" else None

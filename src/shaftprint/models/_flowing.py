@@ -15,7 +15,7 @@ from shaftprint.models._calculus import depends, derivative, replaced
 from shaftprint.models._delays import Delay, SpeedSensor
 from shaftprint.models._expression import Constant, Expression, Inverse, Parallel, Sensitivity, Series
 from shaftprint.models._flow import Flow
-from shaftprint.models._quantity import Quantity, number
+from shaftprint.models._formula import Formula, number
 from shaftprint.models._realisation import Ratio, product, realised, total
 
 # How often the change of an input or of a late signal can be taken.
@@ -33,7 +33,7 @@ def factors(expression: Expression) -> list[Expression]:
     return [expression]
 
 
-def through(flow: Flow, expression: Expression, signal: Quantity) -> Quantity:
+def through(flow: Flow, expression: Expression, signal: Formula) -> Formula:
     """Return what an expression makes of a signal.
 
     Raises
@@ -44,7 +44,7 @@ def through(flow: Flow, expression: Expression, signal: Quantity) -> Quantity:
     return along(flow, factors(expression), signal)
 
 
-def along(flow: Flow, chain: Sequence[Expression], signal: Quantity) -> Quantity:
+def along(flow: Flow, chain: Sequence[Expression], signal: Formula) -> Formula:
     """Return what a chain of expressions makes of a signal, closing the loops in it."""
     closings = [(i, part) for i, part in enumerate(chain) if isinstance(part, Sensitivity)]
     if not closings:
@@ -101,7 +101,7 @@ def _shared(before: list[Expression], loop: list[Expression]) -> int:
     return 0
 
 
-def _error(flow: Flow, sensitivity: Sensitivity, loop: list[Expression], signal: Quantity) -> Quantity:
+def _error(flow: Flow, sensitivity: Sensitivity, loop: list[Expression], signal: Formula) -> Formula:
     """Return what feedback leaves of a signal."""
     key = (id(sensitivity), id(signal))
     if key in flow.known:
@@ -112,7 +112,7 @@ def _error(flow: Flow, sensitivity: Sensitivity, loop: list[Expression], signal:
     return flow.close(error, signal - along(flow, loop, error), "feedback")
 
 
-def _of_part(flow: Flow, part: Expression, signal: Quantity) -> Quantity:
+def _of_part(flow: Flow, part: Expression, signal: Formula) -> Formula:
     key = (id(part), id(signal))
     if key not in flow.known:
         flow.kept += [part, signal]
@@ -120,7 +120,7 @@ def _of_part(flow: Flow, part: Expression, signal: Quantity) -> Quantity:
     return flow.known[key]
 
 
-def _fresh(flow: Flow, part: Expression, signal: Quantity) -> Quantity:
+def _fresh(flow: Flow, part: Expression, signal: Formula) -> Formula:
     if isinstance(part, Constant):
         return part.number * signal
     if isinstance(part, Parallel):
@@ -132,7 +132,7 @@ def _fresh(flow: Flow, part: Expression, signal: Quantity) -> Quantity:
     raise StructureError(f"{type(part).__name__} has no equations in time; it can be fitted, but not simulated.")
 
 
-def _inverse(flow: Flow, part: Inverse, signal: Quantity) -> Quantity:
+def _inverse(flow: Flow, part: Inverse, signal: Formula) -> Formula:
     ratio = ratio_of(flow, part.of)
     if ratio is not None:
         return realised(flow, signal, (ratio[1], ratio[0]), "inverse")
@@ -168,7 +168,7 @@ def ratio_of(flow: Flow, expression: Expression) -> Ratio | None:
     return total(product(one[0], two[1]), product(two[0], one[1])), bottom
 
 
-def split_shift(flow: Flow, expression: Expression, signal: Quantity) -> tuple[Quantity, Quantity]:
+def split_shift(flow: Flow, expression: Expression, signal: Formula) -> tuple[Formula, Formula]:
     """Return the output of an expression without the delays at its end, and their sum, which may be negative.
 
     What only shifts an output is taken off the simulated signal afterwards, so that a latency that was corrected by

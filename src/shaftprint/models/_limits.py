@@ -3,19 +3,19 @@
 from dataclasses import dataclass
 
 from shaftprint.models._flow import Flow
-from shaftprint.models._quantity import Number, Quantity, clip, quantity
+from shaftprint.models._formula import Formula, Number, as_formula, clip
 
 
-def deadband(error: Quantity, half_width: Number) -> Quantity:
+def deadband(error: Formula, half_width: Number) -> Formula:
     """Return the part of an error that lies beyond a deadband.
 
     Khalil, Nonlinear Systems, 2002, section 1.2.7, "dead zone". Governors of ships have 0.1 to 0.25 % of rated speed.
     """
-    width = quantity(half_width)
+    width = as_formula(half_width)
     return error if width.equals(0.0) else error - clip(error, -width, width)
 
 
-def rate_limited(flow: Flow, signal: Quantity, fastest: Number, *, period_s: Number = 0.0) -> Quantity:
+def rate_limited(flow: Flow, signal: Formula, fastest: Number, *, period_s: Number = 0.0) -> Formula:
     """Return a signal that follows another no faster than a rate.
 
     A computer that moves its output every period by no more than ``fastest T``: ``z_k = z_k-1 + clip(u_k - z_k-1, -r T,
@@ -28,7 +28,7 @@ def rate_limited(flow: Flow, signal: Quantity, fastest: Number, *, period_s: Num
     period_s
         Period of the computer [s]; 0 for every step of the simulation.
     """
-    change = quantity(fastest) * flow.period(period_s)
+    change = as_formula(fastest) * flow.period(period_s)
     return flow.sampled(lambda last: last + clip(signal - last, -change, change), period_s)
 
 
@@ -36,15 +36,15 @@ def rate_limited(flow: Flow, signal: Quantity, fastest: Number, *, period_s: Num
 class Governed:
     """What a PI governor with limits asks for and gives."""
 
-    wanted: Quantity
+    wanted: Formula
     """Rack before the limits."""
-    given: Quantity
+    given: Formula
     """Rack after the limits."""
 
 
 def limited_pi(
     flow: Flow,
-    error: Quantity,
+    error: Formula,
     *,
     proportional: Number,
     integral: Number,
@@ -74,25 +74,25 @@ def limited_pi(
         What else changes the integrator [1/s], such as an observer.
     """
     state = flow.state("governor integral")
-    felt = error - quantity(droop) * state
-    wanted = quantity(proportional) * felt + state
+    felt = error - as_formula(droop) * state
+    wanted = as_formula(proportional) * felt + state
     given = clip(wanted, lowest, highest)
-    flow.rate(state, quantity(integral) * felt + (given - wanted) / quantity(anti_windup_s) + quantity(drawn))
+    flow.rate(state, as_formula(integral) * felt + (given - wanted) / as_formula(anti_windup_s) + as_formula(drawn))
     return Governed(wanted, given)
 
 
-def second_order_lag(flow: Flow, signal: Quantity, frequency: Number, damping: Number) -> Quantity:
+def second_order_lag(flow: Flow, signal: Formula, frequency: Number, damping: Number) -> Formula:
     """Return a signal behind a second-order lag, ``x'' + 2 zeta omega_n x' + omega_n^2 x = omega_n^2 u``."""
-    omega = quantity(frequency)
+    omega = as_formula(frequency)
     place, speed = flow.state("lag"), flow.state("lag rate")
     flow.rate(place, speed)
-    flow.rate(speed, omega * (omega * (signal - place) - 2.0 * quantity(damping) * speed))
+    flow.rate(speed, omega * (omega * (signal - place) - 2.0 * as_formula(damping) * speed))
     return place
 
 
-def first_order_lag(flow: Flow, signal: Quantity, time_s: Number, name: str = "lag") -> Quantity:
+def first_order_lag(flow: Flow, signal: Formula, time_s: Number, name: str = "lag") -> Formula:
     """Return a signal behind a first-order lag, ``T dx/dt = u - x``; the signal itself where ``T`` is zero."""
-    time = quantity(time_s)
+    time = as_formula(time_s)
     if time.equals(0.0):
         return signal
     state = flow.state(name)

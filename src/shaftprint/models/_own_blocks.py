@@ -13,8 +13,8 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
 from shaftprint.models._expression import Polynomials
+from shaftprint.models._formula import Formula
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._quantity import Quantity
 from shaftprint.models._tie import IMAGINARY_STEP
 
 Coefficients: TypeAlias = Callable[..., tuple[Sequence[ArrayLike], Sequence[ArrayLike]]]
@@ -101,7 +101,7 @@ class RationalBlock(Block):
         """Return the coefficients."""
         numerator, denominator = self._lists(*values)
         # of formulas instead of numbers where the equations in time are wanted
-        kind = object if any(isinstance(value, Quantity) for value in values) else np.float64
+        kind = object if any(isinstance(value, Formula) for value in values) else np.float64
         return np.array(numerator, dtype=kind), np.array(denominator, dtype=kind)
 
     def _lists(self, *values: ArrayLike) -> tuple[Sequence[ArrayLike], Sequence[ArrayLike]]:

@@ -9,7 +9,7 @@ from shaftprint.models._calculus import postorder, replaced, swept
 from shaftprint.models._expression import Expression
 from shaftprint.models._flow import Flow, Past
 from shaftprint.models._flowing import split_shift, through
-from shaftprint.models._quantity import Quantity, number, quantity
+from shaftprint.models._formula import Formula, as_formula, number
 from shaftprint.models._structure import Structure
 
 
@@ -17,11 +17,11 @@ from shaftprint.models._structure import Structure
 class Late:
     """A signal that the equations ask for as it was some time ago."""
 
-    signal: Quantity
+    signal: Formula
     """The signal."""
-    drift: Quantity
+    drift: Formula
     """How fast it changes in steady running: not at all, but for sums that go on for ever."""
-    delay: Quantity
+    delay: Formula
     """The time; a formula of parameters, or of signals where it varies."""
 
     @property
@@ -34,9 +34,9 @@ class Late:
 class Computed:
     """A value that a computer takes every period and holds."""
 
-    value: Quantity
+    value: Formula
     """What it takes."""
-    period: Quantity
+    period: Formula
     """The period; a formula of parameters."""
 
 
@@ -56,7 +56,7 @@ class Program:
     """Names of the structure's parameters."""
     states: tuple[str, ...]
     """What each state is."""
-    rates: tuple[Quantity, ...]
+    rates: tuple[Formula, ...]
     """How fast each state changes."""
     running: tuple[bool, ...]
     """Whether each state goes on for ever in steady running."""
@@ -66,9 +66,9 @@ class Program:
     """Values that a computer holds."""
     outputs: tuple[str, ...]
     """Names of the outputs."""
-    signals: tuple[Quantity, ...]
+    signals: tuple[Formula, ...]
     """The outputs, before their shift."""
-    shifts: tuple[Quantity, ...]
+    shifts: tuple[Formula, ...]
     """Time by which each output is late, a formula of parameters; negative where it is early."""
 
 
@@ -85,7 +85,7 @@ def program_of(structure: Structure, zeros: Iterable[str] = ()) -> Program:
     StructureError
         If a block has no equations in time, or a loop depends on itself at once.
     """
-    inputs = {name: Quantity("input", name=name, place=i) for i, name in enumerate(structure.inputs)}
+    inputs = {name: Formula("input", name=name, place=i) for i, name in enumerate(structure.inputs)}
     flow = Flow(parameters=_leaves(structure, frozenset(zeros)), inputs=inputs)
     return completed(
         flow,
@@ -96,21 +96,21 @@ def program_of(structure: Structure, zeros: Iterable[str] = ()) -> Program:
     )
 
 
-def _leaves(structure: Structure, zeros: frozenset[str]) -> dict[str, Quantity]:
+def _leaves(structure: Structure, zeros: frozenset[str]) -> dict[str, Formula]:
     """Return every parameter as the blocks take it: a leaf, a formula where it is tied, times its factor."""
     leaves = {
-        name: number(0.0) if name in zeros else Quantity("parameter", name=name, place=i)
+        name: number(0.0) if name in zeros else Formula("parameter", name=name, place=i)
         for i, name in enumerate(structure.names)
     }
     # a tie is a formula of whatever it is given
     found = dict(leaves)
     for tie in structure.ties:
         formula: Callable[..., Any] = tie.of
-        found[tie.name] = quantity(formula(*(leaves[argument] for argument in tie.arguments)))
+        found[tie.name] = as_formula(formula(*(leaves[argument] for argument in tie.arguments)))
     return {name: value * structure.factors.get(name, 1.0) for name, value in found.items()}
 
 
-def _output(flow: Flow, structure: Structure, output: str, inputs: Mapping[str, Quantity]) -> tuple[Quantity, Quantity]:
+def _output(flow: Flow, structure: Structure, output: str, inputs: Mapping[str, Formula]) -> tuple[Formula, Formula]:
     """Return an output and its shift."""
     paths = {
         source: path for (name, source), path in zip(structure.channels, structure.paths, strict=True) if name == output
@@ -121,7 +121,7 @@ def _output(flow: Flow, structure: Structure, output: str, inputs: Mapping[str, 
     return _sum(flow, paths, inputs), number(0.0)
 
 
-def _sum(flow: Flow, paths: Mapping[str, Expression], inputs: Mapping[str, Quantity]) -> Quantity:
+def _sum(flow: Flow, paths: Mapping[str, Expression], inputs: Mapping[str, Formula]) -> Formula:
     found = number(0.0)
     for source, path in paths.items():
         found = found + through(flow, path, inputs[source])
@@ -134,7 +134,7 @@ def completed(
     name: str,
     inputs: tuple[str, ...],
     parameters: tuple[str, ...],
-    outputs: Mapping[str, tuple[Quantity, Quantity]],
+    outputs: Mapping[str, tuple[Formula, Formula]],
 ) -> Program:
     """Return a program from collected equations.
 
@@ -182,24 +182,24 @@ class _Resolver:
     def __init__(self, flow: Flow, name: str) -> None:
         self._flow = flow
         self._name = name
-        self._done: dict[tuple[str, int], Quantity] = {}
+        self._done: dict[tuple[str, int], Formula] = {}
         self._open: set[tuple[str, int]] = set()
-        self._kept: list[Quantity] = []
-        self._rates: dict[int, Quantity] = {}
+        self._kept: list[Formula] = []
+        self._rates: dict[int, Formula] = {}
         self._drifting: set[int] = set()
 
-    def __call__(self, formula: Quantity) -> Quantity:
+    def __call__(self, formula: Formula) -> Formula:
         """Return the formula without unknown signals and without rates of change."""
         return replaced([formula], self._leaf)[0]
 
-    def rate(self, state: int) -> Quantity:
+    def rate(self, state: int) -> Formula:
         """Return how fast a state changes."""
         if state not in self._rates:
             rate = self._flow.rates[state]
             self._rates[state] = self._once(("state", state), lambda: self(rate))
         return self._rates[state]
 
-    def change(self, formula: Quantity) -> Quantity:
+    def change(self, formula: Formula) -> Formula:
         """Return how fast a formula changes that has been resolved.
 
         Raises
@@ -209,11 +209,11 @@ class _Resolver:
         """
         return swept([formula], self._slope_in_time)[0]
 
-    def drift(self, formula: Quantity) -> Quantity:
+    def drift(self, formula: Formula) -> Formula:
         """Return how fast a formula changes while only sums that go on for ever do, and what is late of them."""
         return swept([formula], self._slope_in_steady_running)[0]
 
-    def _slope_in_steady_running(self, leaf: Quantity) -> Quantity | None:
+    def _slope_in_steady_running(self, leaf: Formula) -> Formula | None:
         if leaf.operation == "state" and leaf.place in self._flow.running:
             return self.rate(leaf.place)
         if leaf.operation == "past" and leaf.place not in self._drifting:
@@ -224,13 +224,13 @@ class _Resolver:
             return found
         return None
 
-    def _slope_in_time(self, leaf: Quantity) -> Quantity | None:
+    def _slope_in_time(self, leaf: Formula) -> Formula | None:
         if leaf.operation == "state":
             return self.rate(leaf.place)
         if leaf.operation == "input":
-            return Quantity("input rate", name=leaf.name, place=leaf.place)
+            return Formula("input rate", name=leaf.name, place=leaf.place)
         if leaf.operation == "past":
-            return Quantity("past rate", name=leaf.name, place=leaf.place)
+            return Formula("past rate", name=leaf.name, place=leaf.place)
         if leaf.operation in ("input rate", "past rate"):
             raise StructureError(
                 f"structure {self._name}: the equations need the second change of "
@@ -239,7 +239,7 @@ class _Resolver:
             )
         return None
 
-    def _leaf(self, node: Quantity) -> Quantity | None:
+    def _leaf(self, node: Formula) -> Formula | None:
         if node.operation == "unknown":
             value = self._flow.unknowns[node.place]
             return self._once(("unknown", node.place), lambda: self(value))
@@ -248,7 +248,7 @@ class _Resolver:
             return self._once(("change", id(node)), lambda: self.change(self(node.of[0])))
         return None
 
-    def _once(self, key: tuple[str, int], make: Callable[[], Quantity]) -> Quantity:
+    def _once(self, key: tuple[str, int], make: Callable[[], Formula]) -> Formula:
         if key in self._done:
             return self._done[key]
         if key in self._open:

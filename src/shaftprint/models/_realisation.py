@@ -5,15 +5,15 @@ from typing import TypeAlias
 
 from shaftprint.errors import StructureError
 from shaftprint.models._flow import Flow
-from shaftprint.models._quantity import Number, Quantity, number, quantity
+from shaftprint.models._formula import Formula, Number, as_formula, number
 
-Coefficients: TypeAlias = list[Quantity]
+Coefficients: TypeAlias = list[Formula]
 Ratio: TypeAlias = tuple[Coefficients, Coefficients]
 
 
 def coefficients(values: Sequence[Number]) -> Coefficients:
     """Return a polynomial without leading zeros, highest power first."""
-    found = [quantity(value) for value in values]
+    found = [as_formula(value) for value in values]
     while len(found) > 1 and found[0].equals(0.0):
         del found[0]
     return found
@@ -35,7 +35,7 @@ def total(left: Coefficients, right: Coefficients) -> Coefficients:
     return coefficients([a + b for a, b in zip(*padded, strict=True)])
 
 
-def realised(flow: Flow, signal: Quantity, ratio: Ratio, name: str) -> Quantity:
+def realised(flow: Flow, signal: Formula, ratio: Ratio, name: str) -> Formula:
     """Return what a transfer function makes of a signal.
 
     Observable canonical form: of ``y^(n) + a_1 y^(n-1) + ... = b_0 u^(n) + b_1 u^(n-1) + ...`` the states are what

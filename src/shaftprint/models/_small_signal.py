@@ -7,8 +7,8 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.models._calculus import derivatives
 from shaftprint.models._evaluate import Array, Leaves, evaluate
+from shaftprint.models._formula import Formula
 from shaftprint.models._program import Program
-from shaftprint.models._quantity import Quantity
 
 
 class SmallSignal:
@@ -34,14 +34,14 @@ class SmallSignal:
         self._slopes = [self._column(kind, place) for kind, place in self._columns]
         self._times = [*(late.delay for late in program.pasts), *(taken.period for taken in program.samples)]
         self._times += program.shifts
-        self._moved: dict[int, tuple[list[tuple[list[Quantity], list[Quantity]]], list[Quantity]]] = {}
+        self._moved: dict[int, tuple[list[tuple[list[Formula], list[Formula]]], list[Formula]]] = {}
 
-    def _column(self, kind: str, place: int) -> tuple[list[Quantity], list[Quantity]]:
+    def _column(self, kind: str, place: int) -> tuple[list[Formula], list[Formula]]:
         """Return the derivatives to a signal and to how fast it changes."""
-        plain = derivatives(self._formulas, Quantity(kind, place=place))
+        plain = derivatives(self._formulas, Formula(kind, place=place))
         if kind not in ("past", "input"):
             return plain, []
-        return plain, derivatives(self._formulas, Quantity(f"{kind} rate", place=place))
+        return plain, derivatives(self._formulas, Formula(f"{kind} rate", place=place))
 
     def response(
         self,
@@ -107,16 +107,16 @@ class SmallSignal:
         leaves |= {pair: np.asarray(0.0) for pair in self._unknown if pair[0] != "past"}
         return leaves | {pair: np.asarray(value) for pair, value in at.items()}
 
-    def _moved_by(self, place: int) -> tuple[list[tuple[list[Quantity], list[Quantity]]], list[Quantity]]:
+    def _moved_by(self, place: int) -> tuple[list[tuple[list[Formula], list[Formula]]], list[Formula]]:
         if place not in self._moved:
-            to = Quantity("parameter", place=place)
+            to = Formula("parameter", place=place)
             columns = [(derivatives(plain, to), derivatives(change, to)) for plain, change in self._slopes]
             self._moved[place] = columns, derivatives(self._times, to)
         return self._moved[place]
 
     def _table(
         self,
-        columns: Sequence[tuple[list[Quantity], list[Quantity]]],
+        columns: Sequence[tuple[list[Formula], list[Formula]]],
         leaves: dict[tuple[str, int], Array],
         s: ComplexArray,
         shape: tuple[int, ...],

@@ -9,7 +9,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.models import Program, Quantity, Structure, derivatives, postorder, program_of
+from shaftprint.models import Formula, Program, Structure, derivatives, postorder, program_of
 from shaftprint.simulation._compile import module_of
 from shaftprint.simulation._exact_text import ExactText
 from shaftprint.simulation._hoisted import Hoisted, hoisted
@@ -65,7 +65,7 @@ class Built:
     def constant_slopes(self, values: FloatArray, step_s: float, name: str) -> tuple[FloatArray, ...]:
         """Return the derivatives of the same to a parameter."""
         if name not in self.functions:
-            to = Quantity("parameter", place=self.program.parameters.index(name))
+            to = Formula("parameter", place=self.program.parameters.index(name))
             self.functions[name] = plain_function(derivatives(self._of_parameters, to))
         return self._split(self.functions[name], values, step_s)
 
@@ -96,7 +96,7 @@ class Built:
         return not found.isdisjoint(names)
 
     @property
-    def _of_parameters(self) -> list[Quantity]:
+    def _of_parameters(self) -> list[Formula]:
         program = self.program
         delays = [late.delay for late in program.pasts]
         periods = [taken.period for taken in program.samples]

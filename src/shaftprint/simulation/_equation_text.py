@@ -7,7 +7,7 @@ each parameter, a block that the compiler can treat as one vector.
 
 from collections.abc import Iterable, Sequence
 
-from shaftprint.models import Quantity, postorder
+from shaftprint.models import Formula, postorder
 from shaftprint.simulation._hoisted import Hoisted, Slopes
 from shaftprint.simulation._text import statements
 
@@ -87,7 +87,7 @@ class EquationText:
     def __init__(self, equations: Hoisted, inputs: int) -> None:
         self.equations = equations
         self.inputs = inputs
-        self.groups: dict[str, Sequence[Quantity]] = {
+        self.groups: dict[str, Sequence[Formula]] = {
             "rates": equations.rates,
             "lates": equations.lates,
             "values": equations.values,
@@ -150,12 +150,12 @@ class EquationText:
         formulas = [formula for group in self.groups.values() for formula in group]
         return any(node.operation == "past rate" for node in postorder(formulas))
 
-    def _function(self, name: str, formulas: Sequence[Quantity]) -> str:
+    def _function(self, name: str, formulas: Sequence[Formula]) -> str:
         lines, found = statements(formulas, LEAVES)
         body = [*self._leaves(formulas), *lines, *self._results(found), "return"]
         return f"@INNER\ndef {name}(v):\n{indented(body)}"
 
-    def _with_slopes(self, name: str, formulas: Sequence[Quantity]) -> str:
+    def _with_slopes(self, name: str, formulas: Sequence[Formula]) -> str:
         slopes = Slopes(formulas)
         every = [*formulas, *slopes.formulas]
         lines, found = statements(every, LEAVES)
@@ -173,10 +173,10 @@ class EquationText:
             body.append(f"    w[{result} + lane] = {' + '.join(terms) or '0.0'}")
         return f"@INNER\ndef {name}(v, w):\n{indented([*body, 'return'])}"
 
-    def _place(self, leaf: Quantity) -> int:
+    def _place(self, leaf: Formula) -> int:
         return self.starts[leaf.operation] + leaf.place
 
-    def _leaves(self, formulas: Sequence[Quantity]) -> list[str]:
+    def _leaves(self, formulas: Sequence[Formula]) -> list[str]:
         """Return the lines that give names to the values that formulas are made of."""
         leaves = {
             LEAVES[node.operation].format(node.place): self._place(node)

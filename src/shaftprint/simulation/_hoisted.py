@@ -4,33 +4,33 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import islice
 
-from shaftprint.models import Program, Quantity, derivatives, postorder, rebuilt, replaced
+from shaftprint.models import Formula, Program, derivatives, postorder, rebuilt, replaced
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Hoisted:
     """A program whose formulas of parameters alone are constants, to be found once a simulation."""
 
-    constants: tuple[Quantity, ...]
+    constants: tuple[Formula, ...]
     """The formulas of parameters."""
-    rates: tuple[Quantity, ...]
+    rates: tuple[Formula, ...]
     """How fast states change."""
-    lates: tuple[Quantity, ...]
+    lates: tuple[Formula, ...]
     """Signals that are asked for late."""
-    values: tuple[Quantity, ...]
+    values: tuple[Formula, ...]
     """What a computer takes."""
-    signals: tuple[Quantity, ...]
+    signals: tuple[Formula, ...]
     """The outputs."""
     varying: tuple[int, ...]
     """Places of the pasts whose delay is not a formula of parameters alone."""
-    delays: tuple[Quantity, ...]
+    delays: tuple[Formula, ...]
     """Their delays [s]."""
 
 
 def hoisted(program: Program) -> Hoisted:
     """Return the program with constants in the place of formulas of parameters alone."""
-    constants: list[Quantity] = []
-    leaves: list[Quantity] = []
+    constants: list[Formula] = []
+    leaves: list[Formula] = []
     known: dict[int, int] = {}
     varying = tuple(i for i, late in enumerate(program.pasts) if late.varies)
     delays = [program.pasts[i].delay for i in varying]
@@ -44,12 +44,12 @@ def hoisted(program: Program) -> Hoisted:
     roots = _without_division(roots)
     fixed = _fixed(roots)
 
-    def constant(node: Quantity) -> Quantity | None:
+    def constant(node: Formula) -> Formula | None:
         if node.operation == "number" or not fixed[id(node)]:
             return None
         if id(node) not in known:
             known[id(node)] = len(constants)
-            leaves.append(Quantity("constant", name="constant", place=len(constants)))
+            leaves.append(Formula("constant", name="constant", place=len(constants)))
             constants.append(node)
         return leaves[known[id(node)]]
 
@@ -69,7 +69,7 @@ def hoisted(program: Program) -> Hoisted:
     )
 
 
-def _fixed(roots: Sequence[Quantity]) -> dict[int, bool]:
+def _fixed(roots: Sequence[Formula]) -> dict[int, bool]:
     """Return for every part whether it is a formula of parameters alone."""
     found: dict[int, bool] = {}
     for node in postorder(roots):
@@ -78,10 +78,10 @@ def _fixed(roots: Sequence[Quantity]) -> dict[int, bool]:
     return found
 
 
-def _without_division(roots: Sequence[Quantity]) -> list[Quantity]:
+def _without_division(roots: Sequence[Formula]) -> list[Formula]:
     """Return formulas that multiply by the inverse of a formula of parameters instead: that is found once."""
     fixed = _fixed(roots)
-    found: dict[int, Quantity] = {}
+    found: dict[int, Formula] = {}
     for node in postorder(roots):
         parts = tuple(found[id(part)] for part in node.of)
         if node.operation == "divide" and fixed[id(node.of[1])] and not fixed[id(node)]:
@@ -94,12 +94,12 @@ def _without_division(roots: Sequence[Quantity]) -> list[Quantity]:
 class Slopes:
     """Derivatives of formulas to the leaves they contain, those that are not zero."""
 
-    def __init__(self, formulas: Sequence[Quantity]) -> None:
-        self.entries: list[tuple[int, Quantity]] = []
+    def __init__(self, formulas: Sequence[Formula]) -> None:
+        self.entries: list[tuple[int, Formula]] = []
         """Number of the formula and leaf of each derivative."""
-        self.formulas: list[Quantity] = []
+        self.formulas: list[Formula] = []
         """The derivatives."""
-        leaves: dict[tuple[str, int], Quantity] = {}
+        leaves: dict[tuple[str, int], Formula] = {}
         for node in postorder(formulas):
             if not node.of and node.operation not in ("number", "input", "input rate", "step"):
                 leaves.setdefault((node.operation, node.place), node)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
-from shaftprint.models import Quantity
+from shaftprint.models import Formula
 from shaftprint.simulation._compile import plain_module_of
 from shaftprint.simulation._text import statements
 
@@ -62,7 +62,7 @@ def table(a, places, values):
 '''
 
 
-def plain_function(formulas: Sequence[Quantity]) -> Plain:
+def plain_function(formulas: Sequence[Formula]) -> Plain:
     """Return a function of parameters, states, pasts, samples, inputs and step that gives the formulas.
 
     All are not numbers where one divides by zero.

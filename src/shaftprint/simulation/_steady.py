@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
-from shaftprint.models import Program, Quantity, derivatives
+from shaftprint.models import Formula, Program, derivatives
 from shaftprint.simulation._plain_text import Plain, plain_function
 
 LARGEST_STEPS = 80
@@ -50,16 +50,16 @@ class SteadyEquations:
         places = [("state", i) for i in self._still]
         places += [("past", i) for i in range(len(program.pasts))]
         places += [("sample", i) for i in range(len(program.samples))]
-        self._unknown = [Quantity(kind, place=place) for kind, place in places]
+        self._unknown = [Formula(kind, place=place) for kind, place in places]
         formulas = [program.rates[i] for i in self._still]
         formulas += [
-            late.signal - late.delay * late.drift - Quantity("past", place=i) for i, late in enumerate(program.pasts)
+            late.signal - late.delay * late.drift - Formula("past", place=i) for i, late in enumerate(program.pasts)
         ]
-        formulas += [taken.value - Quantity("sample", place=i) for i, taken in enumerate(program.samples)]
+        formulas += [taken.value - Formula("sample", place=i) for i, taken in enumerate(program.samples)]
         self._formulas = formulas
         self._left = plain_function(formulas)
         self._matrix = plain_function([slope for leaf in self._unknown for slope in derivatives(formulas, leaf)])
-        states = [Quantity("state", place=place) for place in range(len(program.states))]
+        states = [Formula("state", place=place) for place in range(len(program.states))]
         self._own = plain_function([slope for leaf in states for slope in derivatives(program.rates, leaf)])
         lates = [late.signal for late in program.pasts]
         self._shown = [*lates, *(late.drift for late in program.pasts), *program.signals]
@@ -114,7 +114,7 @@ class SteadyEquations:
         """
         count = len(self._formulas)
         if place not in self._moved:
-            to = Quantity("parameter", place=place)
+            to = Formula("parameter", place=place)
             self._moved[place] = plain_function([*derivatives(self._formulas, to), *derivatives(self._shown, to)])
         given = (values, inputs, steady.states, steady.pasts, steady.samples)
         moved = self._call(self._moved[place], *given)

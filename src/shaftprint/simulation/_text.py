@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 
-from shaftprint.models import Quantity, postorder
+from shaftprint.models import Formula, postorder
 
 _SIGNS = {"add": "({} + {})", "multiply": "({} * {})", "divide": "({} / {})"}
 
 
 def statements(
-    formulas: Sequence[Quantity], leaves: Mapping[str, str], prefix: str = "t"
+    formulas: Sequence[Formula], leaves: Mapping[str, str], prefix: str = "t"
 ) -> tuple[list[str], list[str]]:
     """Return assignments and the names or numbers that hold the formulas.
 
@@ -36,7 +36,7 @@ def statements(
     return lines, [names[id(formula)] for formula in formulas]
 
 
-def _expression(node: Quantity, parts: list[str]) -> str:
+def _expression(node: Formula, parts: list[str]) -> str:
     if node.operation in _SIGNS:
         return _SIGNS[node.operation].format(*parts)
     if node.operation == "power":

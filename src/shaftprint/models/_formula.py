@@ -1,8 +1,8 @@
 """Scalar formulas of the time domain: what an equation is made of, before any number is known.
 
-A block states its equations in quantities; from the same formulas come the compiled simulation, its derivatives, the
-linearisation and the source text of an exported model. A quantity is a node of a graph: an operation on other
-quantities, or a leaf: a number, a parameter, an input, a state, or the past of a signal.
+A block states its equations as formulas; from them come the compiled simulation, its derivatives, the
+linearisation and the source text of an exported model. A formula is a node of a graph: an operation on other
+formulas, or a leaf: a number, a parameter, an input, a state, or the past of a signal.
 """
 
 from collections.abc import Sequence
@@ -15,16 +15,16 @@ import numpy as np
 
 from shaftprint.errors import StructureError
 
-Number: TypeAlias = Union["Quantity", float]
+Number: TypeAlias = Union["Formula", float]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Quantity:
+class Formula:
     """A scalar formula; composed with ``+ - * / **`` and the functions of this module."""
 
     operation: str
     """``add``, ``multiply``, ``divide``, ``power``, ``minimum`` ..., or the kind of leaf."""
-    of: tuple["Quantity", ...] = ()
+    of: tuple["Formula", ...] = ()
     """What it operates on."""
     name: str = ""
     """Name of a leaf; of a table the name of nothing."""
@@ -35,47 +35,47 @@ class Quantity:
     points: tuple[tuple[float, float], ...] = field(default=())
     """Corner points of a table, ascending."""
 
-    def __add__(self, other: Number) -> "Quantity":
+    def __add__(self, other: Number) -> "Formula":
         """Return the sum."""
-        return NotImplemented if (right := _quantity(other)) is None else add(self, right)
+        return NotImplemented if (right := _formula(other)) is None else add(self, right)
 
-    def __radd__(self, other: Number) -> "Quantity":
+    def __radd__(self, other: Number) -> "Formula":
         """Return the sum."""
-        return NotImplemented if (left := _quantity(other)) is None else add(left, self)
+        return NotImplemented if (left := _formula(other)) is None else add(left, self)
 
-    def __sub__(self, other: Number) -> "Quantity":
+    def __sub__(self, other: Number) -> "Formula":
         """Return the difference."""
-        return NotImplemented if (right := _quantity(other)) is None else add(self, -right)
+        return NotImplemented if (right := _formula(other)) is None else add(self, -right)
 
-    def __rsub__(self, other: Number) -> "Quantity":
+    def __rsub__(self, other: Number) -> "Formula":
         """Return the difference."""
-        return NotImplemented if (left := _quantity(other)) is None else add(left, -self)
+        return NotImplemented if (left := _formula(other)) is None else add(left, -self)
 
-    def __neg__(self) -> "Quantity":
+    def __neg__(self) -> "Formula":
         """Return the opposite."""
         return multiply(number(-1.0), self)
 
-    def __pos__(self) -> "Quantity":
-        """Return the quantity."""
+    def __pos__(self) -> "Formula":
+        """Return the formula."""
         return self
 
-    def __mul__(self, other: Number) -> "Quantity":
+    def __mul__(self, other: Number) -> "Formula":
         """Return the product."""
-        return NotImplemented if (right := _quantity(other)) is None else multiply(self, right)
+        return NotImplemented if (right := _formula(other)) is None else multiply(self, right)
 
-    def __rmul__(self, other: Number) -> "Quantity":
+    def __rmul__(self, other: Number) -> "Formula":
         """Return the product."""
-        return NotImplemented if (left := _quantity(other)) is None else multiply(left, self)
+        return NotImplemented if (left := _formula(other)) is None else multiply(left, self)
 
-    def __truediv__(self, other: Number) -> "Quantity":
+    def __truediv__(self, other: Number) -> "Formula":
         """Return the quotient."""
-        return NotImplemented if (right := _quantity(other)) is None else divide(self, right)
+        return NotImplemented if (right := _formula(other)) is None else divide(self, right)
 
-    def __rtruediv__(self, other: Number) -> "Quantity":
+    def __rtruediv__(self, other: Number) -> "Formula":
         """Return the quotient."""
-        return NotImplemented if (left := _quantity(other)) is None else divide(left, self)
+        return NotImplemented if (left := _formula(other)) is None else divide(left, self)
 
-    def __pow__(self, exponent: float) -> "Quantity":
+    def __pow__(self, exponent: float) -> "Formula":
         """Return a power with a fixed exponent."""
         if not isinstance(exponent, Real):
             return NotImplemented
@@ -90,7 +90,7 @@ class Quantity:
             Always.
         """
         raise StructureError(
-            "equations: a quantity was compared or used in an 'if'; use minimum, maximum, clip or choose instead."
+            "equations: a formula was compared or used in an 'if'; use minimum, maximum, clip or choose instead."
         )
 
     def __lt__(self, other: Number) -> bool:
@@ -101,31 +101,31 @@ class Quantity:
 
     # numpy calls these on objects, so that formulas may be written with np.sqrt and the like
 
-    def sqrt(self) -> "Quantity":
+    def sqrt(self) -> "Formula":
         """Return the square root."""
         return _of("sqrt", self)
 
-    def exp(self) -> "Quantity":
+    def exp(self) -> "Formula":
         """Return the exponential."""
         return _of("exp", self)
 
-    def log(self) -> "Quantity":
+    def log(self) -> "Formula":
         """Return the natural logarithm."""
         return _of("log", self)
 
-    def sin(self) -> "Quantity":
+    def sin(self) -> "Formula":
         """Return the sine."""
         return _of("sin", self)
 
-    def cos(self) -> "Quantity":
+    def cos(self) -> "Formula":
         """Return the cosine."""
         return _of("cos", self)
 
-    def tanh(self) -> "Quantity":
+    def tanh(self) -> "Formula":
         """Return the hyperbolic tangent."""
         return _of("tanh", self)
 
-    def __abs__(self) -> "Quantity":
+    def __abs__(self) -> "Formula":
         """Return the absolute value."""
         return _of("absolute", self)
 
@@ -139,44 +139,44 @@ class Quantity:
         return self.operation == "number" and self.value == value
 
 
-def number(value: float) -> Quantity:
+def number(value: float) -> Formula:
     """Return a plain number."""
-    return Quantity("number", value=float(value))
+    return Formula("number", value=float(value))
 
 
-def quantity(value: Number) -> Quantity:
-    """Return a number or a quantity as a quantity.
+def as_formula(value: Number) -> Formula:
+    """Return a number or a formula as a formula.
 
     Raises
     ------
     StructureError
         If it is neither.
     """
-    found = _quantity(value)
+    found = _formula(value)
     if found is None:
-        raise StructureError(f"equations: expected a quantity or a number, found {value!r}.")
+        raise StructureError(f"equations: expected a formula or a number, found {value!r}.")
     return found
 
 
-def _quantity(value: object) -> Quantity | None:
+def _formula(value: object) -> Formula | None:
     if isinstance(value, np.ndarray) and value.ndim == 0:
         # what NumPy makes of one formula
         value = value.item()
-    if isinstance(value, Quantity):
+    if isinstance(value, Formula):
         return value
     return number(float(value)) if isinstance(value, Real) else None
 
 
-def add(left: Quantity, right: Quantity) -> Quantity:
+def add(left: Formula, right: Formula) -> Formula:
     """Return a sum, without zeros."""
     if left.is_number and right.is_number:
         return number(left.value + right.value)
     if left.equals(0.0):
         return right
-    return left if right.equals(0.0) else Quantity("add", (left, right))
+    return left if right.equals(0.0) else Formula("add", (left, right))
 
 
-def multiply(left: Quantity, right: Quantity) -> Quantity:
+def multiply(left: Formula, right: Formula) -> Formula:
     """Return a product, without factors one and zero; a number stands first."""
     if right.is_number and not left.is_number:
         left, right = right, left
@@ -189,10 +189,10 @@ def multiply(left: Quantity, right: Quantity) -> Quantity:
             return right
         if right.operation == "multiply" and right.of[0].is_number:
             return multiply(number(left.value * right.of[0].value), right.of[1])
-    return Quantity("multiply", (left, right))
+    return Formula("multiply", (left, right))
 
 
-def divide(left: Quantity, right: Quantity) -> Quantity:
+def divide(left: Formula, right: Formula) -> Formula:
     """Return a quotient.
 
     Raises
@@ -201,42 +201,42 @@ def divide(left: Quantity, right: Quantity) -> Quantity:
         If the denominator is the number zero.
     """
     if right.equals(0.0):
-        raise StructureError("equations: division by a quantity that is zero; hold its parameters at other values.")
+        raise StructureError("equations: division by a formula that is zero; hold its parameters at other values.")
     if left.equals(0.0):
         return left
-    return multiply(number(1.0 / right.value), left) if right.is_number else Quantity("divide", (left, right))
+    return multiply(number(1.0 / right.value), left) if right.is_number else Formula("divide", (left, right))
 
 
-def power(base: Quantity, exponent: float) -> Quantity:
+def power(base: Formula, exponent: float) -> Formula:
     """Return a power with a fixed exponent."""
     if base.is_number:
         return number(base.value**exponent)
     if exponent in (0.0, 1.0):
         return base if exponent else number(1.0)
-    return multiply(base, base) if exponent == 2.0 else Quantity("power", (base,), value=exponent)
+    return multiply(base, base) if exponent == 2.0 else Formula("power", (base,), value=exponent)
 
 
-def minimum(left: Number, right: Number) -> Quantity:
+def minimum(left: Number, right: Number) -> Formula:
     """Return the smaller of two; where they are equal, the first."""
-    return Quantity("minimum", (quantity(left), quantity(right)))
+    return Formula("minimum", (as_formula(left), as_formula(right)))
 
 
-def maximum(left: Number, right: Number) -> Quantity:
+def maximum(left: Number, right: Number) -> Formula:
     """Return the larger of two; where they are equal, the first."""
-    return Quantity("maximum", (quantity(left), quantity(right)))
+    return Formula("maximum", (as_formula(left), as_formula(right)))
 
 
-def clip(value: Number, lowest: Number, highest: Number) -> Quantity:
+def clip(value: Number, lowest: Number, highest: Number) -> Formula:
     """Return a value held between two others."""
     return minimum(maximum(value, lowest), highest)
 
 
-def choose(left: Number, right: Number, at_most: Number, above: Number) -> Quantity:
+def choose(left: Number, right: Number, at_most: Number, above: Number) -> Formula:
     """Return ``at_most`` where ``left <= right``, otherwise ``above``."""
-    return Quantity("choose", (quantity(left), quantity(right), quantity(at_most), quantity(above)))
+    return Formula("choose", (as_formula(left), as_formula(right), as_formula(at_most), as_formula(above)))
 
 
-def table(value: Number, points: Sequence[tuple[float, float]]) -> Quantity:
+def table(value: Number, points: Sequence[tuple[float, float]]) -> Formula:
     """Return a piecewise linear function, constant beyond its ends.
 
     Parameters
@@ -252,8 +252,8 @@ def table(value: Number, points: Sequence[tuple[float, float]]) -> Quantity:
     corners = tuple((float(x), float(y)) for x, y in points)
     if len(corners) < 2 or any(b[0] <= a[0] for a, b in pairwise(corners)):
         raise StructureError(f"equations: expected a table of two or more ascending points, found {corners}.")
-    return Quantity("table", (quantity(value),), points=corners)
+    return Formula("table", (as_formula(value),), points=corners)
 
 
-def _of(operation: str, value: Quantity) -> Quantity:
-    return Quantity(operation, (value,))
+def _of(operation: str, value: Formula) -> Formula:
+    return Formula(operation, (value,))
