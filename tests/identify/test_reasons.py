@@ -8,7 +8,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import Prior, Settings, assess, identify, profile
-from shaftprint.identify.judgement._hanging import ALL, HANGING, ROLES, by_weight, hangs_on
+from shaftprint.identify.judgement._affected_numbers import ALL, HANGING, ROLES, by_weight, hangs_on
 from shaftprint.reasons import Reason, ReasonKind
 
 LINES_HZ = np.geomspace(0.0044, 3.4, 24)

@@ -7,8 +7,8 @@ import pytest
 
 from shaftprint.catalogue import limited
 from shaftprint.time_domain import Decimator, ExactDelays, NoiseModel, Whitening, output_error, record_from_arrays
-from shaftprint.time_domain._nonlinear_fragile import Fragile, fragile_stretches, without_fragile
 from shaftprint.time_domain._simulator import on_record
+from shaftprint.time_domain.nonlinear._jump_resonance import Fragile, fragile_stretches, without_fragile
 
 RATE = 20.0
 NOISE = 0.01

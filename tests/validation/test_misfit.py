@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import lfilter
 
 from shaftprint.validation._misfit import Compared, misfit_of
-from shaftprint.validation._quiet import NoisePieces
+from shaftprint.validation._noise_pieces import NoisePieces
 
 SAMPLES = 400
 TIME = np.arange(SAMPLES) / 20.0

@@ -10,7 +10,7 @@ cost                -       half the sum of squared weighted residuals; for maxi
 covariance          mixed   of the free parameters, each in its own unit
 =================== ======= ==========================================================================================
 
-Its folders, each of which imports only from those above it (``judgement`` and ``foresight`` nothing from each other):
+Its folders, each of which imports only from those above it (``judgement`` and ``prediction`` nothing from each other):
 
 =============== ======================================================================================================
 folder          what happens there
@@ -20,7 +20,7 @@ folder          what happens there
 ``fit``         the verb and what it found: values, covariance, test of fit, other optima, scans
 ``uncertainty`` how far a number can be trusted: profile intervals, repeats, bands, the budget
 ``judgement``   whether the numbers of a fit may be used, and the sentences that say why
-``foresight``   what a test can find before it is made
+``prediction``  what a test can find before it is made
 ``comparison``  which of several structures the data want
 =============== ======================================================================================================
 """
@@ -56,23 +56,6 @@ from shaftprint.identify.fit import (
     scan_response,
     with_sensor,
 )
-from shaftprint.identify.foresight import (
-    STAN_TUG_NOISE,
-    Accuracy,
-    Direction,
-    Group,
-    Identifiability,
-    NoiseLevels,
-    expected_response,
-    identifiability,
-    noise_levels,
-    planned_lines,
-    planned_response,
-    predict_accuracy,
-    predict_intervals,
-    predict_joint_accuracy,
-    stated_noise,
-)
 from shaftprint.identify.judgement import (
     Requirements,
     SearchReport,
@@ -104,6 +87,23 @@ from shaftprint.identify.likelihood import (
     load_factors,
     priors_from_vessel,
     with_load,
+)
+from shaftprint.identify.prediction import (
+    STAN_TUG_NOISE,
+    Accuracy,
+    Direction,
+    Group,
+    Identifiability,
+    NoiseLevels,
+    expected_response,
+    identifiability,
+    noise_levels,
+    planned_lines,
+    planned_response,
+    predict_accuracy,
+    predict_intervals,
+    predict_joint_accuracy,
+    stated_noise,
 )
 from shaftprint.identify.search import Draw, LatinHypercube, Settings, Stability, Uniform
 from shaftprint.identify.uncertainty import (

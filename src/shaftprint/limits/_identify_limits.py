@@ -19,8 +19,8 @@ from shaftprint.limits._numbers import (
     quantum_exclusion,
     quantum_number,
 )
-from shaftprint.limits._quantum import quantum_of
 from shaftprint.limits._search import GOVERNOR, Fitted, Scanned, Search, fitted, schwarz, with_messages
+from shaftprint.limits._set_point_quantum import quantum_of
 from shaftprint.limits._suspects import SUSPECTS, Kind
 from shaftprint.limits._uncertainty import spread_of
 from shaftprint.models import Structure

@@ -7,8 +7,8 @@ import numpy as np
 
 from shaftprint.limits._limit_fit import LimitNumber
 from shaftprint.limits._messages import Messages
-from shaftprint.limits._quantum import Quantum
 from shaftprint.limits._search import Fitted
+from shaftprint.limits._set_point_quantum import Quantum
 from shaftprint.limits._suspects import SUSPECTS, Kind, Suspect
 from shaftprint.limits._uncertainty import LevelInterval, Spread, profile_interval
 from shaftprint.normal import NORMAL_95

@@ -16,24 +16,32 @@ from shaftprint.time_domain._identify_chirp import identify_chirp, spectrum_term
 from shaftprint.time_domain._identify_in_time import TimeSettings, identify_in_time, output_error, with_noise_at
 from shaftprint.time_domain._known_start import KnownStart
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise, white_noise
-from shaftprint.time_domain._nonlinear_drive import Jump, jumps_in, with_jumps
-from shaftprint.time_domain._nonlinear_fit import NonlinearFit, identify_nonlinear
-from shaftprint.time_domain._nonlinear_fragile import Fragile
-from shaftprint.time_domain._nonlinear_numbers import LimitNumber, limit_numbers
-from shaftprint.time_domain._nonlinear_orders import without_orders
-from shaftprint.time_domain._nonlinear_settings import NonlinearSettings
-from shaftprint.time_domain._nonlinear_structure import LimitedModel, full_load_shape, structure_for
 from shaftprint.time_domain._output_error import OutputError
 from shaftprint.time_domain._record import Record, record_from_arrays
 from shaftprint.time_domain._record_fit import RecordFit
 from shaftprint.time_domain._record_repeats import RecordRepeats
-from shaftprint.time_domain._records_of import records_of
+from shaftprint.time_domain._signal_records import records_of
 from shaftprint.time_domain._simulator import ExactDelays, Simulator
 from shaftprint.time_domain._simulator import on_record as simulated_on
 from shaftprint.time_domain._spectrum import Spectrum, spectrum_of
 from shaftprint.time_domain._spectrum_term import FittedSpectrum, SpectrumRepeats, SpectrumTerm
 from shaftprint.time_domain._whiteness import whiteness_p_value
 from shaftprint.time_domain._whitening import Whitening
+from shaftprint.time_domain.nonlinear import (
+    Fragile,
+    Jump,
+    LimitedModel,
+    LimitNumber,
+    NonlinearFit,
+    NonlinearSettings,
+    full_load_shape,
+    identify_nonlinear,
+    jumps_in,
+    limit_numbers,
+    structure_for,
+    with_jumps,
+    without_orders,
+)
 
 __all__ = [
     "Decimator",

@@ -16,7 +16,7 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify import Estimate, LineTest, Repeats, Term, TermTest
 from shaftprint.models import Structure
 from shaftprint.time_domain._at_once import at_once
-from shaftprint.time_domain._flexible import FlexibleModel
+from shaftprint.time_domain._flexible_model import FlexibleModel
 from shaftprint.time_domain._initial_states import InitialStates, state_estimates
 from shaftprint.time_domain._input_response import excited
 from shaftprint.time_domain._moving_load import load_columns, with_square, without_square

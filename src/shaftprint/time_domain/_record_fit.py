@@ -8,7 +8,7 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_float
 from shaftprint.identify import Estimate, FittedTerm, TermCheck, fit_ceiling, fit_percent
 from shaftprint.models import Structure
-from shaftprint.time_domain._flexible import FlexibleModel
+from shaftprint.time_domain._flexible_model import FlexibleModel
 from shaftprint.time_domain._noise_model import NoiseModel
 from shaftprint.time_domain._record import Record
 

@@ -13,7 +13,6 @@ deviation           -       ``(x - x_0) / x_0`` from the working point
 """
 
 from shaftprint.validation._delay import RemainingDelay
-from shaftprint.validation._excerpts import Excerpt
 from shaftprint.validation._misfit import Misfit, Outcome
 from shaftprint.validation._model import Model, identified_model, model_of
 from shaftprint.validation._prediction import Predict, linear_prediction, simulated_prediction
@@ -22,6 +21,7 @@ from shaftprint.validation._step_comparison import StepNumber
 from shaftprint.validation._thesis_models import thesis_models
 from shaftprint.validation._validate import validate
 from shaftprint.validation._validation import Comparison, Traces, Validation
+from shaftprint.validation._validation_records import Excerpt
 
 __all__ = [
     "Comparison",

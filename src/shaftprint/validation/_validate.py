@@ -13,15 +13,15 @@ from shaftprint.identify import Identification
 from shaftprint.models import Structure
 from shaftprint.signals import Signals
 from shaftprint.validation._delay import LONGEST_S, RemainingDelay, remaining_delay
-from shaftprint.validation._excerpts import Excerpt, default_records, excerpts_of, whole_excerpts
 from shaftprint.validation._misfit import Compared, Outcome, misfit_of
 from shaftprint.validation._model import Model, identified_model, model_of
 from shaftprint.validation._prediction import Predict, linear_prediction
 from shaftprint.validation._run import Data, Run, run_model
+from shaftprint.validation._sentences import findings_of, outcome_sentences
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber, compare_steps
 from shaftprint.validation._validation import Comparison, Traces, Validation
-from shaftprint.validation._words import findings_of, outcome_sentences
+from shaftprint.validation._validation_records import Excerpt, default_records, excerpts_of, whole_excerpts
 
 
 @refusing_none(ValidationError)

@@ -3,7 +3,7 @@
 from shaftprint.identify.comparison._compare import compare_fits, compare_structures, expect_comparable
 from shaftprint.identify.comparison._comparison import Candidate, Comparison
 from shaftprint.identify.comparison._criteria import Criteria, criteria_of
-from shaftprint.identify.comparison._left_out import Foretold
+from shaftprint.identify.comparison._hold_out import Foretold
 from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio
 
 __all__ = [

@@ -8,11 +8,11 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.comparison._comparison import Candidate, Comparison
-from shaftprint.identify.comparison._comparison_words import comparison_words
 from shaftprint.identify.comparison._criteria import criteria_of
-from shaftprint.identify.comparison._left_out import Foretold, foretold
+from shaftprint.identify.comparison._hold_out import Foretold, foretold
 from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio, likelihood_ratio
 from shaftprint.identify.comparison._nesting import nesting
+from shaftprint.identify.comparison._sentences import comparison_words
 from shaftprint.identify.fit import Identification, identify
 from shaftprint.identify.search import Settings
 from shaftprint.models import Structure

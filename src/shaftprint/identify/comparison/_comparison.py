@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.identify.comparison._criteria import Criteria
-from shaftprint.identify.comparison._left_out import Foretold
+from shaftprint.identify.comparison._hold_out import Foretold
 from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio
 from shaftprint.identify.fit import Identification
 

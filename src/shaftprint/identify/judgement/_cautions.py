@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from shaftprint.identify.judgement._evidence import Evidence, gain_reserve, loop_delay_s
-from shaftprint.identify.judgement._good_lines import crossings_rad_s
+from shaftprint.identify.judgement._line_quality import crossings_rad_s
 from shaftprint.identify.judgement._phrases import listed, probability
 from shaftprint.identify.judgement._search_words import wrong_basin_words
 

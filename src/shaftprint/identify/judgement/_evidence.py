@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray
 from shaftprint.identify.fit import Identification
-from shaftprint.identify.judgement._good_lines import good_channels
+from shaftprint.identify.judgement._line_quality import good_channels
 from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.identify.judgement._search_report import SearchReport, report_search
 from shaftprint.identify.uncertainty import Profile

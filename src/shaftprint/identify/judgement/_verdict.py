@@ -20,10 +20,11 @@ from typing import TYPE_CHECKING, Literal
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Estimate, Identification
+from shaftprint.identify.judgement._affected_numbers import by_weight, clause_of
 from shaftprint.identify.judgement._cautions import cautions_of
-from shaftprint.identify.judgement._contradicting_data import contradicting_data
-from shaftprint.identify.judgement._contradictions import contradicted_priors
-from shaftprint.identify.judgement._doubts import (
+from shaftprint.identify.judgement._data_contradictions import contradicting_data
+from shaftprint.identify.judgement._evidence import Evidence
+from shaftprint.identify.judgement._fit_reasons import (
     better_when_unstable,
     gap_where_it_matters,
     not_explained,
@@ -31,13 +32,12 @@ from shaftprint.identify.judgement._doubts import (
     too_few_good_data,
     unstable,
 )
-from shaftprint.identify.judgement._evidence import Evidence
-from shaftprint.identify.judgement._hanging import by_weight, clause_of
-from shaftprint.identify.judgement._left_out_lines import not_predicted
+from shaftprint.identify.judgement._hold_out_lines import not_predicted
+from shaftprint.identify.judgement._number_precision import doubts_of
 from shaftprint.identify.judgement._phrases import listed, probability
+from shaftprint.identify.judgement._prior_contradictions import contradicted_priors
 from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.identify.judgement._suspects import Suspect, suspects_of
-from shaftprint.identify.judgement._trust import doubts_of
 from shaftprint.identify.uncertainty import Profile
 from shaftprint.identify.uncertainty import profile as find_profile
 from shaftprint.reasons import Reason, ReasonKind

@@ -4,11 +4,11 @@ from shaftprint.identify.likelihood._build_objective import Source, build_joint_
 from shaftprint.identify.likelihood._chi_square import chi_square_tail
 from shaftprint.identify.likelihood._experiment import Experiment, ResponseRepeats
 from shaftprint.identify.likelihood._fit_percent import fit_ceiling, fit_percent
+from shaftprint.identify.likelihood._fitted_response import Part, channel_names, channels_of
 from shaftprint.identify.likelihood._known import PRIOR_OF_G, priors_from_vessel
 from shaftprint.identify.likelihood._line_test import LineTest
 from shaftprint.identify.likelihood._load_factors import OVER_TORQUE, load_factors, with_load
 from shaftprint.identify.likelihood._objective import Objective, Redrawn
-from shaftprint.identify.likelihood._part import Part, channel_names, channels_of
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.likelihood._term import FittedTerm, Repeats, Term, TermTest
 from shaftprint.identify.likelihood._term_check import CheckKind, TermCheck

@@ -7,8 +7,8 @@ import numpy as np
 from shaftprint.arrays import BoolArray
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.likelihood._experiment import Experiment, elements_of
+from shaftprint.identify.likelihood._fitted_response import channels_of
 from shaftprint.identify.likelihood._load_factors import load_factors
-from shaftprint.identify.likelihood._part import channels_of
 from shaftprint.identify.likelihood._weighting import Weighting
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse

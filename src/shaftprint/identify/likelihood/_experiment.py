@@ -13,7 +13,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray, frozen_bool, frozen_float
 from shaftprint.identify.likelihood._fit_percent import fit_ceiling, fit_percent
-from shaftprint.identify.likelihood._part import Part, channel_names, channels_of
+from shaftprint.identify.likelihood._fitted_response import Part, channel_names, channels_of
 from shaftprint.identify.likelihood._tails import Tails, excess_freedom
 from shaftprint.identify.likelihood._term import Repeats, Term, TermTest
 from shaftprint.identify.likelihood._tested_lines import tested_lines

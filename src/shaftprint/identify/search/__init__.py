@@ -1,12 +1,12 @@
 """How the lowest cost is found: settings, starts, descent within bounds and beside the border of stability."""
 
-from shaftprint.identify.search._conditional import Conditional
+from shaftprint.identify.search._conditional_minimum import Conditional
 from shaftprint.identify.search._levenberg_marquardt import Descent, descend
+from shaftprint.identify.search._optimum_path import highest_between
 from shaftprint.identify.search._search import polish, search
 from shaftprint.identify.search._settings import Settings, Stability
 from shaftprint.identify.search._spread import spread
 from shaftprint.identify.search._starts import Draw, LatinHypercube, Uniform
-from shaftprint.identify.search._valley import highest_between
 
 __all__ = [
     "Conditional",

@@ -14,10 +14,10 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.likelihood import Objective
-from shaftprint.identify.search._border import beside_border
 from shaftprint.identify.search._levenberg_marquardt import Allowed, Descent, descend
 from shaftprint.identify.search._settings import Settings
 from shaftprint.identify.search._stability import stable_models
+from shaftprint.identify.search._stability_border import beside_border
 from shaftprint.identify.search._starts import LatinHypercube
 
 POLISH_TOLERANCE = 1e-14

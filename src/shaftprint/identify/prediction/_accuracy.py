@@ -14,8 +14,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Estimate, estimate_covariance, variance_along, with_sensor
-from shaftprint.identify.foresight._groups import Group, inseparable_groups
 from shaftprint.identify.likelihood import MaximumLikelihood, Objective, Prior, build_joint_objective
+from shaftprint.identify.prediction._inseparable_groups import Group, inseparable_groups
 from shaftprint.models import Combination, Structure
 from shaftprint.spectra import FrequencyResponse
 

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from shaftprint.errors import IdentificationError
-from shaftprint.time_domain._nonlinear_drive import DRIVE_RATE_HZ
-from shaftprint.time_domain._records_of import RATE_HZ
+from shaftprint.time_domain._signal_records import RATE_HZ
+from shaftprint.time_domain.nonlinear._drive import DRIVE_RATE_HZ
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -10,7 +10,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.identify import Draw, Identification, LatinHypercube, Prior, Settings, Term, identify_jointly
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
-from shaftprint.time_domain._nonlinear_settings import NonlinearSettings
+from shaftprint.time_domain.nonlinear._settings import NonlinearSettings
 
 Part: TypeAlias = tuple[Structure, FrequencyResponse] | Term
 

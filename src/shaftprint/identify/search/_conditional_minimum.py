@@ -12,7 +12,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.identify.likelihood import Objective
-from shaftprint.identify.search._affine import affine_parameters
+from shaftprint.identify.search._affine_parameters import affine_parameters
 from shaftprint.identify.search._bounded_least_squares import bounded_least_squares
 from shaftprint.identify.search._levenberg_marquardt import descend
 from shaftprint.identify.search._spread import spread

@@ -7,9 +7,9 @@ from itertools import combinations
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify.foresight._combinations import Slopes, lost_terms
-from shaftprint.identify.foresight._formulas import Term
-from shaftprint.identify.foresight._null_space import NullSpace, null_directions
+from shaftprint.identify.prediction._combinations import Slopes, lost_terms
+from shaftprint.identify.prediction._formulas import Term
+from shaftprint.identify.prediction._null_space import NullSpace, null_directions
 
 # A component below this share of the largest is none.
 TOLERANCE = 1e-6

@@ -7,8 +7,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.identify.fit import identify
-from shaftprint.identify.foresight._planned_response import expected_response
 from shaftprint.identify.likelihood import Prior
+from shaftprint.identify.prediction._planned_response import expected_response
 from shaftprint.identify.search import Draw, Settings
 from shaftprint.identify.uncertainty import Interval, profile
 from shaftprint.models import Structure

@@ -14,8 +14,8 @@ from itertools import combinations, product
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify.foresight._formulas import Formula, Term, Value, number, product_of, single, sum_of, unit_of
-from shaftprint.identify.foresight._null_space import NullSpace
+from shaftprint.identify.prediction._formulas import Formula, Term, Value, number, product_of, single, sum_of, unit_of
+from shaftprint.identify.prediction._null_space import NullSpace
 from shaftprint.models import Combination
 
 # A projection below this share of the gradient is none.

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.foresight._noise_levels import NoiseLevels
+from shaftprint.identify.prediction._noise_levels import NoiseLevels
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse, plan_windows
 

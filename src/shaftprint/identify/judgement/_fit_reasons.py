@@ -4,7 +4,7 @@ import numpy as np
 
 from shaftprint.identify.fit import WITHIN
 from shaftprint.identify.judgement._evidence import Evidence
-from shaftprint.identify.judgement._good_lines import gap_at_crossing
+from shaftprint.identify.judgement._line_quality import gap_at_crossing
 from shaftprint.identify.judgement._misfit import explained, misfit_words
 from shaftprint.identify.judgement._phrases import probability
 from shaftprint.identify.judgement._search_words import rival_words

@@ -26,7 +26,7 @@ from scipy.special import fdtrc
 
 from shaftprint.arrays import FloatArray
 from shaftprint.identify import CheckKind, TermCheck
-from shaftprint.time_domain._lacking import impulse_responses, small_and_large, through_poles, up_and_down
+from shaftprint.time_domain._flexible_directions import impulse_responses, small_and_large, through_poles, up_and_down
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise
 from shaftprint.time_domain._nuisance import orthonormal, without
 from shaftprint.time_domain._record import Record

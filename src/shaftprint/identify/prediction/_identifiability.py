@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.errors import StructureError
-from shaftprint.identify.foresight._combinations import found_combinations
-from shaftprint.identify.foresight._directions import Direction, directions_of
-from shaftprint.identify.foresight._null_space import null_space
+from shaftprint.identify.prediction._combinations import found_combinations
+from shaftprint.identify.prediction._lost_directions import Direction, directions_of
+from shaftprint.identify.prediction._null_space import null_space
 from shaftprint.models import Combination, Structure
 
 

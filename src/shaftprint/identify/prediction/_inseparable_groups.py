@@ -8,8 +8,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.identify.fit import Estimate
-from shaftprint.identify.foresight._formulas import Formula, Term, single, sum_of
 from shaftprint.identify.likelihood import Objective
+from shaftprint.identify.prediction._formulas import Formula, Term, single, sum_of
 from shaftprint.models import Combination, Delay, Parameter, SecondOrderLag
 
 # Two parameters cannot be separated when they correlate more than this ...

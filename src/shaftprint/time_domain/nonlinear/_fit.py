@@ -17,19 +17,19 @@ from shaftprint.models import Structure
 from shaftprint.signals import Signals
 from shaftprint.spectra import FrequencyResponse, estimate_response
 from shaftprint.time_domain._identify_in_time import TimeSettings, output_error, with_noise_at
-from shaftprint.time_domain._nonlinear_covariance import with_scatter_of_blocks
-from shaftprint.time_domain._nonlinear_drive import sharpened
-from shaftprint.time_domain._nonlinear_fragile import Fragile, fragile_stretches, without_fragile
-from shaftprint.time_domain._nonlinear_numbers import LimitNumber, limit_numbers
-from shaftprint.time_domain._nonlinear_orders import without_orders
-from shaftprint.time_domain._nonlinear_search import Part, best_ends, first_pass, free_values, from_these
-from shaftprint.time_domain._nonlinear_settings import NonlinearSettings
-from shaftprint.time_domain._nonlinear_structure import LimitedModel
-from shaftprint.time_domain._nonlinear_touched import touched
 from shaftprint.time_domain._output_error import OutputError
 from shaftprint.time_domain._record import Record
-from shaftprint.time_domain._records_of import records_of
+from shaftprint.time_domain._signal_records import records_of
 from shaftprint.time_domain._simulator import ExactDelays
+from shaftprint.time_domain.nonlinear._covariance import with_scatter_of_blocks
+from shaftprint.time_domain.nonlinear._drive import sharpened
+from shaftprint.time_domain.nonlinear._jump_resonance import Fragile, fragile_stretches, without_fragile
+from shaftprint.time_domain.nonlinear._limited_sines import touched
+from shaftprint.time_domain.nonlinear._numbers import LimitNumber, limit_numbers
+from shaftprint.time_domain.nonlinear._orders import without_orders
+from shaftprint.time_domain.nonlinear._search import Part, best_ends, first_pass, free_values, from_these
+from shaftprint.time_domain.nonlinear._settings import NonlinearSettings
+from shaftprint.time_domain.nonlinear._structure import LimitedModel
 from shaftprint.vessel import Vessel
 
 LINEAR = "GAUGE-CLOSED"

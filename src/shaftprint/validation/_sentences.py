@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.validation._misfit import Misfit
 from shaftprint.validation._model import Model
-from shaftprint.validation._quiet import QuietNoise
+from shaftprint.validation._noise_pieces import QuietNoise
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber
 from shaftprint.validation._validation import Comparison

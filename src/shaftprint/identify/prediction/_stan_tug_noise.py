@@ -1,6 +1,6 @@
 """Noise of the Stan Tug 1205 in the backward bollard push, for plans without a recording of the ship itself."""
 
-from shaftprint.identify.foresight._noise_levels import NoiseLevels, stated_noise
+from shaftprint.identify.prediction._noise_levels import NoiseLevels, stated_noise
 
 # Frequency [Hz], densities of n and M_s [1/Hz], their coherence: means over twelve simulated recordings of the thesis
 # campaign. The simulated tug's noise is set to the local signal-to-noise ratios of table 3.7 of the thesis, which these
