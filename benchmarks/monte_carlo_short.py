@@ -31,8 +31,13 @@ from shaftprint.identify import PRIOR_OF_G, Settings  # noqa: E402
 from shaftprint.models import margins  # noqa: E402
 from shaftprint.normal import NORMAL_95  # noqa: E402
 from shaftprint.survey import Trial, fingerprint_of, fit, load_trial, measure, priors_of  # noqa: E402
-from shaftprint.tug import Noise, Truth, Tug, sail  # noqa: E402
-from shaftprint.tug._truth import normalised_truth  # noqa: E402
+from shaftprint.tug import (  # noqa: E402
+    Noise,
+    Truth,
+    Tug,
+    normalised_truth,
+    sail,
+)
 from shaftprint.vessel import Vessel  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "monte-carlo.md"

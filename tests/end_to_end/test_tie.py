@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.tug import Tug, linearised_response
-from shaftprint.tug._truth import normalised_truth
+from shaftprint.tug import Tug, linearised_response, normalised_truth
 
 OMEGA_RAD_S = np.geomspace(0.1, 10.0, 200)
 GEAR_RATIO = 3.82

@@ -157,9 +157,7 @@ from numba.core import caching
 for locator in (caching.InTreeCacheLocator, caching.UserWideCacheLocator):
     locator.from_function = classmethod(lambda cls, function, file: None)
 import numpy as np
-from shaftprint.signals import _speed, _edges, _decimate, _outliers
-from shaftprint.tug import _plant, _pulses, _gauge, _disturbance, _demand
-from shaftprint.time_domain import _whitening
+import shaftprint.signals, shaftprint.time_domain, shaftprint.tug
 kernels = [value for module in list(sys.modules.values()) if getattr(module, "__name__", "").startswith("shaftprint.")
            for value in vars(module).values() if isinstance(value, numba.core.registry.CPUDispatcher)]
 print(len(kernels), sum(kernel._cache.cache_path is not None for kernel in kernels))

@@ -10,8 +10,8 @@ import pytest
 
 from shaftprint.recording import read_recording
 from shaftprint.tug import Noise, Tug, sail, simulate_signals
-from shaftprint.tug._control_unit import ControlUnit
-from shaftprint.tug._voyage import Leg
+from shaftprint.tug.plant import Leg
+from shaftprint.tug.sensors import ControlUnit
 from shaftprint.vessel import RackSensor, Vessel
 
 Make = Callable[..., Any]

@@ -6,15 +6,20 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numba.core.dispatcher import Dispatcher
 
 from shaftprint.errors import SettingsError
 from shaftprint.tug import Tug, linearised_response, simulate_signals
-from shaftprint.tug import _plant as plant_module
-from shaftprint.tug._disturbance import Disturbance
-from shaftprint.tug._physics import build_plant, equilibrium
-from shaftprint.tug._plant import RACK, SLIPSTREAM, SPEED, derivatives
-from shaftprint.tug._voyage import Leg, voyage
+from shaftprint.tug.plant import (
+    RACK,
+    SLIPSTREAM,
+    SPEED,
+    Disturbance,
+    Leg,
+    build_plant,
+    derivatives,
+    equilibrium,
+    voyage,
+)
 from shaftprint.vessel import Vessel
 
 Make = Callable[..., Any]
@@ -146,21 +151,6 @@ def test_legs_do_not_depend_on_their_length(vessel: Vessel, ask: Make) -> None:
     whole, cut = (one_leg(tug, vessel, ask(4.0, staircases=[levels]), 4.0, chunk) for chunk in (8000, 777))
     for name in Leg.__slots__:
         assert np.array_equal(getattr(whole, name), getattr(cut, name))
-
-
-def test_compiled_and_plain_kernels_agree(
-    vessel: Vessel, ask: Make, quiet_tug: Tug, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    levels = {"name": "St", "levels_v": [-2.8, -7.2, -0.9], "dwell_s": 0.4, "start_s": 0.0}
-    tug = replace(quiet_tug, **WITH_INFLOW)
-    compiled = one_leg(tug, vessel, ask(2.0, staircases=[levels]), 1.4)
-    for name, value in vars(plant_module).items():
-        if isinstance(value, Dispatcher):
-            monkeypatch.setattr(plant_module, name, value.py_func)
-    monkeypatch.setattr("shaftprint.tug._voyage.advance", plant_module.advance)
-    plain = one_leg(tug, vessel, ask(2.0, staircases=[levels]), 1.4)
-    for name in ("shaft_torque_nm", "rack_given"):
-        assert getattr(compiled, name) == pytest.approx(getattr(plain, name), rel=1e-9, abs=1e-12)
 
 
 def test_response_of_another_name_is_refused(vessel: Vessel) -> None:

@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 
 from shaftprint.recording import read_recording
-from shaftprint.tug import Noise, Sailing, Tug, sail
-from shaftprint.tug._log import SpeedLog
-from shaftprint.tug._truth import normalised_truth
-from shaftprint.tug._voyage import Leg
+from shaftprint.tug import Noise, Sailing, Tug, normalised_truth, sail
+from shaftprint.tug.plant import Leg
+from shaftprint.tug.sensors import SpeedLog
 from shaftprint.vessel import ShipSpeedSensor, Vessel
 
 RATE_HZ = 2000.0

@@ -9,8 +9,7 @@ import pytest
 
 from shaftprint.campaign import Sine, load_campaign
 from shaftprint.tug import Noise, Tug, simulate_signals
-from shaftprint.tug import _disturbance as disturbance_module
-from shaftprint.tug._disturbance import Disturbance
+from shaftprint.tug.plant import Disturbance
 from shaftprint.vessel import Vessel
 
 RATE_HZ = 20.0
@@ -71,15 +70,6 @@ def test_disturbances_do_not_depend_on_chunks() -> None:
     first, second = cut.next(123), cut.next(777)
     for one, a, b in zip(whole, first, second, strict=True):
         assert np.array_equal(one, np.concatenate((a[:-1], b)))
-
-
-def test_compiled_and_plain_colouring_agree(monkeypatch: pytest.MonkeyPatch) -> None:
-    compiled = Disturbance(Noise(), 5e-4, np.random.default_rng(1)).next(50)
-    monkeypatch.setattr(disturbance_module, "_swing", disturbance_module._swing.py_func)
-    monkeypatch.setattr(disturbance_module, "_colour", disturbance_module._colour.py_func)
-    plain = Disturbance(Noise(), 5e-4, np.random.default_rng(1)).next(50)
-    for one, other in zip(compiled, plain, strict=True):
-        assert one == pytest.approx(other, rel=1e-9)
 
 
 def test_disturbances_reach_speed_and_torque_together(vessel: Vessel, ask: Callable[..., Any]) -> None:

@@ -5,8 +5,7 @@ import pytest
 
 from shaftprint.errors import SettingsError
 from shaftprint.tug import Tug
-from shaftprint.tug._physics import build_plant, equilibrium, shaft_time_constant_s, working_point
-from shaftprint.tug._plant import RACK, derivatives
+from shaftprint.tug.plant import RACK, build_plant, derivatives, equilibrium, shaft_time_constant_s, working_point
 from shaftprint.vessel import Vessel
 
 BRAKE_TORQUE_NM = 465.54  # 1725 / (3.82 * 0.97)

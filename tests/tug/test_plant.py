@@ -6,15 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numba.core.dispatcher import Dispatcher
 
 from shaftprint.errors import SettingsError
 from shaftprint.tug import Tug, linearised_response, simulate_signals
-from shaftprint.tug import _plant as plant_module
-from shaftprint.tug._disturbance import Disturbance
-from shaftprint.tug._physics import build_plant
-from shaftprint.tug._plant import interpolation_weights
-from shaftprint.tug._voyage import Leg, voyage
+from shaftprint.tug.plant import Disturbance, Leg, build_plant, interpolation_weights, torque_limits, voyage
 from shaftprint.vessel import Vessel
 
 Make = Callable[..., Any]
@@ -171,26 +166,9 @@ def test_legs_do_not_depend_on_their_length(vessel: Vessel, ask: Make) -> None:
         assert np.array_equal(getattr(whole, name), getattr(cut, name))
 
 
-def test_compiled_and_plain_kernels_agree(
-    vessel: Vessel, ask: Make, quiet_tug: Tug, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    levels = {"name": "St", "levels_v": [-2.8, -7.2, -0.9], "dwell_s": 0.4, "start_s": 0.0}
-    for change in ({}, {"governor_delay_s": 0.0}):
-        tug = replace(quiet_tug, **change)
-        compiled = one_leg(tug, vessel, ask(2.0, staircases=[levels]), 1.4)
-        with monkeypatch.context() as patch:
-            for name, value in vars(plant_module).items():
-                if isinstance(value, Dispatcher):
-                    patch.setattr(plant_module, name, value.py_func)
-            patch.setattr("shaftprint.tug._voyage.advance", plant_module.advance)
-            plain = one_leg(tug, vessel, ask(2.0, staircases=[levels]), 1.4)
-        assert compiled.shaft_torque_nm == pytest.approx(plain.shaft_torque_nm, rel=1e-9)
-        assert np.array_equal(compiled.limited, plain.limited)
-
-
 def test_full_load_curve_is_flat_beyond_its_ends(vessel: Vessel) -> None:
     plant = build_plant(Tug(), vessel)
-    limits = plant_module._torque_limits.py_func
+    limits = torque_limits.py_func
     assert limits(1.0, plant)[1] == 604.0
     assert limits(31.0, plant)[1] == 1172.0
     assert limits(981.0 / 60.0, plant)[1] == pytest.approx(1277.0)

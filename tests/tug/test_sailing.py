@@ -11,10 +11,8 @@ import pytest
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SettingsError
 from shaftprint.propeller import ka4_70_in_19a, sail_steadily
-from shaftprint.tug import Noise, Sailing, Tug, linearised_response, sail, simulate_signals
-from shaftprint.tug._physics import build_plant, equilibrium, working_point
-from shaftprint.tug._plant import RACK, SPEED, WAY, derivatives
-from shaftprint.tug._truth import normalised_truth
+from shaftprint.tug import Noise, Sailing, Tug, linearised_response, normalised_truth, sail, simulate_signals
+from shaftprint.tug.plant import RACK, SPEED, WAY, build_plant, derivatives, equilibrium, working_point
 from shaftprint.vessel import Vessel
 
 Make = Callable[..., Any]

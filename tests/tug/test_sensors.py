@@ -7,14 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numba.core.dispatcher import Dispatcher
 
 from shaftprint.recording import read_recording
 from shaftprint.tug import Noise, Truth, Tug, sail, simulate_signals
-from shaftprint.tug import _gauge as gauge_module
-from shaftprint.tug import _pulses as pulses_module
-from shaftprint.tug._faults import draw_dropouts, draw_times
-from shaftprint.tug._gauge import shaft_orders
+from shaftprint.tug.sensors import draw_dropouts, draw_times, shaft_orders
 from shaftprint.vessel import Vessel
 
 Make = Callable[..., Any]
@@ -244,26 +240,3 @@ def test_faults_are_drawn_within_the_recording() -> None:
     dropouts = draw_dropouts(crowded, 50.0, RATE_HZ, rng)
     assert np.all(dropouts.start[1:] >= dropouts.stop[:-1])
     assert np.all(dropouts.stop > dropouts.start)
-
-
-def test_compiled_and_plain_kernels_agree(
-    vessel: Vessel, ask: Make, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    busy = replace(
-        Noise(),
-        missing_pulse_interval_s=0.3,
-        doubled_pulse_interval_s=0.3,
-        torque_spike_interval_s=0.2,
-        torque_dropout_interval_s=0.3,
-    )
-    monkeypatch.setattr("shaftprint.tug._faults._FIRST_S", 0.1)
-    compiled, truth = recorded(vessel, ask(1.0), Tug(noise=busy), tmp_path / "compiled.nc")
-    for module in (pulses_module, gauge_module):
-        for name, value in vars(module).items():
-            if isinstance(value, Dispatcher):
-                monkeypatch.setattr(module, name, value.py_func)
-    plain, same_truth = recorded(vessel, ask(1.0), Tug(noise=busy), tmp_path / "plain.nc")
-    assert len(truth.faults) == len(same_truth.faults) > 8
-    for name, values in compiled.items():
-        # one count, where a value lies on the edge between two
-        assert values == pytest.approx(plain[name], abs=0.006)

@@ -17,15 +17,15 @@ inertias                     kg m2      referred to the propeller shaft, split a
 ============================ ========== ==========================================================================
 """
 
-from shaftprint.tug._faults import Fault
 from shaftprint.tug._ideal import IdealSignals, simulate_signals
 from shaftprint.tug._linearise import linearised_response
 from shaftprint.tug._noise import Noise
 from shaftprint.tug._sail import sail
 from shaftprint.tug._sail_as import sail_as
 from shaftprint.tug._sailing import Sailing
-from shaftprint.tug._truth import StripTruth, Truth, read_truth, truth_path
+from shaftprint.tug._truth import StripTruth, Truth, normalised_truth, read_truth, truth_path
 from shaftprint.tug._tug import Tug
+from shaftprint.tug.sensors import Fault
 
 __all__ = [
     "Fault",
@@ -36,6 +36,7 @@ __all__ = [
     "Truth",
     "Tug",
     "linearised_response",
+    "normalised_truth",
     "read_truth",
     "sail",
     "sail_as",

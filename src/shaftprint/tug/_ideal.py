@@ -7,10 +7,8 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
 from shaftprint.campaign import Campaign
-from shaftprint.tug._demand import demanded_speed, helm_voltage
-from shaftprint.tug._disturbance import Disturbance
 from shaftprint.tug._tug import Tug
-from shaftprint.tug._voyage import Leg, voyage
+from shaftprint.tug.plant import Disturbance, Leg, demanded_speed, helm_voltage, voyage
 from shaftprint.vessel import Vessel
 
 _CHUNK = 1 << 17

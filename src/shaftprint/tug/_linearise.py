@@ -7,9 +7,22 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import SettingsError
-from shaftprint.tug._physics import build_plant, equilibrium, working_point, working_point_rack
-from shaftprint.tug._plant import ANGLE, INTEGRAL, RACK, RACK_RATE, SLIPSTREAM, SPEED, WAY, Plant, derivatives
 from shaftprint.tug._tug import Tug
+from shaftprint.tug.plant import (
+    ANGLE,
+    INTEGRAL,
+    RACK,
+    RACK_RATE,
+    SLIPSTREAM,
+    SPEED,
+    WAY,
+    Plant,
+    build_plant,
+    derivatives,
+    equilibrium,
+    working_point,
+    working_point_rack,
+)
 from shaftprint.vessel import Vessel
 
 # Places in the vector that is perturbed: seven states, the demand in the ECU and the rack given a delay ago.

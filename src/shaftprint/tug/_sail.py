@@ -13,19 +13,30 @@ from shaftprint.campaign import Campaign
 from shaftprint.errors import RecordingError, SettingsError
 from shaftprint.files import written_whole
 from shaftprint.recording import RecordingWriter
-from shaftprint.tug._control_unit import LOWEST_PERCENT, ControlUnit
-from shaftprint.tug._demand import Demand
-from shaftprint.tug._disturbance import Disturbance
-from shaftprint.tug._faults import Fault
-from shaftprint.tug._gauge import TorqueGauge
-from shaftprint.tug._helm import Helm
-from shaftprint.tug._log import SpeedLog
-from shaftprint.tug._physics import build_plant, equilibrium, steady_load_nm
-from shaftprint.tug._plant import RACK, SPEED, WAY
-from shaftprint.tug._pulses import VOLT_PER_COUNT, PickUp
 from shaftprint.tug._truth import StripTruth, Truth, rack_latency_s, tell_truth, truth_path, truth_text
 from shaftprint.tug._tug import Tug
-from shaftprint.tug._voyage import Leg, voyage
+from shaftprint.tug.plant import (
+    RACK,
+    SPEED,
+    WAY,
+    Demand,
+    Disturbance,
+    Leg,
+    build_plant,
+    equilibrium,
+    steady_load_nm,
+    voyage,
+)
+from shaftprint.tug.sensors import (
+    LOWEST_PERCENT,
+    VOLT_PER_COUNT,
+    ControlUnit,
+    Fault,
+    Helm,
+    PickUp,
+    SpeedLog,
+    TorqueGauge,
+)
 from shaftprint.vessel import Vessel
 
 RATE_HZ = 2000.0

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from shaftprint.campaign import Campaign
 from shaftprint.errors import RecordingError
-from shaftprint.tug._faults import Fault
-from shaftprint.tug._physics import build_plant, shaft_time_constant_s, working_point, working_point_rack
 from shaftprint.tug._sailing import sailing_truth, way_of
 from shaftprint.tug._tug import Tug
+from shaftprint.tug.plant import build_plant, shaft_time_constant_s, working_point, working_point_rack
+from shaftprint.tug.sensors import Fault
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import RackSensor, Vessel
 

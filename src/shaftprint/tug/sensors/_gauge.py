@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.kernels import compiled
-from shaftprint.tug._faults import Fault, draw_dropouts, draw_spikes
 from shaftprint.tug._noise import Noise
-from shaftprint.tug._voyage import Leg
+from shaftprint.tug.plant import Leg
+from shaftprint.tug.sensors._faults import Fault, draw_dropouts, draw_spikes
 from shaftprint.vessel import Vessel
 
 LOW_PASS_HZ = 500.0

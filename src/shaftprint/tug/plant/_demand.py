@@ -6,8 +6,8 @@ from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign, setpoint
 from shaftprint.errors import SettingsError
 from shaftprint.kernels import compiled
-from shaftprint.tug._physics import working_point
 from shaftprint.tug._tug import Tug
+from shaftprint.tug.plant._physics import working_point
 from shaftprint.units import rev_s_from_rpm, rpm_from_rev_s
 from shaftprint.vessel import Vessel
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SettingsError
-from shaftprint.tug._plant import INTEGRAL, RACK, SLIPSTREAM, SPEED, STATES, WAY, Plant
 from shaftprint.tug._sailing import AT_THE_QUAY, steady_ship_speed_m_s, steady_torque_nm, way_of
 from shaftprint.tug._tug import Tug
+from shaftprint.tug.plant._plant import INTEGRAL, RACK, SLIPSTREAM, SPEED, STATES, WAY, Plant
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel
 

@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
-from shaftprint.tug._faults import Fault
-from shaftprint.tug._voyage import Leg
+from shaftprint.tug.plant import Leg
+from shaftprint.tug.sensors._faults import Fault
 from shaftprint.vessel import ShipSpeedSensor
 
 

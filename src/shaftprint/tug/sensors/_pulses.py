@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.kernels import compiled
-from shaftprint.tug._faults import Fault, draw_times
 from shaftprint.tug._tug import Tug
-from shaftprint.tug._voyage import Leg
+from shaftprint.tug.plant import Leg
+from shaftprint.tug.sensors._faults import Fault, draw_times
 from shaftprint.vessel import SpeedSensor, Vessel
 
 VOLT_PER_COUNT = 10.24 / 32768.0

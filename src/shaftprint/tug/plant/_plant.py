@@ -89,7 +89,7 @@ class Plant(NamedTuple):
 
 
 @compiled(inline="always")
-def _torque_limits(speed, plant):  # type: ignore[no-untyped-def]
+def torque_limits(speed, plant):  # type: ignore[no-untyped-def]
     """Return the lowest and highest brake torque [N m] at an engine speed [rev/s]."""
     speeds = plant.limit_speed_rev_s
     torques = plant.limit_torque_nm
@@ -144,7 +144,7 @@ def governor_rack(speed_s, integral, demand, plant, air=1.0):  # type: ignore[no
     """
     speed = plant.gear_ratio * speed_s
     wanted = plant.proportional_s * _felt(demand - speed, plant) + integral
-    lowest, highest = _torque_limits(speed, plant)
+    lowest, highest = torque_limits(speed, plant)
     highest *= air
     rest = plant.speed_slope_nm_s * speed + plant.rack_offset_nm
     given = min(max(wanted, (lowest - rest) / plant.rack_slope_nm), (highest - rest) / plant.rack_slope_nm)
@@ -162,7 +162,7 @@ def derivatives(  # type: ignore[no-untyped-def]
     if plant.delay_s == 0.0:
         rack_delayed = given
     asked = plant.speed_slope_nm_s * speed + plant.rack_slope_nm * rack + plant.rack_offset_nm
-    lowest, highest = _torque_limits(speed, plant)
+    lowest, highest = torque_limits(speed, plant)
     highest *= air
     brake = min(max(asked, lowest), highest)
     load = plant.propeller_nm_s2 * speed_s * abs(speed_s)
@@ -331,7 +331,7 @@ def advance(  # type: ignore[no-untyped-def]
         traces.limited[j] = rates[8] or given != rates[5]
         traces.ship_speed_m_s[j] = x[6]
         if plant.air_share < 1.0:
-            _, full_load = _torque_limits(plant.gear_ratio * x[0], plant)
+            _, full_load = torque_limits(plant.gear_ratio * x[0], plant)
             carried.boost[0] += step_s / plant.turbocharger_lag_s * (rates[7] / full_load - carried.boost[0])
         x = _runge_kutta(step_s, x, rates, asked, past, propeller, engine, plant, air)
         k += 1

@@ -4,11 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.campaign import Campaign
-from shaftprint.tug._demand import helm_voltage
-from shaftprint.tug._faults import Fault, draw_spikes
-from shaftprint.tug._pulses import VOLT_PER_COUNT
 from shaftprint.tug._tug import Tug
-from shaftprint.tug._voyage import Leg
+from shaftprint.tug.plant import Leg, helm_voltage
+from shaftprint.tug.sensors._faults import Fault, draw_spikes
+from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT
 from shaftprint.vessel import Vessel
 
 _RANGE_V = 10.0

@@ -8,11 +8,11 @@ import numpy as np
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SettingsError
-from shaftprint.tug._demand import Demand
-from shaftprint.tug._disturbance import Disturbance
-from shaftprint.tug._physics import build_plant, equilibrium, steady_boost
-from shaftprint.tug._plant import RACK, Carried, Delay, Traces, advance, interpolation_weights
 from shaftprint.tug._tug import Tug
+from shaftprint.tug.plant._demand import Demand
+from shaftprint.tug.plant._disturbance import Disturbance
+from shaftprint.tug.plant._physics import build_plant, equilibrium, steady_boost
+from shaftprint.tug.plant._plant import RACK, Carried, Delay, Traces, advance, interpolation_weights
 from shaftprint.vessel import Vessel
 
 

@@ -1,0 +1,57 @@
+"""The propulsion line of the simulated ship: its constants, its state, its rates, and how it is stepped in time.
+
+``shaftprint.tug.sensors`` measures it. Quantities and signs are those of ``shaftprint.tug``.
+"""
+
+from shaftprint.tug.plant._demand import Demand, demanded_speed, helm_voltage
+from shaftprint.tug.plant._disturbance import Disturbance
+from shaftprint.tug.plant._physics import (
+    build_plant,
+    equilibrium,
+    shaft_time_constant_s,
+    steady_load_nm,
+    working_point,
+    working_point_rack,
+)
+from shaftprint.tug.plant._plant import (
+    ANGLE,
+    INTEGRAL,
+    RACK,
+    RACK_RATE,
+    SLIPSTREAM,
+    SPEED,
+    WAY,
+    Plant,
+    derivatives,
+    governor_rack,
+    interpolation_weights,
+    torque_limits,
+)
+from shaftprint.tug.plant._voyage import Leg, voyage
+
+__all__ = [
+    "ANGLE",
+    "INTEGRAL",
+    "RACK",
+    "RACK_RATE",
+    "SLIPSTREAM",
+    "SPEED",
+    "WAY",
+    "Demand",
+    "Disturbance",
+    "Leg",
+    "Plant",
+    "build_plant",
+    "demanded_speed",
+    "derivatives",
+    "equilibrium",
+    "governor_rack",
+    "helm_voltage",
+    "interpolation_weights",
+    "shaft_time_constant_s",
+    "steady_load_nm",
+    "torque_limits",
+    "voyage",
+    "working_point",
+    "working_point_rack",
+]

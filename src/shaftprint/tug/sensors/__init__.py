@@ -1,0 +1,25 @@
+"""The logger's view of the simulated ship: one stream of raw counts a sensor, with its faults.
+
+Each takes the legs of a voyage of ``shaftprint.tug.plant`` in order and gives the counts of its channel.
+"""
+
+from shaftprint.tug.sensors._control_unit import LOWEST_PERCENT, ControlUnit
+from shaftprint.tug.sensors._faults import Fault, draw_dropouts, draw_times
+from shaftprint.tug.sensors._gauge import TorqueGauge, shaft_orders
+from shaftprint.tug.sensors._helm import Helm
+from shaftprint.tug.sensors._log import SpeedLog
+from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT, PickUp
+
+__all__ = [
+    "LOWEST_PERCENT",
+    "VOLT_PER_COUNT",
+    "ControlUnit",
+    "Fault",
+    "Helm",
+    "PickUp",
+    "SpeedLog",
+    "TorqueGauge",
+    "draw_dropouts",
+    "draw_times",
+    "shaft_orders",
+]
