@@ -1,26 +1,11 @@
 """``shaftprint export fmu`` writes a fingerprint's model as an FMU."""
 
-import importlib
 import zipfile
 from xml.etree import ElementTree as ET
 
-import click
 import pytest
 
-from shaftprint.cli._export import FORMATS
 from shaftprint.fingerprint import read_fingerprint
-
-
-@pytest.mark.parametrize("name", FORMATS)
-def test_table_of_formats_agrees_with_each_format(run, name):
-    command = importlib.import_module(f"shaftprint.cli._export_{name.replace('-', '_')}").command
-    assert isinstance(command, click.Command)
-    assert command.name == name
-    assert command.get_short_help_str(limit=200) == FORMATS[name]
-    assert f"{name} " in run("export", "--help").output
-    for parameter in command.params:
-        if isinstance(parameter, click.Option):
-            assert parameter.help, f"{name} {parameter.name}"
 
 
 def description(path):

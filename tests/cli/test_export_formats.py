@@ -1,7 +1,6 @@
 """``shaftprint export`` in its formats, from the fingerprint of the short demo."""
 
 import csv
-import importlib
 import json
 from xml.etree import ElementTree as ET
 
@@ -11,17 +10,20 @@ import pytest
 from scipy.io import loadmat
 
 from shaftprint.catalogue import structure
-from shaftprint.cli._export import FORMATS
+from shaftprint.cli import shaftprint
 from shaftprint.fingerprint import read_fingerprint
 
+EXPORT = shaftprint.get_command(None, "export")
 
-@pytest.mark.parametrize("name", FORMATS)
+
+@pytest.mark.parametrize("name", EXPORT.helps)
 def test_table_of_formats_agrees_with_each_format(run, name):
-    command = importlib.import_module(f"shaftprint.cli._export_{name}").command
+    command = EXPORT.get_command(None, name)
     assert isinstance(command, click.Command)
     assert command.name == name
-    assert command.get_short_help_str(limit=200) == FORMATS[name]
+    assert command.get_short_help_str(limit=200) == EXPORT.helps[name]
     assert run("export", name, "--help").exit_code == 0
+    assert f"{name} " in run("export", "--help").output
     for parameter in command.params:
         if isinstance(parameter, click.Option):
             assert parameter.help, f"{name} {parameter.name}"

@@ -1,6 +1,5 @@
 """What is said without a command being called, and what that must not load."""
 
-import importlib
 import os
 import subprocess
 import sys
@@ -10,13 +9,12 @@ import pytest
 
 from shaftprint import __version__
 from shaftprint.cli import shaftprint
-from shaftprint.cli._command_group import COMMANDS
 
 HEAVY = ("numpy", "scipy", "numba", "h5py", "pydantic", "matplotlib", "rich", "jinja2", "tomlkit")
 
 
 def test_commands_are_those_that_were_asked_for():
-    assert set(COMMANDS) == {
+    assert set(shaftprint.helps) == {
         "demo",
         "sail",
         "inspect",
@@ -40,19 +38,19 @@ def test_commands_are_those_that_were_asked_for():
     }
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", shaftprint.helps)
 def test_table_of_commands_agrees_with_each_command(name):
-    command = importlib.import_module(f"shaftprint.cli._{name.replace('-', '_')}").command
+    command = shaftprint.get_command(None, name)
     assert isinstance(command, click.Command)
     assert command.name == name
-    assert command.get_short_help_str(limit=200) == COMMANDS[name]
+    assert command.get_short_help_str(limit=200) == shaftprint.helps[name]
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", shaftprint.helps)
 def test_every_option_has_a_help(run, name):
     result = run(name, "--help")
     assert result.exit_code == 0
-    command = importlib.import_module(f"shaftprint.cli._{name.replace('-', '_')}").command
+    command = shaftprint.get_command(None, name)
     for parameter in command.params:
         if isinstance(parameter, click.Option):
             assert parameter.help, f"{name} {parameter.name}"
@@ -62,7 +60,7 @@ def test_help_lists_every_command_with_its_help(run):
     result = run("--help")
     assert result.exit_code == 0
     text = " ".join(result.output.split())
-    for name, words in COMMANDS.items():
+    for name, words in shaftprint.helps.items():
         assert f"{name} {words}" in text
 
 
@@ -100,7 +98,7 @@ def test_group_knows_no_command_that_is_not_listed():
 def test_matrices_get_one_thread_unless_the_user_says_more(said, expected):
     program = (
         "import os, sys\n"
-        "import shaftprint.cli._main as program\n"
+        "from shaftprint import cli as program\n"
         "assert 'numpy' not in sys.modules\n"
         "sys.argv = ['shaftprint', '--version']\n"
         "try:\n    program.main()\n"

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.cli._command_group import COMMANDS
+from shaftprint.cli import shaftprint
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -72,7 +72,7 @@ def test_example_of_ones_own_structure_on_the_command_line(run, beside_demo):
 def test_commands_in_the_readme_exist():
     named = set(re.findall(r"^(?:\S*[\\/])?shaftprint ([a-z]+)", README, flags=re.MULTILINE))
     assert named
-    assert named <= set(COMMANDS)
+    assert named <= set(shaftprint.helps)
 
 
 @pytest.mark.parametrize("page", ["README.md", "CONTRIBUTING.md"])

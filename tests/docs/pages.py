@@ -7,7 +7,7 @@ import shutil
 from functools import cache
 from pathlib import Path
 
-from shaftprint.cli._command_group import COMMANDS
+from shaftprint.cli import shaftprint
 
 ROOT = Path(__file__).parents[2]
 PAGES = {
@@ -80,7 +80,7 @@ def commands_of(page):
 
 def is_command(words):
     """Say whether the arguments begin with a command of the program."""
-    return bool(words) and words[0] in COMMANDS
+    return bool(words) and words[0] in shaftprint.helps
 
 
 # A page's command is run as it stands but for this. The campaign of three hours takes too long: the short one is

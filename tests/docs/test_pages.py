@@ -1,6 +1,5 @@
 """What the pages show: their Python runs, their commands exist with the options that they are given, links lead on."""
 
-import importlib
 import re
 from pathlib import Path
 
@@ -22,6 +21,8 @@ from pages import (
     shell_lines,
     shown,
 )
+
+from shaftprint.cli import shaftprint
 
 OTHER_TESTS = [path for path in (ROOT / "tests").rglob("test_*.py") if path.parent != Path(__file__).parent]
 OTHER_TEXT = "\n".join(path.read_text(encoding="utf-8") for path in OTHER_TESTS)
@@ -101,7 +102,7 @@ def expect_parsed(page, words, *, whole=True):
     """Expect a command that exists and takes the arguments; ``whole`` ones are all that it needs."""
     name, *rest = words
     assert is_command(words), f"{page}: {words}"
-    command = importlib.import_module(f"shaftprint.cli._{name.replace('-', '_')}").command
+    command = shaftprint.get_command(None, name)
     try:
         context = command.make_context(name, list(rest))
         if isinstance(command, click.Group):

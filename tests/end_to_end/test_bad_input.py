@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from shaftprint.cli._main import shaftprint
+from shaftprint.cli import shaftprint
 from shaftprint.errors import ShaftprintError
 
 SHORT = (files("shaftprint.campaign") / "shipped" / "short.toml").read_text(encoding="utf-8")

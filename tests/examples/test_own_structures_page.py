@@ -8,7 +8,6 @@ import pytest
 from click.testing import CliRunner
 
 from shaftprint.cli import shaftprint
-from shaftprint.cli._command_group import COMMANDS
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "own-structures.md").read_text(encoding="utf-8")
@@ -83,7 +82,7 @@ def test_links_and_commands_of_the_page_exist():
         name for kind, text in fenced if not kind for name in re.findall(r"^shaftprint ([a-z]+)", text, re.MULTILINE)
     }
     assert named
-    assert named <= set(COMMANDS)
+    assert named <= set(shaftprint.helps)
 
 
 def test_the_fan_from_a_file_on_the_command_line(tmp_path, monkeypatch):

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from shaftprint.cli import shaftprint
-from shaftprint.cli._command_group import COMMANDS
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "simulation.md").read_text(encoding="utf-8")
@@ -78,7 +77,7 @@ def test_links_commands_and_options_of_the_page_exist():
     fenced = re.findall(r"^```(\w*)\n(.*?)^```", PAGE, flags=re.MULTILINE | re.DOTALL)
     shown = "".join(text for kind, text in fenced if not kind)
     named = set(re.findall(r"^shaftprint ([a-z]+)", shown, flags=re.MULTILINE))
-    assert named == {"simulate"} <= set(COMMANDS)
+    assert named == {"simulate"} <= set(shaftprint.helps)
     command = shaftprint.get_command(None, "simulate")
     known = {option for parameter in command.params for option in parameter.opts}
     assert set(re.findall(r"(?<= )--?[a-z-]+", shown)) <= known

@@ -5,8 +5,7 @@ import pytest
 
 from shaftprint.catalogue import STRUCTURES, limited, structure
 from shaftprint.errors import ExportError
-from shaftprint.export._delay_model import delay_model
-from shaftprint.export._past_rates import without_past_rates
+from shaftprint.export.linear import delay_model, without_past_rates
 from shaftprint.models import Parameter, Structure, TorqueBalance, postorder, program_of
 
 OMEGA = np.geomspace(0.05, 50.0, 61)

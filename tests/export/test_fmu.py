@@ -9,7 +9,7 @@ import pytest
 
 from shaftprint.catalogue import limited, structure
 from shaftprint.errors import ExportError
-from shaftprint.export import PLATFORMS, write_fmu
+from shaftprint.export import PLATFORMS, host_platform, write_fmu
 from shaftprint.models import Parameter
 from shaftprint.simulation import simulate
 
@@ -235,8 +235,6 @@ def test_time_constants_that_no_step_can_follow(exported, tmp_path):
 
 def test_samples_scatter_as_the_covariance_says(exported, fmu, slave, tmp_path):
     """The standard deviation over samples is that of exact derivatives and the covariance."""
-    from shaftprint.export._fmu_build import host_platform
-
     fmu(*GAUGE)  # skips where there is no compiler
     chosen, values = GAUGE
     uncertain, count = ("K_p", "K_i", "t_d"), 400

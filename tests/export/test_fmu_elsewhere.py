@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import limited, structure
-from shaftprint.export import PLATFORMS
+from shaftprint.export import PLATFORMS, host_platform
 
 SPEED_RPM, TORQUE_NM = 1183.8, 1740.0
 SET_POINT = "engine_speed_set_point"
@@ -45,8 +45,6 @@ def set_point():
 
 def runner(system):
     """Return the words before a program of a system, none for the computer's own."""
-    from shaftprint.export._fmu_build import host_platform
-
     if system == host_platform():
         return []
     if system not in RUNNERS:
@@ -145,8 +143,6 @@ def run(driver, surroundings, tmp_path_factory):
 @pytest.fixture(scope="module")
 def reference(fmu, run):
     """What the computer's own compiler made of a model gives here, each once."""
-    from shaftprint.export._fmu_build import host_platform
-
     known = {}
 
     def found(model, version):

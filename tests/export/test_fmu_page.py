@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from shaftprint.cli._export_fmu import command
+from shaftprint.cli import shaftprint
 from shaftprint.export import PLATFORMS
 
 PAGE = Path(__file__).parents[2].joinpath("docs", "export.md").read_text(encoding="utf-8")
@@ -24,6 +24,7 @@ def test_python_of_the_page_runs(capsys):
     "line", re.findall(r"^shaftprint export fmu (.*)$", PAGE.replace("\\\n", ""), flags=re.MULTILINE)
 )
 def test_commands_of_the_page_are_understood(line):
+    command = shaftprint.get_command(None, "export").get_command(None, "fmu")
     context = command.make_context("fmu", shlex.split(line))
     assert str(context.params["fingerprint"]) == "result"
 

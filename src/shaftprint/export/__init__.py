@@ -12,14 +12,14 @@ others              -       deviations, as in ``shaftprint.models``
 from shaftprint.export._control import ControlModel, to_control
 from shaftprint.export._csv import WrittenTables, write_csv
 from shaftprint.export._fmu import WrittenFmu, write_fmu
-from shaftprint.export._fmu_build import PLATFORMS
+from shaftprint.export._fmu_build import PLATFORMS, host_platform
 from shaftprint.export._json import write_json
 from shaftprint.export._matlab import WrittenMatlab, write_matlab
 from shaftprint.export._model import ExportedModel, exported_model
-from shaftprint.export._modelica import WrittenModelica, write_modelica
 from shaftprint.export._osp import write_osp
 from shaftprint.export._ssp import write_ssv
 from shaftprint.export._xarray import to_xarray
+from shaftprint.export.modelica import WrittenModelica, write_modelica
 
 __all__ = [
     "PLATFORMS",
@@ -30,6 +30,7 @@ __all__ = [
     "WrittenModelica",
     "WrittenTables",
     "exported_model",
+    "host_platform",
     "to_control",
     "to_xarray",
     "write_csv",

@@ -8,9 +8,9 @@ from scipy.linalg import block_diag
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import ExportError
-from shaftprint.export._delay_model import DelayModel, delay_model
 from shaftprint.export._library import library
 from shaftprint.export._model import ExportedModel, exported_model
+from shaftprint.export.linear import DelayModel, delay_model
 from shaftprint.fingerprint import Fingerprint
 
 if TYPE_CHECKING:

@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_float
 from shaftprint.errors import ExportError
-from shaftprint.export._linear_table import LinearTable, linear_table
 from shaftprint.export._model import ExportedModel
-from shaftprint.export._past_rates import without_past_rates
+from shaftprint.export.linear._linear_table import LinearTable, linear_table
+from shaftprint.export.linear._past_rates import without_past_rates
 from shaftprint.models import Leaves, Program, evaluate, program_of
 
 

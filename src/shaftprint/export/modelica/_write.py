@@ -12,8 +12,8 @@ from shaftprint.export._c_text import identifier
 from shaftprint.export._described import described_parameters
 from shaftprint.export._fmu_signals import ENGINE_SPEED, FmuSignal, fmu_signal
 from shaftprint.export._model import ExportedModel
-from shaftprint.export._modelica_equations import ModelicaEquations, Names, modelica_equations
-from shaftprint.export._modelica_text import RESERVED, modelica_name, modelica_number
+from shaftprint.export.modelica._equations import ModelicaEquations, Names, modelica_equations
+from shaftprint.export.modelica._expressions import RESERVED, modelica_name, modelica_number
 from shaftprint.files import written_whole
 
 UNITS: Final = {"-": "1", "rpm": "rev/min", "N m": "N.m", "kg m2": "kg.m2"}

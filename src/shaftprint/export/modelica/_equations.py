@@ -9,8 +9,8 @@ from shaftprint.escape import modelica_string
 from shaftprint.export._c_text import identifier
 from shaftprint.export._fmu_program import fmu_program
 from shaftprint.export._model import ExportedModel
-from shaftprint.export._modelica_text import ModelicaText, modelica_name, modelica_number
-from shaftprint.export._past_rates import without_past_rates
+from shaftprint.export.linear import without_past_rates
+from shaftprint.export.modelica._expressions import ModelicaText, modelica_name, modelica_number
 from shaftprint.models import Program, evaluate, postorder
 
 # A delay that depends on signals needs a bound for the memory that it takes.
