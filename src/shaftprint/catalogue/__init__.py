@@ -6,20 +6,24 @@ The language in which they are written, blocks and structures, is ``models``; sy
 from shaftprint.catalogue._known_propeller import KnownPropeller, with_known_propeller
 from shaftprint.catalogue._limited import limited
 from shaftprint.catalogue._limited_governor import AHEAD_S, limited_governor
+from shaftprint.catalogue._roles import ROLES, ShipRole
 from shaftprint.catalogue._sailing_at_large import pitch_actuator, sailing_at_large
 from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
-from shaftprint.catalogue._shipped import shipped_structure
+from shaftprint.catalogue._shipped import expect_roles, shipped_structure
 from shaftprint.catalogue._thesis import STRUCTURES, structure
 from shaftprint.catalogue._two_masses import two_mass_line
 
 __all__ = [
     "AHEAD_S",
+    "ROLES",
     "STRUCTURES",
     "KnownPropeller",
     "PitchSpeed",
     "SailingShaft",
     "SailingTorque",
+    "ShipRole",
     "ShipSpeed",
+    "expect_roles",
     "limited",
     "limited_governor",
     "pitch_actuator",

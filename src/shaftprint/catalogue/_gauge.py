@@ -8,6 +8,7 @@ Two free bodies cut at the gauge::
 With ``tau_up = 0`` and no latencies they are those of the thesis.
 """
 
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.models import (
     Combination,
     Delay,
@@ -28,28 +29,66 @@ from shaftprint.models import (
     TorqueBalance,
 )
 
-T_D = Parameter("t_d", "s", 0.0, 0.5, 0.1, "delay inside the loop: governor, injection, combustion")
-TAU_DN = Parameter("tau_dn", "s", 0.0, 2.0, 0.3, "inertia time downstream of the torque gauge")
-TAU_UP = Parameter("tau_up", "s", 0.0, 5.0, 1.0, "inertia time upstream of the torque gauge")
-K_Q = Parameter("k_q", "-", 1.0, 3.0, 2.0, "slope of the propeller torque; 2 if gauge and inflow are right")
-G = Parameter("g", "-", -3.0, 0.9, 0.0, "slope of the engine torque with speed")
-V_ONE = Parameter("v", "-", 0.0, 5.0, 1.0, "slope of the engine torque with fuel rack", held=True)
-GAUGE_K_P = Parameter("K_p", "-", 0.0, 20.0, 5.0, "proportional gain of the governor")
-GAUGE_K_I = Parameter("K_i", "1/s", 0.0, 20.0, 4.0, "integral gain of the governor")
-GAUGE_OMEGA_N = Parameter("omega_n", "rad/s", 3.0, 60.0, 10.0, "natural frequency of the actuation lag")
-GAUGE_ZETA = Parameter("zeta", "-", 0.1, 4.0, 0.5, "damping ratio of the actuation lag")
-T_SP = Parameter("t_sp", "s", 0.0, 0.5, 0.05, "latency of the set point, outside the loop")
-C_SET = Parameter("c_set", "-", 0.95, 1.05, 1.0, "scale error of the measured set point")
-T_GAUGE = Parameter("t_gauge", "s", -0.02, 0.02, 0.0, "error of the known latency of the torque telemetry")
-T_AVERAGE = Parameter("T_average", "s", 0.0, 1.0, 0.0, "window of the pick-up's mean", held=True)
-T_HOLD = Parameter("T_hold", "s", 0.0, 1.0, 0.0, "time for which a pick-up value is held", held=True)
-T_PICKUP = Parameter("t_pickup", "s", 0.0, 1.0, 0.0, "delay of the pick-up's value", held=True)
+T_D = Parameter(
+    "t_d", "s", 0.0, 0.5, 0.1, "delay inside the loop: governor, injection, combustion", role=ShipRole.LOOP_DELAY
+)
+TAU_DN = Parameter(
+    "tau_dn", "s", 0.0, 2.0, 0.3, "inertia time downstream of the torque gauge", role=ShipRole.INERTIA_DOWNSTREAM
+)
+TAU_UP = Parameter(
+    "tau_up", "s", 0.0, 5.0, 1.0, "inertia time upstream of the torque gauge", role=ShipRole.INERTIA_UPSTREAM
+)
+K_Q = Parameter(
+    "k_q",
+    "-",
+    1.0,
+    3.0,
+    2.0,
+    "slope of the propeller torque; 2 if gauge and inflow are right",
+    role=ShipRole.LOAD_SLOPE,
+)
+G = Parameter("g", "-", -3.0, 0.9, 0.0, "slope of the engine torque with speed", role=ShipRole.ENGINE_SPEED_SLOPE)
+V_ONE = Parameter(
+    "v", "-", 0.0, 5.0, 1.0, "slope of the engine torque with fuel rack", held=True, role=ShipRole.ENGINE_RACK_SLOPE
+)
+GAUGE_K_P = Parameter("K_p", "-", 0.0, 20.0, 5.0, "proportional gain of the governor", role=ShipRole.PROPORTIONAL_GAIN)
+GAUGE_K_I = Parameter("K_i", "1/s", 0.0, 20.0, 4.0, "integral gain of the governor", role=ShipRole.INTEGRAL_GAIN)
+GAUGE_OMEGA_N = Parameter(
+    "omega_n", "rad/s", 3.0, 60.0, 10.0, "natural frequency of the actuation lag", role=ShipRole.ACTUATOR
+)
+GAUGE_ZETA = Parameter("zeta", "-", 0.1, 4.0, 0.5, "damping ratio of the actuation lag", role=ShipRole.ACTUATOR)
+T_SP = Parameter(
+    "t_sp", "s", 0.0, 0.5, 0.05, "latency of the set point, outside the loop", role=ShipRole.SET_POINT_LATENCY
+)
+C_SET = Parameter("c_set", "-", 0.95, 1.05, 1.0, "scale error of the measured set point", role=ShipRole.SET_POINT_SCALE)
+T_GAUGE = Parameter(
+    "t_gauge", "s", -0.02, 0.02, 0.0, "error of the known latency of the torque telemetry", role=ShipRole.TORQUE_LATENCY
+)
+T_AVERAGE = Parameter(
+    "T_average", "s", 0.0, 1.0, 0.0, "window of the pick-up's mean", held=True, role=ShipRole.PICK_UP_AVERAGE
+)
+T_HOLD = Parameter(
+    "T_hold", "s", 0.0, 1.0, 0.0, "time for which a pick-up value is held", held=True, role=ShipRole.PICK_UP_HOLD
+)
+T_PICKUP = Parameter(
+    "t_pickup", "s", 0.0, 1.0, 0.0, "delay of the pick-up's value", held=True, role=ShipRole.PICK_UP_DELAY
+)
 
 T_FILTER = Parameter("T_filter", "s", 0.0, 0.5, 0.0, "time constant of the torque telemetry's low-pass", held=True)
-V = Parameter("v", "-", 0.0, 5.0, 1.0, "slope of the engine torque with fuel rack")
-T_RACK = Parameter("t_rack", "s", -0.1, 0.1, 0.0, "error of the known latency of the rack channel")
+V = Parameter("v", "-", 0.0, 5.0, 1.0, "slope of the engine torque with fuel rack", role=ShipRole.ENGINE_RACK_SLOPE)
+T_RACK = Parameter(
+    "t_rack", "s", -0.1, 0.1, 0.0, "error of the known latency of the rack channel", role=ShipRole.RACK_LATENCY
+)
 TAU_W = Parameter("tau_w", "s", 0.0, 1.0, 0.0, "inertia time of the entrained water, where tau_dn is dry", held=True)
-KAPPA = Parameter("kappa", "-", 0.0, 3.0, 1.0, "slope of the propeller torque with the speed of the slipstream")
+KAPPA = Parameter(
+    "kappa",
+    "-",
+    0.0,
+    3.0,
+    1.0,
+    "slope of the propeller torque with the speed of the slipstream",
+    role=ShipRole.INFLOW_SLOPE,
+)
 TAU_I = Parameter("tau_i", "s", 0.02, 1.0, 0.12, "time in which the slipstream follows the propeller")
 
 
@@ -200,23 +239,32 @@ def _measured(shaft: Expression, load: Expression, v: Parameter) -> tuple[Expres
 def gauge_combinations() -> tuple[Combination, ...]:
     """Return what a test of the closed loop finds better than the parameters it is made of."""
     return (
-        Combination(name="t_d + t_sp", unit="s", of=lambda p: p["t_d"] + p["t_sp"], meaning="total delay"),
+        Combination(
+            name="t_d + t_sp",
+            unit="s",
+            of=lambda p: p["t_d"] + p["t_sp"],
+            meaning="total delay",
+            role=ShipRole.TOTAL_DELAY,
+        ),
         Combination(
             name="K_p / K_i",
             unit="s",
             of=lambda p: p["K_p"] / p["K_i"],
             meaning="reset time of the governor",
+            role=ShipRole.LOOP_GAIN,
         ),
         Combination(
             name="v K_i / (k_q - g)",
             unit="1/s",
             of=lambda p: p["v"] * p["K_i"] / (p["k_q"] - p["g"]),
             meaning="integral gain over the slope of load and engine",
+            role=ShipRole.LOOP_GAIN,
         ),
         Combination(
             name="v K_p / (tau_up + tau_dn)",
             unit="1/s",
             of=lambda p: p["v"] * p["K_p"] / (p["tau_up"] + p["tau_dn"]),
             meaning="loop gain at high frequency",
+            role=ShipRole.LOOP_GAIN,
         ),
     )

@@ -3,9 +3,13 @@
 The gauge-aware closed loop with limits is named by these: ``GAUGE-QUADRATIC``, ``GAUGE-TORQUE-RATE``.
 """
 
+from functools import cache
+
 from shaftprint.catalogue._limited import limited
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._thesis import STRUCTURES, structure
-from shaftprint.models import Structure
+from shaftprint.errors import StructureError
+from shaftprint.models import Role, Structure
 
 _PREFIX, _NONE = "GAUGE-", "QUADRATIC"
 _LIMITS = ("TORQUE", "RATE", "DEADBAND", "SMOKE")
@@ -31,3 +35,36 @@ def _limited_structure(name: str) -> Structure | None:
     if limits == [_NONE]:
         return limited()
     return limited(*(limit.lower() for limit in limits)) if set(limits) <= set(_LIMITS) else None
+
+
+def expect_roles(structure: Structure) -> None:
+    """Check that every parameter with name and unit of one of the ship says by its role whether it is that.
+
+    Raises
+    ------
+    StructureError
+        If one has no role: nothing that the ship is known by would reach it.
+    """
+    for parameter in structure.parameters:
+        role = _shipped_roles().get((parameter.name, parameter.unit))
+        if role is not None and parameter.role is None:
+            raise StructureError(
+                f"structure {structure.name}: parameter {parameter.name} has name and unit of a ship's {role.name}, but "
+                "no role, so that the vessel file would say nothing of it; give it one, such as "
+                f"role=ShipRole.{_attribute(role)}, or another name."
+            )
+
+
+@cache
+def _shipped_roles() -> dict[tuple[str, str], Role]:
+    """Return the roles of the catalogue's parameters by name and unit."""
+    return {
+        (parameter.name, parameter.unit): parameter.role
+        for build in STRUCTURES.values()
+        for parameter in build().parameters
+        if parameter.role is not None
+    }
+
+
+def _attribute(role: Role) -> str:
+    return next(name for name, known in vars(ShipRole).items() if known is role)

@@ -16,6 +16,7 @@ from shaftprint.catalogue._gauge import (
     gauge_open,
     governor,
 )
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._sailing import free_closed, free_core, free_log, free_pitch, free_ship
 from shaftprint.errors import StructureError
 from shaftprint.models import (
@@ -35,23 +36,33 @@ from shaftprint.models import (
     TorqueBalance,
 )
 
-TAU_N = Parameter("tau_n", "s", 0.0, 5.0, 0.39, "inertia time of the line, 2 pi I n_s0 / M_s0")
-K_P = Parameter("K_p", "-", 0.0, 10.0, 3.0, "proportional gain of the governor")
-K_I = Parameter("K_i", "1/s", 0.0, 10.0, 4.0, "integral gain of the governor")
-OMEGA_N = Parameter("omega_n", "rad/s", 7.0, 13.0, 10.0, "natural frequency of the actuation lag")
-ZETA = Parameter("zeta", "-", 0.3, 4.0, 0.5, "damping ratio of the actuation lag")
-K_Q_TWO = Parameter("k_q", "-", 1.0, 3.0, 2.0, "slope of the propeller torque, d ln M / d ln n", held=True)
+TAU_N = Parameter("tau_n", "s", 0.0, 5.0, 0.39, "inertia time of the line, 2 pi I n_s0 / M_s0", role=ShipRole.INERTIA)
+K_P = Parameter("K_p", "-", 0.0, 10.0, 3.0, "proportional gain of the governor", role=ShipRole.PROPORTIONAL_GAIN)
+K_I = Parameter("K_i", "1/s", 0.0, 10.0, 4.0, "integral gain of the governor", role=ShipRole.INTEGRAL_GAIN)
+OMEGA_N = Parameter(
+    "omega_n", "rad/s", 7.0, 13.0, 10.0, "natural frequency of the actuation lag", role=ShipRole.ACTUATOR
+)
+ZETA = Parameter("zeta", "-", 0.3, 4.0, 0.5, "damping ratio of the actuation lag", role=ShipRole.ACTUATOR)
+K_Q_TWO = Parameter(
+    "k_q", "-", 1.0, 3.0, 2.0, "slope of the propeller torque, d ln M / d ln n", held=True, role=ShipRole.LOAD_SLOPE
+)
 
-PID_K_P = Parameter("K_p", "-", 0.0, 15.0, 10.0, "proportional gain of the governor")
-PID_K_I = Parameter("K_i", "1/s", 0.0, 10.0, 3.0, "integral gain of the governor")
-PID_K_D = Parameter("K_d", "s", 0.0, 5.0, 1.0, "derivative gain of the governor")
+PID_K_P = Parameter("K_p", "-", 0.0, 15.0, 10.0, "proportional gain of the governor", role=ShipRole.PROPORTIONAL_GAIN)
+PID_K_I = Parameter("K_i", "1/s", 0.0, 10.0, 3.0, "integral gain of the governor", role=ShipRole.INTEGRAL_GAIN)
+PID_K_D = Parameter("K_d", "s", 0.0, 5.0, 1.0, "derivative gain of the governor", role=ShipRole.DERIVATIVE_GAIN)
 PID_T_F = Parameter("T_f", "s", 0.0, 0.05, 0.01, "filter time of the derivative")
 
-FIRST_TAU_N = Parameter("tau_n", "s", 0.0, 5.0, 1.2, "inertia time of the line, 2 pi I n_s0 / M_s0")
-FIRST_K_P = Parameter("K_p", "-", 0.0, 15.0, 10.0, "proportional gain of the governor")
-FIRST_K_I = Parameter("K_i", "1/s", 0.0, 10.0, 3.0, "integral gain of the governor")
-FIRST_G = Parameter("g", "-", -3.0, 0.0, -0.5, "slope of the engine torque with speed")
-FIRST_V = Parameter("v", "-", 0.0, 5.0, 1.0, "slope of the engine torque with fuel rack")
+FIRST_TAU_N = Parameter(
+    "tau_n", "s", 0.0, 5.0, 1.2, "inertia time of the line, 2 pi I n_s0 / M_s0", role=ShipRole.INERTIA
+)
+FIRST_K_P = Parameter("K_p", "-", 0.0, 15.0, 10.0, "proportional gain of the governor", role=ShipRole.PROPORTIONAL_GAIN)
+FIRST_K_I = Parameter("K_i", "1/s", 0.0, 10.0, 3.0, "integral gain of the governor", role=ShipRole.INTEGRAL_GAIN)
+FIRST_G = Parameter(
+    "g", "-", -3.0, 0.0, -0.5, "slope of the engine torque with speed", role=ShipRole.ENGINE_SPEED_SLOPE
+)
+FIRST_V = Parameter(
+    "v", "-", 0.0, 5.0, 1.0, "slope of the engine torque with fuel rack", role=ShipRole.ENGINE_RACK_SLOPE
+)
 
 
 def _core(tau: Parameter = TAU_N) -> Expression:
@@ -150,18 +161,26 @@ def _five_parameters(name: str, title: str, *, integrated_error: bool) -> Struct
         input="n_set",
         outputs=outputs,
         combinations=(
-            Combination(name="K_p / K_i", unit="s", of=lambda p: p["K_p"] / p["K_i"], meaning="reset time"),
+            Combination(
+                name="K_p / K_i",
+                unit="s",
+                of=lambda p: p["K_p"] / p["K_i"],
+                meaning="reset time",
+                role=ShipRole.LOOP_GAIN,
+            ),
             Combination(
                 name="v K_p",
                 unit="-",
                 of=lambda p: p["v"] * p["K_p"],
                 meaning="gain of governor and engine",
+                role=ShipRole.PROPORTIONAL_GAIN,
             ),
             Combination(
                 name="v K_i",
                 unit="1/s",
                 of=lambda p: p["v"] * p["K_i"],
                 meaning="integral gain of both",
+                role=ShipRole.INTEGRAL_GAIN,
             ),
         ),
     )

@@ -55,6 +55,7 @@ from shaftprint.models._nyquist import is_stable, loop_gain, stable_rows, unstab
 from shaftprint.models._own_blocks import FunctionBlock, RationalBlock
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._program import Computed, Late, Program, program_of
+from shaftprint.models._role import Basis, PhysicalForm, Role
 from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
 from shaftprint.models._small_signal import SmallSignal
 from shaftprint.models._step_response import step_response
@@ -63,6 +64,7 @@ from shaftprint.models._tabulated import Tabulated
 from shaftprint.models._tie import Tie
 
 __all__ = [
+    "Basis",
     "Block",
     "Combination",
     "Computed",
@@ -90,9 +92,11 @@ __all__ = [
     "PIGovernor",
     "PadeDelay",
     "Parameter",
+    "PhysicalForm",
     "Port",
     "Program",
     "RationalBlock",
+    "Role",
     "SecondOrderLag",
     "Sensitivity",
     "Shaft",

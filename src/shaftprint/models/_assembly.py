@@ -10,6 +10,7 @@ from shaftprint.models._block import Block
 from shaftprint.models._combination import Combination
 from shaftprint.models._expression import Expression, Sensitivity
 from shaftprint.models._parameter import Parameter
+from shaftprint.models._role import Role
 from shaftprint.models._tie import Tie
 
 
@@ -145,3 +146,20 @@ def outermost_loop(structure: str, nodes: Iterable[Expression]) -> Expression | 
             "object for all outputs."
         )
     return outermost[0].loop if outermost else None
+
+
+def expect_single_roles(structure: str, roles: Mapping[str, Role]) -> None:
+    """Check that no two parameters have one role, but for those that several may have.
+
+    Raises
+    ------
+    StructureError
+        If two have.
+    """
+    first: dict[Role, str] = {}
+    for name, role in roles.items():
+        if role.is_single and first.setdefault(role, name) != name:
+            raise StructureError(
+                f"structure {structure}: expected one parameter of the role {role.name}, found {first[role]} and "
+                f"{name}; give one of them another role, or none."
+            )

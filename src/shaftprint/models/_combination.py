@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.models._role import Role
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -20,6 +21,8 @@ class Combination:
     """Its value from the parameters' values."""
     meaning: str
     """What it stands for, in a few words."""
+    role: Role | None = None
+    """What it is in its line, where that is the role of a parameter or of a combination."""
 
     def is_defined_by(self, values: Mapping[str, FloatArray]) -> bool:
         """Return whether the values name every parameter that the combination is made of."""

@@ -1,8 +1,9 @@
-"""A parameter of a structure: its name, unit, bounds and meaning."""
+"""A parameter of a structure: its name, unit, bounds, meaning and role."""
 
 from dataclasses import dataclass, replace
 
 from shaftprint.errors import StructureError
+from shaftprint.models._role import Role
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +24,8 @@ class Parameter:
     """What it stands for, in a few words."""
     held: bool = False
     """Whether it keeps its value during a fit."""
+    role: Role | None = None
+    """What it stands for in its line, such as ``catalogue.ShipRole.INERTIA_DOWNSTREAM``; None for any other number."""
 
     def __post_init__(self) -> None:
         """Check the bounds.
@@ -37,6 +40,10 @@ class Parameter:
             raise StructureError(
                 f"parameter {self.name}: expected name, unit, lower bound, upper bound, value and meaning in this "
                 f"order, found {self.unit!r}, {', '.join(map(repr, numbers))}, {self.meaning!r} after the name."
+            )
+        if self.role is not None and not isinstance(self.role, Role):
+            raise StructureError(
+                f"parameter {self.name}: expected a role such as ShipRole.LOOP_DELAY, found {self.role!r}."
             )
         if not self.lower < self.upper:
             raise StructureError(

@@ -12,6 +12,7 @@ from shaftprint.models._assembly import (
     block_parameters,
     channel_paths,
     expect_combinations,
+    expect_single_roles,
     expect_tie,
     outermost_loop,
 )
@@ -19,6 +20,7 @@ from shaftprint.models._block import Block
 from shaftprint.models._combination import Combination
 from shaftprint.models._expression import Expression, Walk
 from shaftprint.models._parameter import Parameter
+from shaftprint.models._role import Role
 from shaftprint.models._tie import Tie, through_ties
 
 
@@ -50,6 +52,8 @@ class Structure:
     """Expression of each channel."""
     blocks: tuple[Block, ...] = field(init=False)
     """All blocks, each once."""
+    roles: Mapping[str, Role] = field(init=False)
+    """Role of each parameter that has one, by name, tied ones included."""
     loop: Expression | None = field(init=False)
     """Loop gain of the outermost feedback in this structure; None where there is none."""
 
@@ -59,8 +63,9 @@ class Structure:
         Raises
         ------
         StructureError
-            If two blocks describe a parameter of one name differently, an input has no expression, a tie or a
-            combination names an unknown parameter, or there is more than one outermost feedback loop.
+            If two blocks describe a parameter of one name differently, two parameters have one role, an input has no
+            expression, a tie or a combination names an unknown parameter, or there is more than one outermost feedback
+            loop.
         """
         object.__setattr__(self, "inputs", self.inputs or (self.input,))
         paths = channel_paths(self.name, self.outputs, self.inputs)
@@ -76,6 +81,9 @@ class Structure:
         for tie in self.ties:
             self._expect_names(tie.arguments)
         expect_combinations(self.name, self.combinations, self.named(self.vector({})))
+        known = (*found.values(), *self.parameters)
+        object.__setattr__(self, "roles", {item.name: item.role for item in known if item.role is not None})
+        expect_single_roles(self.name, self.roles)
         object.__setattr__(self, "loop", outermost_loop(self.name, nodes))
 
     def _nodes(self) -> list[Expression]:
@@ -94,6 +102,10 @@ class Structure:
     def free(self) -> tuple[Parameter, ...]:
         """Parameters that a fit may change."""
         return tuple(parameter for parameter in self.parameters if not parameter.held)
+
+    def named_as(self, role: Role) -> str | None:
+        """Return the name of the parameter of a role, tied or not; None where there is none."""
+        return next((name for name, own in self.roles.items() if own == role), None)
 
     def path(self, output: str) -> Expression:
         """Return the response of an output to the first input, as an expression.
@@ -154,7 +166,7 @@ class Structure:
             raise StructureError(f"structure {self.name} has a parameter {', '.join(known)} already; use another name.")
         before = self.parameters[self.names.index(name)]
         tie = Tie.from_formula(name, formula)
-        followed = Combination(name=name, unit=before.unit, of=tie.value, meaning=before.meaning)
+        followed = Combination(name=name, unit=before.unit, of=tie.value, meaning=before.meaning, role=before.role)
         return replace(
             self,
             parameters=(*(p for p in self.parameters if p.name != name), *new),

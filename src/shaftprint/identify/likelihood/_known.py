@@ -1,4 +1,4 @@
-"""What is known of a line before any test: the priors of the gauge-aware structures.
+"""What is known of a line before any test: the priors that a vessel file gives to parameters, by their roles.
 
 A test of set point, speed and shaft torque finds ``v K_p / tau``, ``v K_i / tau`` and ``(k_q - g) / tau`` with
 ``tau = tau_up + tau_dn``, but neither ``tau_up`` nor ``g`` alone. The torsional vibration calculation (TVC) knows the
@@ -6,12 +6,16 @@ inertia upstream of the gauge to a few percent, and brake torque over speed at c
 middle of the range.
 """
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.catalogue import ShipRole, expect_roles
 from shaftprint.identify.likelihood._prior import Prior
-from shaftprint.models import Structure
+from shaftprint.models import Role, Structure
+from shaftprint.normalisation import Normalisation
 
 if TYPE_CHECKING:
     from shaftprint.signals import Mode, WorkingPoint
@@ -20,16 +24,16 @@ if TYPE_CHECKING:
 PRIOR_OF_G = Prior(mean=0.0, std=0.1)
 """Slope of the engine torque with speed, before any test: flat to a tenth."""
 
+SHAFT_TORQUE = "M_s"
+
 
 def priors_from_vessel(
     structure: Structure, vessel: "Vessel", working_point: "WorkingPoint", *, mode: "Mode" = "shaftprint"
 ) -> dict[str, Prior]:
-    """Return what is known of a structure's ``g``, ``tau_up``, ``t_sp``, ``t_gauge``, ``t_rack``, those that are free.
+    """Return what is known of a structure's free parameters, by their roles.
 
-    The inertia time is ``tau_up = 2 pi I_up n_s0 / M_s0`` (thesis eq. 2.23). Its standard deviation holds that of
-    the TVC and of the gauge's scale: a gauge that shows too much makes it too small. The error of the working point is
-    not in it, because ``M_s0`` is the number by which the responses are divided, whatever the load was; it comes to all
-    that is found over that number alike, after the fit.
+    It is the inertia upstream of the gauge and with it the slope of the engine torque; the latencies of gauge, set
+    point and rack; and the inertia downstream where the structure has no shaft torque to show it.
 
     Parameters
     ----------
@@ -39,38 +43,100 @@ def priors_from_vessel(
         What was tested, and where.
     mode
         How the signals were prepared: in thesis mode the whole latency of the torque is still in them.
+
+    Raises
+    ------
+    StructureError
+        If a parameter has the name and unit of one of the catalogue, but no role.
     """
-    names = {parameter.name for parameter in structure.free}
-    gauge = vessel.sensors.shaft_torque
-    found = {"g": PRIOR_OF_G} if "g" in names and "tau_up" in names else {}
-    if "tau_up" in names and vessel.inertia_upstream_std_kg_m2 > 0.0:
-        inertia, torque = vessel.inertia_upstream_kg_m2, working_point.shaft_torque_nm
-        shaft_rev_s = working_point.engine_speed_rev_s / vessel.gearbox.ratio
-        tau = 2.0 * np.pi * inertia * shaft_rev_s / torque
-        sources = {
-            "TVC": tau * vessel.inertia_upstream_std_kg_m2 / inertia,
-            "gauge scale": -tau * gauge.scale_std,
-        }
-        sources = {name: float(part) for name, part in sources.items() if part}
-        found["tau_up"] = Prior(mean=float(tau), std=float(np.linalg.norm(list(sources.values()))), sources=sources)
-    if "t_gauge" in names and gauge.latency_std > 0.0:
-        found["t_gauge"] = Prior(
-            mean=gauge.latency_s if mode == "thesis" else 0.0,
-            std=gauge.latency_std,
-            sources={"telemetry latency": gauge.latency_std},
+    expect_roles(structure)
+    free = {
+        structure.roles[parameter.name]: parameter.name
+        for parameter in structure.free
+        if parameter.name in structure.roles
+    }
+    test = _Test(vessel=vessel, point=working_point, is_late=mode == "thesis")
+    unshown = SHAFT_TORQUE not in (*structure.inputs, *structure.outputs)
+    priors = {}
+    for role, prior_of in PRIORS.items():
+        if role not in free or (role == ShipRole.ENGINE_SPEED_SLOPE and ShipRole.INERTIA_UPSTREAM not in free):
+            continue
+        if role == ShipRole.INERTIA_DOWNSTREAM and not unshown:
+            continue
+        if (prior := prior_of(test)) is not None:
+            priors[free[role]] = prior
+    return priors
+
+
+def inertia_from_vessel(role: Role | None, vessel: "Vessel") -> tuple[float, float] | None:
+    """Return the inertia on one side of the gauge and its standard deviation [kg m2]; None for another role.
+
+    The thesis compares the inertia of its shaft loop with that upstream.
+    """
+    if role in (ShipRole.INERTIA, ShipRole.INERTIA_UPSTREAM):
+        return vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2
+    if role == ShipRole.INERTIA_DOWNSTREAM:
+        return vessel.inertia_downstream_kg_m2, vessel.inertia_downstream_std_kg_m2
+    return None
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Test:
+    """What was tested, where, and how its signals were prepared."""
+
+    vessel: "Vessel"
+    point: "WorkingPoint"
+    is_late: bool
+    """Whether the latencies of torque and rack are still in the signals."""
+
+    def inertia_time(self, role: Role) -> Prior | None:
+        """Return what the vessel file knows of an inertia time, ``2 pi I n_s0 / M_s0``; None where it knows nothing.
+
+        Its standard deviation holds that of the TVC and of the gauge's scale: a gauge that shows too much makes it too
+        small. The error of the working point is not in it, because ``M_s0`` is the number by which the responses are
+        divided, whatever the load was; it comes to all that is found over that number alike, after the fit.
+        """
+        stated = inertia_from_vessel(role, self.vessel)
+        if stated is None or not stated[1] > 0.0:
+            return None
+        inertia, std = stated
+        normalisation = Normalisation(
+            engine_speed_rev_s=self.point.engine_speed_rev_s,
+            gear_ratio=self.vessel.gearbox.ratio,
+            shaft_torque_nm=self.point.shaft_torque_nm,
         )
-    set_point = vessel.sensors.set_point
-    if "t_sp" in names and set_point.latency_s is not None and set_point.latency_std_s is not None:
-        found["t_sp"] = Prior(
-            mean=set_point.latency_s,
-            std=set_point.latency_std_s,
-            sources={"set-point latency": set_point.latency_std_s},
-        )
-    rack = vessel.sensors.rack
-    if "t_rack" in names and rack is not None and rack.latency_std_s:
-        found["t_rack"] = Prior(
-            mean=rack.latency_s if mode == "thesis" else 0.0,
-            std=rack.latency_std_s,
-            sources={"rack latency": rack.latency_std_s},
-        )
-    return found
+        tau = normalisation.inertia_time_s(inertia)
+        parts = {"TVC": tau * std / inertia, "gauge scale": -tau * self.vessel.sensors.shaft_torque.scale_std}
+        sources = {name: float(part) for name, part in parts.items() if part}
+        return Prior(mean=float(tau), std=float(np.linalg.norm(list(sources.values()))), sources=sources)
+
+    def torque_latency(self) -> Prior | None:
+        """Return what is known of the torque gauge's latency, over what was taken off already."""
+        gauge = self.vessel.sensors.shaft_torque
+        return self._latency("telemetry latency", gauge.latency_s if self.is_late else 0.0, gauge.latency_std)
+
+    def set_point_latency(self) -> Prior | None:
+        """Return what is known of the set point's latency; None where the vessel file does not state it."""
+        set_point = self.vessel.sensors.set_point
+        return self._latency("set-point latency", set_point.latency_s, set_point.latency_std_s)
+
+    def rack_latency(self) -> Prior | None:
+        """Return what is known of the rack's latency, over what was taken off already; None without a rack."""
+        rack = self.vessel.sensors.rack
+        if rack is None:
+            return None
+        return self._latency("rack latency", rack.latency_s if self.is_late else 0.0, rack.latency_std_s)
+
+    def _latency(self, source: str, mean_s: float | None, std_s: float | None) -> Prior | None:
+        return Prior(mean=mean_s, std=std_s, sources={source: std_s}) if mean_s is not None and std_s else None
+
+
+PRIORS: Mapping[Role, Callable[[_Test], Prior | None]] = {
+    ShipRole.ENGINE_SPEED_SLOPE: lambda _: PRIOR_OF_G,
+    ShipRole.INERTIA_UPSTREAM: lambda test: test.inertia_time(ShipRole.INERTIA_UPSTREAM),
+    ShipRole.INERTIA_DOWNSTREAM: lambda test: test.inertia_time(ShipRole.INERTIA_DOWNSTREAM),
+    ShipRole.TORQUE_LATENCY: _Test.torque_latency,
+    ShipRole.SET_POINT_LATENCY: _Test.set_point_latency,
+    ShipRole.RACK_LATENCY: _Test.rack_latency,
+}
+"""What a vessel file knows beforehand, by role."""
