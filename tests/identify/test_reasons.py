@@ -6,9 +6,9 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from shaftprint.catalogue import structure
-from shaftprint.identify import Prior, Settings, assess, identify, profile
-from shaftprint.identify.judgement._affected_numbers import ALL, HANGING, ROLES, by_weight, hangs_on
+from shaftprint.catalogue import ShipRole, structure
+from shaftprint.identify import Estimate, Prior, Settings, assess, identify, profile
+from shaftprint.identify.judgement._affected_numbers import HANGING, by_weight, hangs_on
 from shaftprint.reasons import Reason, ReasonKind
 
 LINES_HZ = np.geomspace(0.0044, 3.4, 24)
@@ -39,7 +39,6 @@ def gauge(make_response):
 
 def test_every_kind_of_reason_has_its_row():
     assert set(HANGING) == set(get_args(ReasonKind))
-    assert all(roles <= ALL for roles in ROLES.values())
 
 
 def test_what_does_not_hang_on_the_scale_of_the_gauge_stays_usable(gauge):
@@ -73,7 +72,27 @@ def test_the_weightiest_reason_comes_first():
 
 def test_an_unknown_number_hangs_on_everything():
     """A number of an own structure is not in the table: nobody can say what it is made of."""
-    assert all(hangs_on("own", kind) for kind in HANGING if HANGING[kind][0])
+    own = Estimate(name="own", unit="-", value=1.0, std=0.1)
+    assert all(hangs_on(own, kind) for kind in HANGING if HANGING[kind][0])
+
+
+@pytest.mark.parametrize(
+    ("role", "unit", "in_doubt"),
+    [
+        (ShipRole.INERTIA_UPSTREAM, "s", True),
+        (ShipRole.INERTIA_DOWNSTREAM, "s", False),
+        (ShipRole.INERTIA_DOWNSTREAM, "kg m2", True),
+        (ShipRole.PROPORTIONAL_GAIN, "-", True),
+        (ShipRole.LOAD_SLOPE, "-", False),
+        (ShipRole.LOOP_DELAY, "s", True),
+        (ShipRole.TOTAL_DELAY, "s", False),
+        (ShipRole.SET_POINT_SCALE, "-", False),
+    ],
+)
+def test_a_wrong_scale_of_the_gauge_reaches_what_is_made_of_newton_metres(role, unit, in_doubt):
+    """A gauge that shows everything 3 % too large: ratios of what it shows stay as they are."""
+    number = Estimate(name="any name", unit=unit, value=1.0, std=0.1, role=role)
+    assert hangs_on(number, "gauge scale") == in_doubt
 
 
 def test_a_prior_that_is_pulled_is_named(gauge):

@@ -54,9 +54,9 @@ V_ONE = Parameter(
 GAUGE_K_P = Parameter("K_p", "-", 0.0, 20.0, 5.0, "proportional gain of the governor", role=ShipRole.PROPORTIONAL_GAIN)
 GAUGE_K_I = Parameter("K_i", "1/s", 0.0, 20.0, 4.0, "integral gain of the governor", role=ShipRole.INTEGRAL_GAIN)
 GAUGE_OMEGA_N = Parameter(
-    "omega_n", "rad/s", 3.0, 60.0, 10.0, "natural frequency of the actuation lag", role=ShipRole.ACTUATOR
+    "omega_n", "rad/s", 3.0, 60.0, 10.0, "natural frequency of the actuation lag", role=ShipRole.ACTUATOR_FREQUENCY
 )
-GAUGE_ZETA = Parameter("zeta", "-", 0.1, 4.0, 0.5, "damping ratio of the actuation lag", role=ShipRole.ACTUATOR)
+GAUGE_ZETA = Parameter("zeta", "-", 0.1, 4.0, 0.5, "damping ratio of the actuation lag", role=ShipRole.ACTUATOR_DAMPING)
 T_SP = Parameter(
     "t_sp", "s", 0.0, 0.5, 0.05, "latency of the set point, outside the loop", role=ShipRole.SET_POINT_LATENCY
 )

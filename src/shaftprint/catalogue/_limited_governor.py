@@ -29,6 +29,7 @@ from shaftprint.catalogue._gauge import (
     G,
 )
 from shaftprint.catalogue._limited import DROOP, LimitedEngine, parameters_of
+from shaftprint.catalogue._roles import ShipRole
 from shaftprint.models import Delay, Diagram, Flow, Formula, Parameter, Structure, maximum
 
 # Speed and torque are given early by this time [s]: the largest latency of the set point.
@@ -36,7 +37,7 @@ AHEAD_S = T_SP.upper
 OBSERVER_PER_S = 0.1
 # Below this speed, over that of the working point, the load counts as that of this speed.
 LEAST_SPEED = 0.1
-E_SET = Parameter("e_set", "-", -0.05, 0.05, 0.0, "offset of the measured set point")
+E_SET = Parameter("e_set", "-", -0.05, 0.05, 0.0, "offset of the measured set point", role=ShipRole.SET_POINT_OFFSET)
 
 
 def limited_governor(*limits: str, period_s: float = 0.0, name: str = "") -> Structure:

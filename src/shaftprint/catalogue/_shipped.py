@@ -49,8 +49,8 @@ def expect_roles(structure: Structure) -> None:
         role = _shipped_roles().get((parameter.name, parameter.unit))
         if role is not None and parameter.role is None:
             raise StructureError(
-                f"structure {structure.name}: parameter {parameter.name} has name and unit of a ship's {role.name}, but "
-                "no role, so that the vessel file would say nothing of it; give it one, such as "
+                f"structure {structure.name}: parameter {parameter.name} has name and unit of a ship's {role.name}, "
+                "but no role, so that the vessel file would say nothing of it; give it one, such as "
                 f"role=ShipRole.{_attribute(role)}, or another name."
             )
 

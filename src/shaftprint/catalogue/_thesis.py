@@ -40,9 +40,9 @@ TAU_N = Parameter("tau_n", "s", 0.0, 5.0, 0.39, "inertia time of the line, 2 pi 
 K_P = Parameter("K_p", "-", 0.0, 10.0, 3.0, "proportional gain of the governor", role=ShipRole.PROPORTIONAL_GAIN)
 K_I = Parameter("K_i", "1/s", 0.0, 10.0, 4.0, "integral gain of the governor", role=ShipRole.INTEGRAL_GAIN)
 OMEGA_N = Parameter(
-    "omega_n", "rad/s", 7.0, 13.0, 10.0, "natural frequency of the actuation lag", role=ShipRole.ACTUATOR
+    "omega_n", "rad/s", 7.0, 13.0, 10.0, "natural frequency of the actuation lag", role=ShipRole.ACTUATOR_FREQUENCY
 )
-ZETA = Parameter("zeta", "-", 0.3, 4.0, 0.5, "damping ratio of the actuation lag", role=ShipRole.ACTUATOR)
+ZETA = Parameter("zeta", "-", 0.3, 4.0, 0.5, "damping ratio of the actuation lag", role=ShipRole.ACTUATOR_DAMPING)
 K_Q_TWO = Parameter(
     "k_q", "-", 1.0, 3.0, 2.0, "slope of the propeller torque, d ln M / d ln n", held=True, role=ShipRole.LOAD_SLOPE
 )

@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from shaftprint.catalogue import ShipRole
+
 if TYPE_CHECKING:
     from shaftprint.identify import Identification
     from shaftprint.vessel import Vessel
@@ -16,14 +18,16 @@ def assumptions_of(identification: "Identification", vessel: "Vessel") -> tuple[
 
 
 def _assumptions(identification: "Identification", vessel: "Vessel") -> Iterator[str]:
-    free = {parameter.name for parameter in identification.structure.free}
+    by_role = {parameter.role: parameter.name for parameter in identification.structure.free}
     sensors, propeller = vessel.sensors, vessel.propeller
-    if "t_sp" in free:
+    if latency := by_role.get(ShipRole.SET_POINT_LATENCY):
+        totals = [c.name for c in identification.structure.combinations if c.role == ShipRole.TOTAL_DELAY]
+        resting = f"{' and '.join((latency, *totals))} {'rest' if totals else 'rests'}"
         yield (
-            f"t_sp and t_d + t_sp rest on the clock of the set point: a constant shift of {sensors.set_point.channel} "
-            "against the other channels shows in nothing else."
+            f"{resting} on the clock of the set point: a constant shift of {sensors.set_point.channel} against the "
+            "other channels shows in nothing else."
         )
-    if "tau_up" in identification.settings.priors:
+    if by_role.get(ShipRole.INERTIA_UPSTREAM) in identification.settings.priors:
         yield (
             "Gains, margins and the parts of the delay rest on the inertia upstream of the gauge, "
             f"{vessel.inertia_upstream_kg_m2:.4g} +/- {vessel.inertia_upstream_std_kg_m2:.2g} kg m2, and on an engine "

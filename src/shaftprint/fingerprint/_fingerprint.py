@@ -8,15 +8,26 @@ from pathlib import Path
 from typing import Annotated, Final, Literal, Self, TypeAlias
 
 import numpy as np
-from pydantic import AfterValidator, AwareDatetime, BaseModel, ConfigDict, ValidationError, model_validator
+from pydantic import (
+    AfterValidator,
+    AwareDatetime,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    PlainSerializer,
+    ValidationError,
+    model_validator,
+)
 
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
+from shaftprint.catalogue import ROLES
 from shaftprint.errors import FingerprintError, ShaftprintError
 from shaftprint.files import written_whole
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._vessel_fields import FieldValue
 from shaftprint.identify import Budget, Prior, Verdict
+from shaftprint.models import Role
 from shaftprint.normal import NORMAL_95
 from shaftprint.publication import complete
 
@@ -42,6 +53,28 @@ Deviation: TypeAlias = Annotated[float, AfterValidator(_not_negative)]
 """A standard deviation; it may be infinite."""
 
 
+def _role_of(name: object) -> object:
+    """Return the role of a name that stands in a file."""
+    if not isinstance(name, str):
+        return name
+    if name not in ROLES:
+        raise ValueError(f"expected one of {', '.join(ROLES)}, found {name!r}")
+    return ROLES[name]
+
+
+def _name_of(role: Role | None) -> str | None:
+    """Return the name of a role for a file; none for a role that only an own structure knows."""
+    return role.name if role is not None and role.name in ROLES else None
+
+
+NamedRole: TypeAlias = Annotated[
+    Role | None,
+    BeforeValidator(_role_of),
+    PlainSerializer(_name_of, return_type=str | None),
+]
+"""A role, in files by its name."""
+
+
 class Quantity(_Record):
     """A number with its unit and uncertainty."""
 
@@ -65,6 +98,8 @@ class Quantity(_Record):
     """Standard deviation of that value."""
     meaning: str = ""
     """What it stands for."""
+    role: NamedRole = None
+    """What it is in the line, one of ``catalogue.ROLES``; None where it has none, as in files of earlier versions."""
 
     @property
     def stated_std(self) -> float | None:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.fingerprint._fingerprint import Quantity
 from shaftprint.fingerprint._margin_numbers import MEANINGS, margin_numbers, margin_values
 from shaftprint.fingerprint._working_point_share import std_of_working_point, widened
@@ -52,6 +53,7 @@ def margin_quantities(
                 else widened((interval.lower, interval.upper), value, further, is_open),
                 interval_open=is_open,
                 meaning=meaning,
+                role=ShipRole.LOOP_GAIN,
             )
         )
     return tuple(quantities)

@@ -21,11 +21,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.catalogue import ROLES, ShipRole
 from shaftprint.fingerprint._fingerprint import Quantity
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER, shares_over_torque, shifts_of_working_point
 from shaftprint.identify import Budget, Identification, budget
+from shaftprint.identify.likelihood import inertia_from_vessel
 from shaftprint.models import Combination, Structure
-from shaftprint.units import SECONDS_PER_MINUTE
+from shaftprint.normalisation import Normalisation
 
 if TYPE_CHECKING:
     from shaftprint.signals import WorkingPoint
@@ -42,7 +44,7 @@ class PhysicalNumber:
     """A physical value as a number that follows from the parameters."""
 
     number: Combination
-    """Its name, unit and formula."""
+    """Its name, unit, formula and role."""
     direct: Mapping[str, float] = field(default_factory=dict)
     """Change, with sign, for one standard deviation of a source that enters the conversion."""
     expected: float | None = None
@@ -54,28 +56,14 @@ class PhysicalNumber:
 def physical_numbers(
     identification: Identification, working_point: "WorkingPoint", vessel: "Vessel"
 ) -> tuple[PhysicalNumber, ...]:
-    """Return the physical values that a fit gives, as numbers that follow from its parameters."""
+    """Return the physical values that a fit gives, as numbers that follow from its parameters by their roles."""
     structure = identification.structure
     named = structure.named(identification.own_values())
-    scale = vessel.sensors.shaft_torque.scale_std
-    plans = (*_inertias(working_point, vessel), *_governor_actions(working_point))
-    found = []
-    for needs, plan in plans:
-        if set(needs) <= set(named):
-            value = float(plan.number.of(named))
-            found.append(
-                PhysicalNumber(
-                    number=plan.number,
-                    direct=({"gauge scale": value * scale} if scale else {})
-                    | {source: -value * share for source, share in shares_over_torque(working_point).items()},
-                    expected=plan.expected,
-                    expected_std=plan.expected_std,
-                )
-            )
+    slope = next((parameter for parameter in structure.free if parameter.role == ShipRole.LOAD_SLOPE), None)
     return (
-        *found,
-        *_gauge_zero(structure, working_point, vessel),
-        _torque_coefficient(float(named["k_q"]) if _finds_zero(structure) else None, working_point, vessel),
+        *_physical_forms(structure, named, working_point, vessel),
+        *([] if slope is None else [_gauge_zero(slope.name, working_point, vessel)]),
+        _torque_coefficient(None if slope is None else (slope.name, float(named[slope.name])), working_point, vessel),
     )
 
 
@@ -108,35 +96,43 @@ def physical_quantities(
                 expected=item.expected,
                 expected_std=item.expected_std,
                 meaning=item.number.meaning,
+                role=item.number.role,
             )
         )
     return tuple(found)
 
 
-def _inertias(working_point: "WorkingPoint", vessel: "Vessel") -> Iterator[tuple[tuple[str, ...], PhysicalNumber]]:
-    shaft_rev_s = working_point.engine_speed_rev_s / vessel.gearbox.ratio
-    factor = working_point.shaft_torque_nm / (2.0 * np.pi * shaft_rev_s)
-    upstream = (vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2)
-    downstream = (vessel.inertia_downstream_kg_m2, vessel.inertia_downstream_std_kg_m2)
-    for name, tau, (expected, expected_std), meaning in (
-        ("I_dn", "tau_dn", downstream, "inertia downstream of the torque gauge, at the propeller shaft"),
-        ("I_up", "tau_up", upstream, "inertia upstream of the torque gauge, at the propeller shaft"),
-        ("I", "tau_n", upstream, "inertia that the thesis' shaft loop implies, at the propeller shaft"),
-    ):
-        number = Combination(name=name, unit="kg m2", of=_product(factor, tau), meaning=meaning)
-        yield (tau,), PhysicalNumber(number=number, expected=expected, expected_std=expected_std)
-
-
-def _governor_actions(working_point: "WorkingPoint") -> Iterator[tuple[tuple[str, ...], PhysicalNumber]]:
-    factor = working_point.shaft_torque_nm / (working_point.engine_speed_rev_s * SECONDS_PER_MINUTE)
-    for name, unit, gain, meaning in (
-        ("governor proportional action", "N m/rpm", "K_p", "change of torque"),
-        ("governor integral action", "N m/(rpm s)", "K_i", "rate of change of torque"),
-    ):
-        text = f"{meaning}, at the propeller shaft, for one rpm of engine-speed error"
-        yield (
-            (gain, "v"),
-            PhysicalNumber(number=Combination(name=name, unit=unit, of=_product(factor, "v", gain), meaning=text)),
+def _physical_forms(
+    structure: Structure, named: Mapping[str, FloatArray], working_point: "WorkingPoint", vessel: "Vessel"
+) -> Iterator[PhysicalNumber]:
+    """Yield inertias and governor actions: what parameters are in the units of the ship."""
+    normalisation = Normalisation(
+        engine_speed_rev_s=working_point.engine_speed_rev_s,
+        gear_ratio=vessel.gearbox.ratio,
+        shaft_torque_nm=working_point.shaft_torque_nm,
+    )
+    scale = vessel.sensors.shaft_torque.scale_std
+    rack_slope = structure.named_as(ShipRole.ENGINE_RACK_SLOPE)
+    for role in ROLES.values():
+        name, form = structure.named_as(role), role.physical
+        if name is None or form is None or (role.rack_power and rack_slope is None):
+            continue
+        factors = (rack_slope, name) if role.rack_power and rack_slope else (name,)
+        number = Combination(
+            name=form.name,
+            unit=form.unit,
+            of=_product(form.scale(normalisation), *factors),
+            meaning=form.meaning,
+            role=role,
+        )
+        value = float(number.of(named))
+        expected, expected_std = inertia_from_vessel(role, vessel) or (None, None)
+        yield PhysicalNumber(
+            number=number,
+            direct=({"gauge scale": value * scale} if scale else {})
+            | {source: -value * share for source, share in shares_over_torque(working_point).items()},
+            expected=expected,
+            expected_std=expected_std,
         )
 
 
@@ -144,42 +140,38 @@ def _product(factor: float, *names: str) -> Callable[[Mapping[str, FloatArray]],
     return lambda named: np.asarray(factor * np.prod([named[name] for name in names], axis=0))
 
 
-def _gauge_zero(structure: Structure, working_point: "WorkingPoint", vessel: "Vessel") -> tuple[PhysicalNumber, ...]:
-    """Return the zero offset of the gauge over the torque without it, where the fit is free to find it."""
-    if not _finds_zero(structure):
-        return ()
+def _gauge_zero(slope: str, working_point: "WorkingPoint", vessel: "Vessel") -> PhysicalNumber:
+    """Return the zero offset of the gauge over the torque without it, from the slope of the load."""
     number = Combination(
         name=GAUGE_ZERO,
         unit="%",
-        of=lambda named: PERCENT * (IDEAL_SLOPE / named["k_q"] - 1.0),
+        of=lambda named: PERCENT * (IDEAL_SLOPE / named[slope] - 1.0),
         meaning="zero offset of the torque gauge, or constant friction, over the working-point torque",
+        role=ShipRole.LOAD_SLOPE,
     )
-    stated_nm = vessel.sensors.shaft_torque.zero_std
-    stated = PERCENT * stated_nm / working_point.shaft_torque_nm
-    return (PhysicalNumber(number=number, expected=0.0, expected_std=stated),)
+    stated = PERCENT * vessel.sensors.shaft_torque.zero_std / working_point.shaft_torque_nm
+    return PhysicalNumber(number=number, expected=0.0, expected_std=stated)
 
 
-def _finds_zero(structure: Structure) -> bool:
-    return "k_q" in [parameter.name for parameter in structure.free]
-
-
-def _torque_coefficient(slope: float | None, working_point: "WorkingPoint", vessel: "Vessel") -> PhysicalNumber:
-    """Return the torque coefficient, with the fitted slope ``k_q`` where the fit was free to find it."""
+def _torque_coefficient(
+    slope: tuple[str, float] | None, working_point: "WorkingPoint", vessel: "Vessel"
+) -> PhysicalNumber:
+    """Return the torque coefficient, with name and value of the slope of the load where the fit was free to find it."""
     shaft_rev_s = working_point.engine_speed_rev_s / vessel.gearbox.ratio
     shown = (
         working_point.shaft_torque_nm
         * vessel.propeller.relative_rotative_efficiency
         / (vessel.water_density_kg_m3 * shaft_rev_s**2 * vessel.propeller.diameter_m**5)
     )
-    finds_zero = slope is not None
-    value = shown if slope is None else shown * slope / IDEAL_SLOPE
-    shares = _shares_of_coefficient(working_point, vessel, finds_zero=finds_zero)
+    value = shown if slope is None else shown * slope[1] / IDEAL_SLOPE
+    shares = _shares_of_coefficient(working_point, vessel, finds_zero=slope is not None)
     return PhysicalNumber(
         number=Combination(
             name="K_Q",
             unit="-",
-            of=_product(shown / IDEAL_SLOPE, "k_q") if finds_zero else _product(shown),
+            of=_product(shown) if slope is None else _product(shown / IDEAL_SLOPE, slope[0]),
             meaning="torque coefficient of the propeller, mean of the test",
+            role=ShipRole.TORQUE,
         ),
         direct={source: value * share for source, share in shares.items() if share},
         expected=vessel.propeller.torque_coefficient,

@@ -11,6 +11,7 @@ import numpy as np
 import shaftprint
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
+from shaftprint.catalogue import ShipRole
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._assumptions import assumptions_of
 from shaftprint.fingerprint._calibration import calibration_quantities
@@ -123,7 +124,12 @@ def take_fingerprint(
 def _estimate(quantity: Quantity) -> Estimate:
     """Return a number of the fingerprint as the verdict takes it."""
     return Estimate(
-        name=quantity.name, unit=quantity.unit, value=quantity.value, std=quantity.std, at_bound=quantity.at_bound
+        name=quantity.name,
+        unit=quantity.unit,
+        value=quantity.value,
+        std=quantity.std,
+        at_bound=quantity.at_bound,
+        role=quantity.role,
     )
 
 
@@ -182,6 +188,7 @@ def _working_point(point: "WorkingPoint") -> tuple[Quantity, Quantity]:
             value=point.engine_speed_rev_s * SECONDS_PER_MINUTE,
             std=point.engine_speed_std_rev_s * SECONDS_PER_MINUTE,
             meaning="engine speed of the working point",
+            role=ShipRole.SPEED,
         ),
         Quantity(
             name="M_s0",
@@ -189,6 +196,7 @@ def _working_point(point: "WorkingPoint") -> tuple[Quantity, Quantity]:
             value=point.shaft_torque_nm,
             std=point.shaft_torque_std_nm,
             meaning="shaft torque of the working point",
+            role=ShipRole.TORQUE,
         ),
     )
 
@@ -223,6 +231,7 @@ class _Reported:
             interval_open=is_open,
             at_bound=estimate.at_bound,
             meaning=self.meanings[estimate.name],
+            role=estimate.role,
         )
 
 

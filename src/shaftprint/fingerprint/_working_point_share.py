@@ -3,9 +3,9 @@
 A reader takes ``tau_dn`` for that of the ship at its mean load. The program divides by the ``M_s0`` and multiplies by
 the ``n_0`` that it has found, ``M_s0 = L n_0^2`` with the mean load ``L`` of the recording: inertia times, gains and
 ``g`` are a physical value over ``L n_0``. That error is not in the fit, for all data are divided alike, and comes
-after it, as a source of its own: to every parameter of ``OVER_TORQUE`` with the share that ``L`` and ``n_0`` have.
-Combinations and margins follow by their slopes: ``K_p / K_i`` does not move, ``v K_i / (k_q - g)`` does. In the
-conversion to kg m2 and N m/rpm the same share comes back with the other sign: ``I_dn`` does not know of it.
+after it, as a source of its own: to every parameter whose role is ``over_torque``, with the share that ``L`` and
+``n_0`` have. Combinations and margins follow by their slopes: ``K_p / K_i`` does not move, ``v K_i / (k_q - g)`` does.
+In the conversion to kg m2 and N m/rpm the same share comes back with the other sign: ``I_dn`` does not know of it.
 
 A logged rack is divided by its own ``X_0``, a mean of quiet stretches with the steps of its channel in it. Gains are so
 much rack for a speed, ``v`` so much torque for a rack: ``K_p`` and ``K_i`` go with ``1 / X_0``, ``v`` with ``X_0``, and
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify import OVER_TORQUE, Budget, Identification
+from shaftprint.identify import Budget, Identification
 from shaftprint.normal import NORMAL_95
 
 if TYPE_CHECKING:
@@ -30,8 +30,6 @@ RACK = "working-point rack"
 """Sources of the budget."""
 
 FUEL_RACK = "X"
-WITH_RACK = {"K_p": -1.0, "K_i": -1.0, "K_d": -1.0, "v": 1.0}
-"""Power of ``X_0`` with which a parameter goes, where the rack is among the channels of the structure."""
 
 # Step of the central differences, over the size of a parameter.
 DIFFERENCE = 1e-6
@@ -55,11 +53,13 @@ def shifts_of_working_point(
         Standard deviation of the working point of a logged rack over its value; it enters the structures that have the
         rack among their channels.
     """
-    changes = _changes(identification, dict.fromkeys(OVER_TORQUE, 1.0))
+    roles = {name: role for part in identification.parts for name, role in part.structure.roles.items()}
+    changes = _changes(identification, {name: 1.0 for name, role in roles.items() if role.over_torque})
     shifts = {source: _scaled(share, changes) for source, share in shares_over_torque(point).items()}
     structure = identification.structure
     if rack_share and FUEL_RACK in (*structure.inputs, *structure.outputs):
-        shifts[RACK] = _scaled(rack_share, _changes(identification, WITH_RACK))
+        powers = {name: float(role.rack_power) for name, role in roles.items() if role.rack_power}
+        shifts[RACK] = _scaled(rack_share, _changes(identification, powers))
     return shifts
 
 

@@ -67,7 +67,6 @@ from shaftprint.identify.judgement import (
     suspects_of,
 )
 from shaftprint.identify.likelihood import (
-    OVER_TORQUE,
     PRIOR_OF_G,
     CheckKind,
     FittedTerm,
@@ -127,7 +126,6 @@ from shaftprint.identify.uncertainty import (
 )
 
 __all__ = [
-    "OVER_TORQUE",
     "PRIOR_OF_G",
     "STAN_TUG_NOISE",
     "Accuracy",

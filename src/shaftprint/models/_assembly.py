@@ -149,7 +149,7 @@ def outermost_loop(structure: str, nodes: Iterable[Expression]) -> Expression | 
 
 
 def expect_single_roles(structure: str, roles: Mapping[str, Role]) -> None:
-    """Check that no two parameters have one role, but for those that several may have.
+    """Check that no two parameters have one role.
 
     Raises
     ------
@@ -158,7 +158,7 @@ def expect_single_roles(structure: str, roles: Mapping[str, Role]) -> None:
     """
     first: dict[Role, str] = {}
     for name, role in roles.items():
-        if role.is_single and first.setdefault(role, name) != name:
+        if first.setdefault(role, name) != name:
             raise StructureError(
                 f"structure {structure}: expected one parameter of the role {role.name}, found {first[role]} and "
                 f"{name}; give one of them another role, or none."

@@ -45,6 +45,11 @@ class Parameter:
             raise StructureError(
                 f"parameter {self.name}: expected a role such as ShipRole.LOOP_DELAY, found {self.role!r}."
             )
+        if self.role is not None and self.role.unit not in ("", self.unit):
+            raise StructureError(
+                f"parameter {self.name}: expected the unit {self.role.unit} of the role {self.role.name}, found "
+                f"{self.unit}; normalise it, or give it no role."
+            )
         if not self.lower < self.upper:
             raise StructureError(
                 f"parameter {self.name}: expected lower bound < upper bound, found {self.lower} and {self.upper}."

@@ -36,6 +36,8 @@ class Role:
 
     name: str
     """Field term, such as ``inertia downstream``; it is how files name the role."""
+    unit: str = ""
+    """Unit that a parameter of this role must have; empty where it may have any."""
     basis: frozenset[Basis] = frozenset()
     """What it is made of; empty where that is everything."""
     over_torque: bool = False
@@ -46,8 +48,6 @@ class Role:
     """Power of the rack of the working point with which it goes, where the rack is logged."""
     of_sensor: bool = False
     """Whether it belongs to a sensor, not to the line."""
-    is_single: bool = True
-    """Whether a structure has at most one parameter of this role."""
     physical: PhysicalForm | None = None
     """The same in the units of the line; None where it is in SI units already, or has no such form."""
 

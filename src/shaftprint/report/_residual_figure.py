@@ -51,7 +51,9 @@ def line_chi_square(identification: "Identification") -> FloatArray:
 def _left(identification: "Identification") -> ComplexArray:
     """Return measured minus model, shape (channels, lines); the load of each window acts on ``k_q`` as in the fit."""
     data = identification.response
-    model = identification.structure.response(identification.values, 1j * data.omega_rad_s, factors=load_factors(data))
+    model = identification.structure.response(
+        identification.values, 1j * data.omega_rad_s, factors=load_factors(identification.structure, data)
+    )
     return np.asarray(data.response.reshape(model.shape) - model)
 
 

@@ -14,7 +14,8 @@ from shaftprint.identify import (
     Settings,
     identify,
     identify_jointly,
-    load_factors,
+    with_load,
+    with_sensor,
 )
 from shaftprint.models import Integrator, Structure, free_responses
 from shaftprint.time_domain._nodes import Nodes
@@ -119,11 +120,7 @@ def spectrum_term(
         See ``identify_chirp``.
     """
     record = spectrum.record
-    sensor = {"T_average": record.averaging_s, "T_hold": record.hold_s, "t_pickup": record.pick_up_delay_s}
-    held = {p.name: sensor[p.name] for p in structure.parameters if p.held and p.name in sensor}
-    used = structure.held_at(**held) if held else structure
-    loaded = {name: float(f[0]) for name, f in load_factors(spectrum.response(structure.input)).items()}
-    used = used.scaled(**{name: factor for name, factor in loaded.items() if name in used.named(used.vector({}))})
+    used = with_load(with_sensor(structure, record), record.load)
     shapes, channels = free_responses(used) if transients else (None, ())
     if drift:
         lines = {f"{output} drift": Integrator() for output in used.outputs}

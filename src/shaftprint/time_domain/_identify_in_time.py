@@ -14,13 +14,13 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
+from shaftprint.catalogue import ShipRole
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, Settings, Term, identify_jointly, with_load, with_sensor
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain._input_response import noise_of
 from shaftprint.time_domain._known_start import KnownStart
-from shaftprint.time_domain._moving_load import SLOPE
 from shaftprint.time_domain._noise_model import LONGEST_S, estimate_noise, white_noise
 from shaftprint.time_domain._nuisance import usual_drift_degree
 from shaftprint.time_domain._output_error import OutputError
@@ -183,12 +183,14 @@ def _expect_known_slope(parts: Sequence[Part]) -> None:
     IdentificationError
         If it is free in such a record and in no other data.
     """
-    asked = [part for part in parts if SLOPE in {p.name for p in _structure(part).free}]
+    slopes = [next((p.name for p in _structure(part).free if p.role == ShipRole.LOAD_SLOPE), "") for part in parts]
+    asked = [part for part, slope in zip(parts, slopes, strict=True) if slope]
     moving = [part for part in asked if isinstance(part, OutputError) and part.moving_load]
     if moving and len(moving) == len(asked):
+        slope = next(filter(None, slopes))
         raise IdentificationError(
-            f"{moving[0].name}: a load that may move takes the torque that another {SLOPE} would give, so that the "
-            f"record cannot tell {SLOPE}; hold it with structure.held_at({SLOPE}=...), add a frequency response, or "
+            f"{moving[0].name}: a load that may move takes the torque that another {slope} would give, so that the "
+            f"record cannot tell {slope}; hold it with structure.held_at({slope}=...), add a frequency response, or "
             "fit with moving_load=False."
         )
 

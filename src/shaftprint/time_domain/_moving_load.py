@@ -21,8 +21,6 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.time_domain._record import Record
 
-# The parameter that no record tells of whose load may move: another slope of the torque is another load.
-SLOPE = "k_q"
 # Time from one corner of the load to the next [s]: inflow moves over minutes, steps over seconds.
 CORNER_S = 40.0
 SPEED, TORQUE = "n", "M_s"

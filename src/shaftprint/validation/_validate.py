@@ -10,6 +10,7 @@ from shaftprint.arrays import frozen_float
 from shaftprint.campaign import Campaign
 from shaftprint.errors import ValidationError
 from shaftprint.identify import Identification
+from shaftprint.identify.fit import pick_up_values
 from shaftprint.models import Structure
 from shaftprint.signals import Signals
 from shaftprint.validation._delay import LONGEST_S, RemainingDelay, remaining_delay
@@ -110,11 +111,12 @@ def _as_model(model: Model | Identification | Structure, used: Collection[str]) 
 def _with_sensor(model: Model, signals: Signals) -> Model:
     """Return the model with the pick-up's held parameters at the values of the signals."""
     speed = signals.engine_speed
-    sensor = {"T_average": speed.averaging_s, "T_hold": speed.hold_s, "t_pickup": speed.delay_s}
     values = model.values.copy()
-    for place, parameter in enumerate(model.structure.parameters):
-        if parameter.held and parameter.name in sensor:
-            values[place] = sensor[parameter.name]
+    of_sensor = pick_up_values(
+        model.structure, averaging_s=speed.averaging_s, hold_s=speed.hold_s, delay_s=speed.delay_s
+    )
+    for name, value in of_sensor.items():
+        values[model.structure.names.index(name)] = value
     return replace(model, values=frozen_float(values))
 
 

@@ -70,7 +70,7 @@ def _of_fold(
     except IdentificationError as reason:
         raise IdentificationError(f"structure {structure.name} without {', '.join(left)}: {reason}") from None
     part = response.of_lines(*left)
-    model, slopes = fit.structure.gradient(fit.values, 1j * part.omega_rad_s, factors=load_factors(part))
+    model, slopes = fit.structure.gradient(fit.values, 1j * part.omega_rad_s, factors=load_factors(fit.structure, part))
     root = np.asarray(np.linalg.cholesky(part.covariance), dtype=np.float64)
     error = _whitened(root, channels_of(part) - model)
     directions = np.stack([_whitened(root, slope) for slope in slopes], axis=1)

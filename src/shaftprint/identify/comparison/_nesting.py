@@ -97,7 +97,9 @@ def response_of(identification: Identification, values: FloatArray) -> Frequency
         All parameters, shape (parameters,).
     """
     data = identification.response
-    model = identification.structure.response(values, 1j * data.omega_rad_s, factors=load_factors(data))
+    model = identification.structure.response(
+        values, 1j * data.omega_rad_s, factors=load_factors(identification.structure, data)
+    )
     return replace(data, response=model.reshape(data.response.shape))
 
 

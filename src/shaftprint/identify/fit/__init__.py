@@ -9,7 +9,7 @@ from shaftprint.identify.fit._optima import SAME_COST, SAME_PLACE, WITHIN, Optim
 from shaftprint.identify.fit._pseudo_inverse import LOST_SHARE, PseudoInverse
 from shaftprint.identify.fit._refit import Refits, refit, refit_redrawn
 from shaftprint.identify.fit._scan import Minimum, Scan, scan, scan_response
-from shaftprint.identify.fit._sensor import PickedUp, with_sensor
+from shaftprint.identify.fit._sensor import PickedUp, pick_up_values, with_sensor
 
 __all__ = [
     "LOST_SHARE",
@@ -34,6 +34,7 @@ __all__ = [
     "is_rival",
     "known_covariance",
     "optima_of",
+    "pick_up_values",
     "refit",
     "refit_redrawn",
     "scan",

@@ -1,7 +1,7 @@
 """What a fit found."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from shaftprint.identify.fit._covariance import variance_along
 from shaftprint.identify.fit._fit_test import FitTest
 from shaftprint.identify.likelihood import FittedTerm, LineTest, Objective, Part
 from shaftprint.identify.search import Settings
-from shaftprint.models import Margins, Structure, margins
+from shaftprint.models import Margins, Role, Structure, margins
 from shaftprint.normal import NORMAL_95
 from shaftprint.spectra import FrequencyResponse
 
@@ -44,6 +44,8 @@ class Estimate:
     """Standard deviation; infinite where the data say nothing."""
     at_bound: bool = False
     """Whether the search stopped at a bound."""
+    role: Role | None = None
+    """What it is in its line; None where no role was given."""
 
     @property
     def interval_95(self) -> tuple[float, float]:
@@ -154,6 +156,7 @@ class Identification:
                     value=value,
                     std=float(np.sqrt(self.covariance[i, i])),
                     at_bound=value in (parameter.lower, parameter.upper),
+                    role=parameter.role,
                 )
             )
         return tuple(found)
@@ -162,7 +165,7 @@ class Identification:
     def combinations(self) -> tuple[Estimate, ...]:
         """Every combination of parameters that a structure names, with its standard deviation to first order."""
         return tuple(
-            self.derived(c.name, c.unit, lambda named, of=c.of: of(named))  # type: ignore[misc]
+            replace(self.derived(c.name, c.unit, lambda named, of=c.of: of(named)), role=c.role)  # type: ignore[misc]
             for c in self.objective.combinations
         )
 

@@ -2,6 +2,7 @@
 
 from typing import Protocol
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.models import Structure
 
 
@@ -23,10 +24,15 @@ class PickedUp(Protocol):
 
 def with_sensor(structure: Structure, data: PickedUp) -> Structure:
     """Return the structure with the pick-up's held parameters at the values of the data."""
-    sensor = {
-        "T_average": data.averaging_s,
-        "T_hold": data.hold_s,
-        "t_pickup": data.pick_up_delay_s,
+    values = pick_up_values(structure, averaging_s=data.averaging_s, hold_s=data.hold_s, delay_s=data.pick_up_delay_s)
+    return structure.held_at(**values) if values else structure
+
+
+def pick_up_values(structure: Structure, *, averaging_s: float, hold_s: float, delay_s: float) -> dict[str, float]:
+    """Return mean, hold and delay of a pick-up [s] by the names of the held parameters that stand for them."""
+    by_role = {
+        ShipRole.PICK_UP_AVERAGE: averaging_s,
+        ShipRole.PICK_UP_HOLD: hold_s,
+        ShipRole.PICK_UP_DELAY: delay_s,
     }
-    held = {p.name: sensor[p.name] for p in structure.parameters if p.held and p.name in sensor}
-    return structure.held_at(**held) if held else structure
+    return {p.name: by_role[p.role] for p in structure.parameters if p.held and p.role in by_role}

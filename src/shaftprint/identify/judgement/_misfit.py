@@ -74,7 +74,9 @@ def _squares(identification: Identification) -> FloatArray:
     """Return the squared deviation of each channel at each line over its variance, shape (channels, lines)."""
     response = identification.response
     values, s = identification.own_values(), 1j * response.omega_rad_s
-    gap = channels_of(response) - identification.structure.response(values, s, factors=load_factors(response))
+    gap = channels_of(response) - identification.structure.response(
+        values, s, factors=load_factors(identification.structure, response)
+    )
     variance = np.diagonal(response.covariance, axis1=1, axis2=2).T
     half = gap.shape[0]
     return np.asarray(gap.real**2 / variance[:half] + gap.imag**2 / variance[half:])

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping, Sequence
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.identify.fit import Estimate, Identification
 from shaftprint.identify.judgement._phrases import number
 from shaftprint.identify.judgement._requirements import Requirements
@@ -10,8 +11,6 @@ from shaftprint.identify.uncertainty import Interval, Profile
 from shaftprint.normal import NORMAL_95
 
 WHOLE_PERCENT = 100.0
-# Physical values that are a parameter times a factor of the working point: what was assumed of one is of the other.
-MULTIPLES = {"I_up": "tau_up", "I_dn": "tau_dn", "I": "tau_n"}
 
 
 def doubts_of(
@@ -36,8 +35,24 @@ def doubts_of(
     doubts = {
         estimate.name: _doubt(identification, estimate, intervals.get(estimate.name), limits) for estimate in numbers
     }
-    doubts |= {name: doubts.get(of, "") for name, of in MULTIPLES.items() if name in doubts and not doubts[name]}
+    doubts |= {
+        number.name: doubts.get(parameter, "")
+        for number in numbers
+        if not doubts[number.name] and (parameter := _multiplied(identification, number))
+    }
     return {name: doubt for name, doubt in doubts.items() if doubt}
+
+
+def _multiplied(identification: Identification, estimate: Estimate) -> str:
+    """Return the parameter of which a physical value is a multiple: what was assumed of one is of the other.
+
+    A gain on a logged rack is none: its physical value is multiplied by the slope of the rack, which is fitted too.
+    """
+    role = estimate.role
+    if role is None or role.physical is None or role.physical.name != estimate.name:
+        return ""
+    by_role = {parameter.role: parameter.name for parameter in identification.objective.free_parameters}
+    return "" if role.rack_power and ShipRole.ENGINE_RACK_SLOPE in by_role else by_role.get(role, "")
 
 
 def _doubt(

@@ -8,17 +8,22 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.identify.fit import Estimate, Identification
 from shaftprint.identify.judgement._phrases import number
+from shaftprint.models import Role
 from shaftprint.reasons import Reason, ReasonKind
 
 # So many standard deviations from what was known are no chance: once in 2000 tests.
 PULLED = 3.5
 # A prior that the data hardly sharpen leaves nothing to divide by: the rest is rounding and curvature.
 LEAST_SHARE = 0.3
-# Parameters that say what a sensor is off by; without a prior they are expected at their nominal value, exactly.
-NOMINAL = {"c_set": 1.0}
-KINDS: dict[str, ReasonKind] = {"t_gauge": "gauge latency", "c_set": "set-point scale"}
+# What a sensor is off by; without a prior it is expected at its nominal value, exactly.
+NOMINAL = {ShipRole.SET_POINT_SCALE: 1.0}
+KINDS: dict[Role | None, ReasonKind] = {
+    ShipRole.TORQUE_LATENCY: "gauge latency",
+    ShipRole.SET_POINT_SCALE: "set-point scale",
+}
 
 
 def contradicted_priors(identification: Identification) -> tuple[Reason, ...]:
@@ -35,9 +40,9 @@ def _pulled(identification: Identification) -> Iterator[Reason]:
             spread = np.sqrt(max(prior.std**2 - estimate.std**2, (LEAST_SHARE * prior.std) ** 2))
             known = f"{number(prior.mean, estimate.unit)} +/- {number(prior.std, estimate.unit, digits=2)}"
             distance = abs(estimate.value - prior.mean) / spread
-        elif estimate.name in NOMINAL and estimate.std > 0.0:
-            known = number(NOMINAL[estimate.name], estimate.unit)
-            distance = abs(estimate.value - NOMINAL[estimate.name]) / estimate.std
+        elif estimate.role in NOMINAL and estimate.std > 0.0:
+            known = number(NOMINAL[estimate.role], estimate.unit)
+            distance = abs(estimate.value - NOMINAL[estimate.role]) / estimate.std
         else:
             continue
         if distance > PULLED:
@@ -46,7 +51,7 @@ def _pulled(identification: Identification) -> Iterator[Reason]:
 
 def _reason(estimate: Estimate, meaning: str, known: str, distance: float) -> Reason:
     return Reason(
-        kind=KINDS.get(estimate.name, "prior"),
+        kind=KINDS.get(estimate.role, "prior"),
         where=estimate.name,
         sentence=(
             f"The data contradict what was known of {estimate.name} ({meaning}): {known} was expected, "

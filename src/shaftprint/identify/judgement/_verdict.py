@@ -133,7 +133,7 @@ def assess(
     )
     numbers = (*identification.parameters, *identification.combinations, *further)
     own = doubts_of(identification, numbers, evidence.profile, evidence.requirements)
-    doubts = {number.name: clause_of(number.name, every) or own.get(number.name, "") for number in numbers}
+    doubts = {number.name: clause_of(number, every) or own.get(number.name, "") for number in numbers}
     trusted = tuple(name for name, doubt in doubts.items() if not doubt)
     not_trusted = {name: doubt for name, doubt in doubts.items() if doubt}
     usable = bool(trusted) and not of_fit

@@ -5,9 +5,9 @@ from shaftprint.identify.likelihood._chi_square import chi_square_tail
 from shaftprint.identify.likelihood._experiment import Experiment, ResponseRepeats
 from shaftprint.identify.likelihood._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify.likelihood._fitted_response import Part, channel_names, channels_of
-from shaftprint.identify.likelihood._known import PRIOR_OF_G, priors_from_vessel
+from shaftprint.identify.likelihood._known import PRIOR_OF_G, inertia_from_vessel, priors_from_vessel
 from shaftprint.identify.likelihood._line_test import LineTest
-from shaftprint.identify.likelihood._load_factors import OVER_TORQUE, load_factors, with_load
+from shaftprint.identify.likelihood._load_factors import load_factors, with_load
 from shaftprint.identify.likelihood._objective import Objective, Redrawn
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.likelihood._term import FittedTerm, Repeats, Term, TermTest
@@ -15,7 +15,6 @@ from shaftprint.identify.likelihood._term_check import CheckKind, TermCheck
 from shaftprint.identify.likelihood._weighting import MaximumLikelihood, StudentT, Unweighted, Weighting
 
 __all__ = [
-    "OVER_TORQUE",
     "PRIOR_OF_G",
     "CheckKind",
     "Experiment",
@@ -41,6 +40,7 @@ __all__ = [
     "chi_square_tail",
     "fit_ceiling",
     "fit_percent",
+    "inertia_from_vessel",
     "load_factors",
     "priors_from_vessel",
     "with_load",

@@ -39,7 +39,7 @@ def build_experiment(
         response=taken,
         fitted=fitted,
         s=np.asarray(1j * taken.omega_rad_s[fitted], dtype=np.complex128),
-        factors=load_factors(taken, fitted),
+        factors=load_factors(structure, taken, fitted),
         data=np.concatenate([measured.real, measured.imag]).T,
         measured=measured,
         covariance=covariance,

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.errors import IdentificationError
 from shaftprint.models import Parameter, Structure
 
-# Held parameters that belong to the pick-up of an experiment: they may differ from one to the other.
-OF_PICK_UP = ("T_average", "T_hold", "t_pickup")
+# Held parameters of these roles belong to the pick-up of an experiment: they may differ from one to the other.
+OF_PICK_UP = (ShipRole.PICK_UP_AVERAGE, ShipRole.PICK_UP_HOLD, ShipRole.PICK_UP_DELAY)
 
 
 def united_parameters(structures: Sequence[Structure]) -> tuple[Parameter, ...]:
@@ -39,7 +40,7 @@ def united_parameters(structures: Sequence[Structure]) -> tuple[Parameter, ...]:
 def _described(parameter: Parameter) -> tuple[object, ...]:
     """Return what must be the same for two parameters to be one."""
     if parameter.held:
-        return (parameter.unit, None if parameter.name in OF_PICK_UP else parameter.value)
+        return (parameter.unit, None if parameter.role in OF_PICK_UP else parameter.value)
     return (parameter.unit, parameter.lower, parameter.upper)
 
 
