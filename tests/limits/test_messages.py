@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.limits._governor_test import GovernorTest, sum_of_jumps
-from shaftprint.limits._messages import explained
+from shaftprint.limits.prediction import GovernorTest, explained, sum_of_jumps
 from shaftprint.time_domain import Jump
 
 STD_S, MEAN_STD_S = np.full(8, 2e-3), 4e-3

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.limits._governor_test import GovernorTest
-from shaftprint.limits._set_point import rate_limited
+from shaftprint.limits.prediction import GovernorTest, rate_limited
 from shaftprint.time_domain import Jump
 
 EVERY_S = 0.005

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from shaftprint.validation._misfit import Compared, misfit_of
-from shaftprint.validation._noise_pieces import NoisePieces
+from shaftprint.validation.measures import Compared, NoisePieces, misfit_of
 
 SAMPLES = 400
 TIME = np.arange(SAMPLES) / 20.0

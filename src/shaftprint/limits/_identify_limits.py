@@ -8,9 +8,7 @@ import numpy as np
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import limited_governor
 from shaftprint.identify import Prior
-from shaftprint.limits._governor_test import governor_test
 from shaftprint.limits._limit_fit import LimitFit
-from shaftprint.limits._messages import Messages
 from shaftprint.limits._numbers import (
     Units,
     exclusion,
@@ -23,6 +21,7 @@ from shaftprint.limits._search import GOVERNOR, Fitted, Scanned, Search, fitted,
 from shaftprint.limits._set_point_quantum import quantum_of
 from shaftprint.limits._suspects import SUSPECTS, Kind
 from shaftprint.limits._uncertainty import spread_of
+from shaftprint.limits.prediction import Messages, governor_test
 from shaftprint.models import Structure
 from shaftprint.signals import Signals
 from shaftprint.vessel import Vessel

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from shaftprint.identify import Estimate, Identification
-from shaftprint.limits._prediction_error import PredictedTorque
 from shaftprint.limits._suspects import STRUCTURE_LIMITS, Kind, parameters_of
+from shaftprint.limits.prediction import PredictedTorque
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

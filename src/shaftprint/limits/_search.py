@@ -9,11 +9,8 @@ from shaftprint.arrays import BoolArray, FloatArray, frozen_bool
 from shaftprint.campaign import Campaign
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Draw, Identification, Prior, Settings, identify_jointly
-from shaftprint.limits._governor_test import GovernorTest
-from shaftprint.limits._messages import Messages, messages_of
-from shaftprint.limits._prediction_error import OUTPUT, PredictionError
-from shaftprint.limits._set_point import GovernorRecord
 from shaftprint.limits._suspects import IDLE, SUSPECTS, Kind, Suspect, parameters_of, starts_of
+from shaftprint.limits.prediction import OUTPUT, GovernorRecord, GovernorTest, Messages, PredictionError, messages_of
 from shaftprint.models import Structure
 
 GOVERNOR: Mapping[str, float] = {

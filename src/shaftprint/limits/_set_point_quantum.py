@@ -14,11 +14,9 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.campaign import Campaign, Staircase
-from shaftprint.limits._governor_test import GovernorTest
-from shaftprint.limits._noise_colour import Innovations
 from shaftprint.limits._search import GOVERNOR, Fitted, values_without_limits
-from shaftprint.limits._set_point import GovernorRecord
 from shaftprint.limits._suspects import Kind
+from shaftprint.limits.prediction import GovernorRecord, GovernorTest, Innovations
 
 # Steps that are looked for, over the speed of the working point. Finer ones cannot be told from what noise and
 # deadbands do; coarser ones are levels of a switch.

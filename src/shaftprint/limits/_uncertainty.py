@@ -15,9 +15,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
-from shaftprint.limits._governor_test import GovernorTest
-from shaftprint.limits._prediction_error import PredictionError
 from shaftprint.limits._search import Fitted, fitted
+from shaftprint.limits.prediction import GovernorTest, PredictionError
 from shaftprint.normal import NORMAL_95
 from shaftprint.signals import Signals
 from shaftprint.vessel import Vessel

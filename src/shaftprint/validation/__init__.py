@@ -12,8 +12,6 @@ deviation           -       ``(x - x_0) / x_0`` from the working point
 =================== ======= ==========================================================================================
 """
 
-from shaftprint.validation._delay import RemainingDelay
-from shaftprint.validation._misfit import Misfit, Outcome
 from shaftprint.validation._model import Model, identified_model, model_of
 from shaftprint.validation._prediction import Predict, linear_prediction, simulated_prediction
 from shaftprint.validation._settings import ValidationSettings
@@ -22,6 +20,7 @@ from shaftprint.validation._thesis_models import thesis_models
 from shaftprint.validation._validate import validate
 from shaftprint.validation._validation import Comparison, Traces, Validation
 from shaftprint.validation._validation_records import Excerpt
+from shaftprint.validation.measures import Misfit, Outcome, RemainingDelay
 
 __all__ = [
     "Comparison",

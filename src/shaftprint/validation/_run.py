@@ -8,13 +8,11 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign
 from shaftprint.signals import Signals, deviation
-from shaftprint.validation._low_pass import low_pass
-from shaftprint.validation._misfit import Compared
 from shaftprint.validation._model import Model
-from shaftprint.validation._noise_pieces import LEAST_LOAD, QuietNoise, quiet_noise
 from shaftprint.validation._prediction import OUTPUTS, Predict, with_square
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._validation_records import Excerpt
+from shaftprint.validation.measures import LEAST_LOAD, Compared, QuietNoise, low_pass, quiet_noise
 
 # Time behind a record that is predicted too: the low-pass and the search for a delay look beyond its end.
 _BEHIND_S = 5.0

@@ -4,12 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from shaftprint.validation._misfit import Misfit
 from shaftprint.validation._model import Model
-from shaftprint.validation._noise_pieces import QuietNoise
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber
 from shaftprint.validation._validation import Comparison
+from shaftprint.validation.measures import Misfit, QuietNoise
 
 PERCENT = 100.0
 WORDS = {"n": "speed", "M_s": "torque"}

@@ -13,8 +13,7 @@ from scipy.special import stdtrit
 
 from shaftprint.arrays import FloatArray
 from shaftprint.normal import deviations
-from shaftprint.validation._misfit import Compared
-from shaftprint.validation._step_numbers import STEP_NUMBERS, step_numbers
+from shaftprint.validation.measures import STEP_NUMBERS, Compared, step_numbers
 
 _FEWEST_PIECES = 3
 # A number that so small a share of the noisy responses shows is no number to compare.

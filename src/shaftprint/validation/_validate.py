@@ -13,8 +13,6 @@ from shaftprint.identify import Identification
 from shaftprint.identify.fit import pick_up_values
 from shaftprint.models import Structure
 from shaftprint.signals import Signals
-from shaftprint.validation._delay import LONGEST_S, RemainingDelay, remaining_delay
-from shaftprint.validation._misfit import Compared, Outcome, misfit_of
 from shaftprint.validation._model import Model, identified_model, model_of
 from shaftprint.validation._prediction import Predict, linear_prediction
 from shaftprint.validation._run import Data, Run, run_model
@@ -23,6 +21,7 @@ from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber, compare_steps
 from shaftprint.validation._validation import Comparison, Traces, Validation
 from shaftprint.validation._validation_records import Excerpt, default_records, excerpts_of, whole_excerpts
+from shaftprint.validation.measures import LONGEST_S, Compared, Outcome, RemainingDelay, misfit_of, remaining_delay
 
 
 @refusing_none(ValidationError)

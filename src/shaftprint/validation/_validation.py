@@ -3,12 +3,11 @@
 from dataclasses import dataclass
 
 from shaftprint.arrays import FloatArray
-from shaftprint.validation._delay import RemainingDelay
-from shaftprint.validation._misfit import Misfit, Outcome
 from shaftprint.validation._model import Model
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber
 from shaftprint.validation._validation_records import Excerpt
+from shaftprint.validation.measures import Misfit, Outcome, RemainingDelay
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

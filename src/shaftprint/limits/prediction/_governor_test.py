@@ -10,7 +10,7 @@ from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import AHEAD_S
 from shaftprint.errors import SignalError
-from shaftprint.limits._set_point import GovernorRecord
+from shaftprint.limits.prediction._set_point import GovernorRecord
 from shaftprint.signals import Signals, deviation
 from shaftprint.time_domain import Decimator, Jump, full_load_shape, jumps_in, with_jumps
 from shaftprint.vessel import Vessel

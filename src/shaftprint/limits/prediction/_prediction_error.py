@@ -8,9 +8,9 @@ import numpy as np
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import FittedTerm, LineTest, Repeats, Term, TermCheck, TermTest, fit_percent
-from shaftprint.limits._noise_colour import Innovations, innovations
-from shaftprint.limits._set_point import GovernorRecord
 from shaftprint.limits._suspects import IDLE
+from shaftprint.limits.prediction._noise_colour import Innovations, innovations
+from shaftprint.limits.prediction._set_point import GovernorRecord
 from shaftprint.models import Structure
 from shaftprint.time_domain import ExactDelays, Record, simulated_on
 

@@ -20,7 +20,7 @@ from scipy.special import gammaincc
 from shaftprint.arrays import FloatArray
 from shaftprint.identify import fit_percent
 from shaftprint.normal import deviations
-from shaftprint.validation._noise_pieces import NoisePieces, correlated
+from shaftprint.validation.measures._noise_pieces import NoisePieces, correlated
 
 Outcome = Literal["passes", "fails", "undecided"]
 PERCENT = 100.0

@@ -17,8 +17,8 @@ import numpy as np
 from scipy.special import ndtr
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
-from shaftprint.limits._governor_test import GovernorTest
-from shaftprint.limits._prediction_error import PredictionError
+from shaftprint.limits.prediction._governor_test import GovernorTest
+from shaftprint.limits.prediction._prediction_error import PredictionError
 
 # Cycles that are looked for [s]: below, no delay is known so well; above, steps would be seen in the recorded speed.
 SHORTEST_S, LONGEST_S, CYCLES = 2e-3, 0.25, 160
