@@ -5,7 +5,7 @@ import math
 import pytest
 import scipy.stats
 
-from shaftprint.identify.likelihood._chi_square import chi_square_tail
+from shaftprint.identify.likelihood import chi_square_tail
 
 
 @pytest.mark.parametrize("freedom", [0.5, 1, 2, 3, 7.3, 40, 400, 20000])

@@ -5,7 +5,7 @@ import math
 import pytest
 import scipy.stats
 
-from shaftprint.identify.likelihood._f_distribution import f_tail
+from shaftprint.identify.likelihood import f_tail
 
 
 @pytest.mark.parametrize("denominator", [1.5, 7.0, 10.7, 100.0, 5e4])

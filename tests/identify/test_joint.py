@@ -17,7 +17,7 @@ from shaftprint.identify import (
     profile_intervals,
     refit,
 )
-from shaftprint.identify.likelihood._build_objective import build_joint_objective
+from shaftprint.identify.likelihood import build_joint_objective
 from shaftprint.models import Constant, Delay, Gain, Parameter, PIGovernor, Sensitivity, Shaft, Structure
 from shaftprint.spectra import FrequencyResponse
 

@@ -8,7 +8,7 @@ import pytest
 
 from shaftprint.catalogue import ShipRole, structure
 from shaftprint.identify import Estimate, Prior, Settings, assess, identify, profile
-from shaftprint.identify.judgement._affected_numbers import HANGING, by_weight, hangs_on
+from shaftprint.identify.judgement import HANGING, by_weight, hangs_on
 from shaftprint.reasons import Reason, ReasonKind
 
 LINES_HZ = np.geomspace(0.0044, 3.4, 24)

@@ -6,9 +6,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Draw, Settings, identify, identify_jointly
-from shaftprint.identify.search._levenberg_marquardt import Descent, descend
-from shaftprint.identify.search._stability import stable_models
-from shaftprint.identify.search._stability_border import beside_border
+from shaftprint.identify.search import Descent, beside_border, descend, stable_models
 from shaftprint.models import Delay, Parameter, PIGovernor, Sensitivity, Shaft, Structure, is_stable
 
 DURING = Settings(stability="during")

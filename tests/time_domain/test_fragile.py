@@ -6,9 +6,16 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import limited
-from shaftprint.time_domain import Decimator, ExactDelays, NoiseModel, Whitening, output_error, record_from_arrays
-from shaftprint.time_domain._simulator import on_record
-from shaftprint.time_domain.nonlinear._jump_resonance import Fragile, fragile_stretches, without_fragile
+from shaftprint.time_domain import (
+    Decimator,
+    ExactDelays,
+    NoiseModel,
+    Whitening,
+    output_error,
+    record_from_arrays,
+    simulated_on,
+)
+from shaftprint.time_domain.nonlinear import Fragile, fragile_stretches, without_fragile
 
 RATE = 20.0
 NOISE = 0.01
@@ -30,7 +37,7 @@ def chirp(line, amplitude):
     record = record_from_arrays("C1", {"n_set": drive}, {"n": drive, "M_s": drive}, rate_hz=RATE)
     # the drive is finer than the record, as that of a recording
     margin = replace_every(record, fine)
-    run = on_record(ExactDelays(), line, line.vector(TRUE), margin, ())[0]
+    run = simulated_on(ExactDelays(), line, line.vector(TRUE), margin, ())[0]
     return replace(margin, outputs={name: run[:, place] for place, name in enumerate(line.outputs)})
 
 
@@ -60,7 +67,7 @@ def test_what_lies_beyond_a_jump_is_left_out_and_the_rest_stays(line):
         slow = np.convolve(rng.standard_normal(TIME.size + 40), np.ones(40) / np.sqrt(40.0), "valid")[: TIME.size]
         fine = np.interp(np.arange(record.drive["n_set"].size) / (10 * RATE), TIME, NOISE * slow)
         ship = replace(record, drive={"n_set": record.drive["n_set"] + fine})
-        run = on_record(ExactDelays(), line, line.vector(TRUE), ship, ())[0]
+        run = simulated_on(ExactDelays(), line, line.vector(TRUE), ship, ())[0]
         apart[number] = np.abs(run[:, 0] - record.outputs["n"])
     inside = apart[:, left_out].max(axis=1)
     outside = apart[:, ~left_out].max(axis=1)

@@ -8,8 +8,7 @@ import pytest
 from shaftprint.catalogue import limited
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings
-from shaftprint.time_domain import ExactDelays, identify_in_time, output_error, record_from_arrays
-from shaftprint.time_domain._simulator import on_record
+from shaftprint.time_domain import ExactDelays, identify_in_time, output_error, record_from_arrays, simulated_on
 
 RATE = 20.0
 TIME = np.arange(0.0, 120.01, 1.0 / RATE)
@@ -27,7 +26,7 @@ def record(line):
     """The line under a slow sine, exactly as the model has it."""
     drive = 0.15 * np.sin(2.0 * np.pi * 0.1 * TIME)
     empty = record_from_arrays("C1", {"n_set": drive}, {"n": drive, "M_s": drive}, rate_hz=RATE)
-    run = on_record(ExactDelays(), line, line.vector({}), empty, ())[0]
+    run = simulated_on(ExactDelays(), line, line.vector({}), empty, ())[0]
     names = list(line.outputs)
     return replace(empty, outputs={name: run[:, place] for place, name in enumerate(names)})
 

@@ -11,9 +11,7 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify import Estimate
 from shaftprint.signals import SetPointCalibration, Signals, SpeedSignal, WorkingPoint
 from shaftprint.time_domain import NonlinearSettings, limit_numbers, record_from_arrays, structure_for, without_orders
-from shaftprint.time_domain.nonlinear._drive import sharpened
-from shaftprint.time_domain.nonlinear._limited_sines import touched
-from shaftprint.time_domain.nonlinear._search import Given, SomeDrawn
+from shaftprint.time_domain.nonlinear import Given, SomeDrawn, sharpened, touched
 from shaftprint.vessel import load_vessel
 
 POINT = WorkingPoint(

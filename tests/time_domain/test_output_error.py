@@ -19,7 +19,7 @@ from shaftprint.identify import (
     profile,
     refit,
 )
-from shaftprint.identify.uncertainty._propagation import propagation
+from shaftprint.identify.uncertainty import propagation
 from shaftprint.models import FirstOrderLag, Gain, Parameter, Structure
 from shaftprint.simulation import Trace
 from shaftprint.spectra import FrequencyResponse

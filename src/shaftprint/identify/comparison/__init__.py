@@ -3,8 +3,10 @@
 from shaftprint.identify.comparison._compare import compare_fits, compare_structures, expect_comparable
 from shaftprint.identify.comparison._comparison import Candidate, Comparison
 from shaftprint.identify.comparison._criteria import Criteria, criteria_of
-from shaftprint.identify.comparison._hold_out import Foretold
-from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio
+from shaftprint.identify.comparison._hold_out import Foretold, foretold
+from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio, likelihood_ratio
+from shaftprint.identify.comparison._nesting import Nesting, nesting
+from shaftprint.identify.comparison._sentences import comparison_words
 
 __all__ = [
     "Candidate",
@@ -12,8 +14,13 @@ __all__ = [
     "Criteria",
     "Foretold",
     "LikelihoodRatio",
+    "Nesting",
     "compare_fits",
     "compare_structures",
+    "comparison_words",
     "criteria_of",
     "expect_comparable",
+    "foretold",
+    "likelihood_ratio",
+    "nesting",
 ]

@@ -1,8 +1,9 @@
 """What a fit minimises: lines, records and earlier knowledge as terms of one likelihood, with their weights."""
 
-from shaftprint.identify.likelihood._build_objective import Source, build_joint_objective
+from shaftprint.identify.likelihood._build_objective import Source, build_joint_objective, build_objective
 from shaftprint.identify.likelihood._chi_square import chi_square_tail
 from shaftprint.identify.likelihood._experiment import Experiment, ResponseRepeats
+from shaftprint.identify.likelihood._f_distribution import f_tail
 from shaftprint.identify.likelihood._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify.likelihood._fitted_response import Part, channel_names, channels_of
 from shaftprint.identify.likelihood._known import PRIOR_OF_G, inertia_from_vessel, priors_from_vessel
@@ -10,9 +11,11 @@ from shaftprint.identify.likelihood._line_test import LineTest
 from shaftprint.identify.likelihood._load_factors import load_factors, with_load
 from shaftprint.identify.likelihood._objective import Objective, Redrawn
 from shaftprint.identify.likelihood._prior import Prior
+from shaftprint.identify.likelihood._tails import estimated_tails, student_tails
 from shaftprint.identify.likelihood._term import FittedTerm, Repeats, Term, TermTest
 from shaftprint.identify.likelihood._term_check import CheckKind, TermCheck
 from shaftprint.identify.likelihood._weighting import MaximumLikelihood, StudentT, Unweighted, Weighting
+from shaftprint.identify.likelihood._wishart import estimated_shapes
 
 __all__ = [
     "PRIOR_OF_G",
@@ -35,13 +38,18 @@ __all__ = [
     "Unweighted",
     "Weighting",
     "build_joint_objective",
+    "build_objective",
     "channel_names",
     "channels_of",
     "chi_square_tail",
+    "estimated_shapes",
+    "estimated_tails",
+    "f_tail",
     "fit_ceiling",
     "fit_percent",
     "inertia_from_vessel",
     "load_factors",
     "priors_from_vessel",
+    "student_tails",
     "with_load",
 ]

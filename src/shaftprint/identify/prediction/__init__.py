@@ -1,6 +1,7 @@
 """What a test can find, before it is made: from the equations alone, or from its plan and the noise."""
 
 from shaftprint.identify.prediction._accuracy import Accuracy, predict_accuracy, predict_joint_accuracy
+from shaftprint.identify.prediction._formulas import unit_of
 from shaftprint.identify.prediction._identifiability import Identifiability, identifiability
 from shaftprint.identify.prediction._inseparable_groups import Group
 from shaftprint.identify.prediction._lost_directions import Direction
@@ -25,4 +26,5 @@ __all__ = [
     "predict_intervals",
     "predict_joint_accuracy",
     "stated_noise",
+    "unit_of",
 ]

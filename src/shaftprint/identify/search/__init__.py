@@ -1,14 +1,18 @@
 """How the lowest cost is found: settings, starts, descent within bounds and beside the border of stability."""
 
+from shaftprint.identify.search._bounded_least_squares import bounded_least_squares
 from shaftprint.identify.search._conditional_minimum import Conditional
-from shaftprint.identify.search._levenberg_marquardt import Descent, descend
+from shaftprint.identify.search._levenberg_marquardt import LARGEST_DAMPING, Descent, descend
 from shaftprint.identify.search._optimum_path import highest_between
 from shaftprint.identify.search._search import polish, search
 from shaftprint.identify.search._settings import Settings, Stability
 from shaftprint.identify.search._spread import spread
+from shaftprint.identify.search._stability import stable_models
+from shaftprint.identify.search._stability_border import beside_border
 from shaftprint.identify.search._starts import Draw, LatinHypercube, Uniform
 
 __all__ = [
+    "LARGEST_DAMPING",
     "Conditional",
     "Descent",
     "Draw",
@@ -16,9 +20,12 @@ __all__ = [
     "Settings",
     "Stability",
     "Uniform",
+    "beside_border",
+    "bounded_least_squares",
     "descend",
     "highest_between",
     "polish",
     "search",
     "spread",
+    "stable_models",
 ]

@@ -5,6 +5,7 @@ from shaftprint.identify.uncertainty._bootstrap import Bootstrap, BootstrapEstim
 from shaftprint.identify.uncertainty._budget import Budget, BudgetRow, budget
 from shaftprint.identify.uncertainty._profile import Interval, Profile, profile, profile_intervals
 from shaftprint.identify.uncertainty._profile_curve import ProfileCurve, profile_curve
+from shaftprint.identify.uncertainty._propagation import propagation
 
 __all__ = [
     "Bootstrap",
@@ -22,6 +23,7 @@ __all__ = [
     "profile",
     "profile_curve",
     "profile_intervals",
+    "propagation",
     "response_band",
     "step_band",
 ]
