@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from shaftprint.cli import _new, _sail
+from shaftprint.cli.commands import _new, _sail
 from shaftprint.errors import RecordingError
 
 POSIX = pytest.mark.skipif(os.name != "posix", reason="signals are sent the POSIX way")

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import load_campaign
-from shaftprint.cli._inspect import verdict
+from shaftprint.cli.commands._inspect import verdict
 from shaftprint.recording import RecordingWriter
 from shaftprint.spectra import FrequencyResponse, SignalToNoise, Spectra
 

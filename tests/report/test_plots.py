@@ -12,7 +12,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import ReportError
 from shaftprint.report import Curve
-from shaftprint.report._shorter_svg import shorter_svg
+from shaftprint.report.figures._style import shorter_svg
 from shaftprint.report.plots import (
     Plot,
     bode_plot,

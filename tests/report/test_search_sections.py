@@ -9,8 +9,8 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, Unweighted, compare_fits, identify, scan
 from shaftprint.report import plot_scan
-from shaftprint.report._search_sections import comparison_section, search_section
-from shaftprint.report._verdict_sections import verdict_section
+from shaftprint.report.sections._results import verdict_section
+from shaftprint.report.sections._search import comparison_section, search_section
 
 
 def cells(table):
@@ -58,7 +58,7 @@ def test_every_optimum_has_a_row_with_its_parameters(fits):
 
 
 def test_more_optima_than_fit_on_a_page_are_counted(fits, monkeypatch):
-    monkeypatch.setattr("shaftprint.report._search_sections.MOST_OPTIMA", 1)
+    monkeypatch.setattr("shaftprint.report.sections._search.MOST_OPTIMA", 1)
     table = search_section(SimpleNamespace(identification=fits["OL3"])).tables[0]
     assert len(table.rows) == 1
     assert "more of higher cost are not shown" in table.note

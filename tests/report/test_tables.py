@@ -12,9 +12,9 @@ from shaftprint.report._fingerprint_tables import (
     parameter_table,
     truth_of_combinations,
 )
-from shaftprint.report._result_sections import _against_vessel, _explained, _well_known
 from shaftprint.report._signal_tables import calibration_table, repair_table, step_table, strip_table, window_table
 from shaftprint.report._table import Table, sentence_html, symbol_html
+from shaftprint.report.sections._results import _against_vessel, _explained, _well_known
 
 
 def with_parameters(fingerprint, *quantities):

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from shaftprint.identify import Budget, BudgetRow, budget, profile_intervals, step_band
-from shaftprint.report._budget_figure import plot_budget
-from shaftprint.report._profile_figure import plot_profiles
-from shaftprint.report._step_band_figure import plot_step_band
-from shaftprint.report._uncertainty_sections import budget_table
+from shaftprint.report.figures._covariance import plot_budget
+from shaftprint.report.figures._profiles import plot_profiles
+from shaftprint.report.figures._step_band import plot_step_band
+from shaftprint.report.sections._uncertainty import budget_table
 
 STATED = Budget(
     sources=("noise of n", "noise of M_s", "TVC", "air"),

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from shaftprint.report._quality_sections import _weakest
+from shaftprint.report.sections._quality import _weakest
 
 
 def test_the_pick_up_that_was_identified_counts_and_the_others_do_not():

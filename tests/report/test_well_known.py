@@ -3,7 +3,7 @@
 import pytest
 
 from shaftprint.fingerprint import Quantity
-from shaftprint.report._result_sections import _share
+from shaftprint.report.sections._results import _share
 
 
 def test_a_wide_interval_outweighs_a_small_deviation():

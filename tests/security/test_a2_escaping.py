@@ -359,7 +359,7 @@ def test_nothing_is_printed_past_the_gate():
     """No command calls click.echo, print or a console of rich by itself; the gate and the tables are two files."""
     allowed = {"_terminal.py": {"click.echo"}, "_tables.py": {"console.print", "Console"}, "_progress.py": {"Console"}}
     found = []
-    for path in Path(shaftprint.cli.__file__).parent.glob("*.py"):
+    for path in Path(shaftprint.cli.__file__).parent.rglob("*.py"):
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call):
                 name = ast.unparse(node.func)

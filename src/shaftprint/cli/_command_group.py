@@ -1,11 +1,12 @@
 """The commands of the program, and how they end."""
 
 import errno
+import importlib
+from collections.abc import Mapping
 from typing import Any
 
 import click
 
-from shaftprint.cli._lazy_group import LazyGroup
 from shaftprint.cli._terminal import echo
 from shaftprint.errors import ShaftprintError
 from shaftprint.escape import terminal_message
@@ -38,10 +39,39 @@ COMMANDS = {
 INTERRUPTED = 130
 
 
+class LazyGroup(click.Group):
+    """Commands by name, each in a file of its own; asking for their names or one-line helps imports none."""
+
+    helps: Mapping[str, str]
+    """The one-line help of every command, in the order of use."""
+    folder: str
+    """The package that holds the file of each command."""
+    heading: str = "Commands"
+    """What the list of commands is called."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """Return the names in the order of use."""
+        return list(self.helps)
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """Import a command; None if there is none of that name."""
+        if cmd_name not in self.helps:
+            return None
+        module = importlib.import_module(f"{self.folder}._{cmd_name.replace('-', '_')}")
+        command: click.Command = module.command
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """List the commands with their help without importing them."""
+        with formatter.section(self.heading):
+            formatter.write_dl(list(self.helps.items()))
+
+
 class CommandGroup(LazyGroup):
     """The commands by name, with one place that turns errors into a sentence and an exit code."""
 
     helps = COMMANDS
+    folder = "shaftprint.cli.commands"
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run a command; what the user can mend ends in one sentence and a non-zero exit code.

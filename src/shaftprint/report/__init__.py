@@ -16,32 +16,10 @@ torque                    N m        at the gauge
 Every ``plot_*`` function returns a matplotlib ``Figure`` that belongs to nobody else; ``save_figure`` writes it.
 """
 
-from shaftprint.report._bode import plot_bode
-from shaftprint.report._calibration_figure import plot_calibration
-from shaftprint.report._campaign_figure import plot_campaign
 from shaftprint.report._comparison import render_comparison
-from shaftprint.report._comparison_cover import change_in_words
 from shaftprint.report._comparison_tables import difference_table
-from shaftprint.report._correlation_figure import plot_correlation
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
-from shaftprint.report._difference_figure import plot_differences
 from shaftprint.report._differences import LOAD_REPEATABILITY, Difference, differences
-from shaftprint.report._explanation import Explanation, explain_thesis
-from shaftprint.report._explanation_figure import plot_missing_damping
-from shaftprint.report._explanation_words import (
-    damping_table,
-    explanation_sentences,
-    gain_table,
-    inertia_table,
-    integral_table,
-)
-from shaftprint.report._fit_figures import (
-    plot_closed_loop_comparison,
-    plot_closed_loop_fits,
-    plot_core_fit,
-    plot_governor_fits,
-    plot_open_loop_comparison,
-)
 from shaftprint.report._inertia_tables import (
     expected_inertia_table,
     inertia_budget_table,
@@ -50,30 +28,55 @@ from shaftprint.report._inertia_tables import (
     two_mass_sentence,
     water_table,
 )
-from shaftprint.report._limits_figure import plot_limits
-from shaftprint.report._mode_figure import plot_modes
-from shaftprint.report._nyquist import plot_nyquist
-from shaftprint.report._outlier_figure import plot_outliers
 from shaftprint.report._render import render_report
-from shaftprint.report._residual_figure import plot_residuals
-from shaftprint.report._response_figures import (
-    plot_closed_loop_response,
-    plot_line_selection,
-    plot_open_loop_responses,
-)
-from shaftprint.report._scan_figure import plot_scan
-from shaftprint.report._sensitivity import plot_sensitivity
-from shaftprint.report._signal_to_noise_figure import plot_signal_to_noise
-from shaftprint.report._simulation_figure import SimulatedSignal, plot_simulation
-from shaftprint.report._step_figure import plot_step_delays
-from shaftprint.report._strip_figure import plot_strip_angles
-from shaftprint.report._style import save_figure
 from shaftprint.report._table import Table
-from shaftprint.report._thesis_families import Family, thesis_families
-from shaftprint.report._time_series import plot_chirp, plot_excitation, plot_staircase
-from shaftprint.report._validation_figure import plot_validation
-from shaftprint.report._validation_summary_figure import plot_validation_summary
 from shaftprint.report._vessel_file_words import vessel_file_sentences
+from shaftprint.report.figures import (
+    SimulatedSignal,
+    plot_bode,
+    plot_calibration,
+    plot_campaign,
+    plot_chirp,
+    plot_closed_loop_comparison,
+    plot_closed_loop_fits,
+    plot_closed_loop_response,
+    plot_core_fit,
+    plot_correlation,
+    plot_differences,
+    plot_excitation,
+    plot_governor_fits,
+    plot_limits,
+    plot_line_selection,
+    plot_missing_damping,
+    plot_modes,
+    plot_nyquist,
+    plot_open_loop_comparison,
+    plot_open_loop_responses,
+    plot_outliers,
+    plot_residuals,
+    plot_scan,
+    plot_sensitivity,
+    plot_signal_to_noise,
+    plot_simulation,
+    plot_staircase,
+    plot_step_delays,
+    plot_strip_angles,
+    plot_validation,
+    plot_validation_summary,
+    save_figure,
+)
+from shaftprint.report.sections import change_in_words
+from shaftprint.report.thesis import (
+    Explanation,
+    Family,
+    damping_table,
+    explain_thesis,
+    explanation_sentences,
+    gain_table,
+    inertia_table,
+    integral_table,
+    thesis_families,
+)
 
 __all__ = [
     "LOAD_REPEATABILITY",

@@ -7,6 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
+from shaftprint.fingerprint import Fingerprint, identified_model
 from shaftprint.models import Inverse, Sensitivity, Structure
 
 if TYPE_CHECKING:
@@ -99,3 +100,29 @@ def closed_loop_curve(core: Curve, governor: Curve) -> Curve:
         for name, value in zip(curve.structure.names, curve.values, strict=True)
     }
     return Curve(label=label, structure=structure, values=np.array([named[name] for name in structure.names]))
+
+
+def fingerprint_curve(fingerprint: Fingerprint, structure: Structure, label: str) -> Curve:
+    """Return the curve of a fingerprint; without a band where the test says nothing of one of its parameters.
+
+    Parameters
+    ----------
+    fingerprint
+        A saved fingerprint.
+    structure
+        The structure that it names.
+    label
+        What the legend calls it.
+
+    Raises
+    ------
+    FingerprintError
+        If the structure has other parameters than the fingerprint.
+    """
+    model = identified_model(fingerprint, structure)
+    return Curve(
+        label=label,
+        structure=model.structure,
+        values=model.values,
+        covariance=model.covariance if np.isfinite(model.covariance).all() else None,
+    )

@@ -18,12 +18,11 @@ from jinja2 import DictLoader, Environment, StrictUndefined, Template
 from markupsafe import Markup
 
 from shaftprint.escape import html_value
-from shaftprint.report._cover import Cover
 from shaftprint.report._folder import FIGURES, PAGE, PLOTS, report_written_whole
-from shaftprint.report._sections import Picture, Section
-from shaftprint.report._style import save_figure
 from shaftprint.report._table import Table, sentence_html
+from shaftprint.report.figures import save_figure
 from shaftprint.report.plots import plotly_script, plotly_sheets, plotly_version, quick_script
+from shaftprint.report.sections import Cover, Picture, Section
 
 # Of a larger one a picture in dots is smaller, and still fine in print.
 LARGEST_SVG_BYTES = 80_000

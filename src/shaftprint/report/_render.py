@@ -8,24 +8,31 @@ from shaftprint.arguments import refusing_none
 from shaftprint.clocks import logger_clocks
 from shaftprint.errors import ReportError
 from shaftprint.fingerprint import fingerprint_sha256
-from shaftprint.report._inertia_sections import inertia_section
-from shaftprint.report._measurement_sections import response_section, signal_section, time_section
-from shaftprint.report._model_sections import (
-    explanation_section,
-    sensitivity_section,
-    structure_section,
-    thesis_section,
-)
 from shaftprint.report._page import Page, write_page
-from shaftprint.report._quality_sections import quality_section
-from shaftprint.report._result_sections import fit_section, parameter_section, stability_section, summary_section
-from shaftprint.report._search_sections import comparison_section, search_section
-from shaftprint.report._sections import Inputs, Section
-from shaftprint.report._superintendent import cover_of
 from shaftprint.report._table import Table
-from shaftprint.report._uncertainty_sections import uncertainty_section
-from shaftprint.report._validation_sections import validation_section
-from shaftprint.report._verdict_sections import verdict_section
+from shaftprint.report.sections import (
+    Inputs,
+    Section,
+    comparison_section,
+    cover_of,
+    explanation_section,
+    fit_section,
+    inertia_section,
+    parameter_section,
+    quality_section,
+    response_section,
+    search_section,
+    sensitivity_section,
+    signal_section,
+    stability_section,
+    structure_section,
+    summary_section,
+    thesis_section,
+    time_section,
+    uncertainty_section,
+    validation_section,
+    verdict_section,
+)
 
 if TYPE_CHECKING:
     from shaftprint.models import Structure

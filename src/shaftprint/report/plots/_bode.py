@@ -7,16 +7,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.identify import model_band
-from shaftprint.report._bode_parts import BAND_STEP, ENDLESS_DB, channel_of, measured_phase_deg, trace_of
-from shaftprint.report._uncertainty import measured_points
+from shaftprint.report.figures import BAND_STEP, ENDLESS_DB, channel_of, measured_phase_deg, measured_points, trace_of
 from shaftprint.report.plots._panels import TWO_LEGEND_ROWS_PX, Grid
 from shaftprint.report.plots._plot import Json, Plot
 from shaftprint.report.plots._traces import MARKERS, band, colour, line, points, straight
 from shaftprint.report.plots._words import label_text, over_text
 
 if TYPE_CHECKING:
-    from shaftprint.report._bode_parts import Trace
     from shaftprint.report._curve import Curve
+    from shaftprint.report.figures import Trace
     from shaftprint.spectra import FrequencyResponse
 
 GRID_POINTS = 301

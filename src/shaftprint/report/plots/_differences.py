@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.report._difference_figure import shown_names, shown_percent
+from shaftprint.report.figures import shown_names, shown_percent
 from shaftprint.report.plots._panels import Grid, room_px
 from shaftprint.report.plots._plot import Plot, numbers
 from shaftprint.report.plots._traces import MARKERS, colour, points

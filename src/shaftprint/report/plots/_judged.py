@@ -6,10 +6,7 @@ import numpy as np
 
 from shaftprint.identify import profile_curve
 from shaftprint.normal import NORMAL_95
-from shaftprint.report._budget_figure import PERCENT
-from shaftprint.report._profile_figure import ROOM
-from shaftprint.report._residual_figure import normalised_residuals
-from shaftprint.report._signal_to_noise_figure import THESIS_LIMIT_DB
+from shaftprint.report.figures import PERCENT, ROOM, THESIS_LIMIT_DB, normalised_residuals
 from shaftprint.report.plots._panels import TWO_LEGEND_ROWS_PX, Grid, room_px
 from shaftprint.report.plots._plot import Json, Plot
 from shaftprint.report.plots._traces import MARKERS, colour, line, points, straight

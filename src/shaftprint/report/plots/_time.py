@@ -8,8 +8,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.identify import step_band
 from shaftprint.normal import deviations
-from shaftprint.report._envelope import envelope, worthwhile
-from shaftprint.report._step_band_figure import DURATION_S
+from shaftprint.report.figures import DURATION_S, envelope, worthwhile
 from shaftprint.report.plots._panels import Grid
 from shaftprint.report.plots._plot import Json, Plot, packed
 from shaftprint.report.plots._traces import band, line

@@ -1,0 +1,1 @@
+"""The formats of ``shaftprint export``, one file each."""

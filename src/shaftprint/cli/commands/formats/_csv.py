@@ -1,0 +1,37 @@
+"""``shaftprint export csv``: a fingerprint as tables."""
+
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._fingerprint_file import fingerprint_at
+from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
+from shaftprint.cli._terminal import echo
+from shaftprint.cli.commands.formats._exported import file_to_write, fingerprint_argument, force_option
+from shaftprint.export import exported_model, write_csv
+
+
+@click.command("csv")
+@fingerprint_argument
+@click.option(
+    "--structure", metavar="NAME", help=f"Structure that was identified, if it is not shipped: {OWN_FILE_HELP}."
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Beginning of the names, as in tug.csv; named after the vessel by default.",
+)
+@force_option
+def command(fingerprint: Path, structure: TypedName | None, output: Path | None, force: bool) -> None:
+    """Write tables of parameters, combinations and the frequency response with its band.
+
+    FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. Columns are set apart
+    by commas, numbers have points, and an empty cell is not known.
+    """
+    found = fingerprint_at(fingerprint)
+    chosen = structure_to_use(structure, found)
+    path = file_to_write(output, exported_model(found, of=chosen), ".csv", inputs=(fingerprint,), force=force)
+    written = write_csv(found, path, of=chosen, overwrite=force)
+    for table in (written.parameters, written.combinations, written.response):
+        echo(table)

@@ -1,0 +1,100 @@
+"""``shaftprint export fmu``: a model as a functional mock-up unit."""
+
+from pathlib import Path
+from typing import Literal
+
+import click
+import numpy as np
+
+from shaftprint.cli._own_structure import TypedName
+from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.cli._terminal import echo
+from shaftprint.cli.commands.formats._exported import (
+    file_to_write,
+    fingerprint_argument,
+    force_option,
+    model_to_export,
+    set_option,
+    structure_option,
+)
+from shaftprint.export import PLATFORMS, WrittenFmu, write_fmu
+
+
+@click.command("fmu")
+@fingerprint_argument
+@structure_option
+@set_option
+@click.option(
+    "--fmi", "version", type=click.Choice(["2", "3"]), default="2", show_default=True, help="Version of the interface."
+)
+@click.option(
+    "--platform",
+    "platforms",
+    type=click.Choice(list(PLATFORMS)),
+    multiple=True,
+    help="System to compile for, may be repeated; all that can be built here by default: others than this one need the "
+    "extra fmu.",
+)
+@click.option("--source-only", is_flag=True, help="Compile nothing; the user's tool compiles the sources.")
+@click.option(
+    "--sample",
+    "samples",
+    type=click.IntRange(min=0, max=10000),
+    default=0,
+    show_default=True,
+    help="Samples of the parameters by their covariance, one of which is chosen by the parameter posterior_sample.",
+)
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Start of the random numbers.")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="File to write; named after the vessel by default."
+)
+@force_option
+@no_progress_option
+def command(
+    fingerprint: Path,
+    structure: TypedName | None,
+    given: tuple[tuple[str, float], ...],
+    version: str,
+    platforms: tuple[str, ...],
+    source_only: bool,
+    samples: int,
+    seed: int,
+    output: Path | None,
+    force: bool,
+    no_progress: bool,
+) -> None:
+    """Write an FMU (FMI 2.0 or 3.0) for Simulink, Open Simulation Platform and others.
+
+    FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. The FMU is for
+    co-simulation and model exchange, has exact delays and its sources, and every parameter of the
+    structure can be tuned. Inputs and outputs are in rpm and N m about the working point.
+    """
+    if source_only and platforms:
+        raise click.UsageError("--source-only compiles nothing: leave --platform out.")
+    model = model_to_export(fingerprint, structure, dict(given))
+    path = file_to_write(output, model, ".fmu", inputs=(fingerprint,), force=force)
+    number: Literal[2, 3] = 2 if version == "2" else 3
+    with progress(hidden=no_progress) as steps:
+        steps.begin("Compiling, the first time for some minutes")
+        written = write_fmu(
+            model,
+            path,
+            version=number,
+            platforms=() if source_only else platforms or None,
+            samples=samples,
+            rng=np.random.default_rng(seed),
+            overwrite=force,
+        )
+    _print(written)
+
+
+def _print(written: WrittenFmu) -> None:
+    kinds = "co-simulation and model exchange" if written.model_exchange else "co-simulation only"
+    echo(f"FMI {written.version}.0, {kinds}, sources, binaries for {', '.join(written.platforms) or 'no system'}")
+    echo(
+        f"internal step {1e3 * written.internal_step_s:g} ms, fastest pole {written.largest_pole_rad_s:.3g} rad/s: "
+        f"{written.internal_step_s * written.largest_pole_rad_s:.2g} of 2.7 that is stable"
+    )
+    for name in written.late_outputs:
+        echo(f"{name} comes later than its time stamp in the recording, by lateness.{name} in the FMU")
+    echo(written.path)

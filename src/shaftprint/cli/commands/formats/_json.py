@@ -1,0 +1,32 @@
+"""``shaftprint export json``: a fingerprint's model as JSON."""
+
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._fingerprint_file import fingerprint_at
+from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
+from shaftprint.cli._terminal import echo
+from shaftprint.cli.commands.formats._exported import file_to_write, fingerprint_argument, force_option
+from shaftprint.export import exported_model, write_json
+
+
+@click.command("json")
+@fingerprint_argument
+@click.option(
+    "--structure", metavar="NAME", help=f"Structure that was identified, if it is not shipped: {OWN_FILE_HELP}."
+)
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="File to write; named after the vessel by default."
+)
+@force_option
+def command(fingerprint: Path, structure: TypedName | None, output: Path | None, force: bool) -> None:
+    """Write parameters, state space and frequency response as one JSON file.
+
+    FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. The file is for
+    programs that know nothing of shaftprint; what is not known is null.
+    """
+    found = fingerprint_at(fingerprint)
+    chosen = structure_to_use(structure, found)
+    path = file_to_write(output, exported_model(found, of=chosen), ".model.json", inputs=(fingerprint,), force=force)
+    echo(write_json(found, path, of=chosen, overwrite=force))

@@ -1,0 +1,81 @@
+"""``shaftprint export matlab``: a model for MATLAB and Octave."""
+
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._fingerprint_file import fingerprint_at
+from shaftprint.cli._inputs import NAMES
+from shaftprint.cli._own_structure import TypedName
+from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.cli._terminal import echo
+from shaftprint.cli.commands.formats._exported import (
+    file_to_write,
+    fingerprint_argument,
+    force_option,
+    model_to_export,
+    set_option,
+    structure_option,
+)
+from shaftprint.export import write_matlab
+from shaftprint.models import Structure
+from shaftprint.spectra import FrequencyResponse
+from shaftprint.survey import load_trial, measure, response_of
+
+
+@click.command("matlab")
+@fingerprint_argument
+@structure_option
+@set_option
+@click.option(
+    "--recording",
+    type=click.Path(path_type=Path),
+    help="Recording whose measured response, with covariance, is to stand beside the model's; needs --vessel and "
+    "--campaign.",
+)
+@click.option("--vessel", help=f"Vessel file of the recording: {NAMES} stan-tug-1205.")
+@click.option("--campaign", help=f"Campaign file of the recording: {NAMES} thesis.")
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="Data file to write; named after the vessel by default."
+)
+@force_option
+@no_progress_option
+def command(
+    fingerprint: Path,
+    structure: TypedName | None,
+    given: tuple[tuple[str, float], ...],
+    recording: Path | None,
+    vessel: str | None,
+    campaign: str | None,
+    output: Path | None,
+    force: bool,
+    no_progress: bool,
+) -> None:
+    """Write a .mat file and a function for MATLAB and Octave that rebuilds the objects.
+
+    FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. The function is
+    written beside the data: called in MATLAB it makes the state space with its delays, frd and idfrd
+    objects; in bare Octave it computes the response.
+    """
+    model = model_to_export(fingerprint, structure, dict(given))
+    path = file_to_write(output, model, ".mat", inputs=(fingerprint, recording), force=force)
+    measured = None
+    if recording is not None:
+        if vessel is None or campaign is None:
+            raise click.UsageError("--recording needs --vessel and --campaign, which say what is in it.")
+        measured = _measured(
+            fingerprint, model.structure, recording, vessel=vessel, campaign=campaign, no_progress=no_progress
+        )
+    written = write_matlab(model, path, measured=measured, overwrite=force)
+    echo(written.data)
+    echo(written.script)
+
+
+def _measured(
+    fingerprint: Path, structure: Structure, recording: Path, *, vessel: str, campaign: str, no_progress: bool
+) -> FrequencyResponse:
+    """Return the measured response that the structure describes, prepared as for the fingerprint."""
+    mode = fingerprint_at(fingerprint).conditions.mode
+    with progress(hidden=no_progress) as steps:
+        measurement = measure(recording, load_trial(vessel, campaign), mode=mode, progress=steps)
+    return response_of(structure, measurement.responses)

@@ -1,0 +1,48 @@
+"""``shaftprint export modelica``: a model as Modelica text."""
+
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._own_structure import TypedName
+from shaftprint.cli._terminal import echo
+from shaftprint.cli.commands.formats._exported import (
+    file_to_write,
+    fingerprint_argument,
+    force_option,
+    model_to_export,
+    set_option,
+    structure_option,
+)
+from shaftprint.export import write_modelica
+
+
+@click.command("modelica")
+@fingerprint_argument
+@structure_option
+@set_option
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="File to write; named after the vessel by default."
+)
+@force_option
+def command(
+    fingerprint: Path,
+    structure: TypedName | None,
+    given: tuple[tuple[str, float], ...],
+    output: Path | None,
+    force: bool,
+) -> None:
+    """Write a Modelica package with limits and exact delays.
+
+    FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. The package needs no
+    library; its block Line has inputs and outputs in rpm and N m about the working point, and Step is an
+    experiment with it.
+    """
+    model = model_to_export(fingerprint, structure, dict(given))
+    written = write_modelica(
+        model, file_to_write(output, model, ".mo", inputs=(fingerprint,), force=force), overwrite=force
+    )
+    echo(f"package {written.package}: block Line, experiment Step")
+    for name in written.late_outputs:
+        echo(f"{name} comes later than its time stamp in the recording, which lies ahead of what can be known")
+    echo(written.path)

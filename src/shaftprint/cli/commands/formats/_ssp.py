@@ -1,0 +1,41 @@
+"""``shaftprint export ssp``: the parameters of a model for System Structure and Parameterization."""
+
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._own_structure import TypedName
+from shaftprint.cli._terminal import echo
+from shaftprint.cli.commands.formats._exported import (
+    file_to_write,
+    fingerprint_argument,
+    force_option,
+    model_to_export,
+    set_option,
+    structure_option,
+)
+from shaftprint.export import write_ssv
+
+
+@click.command("ssp")
+@fingerprint_argument
+@structure_option
+@set_option
+@click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="File to write; named after the vessel by default."
+)
+@force_option
+def command(
+    fingerprint: Path,
+    structure: TypedName | None,
+    given: tuple[tuple[str, float], ...],
+    output: Path | None,
+    force: bool,
+) -> None:
+    """Write the parameters as an SSP parameter set (.ssv).
+
+    FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. The names are those of
+    the FMU's parameters, so that the set can be given to it in a system structure.
+    """
+    model = model_to_export(fingerprint, structure, dict(given))
+    echo(write_ssv(model, file_to_write(output, model, ".ssv", inputs=(fingerprint,), force=force), overwrite=force))

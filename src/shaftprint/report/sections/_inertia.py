@@ -1,0 +1,49 @@
+"""The section of a report on the inertia by calculation and the torsional modes of the line."""
+
+from shaftprint.fingerprint import inertia_beside
+from shaftprint.report._inertia_tables import (
+    expected_inertia_table,
+    inertia_budget_table,
+    mode_table,
+    water_table,
+)
+from shaftprint.report._table import with_symbols
+from shaftprint.report.figures import plot_modes
+from shaftprint.report.sections._sections import Inputs, Picture, Section
+from shaftprint.torsion import modes, torsional_line
+
+OPENING = (
+    "What the inertia table of the vessel file lets expect at the measured working point. The torque gauge cuts the "
+    "line: shaft torque and speed show what is downstream of it, the loop of governor and engine turns both sides."
+)
+
+
+def inertia_section(inputs: Inputs) -> list[Section]:
+    """Return the inertia by calculation beside the identified, and the modes where the vessel file has links."""
+    vessel = inputs.vessel
+    expected, beside = inertia_beside(inputs.fingerprint, vessel)
+    tables = [expected_inertia_table(expected, beside), inertia_budget_table(expected), water_table(expected)]
+    pictures = []
+    if vessel.links:
+        found = modes(torsional_line(vessel))
+        tables.append(mode_table(found))
+        pictures.append(
+            Picture(
+                name="modes",
+                caption=(
+                    "Shapes of the slowest torsional modes by calculation. Well below the first of them the line turns "
+                    "as one."
+                ),
+                alt="One panel for each mode with the amplitude of every mass along the line.",
+                draw=lambda: plot_modes(found),
+            )
+        )
+    return [
+        Section(
+            key="inertia",
+            title="Inertia by calculation",
+            paragraphs=(OPENING,),
+            tables=tuple(with_symbols(table) for table in tables if table.rows),
+            pictures=pictures,
+        )
+    ]

@@ -1,0 +1,220 @@
+"""The first sections of a report: summary in words, parameters, fit and stability."""
+
+import math
+from typing import TYPE_CHECKING
+
+from shaftprint.normal import NORMAL_95
+from shaftprint.report._curve import Curve
+from shaftprint.report._fingerprint_tables import (
+    combination_table,
+    expected_text,
+    fit_table,
+    margin_table,
+    parameter_table,
+    physical_table,
+    truth_of_combinations,
+)
+from shaftprint.report._numbers import plain, rounded, with_deviation
+from shaftprint.report._symbols import unit_text
+from shaftprint.report.figures import plot_bode, plot_correlation, plot_nyquist, plot_residuals, plot_step_band
+from shaftprint.report.plots import bode_plot, nyquist_plot, residual_plot, step_plot
+from shaftprint.report.sections._sections import Inputs, Picture, Section
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint, Quantity
+
+# A parameter with a smaller standard deviation, as a share of its value, is called well known.
+WELL_KNOWN = 0.03
+# A misfit that chance alone makes in fewer than this share of the tests is none of chance.
+UNLIKELY = 0.01
+
+
+def summary_section(inputs: Inputs) -> Section:
+    """Return the verdict in words and the findings."""
+    fingerprint = inputs.fingerprint
+    paragraphs = (
+        _conditions(fingerprint),
+        _explained(fingerprint),
+        *_well_known(fingerprint),
+        *_against_vessel(fingerprint),
+    )
+    return Section(key="summary", title="Summary", paragraphs=paragraphs, points=fingerprint.findings)
+
+
+def _conditions(fingerprint: "Fingerprint") -> str:
+    conditions = fingerprint.conditions
+    speed, torque = conditions.engine_speed, conditions.shaft_torque
+    total = len(conditions.lines_used) + len(conditions.lines_left_out)
+    return (
+        f"{conditions.vessel}, test “{conditions.campaign}”. Working point: engine speed "
+        f"{with_deviation(speed.value, speed.std)} {unit_text(speed.unit)}, shaft torque "
+        f"{with_deviation(torque.value, torque.std)} {unit_text(torque.unit)}. The structure {fingerprint.structure} "
+        f"was fitted to {len(conditions.lines_used)} of {total} test lines."
+    )
+
+
+def _explained(fingerprint: "Fingerprint") -> str:
+    quality = fingerprint.quality
+    fit = "; ".join(
+        f"{name} {plain(value, 1)} %, a perfect model {plain(quality.fit_ceiling[name], 1)} %"
+        for name, value in quality.fit_percent.items()
+    )
+    if quality.chi_square is None:
+        return f"The fit was not weighted by the noise, so it says nothing of the model's validity. FitPercent: {fit}."
+    chance = quality.p_value
+    words = "explains" if chance is None or chance >= UNLIKELY else "does not explain"
+    tested = "" if chance is None else f", p = {rounded(chance, 2)}"
+    return (
+        f"The model {words} the measured responses within their noise (chi-square {plain(quality.chi_square, 0)} for "
+        f"{quality.degrees_of_freedom} degrees of freedom{tested}). FitPercent: {fit}."
+    )
+
+
+def _well_known(fingerprint: "Fingerprint") -> list[str]:
+    found = (*(q for q in fingerprint.parameters if q.name not in fingerprint.priors), *fingerprint.combinations)
+    known = [q for q in found if _share(q) <= WELL_KNOWN]
+    if not known:
+        return []
+    listed = "; ".join(f"{q.name} = {with_deviation(q.value, q.std)} {unit_text(q.unit)}".strip() for q in known)
+    return [f"This test knows to better than {plain(100.0 * WELL_KNOWN, 0)} % (one standard deviation): {listed}."]
+
+
+def _share(quantity: "Quantity") -> float:
+    """Return the relative deviation: the larger of the first-order one and the wider side of the interval over 1.96."""
+    sides = () if quantity.interval_95 is None else (abs(end - quantity.value) for end in quantity.interval_95)
+    deviation = max((quantity.std, *(side / NORMAL_95 for side in sides)))
+    return deviation / abs(quantity.value) if quantity.value != 0.0 else math.inf
+
+
+def _against_vessel(fingerprint: "Fingerprint") -> list[str]:
+    compared = [q for q in fingerprint.physical if q.expected is not None]
+    if not compared:
+        return []
+    listed = "; ".join(
+        f"{q.name} = {with_deviation(q.value, q.std)} {unit_text(q.unit)}".strip()
+        + f" (vessel file {expected_text(q)})"
+        for q in compared
+    )
+    return [f"Physical values: {listed}."]
+
+
+def parameter_section(inputs: Inputs) -> Section:
+    """Return parameters, combinations and physical values with uncertainty, and their correlation."""
+    truth = truth_of_combinations(inputs.identification, inputs.truth) | dict(inputs.truth) if inputs.truth else {}
+    tables = [
+        parameter_table(inputs.fingerprint, truth),
+        combination_table(inputs.fingerprint, truth),
+        physical_table(inputs.fingerprint, truth),
+    ]
+    return Section(
+        key="parameters",
+        title="Parameters",
+        paragraphs=_given(inputs.fingerprint),
+        tables=[table for table in tables if table.rows],
+        pictures=(
+            Picture(
+                name="correlation",
+                caption=(
+                    "Correlation of the estimates. Parameters with a correlation near ±1 cannot be told apart by this "
+                    "test; their combinations above can."
+                ),
+                alt="Matrix of the correlation between all free parameters, with the numbers written in each field.",
+                draw=lambda: plot_correlation(inputs.identification),
+            ),
+        ),
+    )
+
+
+def _given(fingerprint: "Fingerprint") -> tuple[str, ...]:
+    """Return what the fit was told instead of finding it."""
+    known = "; ".join(f"{name} = {with_deviation(p.mean, p.std)}" for name, p in fingerprint.priors.items())
+    held = ", ".join(f"{name} = {value:g}" for name, value in fingerprint.held.items())
+    sentences = []
+    if known:
+        sentences.append(
+            f"Known beforehand, from the vessel file or as given: {known}. Where the standard deviation below is "
+            "hardly smaller than this one, the test adds nothing to what was known."
+        )
+    if held:
+        sentences.append(f"Held during the fit: {held}.")
+    return tuple(sentences)
+
+
+def fit_section(inputs: Inputs) -> Section:
+    """Return how well the model explains the data."""
+    curve = Curve.of(inputs.identification)
+    return Section(
+        key="fit",
+        title="Model and data",
+        tables=(fit_table(inputs.fingerprint),),
+        pictures=(
+            Picture(
+                name="fit",
+                caption=(
+                    "Identified model with its 95 % band (covariance of the parameters) and measured response with "
+                    "95 % intervals, most of them smaller than their markers. Hollow lines are not used."
+                ),
+                alt="Bode diagram of the identified model through the measured points of all outputs.",
+                draw=lambda: plot_bode(
+                    [curve], data=inputs.identification.response, aliasing_limit_hz=inputs.aliasing_limit_hz
+                ),
+                plot=lambda: bode_plot(
+                    [curve], data={"data": inputs.identification.response}, aliasing_limit_hz=inputs.aliasing_limit_hz
+                ),
+            ),
+            Picture(
+                name="residuals",
+                caption="What the model leaves, over its standard deviation, and chi-square of each line.",
+                alt="Two panels: normalised residuals and chi-square of each test line.",
+                draw=lambda: plot_residuals(inputs.identification),
+                plot=lambda: residual_plot(inputs.identification),
+            ),
+            Picture(
+                name="step",
+                caption=(
+                    "What the identified linear model does after a step of its input, delays exact, with its 95 % band "
+                    "at each time."
+                ),
+                alt="Response of every output to a step of the input, with a band around it.",
+                draw=lambda: plot_step_band(inputs.identification),
+                plot=lambda: step_plot(inputs.identification),
+            ),
+        ),
+    )
+
+
+def stability_section(inputs: Inputs) -> list[Section]:
+    """Return the stability margins; nothing for a structure without feedback."""
+    if inputs.identification.margins is None:
+        return []
+    curve = Curve.of(inputs.identification)
+    picture = Picture(
+        name="nyquist",
+        caption=(
+            "Nyquist plot of the loop gain with exact delays. Dots are labelled with their frequency in rad/s. The "
+            "dashed circle about the critical point −1 touches the curve: the wider, the further from hunting."
+        ),
+        alt="Curve of the loop gain in the complex plane with gain margin, phase margin and critical point marked.",
+        draw=lambda: plot_nyquist(curve),
+        plot=lambda: nyquist_plot(curve),
+    )
+    return [
+        Section(
+            key="stability",
+            title="Stability",
+            tables=(margin_table(inputs.fingerprint, inputs.truth),),
+            pictures=(picture,),
+        )
+    ]
+
+
+def verdict_section(inputs: Inputs) -> Section:
+    """Return the verdict on the fit, the reason first."""
+    verdict = inputs.fingerprint.verdict
+    words = "trustworthy" if verdict.trustworthy else "not trustworthy"
+    return Section(
+        key="verdict",
+        title=f"Verdict: the fit is {words}",
+        paragraphs=(verdict.reason,),
+        points=verdict.sentences[1:],
+    )

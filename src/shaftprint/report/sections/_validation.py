@@ -1,0 +1,131 @@
+"""The section of a report on records that the model has not seen: in words, in numbers, and over time."""
+
+from collections.abc import Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+from shaftprint.report._numbers import plain
+from shaftprint.report._table import Cell, Table, symbol_html
+from shaftprint.report.figures import plot_validation, plot_validation_summary
+from shaftprint.report.plots import validation_plot
+from shaftprint.report.sections._sections import Inputs, Picture, Section, picture_name
+
+if TYPE_CHECKING:
+    from shaftprint.validation import Comparison, Validation
+
+PERCENT = 100.0
+MOST_BANDS = 2
+AROUND_STEP_S = (0.5, 6.0)
+# A step counts as larger than another where it is higher by more than the noise of a level.
+HIGHER = 1.05
+
+
+def validation_section(inputs: Inputs) -> list[Section]:
+    """Return how well the model foretells chirps and steps; nothing where it was not tried."""
+    if not inputs.validations:
+        return []
+    first = inputs.validations[0]
+    pictures = [
+        Picture(
+            name="validation_summary",
+            caption="What the model misses of each excerpt beyond noise, with 95 % intervals, and what is allowed.",
+            alt="Error of speed and torque in every excerpt as points with intervals, and a line at the allowed error.",
+            draw=partial(plot_validation_summary, first),
+        ),
+        *(_picture(inputs.validations, comparison) for comparison in shown_excerpts(first)),
+    ]
+    return [
+        Section(
+            key="validation",
+            title="Records that the model has not seen",
+            paragraphs=first.sentences,
+            points=first.findings,
+            tables=(misfit_table(first),),
+            pictures=pictures,
+        )
+    ]
+
+
+def _picture(validations: "Sequence[Validation]", comparison: "Comparison") -> Picture:
+    excerpt = comparison.excerpt
+    is_step = excerpt.step_s is not None
+    return Picture(
+        name=picture_name("validation", excerpt.record, excerpt.kind, f"{excerpt.start_s:.0f}"),
+        caption=(
+            f"{excerpt.record}, {excerpt.title}: data and model as they are compared, without what is faster than "
+            f"{validations[0].settings.highest_hz:g} Hz."
+        ),
+        alt=f"Speed and torque over time, measured and by the model, of {excerpt.record}, {excerpt.title}.",
+        draw=partial(
+            plot_validation,
+            validations,
+            excerpt.record,
+            excerpt.title,
+            set_point=excerpt.kind != "chirp band",
+            around_step_s=AROUND_STEP_S if is_step else None,
+        ),
+        plot=partial(validation_plot, validations, excerpt.record, excerpt.title),
+    )
+
+
+def shown_excerpts(validation: "Validation") -> "list[Comparison]":
+    """Return the excerpts that are worth a figure: staircases, the largest step of each, the two worst chirp bands."""
+    largest: dict[str, Comparison] = {}
+    bands: list[Comparison] = []
+    for comparison in validation.comparisons:
+        if comparison.excerpt.kind == "step":
+            before = largest.setdefault(comparison.excerpt.record, comparison)
+            if _height(comparison) > HIGHER * _height(before):
+                largest[comparison.excerpt.record] = comparison
+        if comparison.excerpt.kind == "chirp band":
+            bands.append(comparison)
+    worst = sorted(bands, key=lambda c: -max(misfit.error for misfit in c.misfits))[:MOST_BANDS]
+    chosen = (*largest.values(), *worst)
+    return [c for c in validation.comparisons if c.excerpt.kind == "staircase" or c in chosen]
+
+
+def _height(comparison: "Comparison") -> float:
+    set_point = comparison.traces.set_point
+    return abs(float(set_point[-1] - set_point[0]))
+
+
+def misfit_table(validation: "Validation") -> Table:
+    """Return what the model misses of every excerpt and output beyond noise, and the delay that is left."""
+    rows: list[tuple[Cell, ...]] = []
+    for comparison in validation.comparisons:
+        excerpt = comparison.excerpt
+        for misfit, delay in zip(comparison.misfits, comparison.delays, strict=True):
+            low, high = (PERCENT * end for end in misfit.error_interval)
+            rows.append(
+                (
+                    f"{excerpt.record}, {excerpt.title}".replace(" -", " −"),
+                    symbol_html(misfit.output),
+                    f"{plain(PERCENT * misfit.error, 1)} %",
+                    f"{plain(low, 1)} to {plain(high, 1)} %",
+                    f"{plain(misfit.fit_percent, 1)} %",
+                    f"{plain(misfit.fit_ceiling, 1)} %",
+                    _milliseconds(delay.delay_s, delay.std_s),
+                    misfit.outcome + (" (identified from it)" if excerpt.in_sample else ""),
+                )
+            )
+    allowed = f"{PERCENT * validation.settings.largest_error:g} %"
+    return Table(
+        caption="What the model misses",
+        header=(
+            "excerpt",
+            "output",
+            "beyond noise",
+            "95 % interval",
+            "FitPercent",
+            "right model",
+            "delay left [ms]",
+            "outcome",
+        ),
+        rows=tuple(rows),
+        note=f"Shares of the motion in the excerpt. It passes where the interval lies below {allowed}, and fails where "
+        "it lies above.",
+    )
+
+
+def _milliseconds(delay_s: float, std_s: float) -> str:
+    return f"{plain(1000.0 * delay_s, 1)} ± {plain(1000.0 * std_s, 1)}"
