@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.fingerprint import Quantity, inertia_beside
 from shaftprint.vessel import load_vessel
 
@@ -12,15 +13,21 @@ from shaftprint.vessel import load_vessel
 def record(**priors):
     """What the comparison reads of a fingerprint: thesis' OL1 result, with an invented tau_up."""
 
-    def quantity(name, unit, value, std):
-        return Quantity(name=name, unit=unit, value=value, std=std)
+    def quantity(name, unit, value, std, role=None):
+        return Quantity(name=name, unit=unit, value=value, std=std, role=role)
 
     return SimpleNamespace(
         conditions=SimpleNamespace(
             engine_speed=quantity("n_0", "rpm", 1183.8, 0.1), shaft_torque=quantity("M_s0", "N m", 1725.0, 5.0)
         ),
-        parameters=(quantity("tau_dn", "s", 0.3897, 0.01), quantity("tau_up", "s", 1.1, 0.05)),
-        physical=(quantity("I_dn", "kg m2", 20.71, 0.6), quantity("I_up", "kg m2", 58.0, 2.0)),
+        parameters=(
+            quantity("J_aft", "s", 0.3897, 0.01, ShipRole.INERTIA_DOWNSTREAM),
+            quantity("J_fore", "s", 1.1, 0.05, ShipRole.INERTIA_UPSTREAM),
+        ),
+        physical=(
+            quantity("I_dn", "kg m2", 20.71, 0.6, ShipRole.INERTIA_DOWNSTREAM),
+            quantity("I_up", "kg m2", 58.0, 2.0, ShipRole.INERTIA_UPSTREAM),
+        ),
         priors=priors,
     )
 
@@ -41,6 +48,6 @@ def test_thesis_inertia_lies_downstream_of_the_gauge(vessel):
 
 
 def test_what_was_told_is_not_compared(vessel):
-    _, beside = inertia_beside(record(tau_up=object()), vessel)
+    _, beside = inertia_beside(record(J_fore=object()), vessel)
     independent = {row.expected.name: row.independent for row in beside}
     assert independent == {"tau_up": False, "tau_dn": True, "I_up": False, "I_dn": True}

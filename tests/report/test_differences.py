@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.fingerprint import SourceFile
 from shaftprint.identify import Budget, BudgetRow
 from shaftprint.report import change_in_words, differences
@@ -212,10 +213,13 @@ def test_what_moves_with_the_working_point_is_told_by_what_does_not(fingerprint)
 
 def test_delays_and_ratios_of_gains_stand_for_the_ship(fingerprint):
     """A delay 20 ms longer is judged together with the inertia; a factor on the set point is not."""
-    names = ("t_d + t_sp", "c_set")
+    names, roles = ("t_d + t_sp", "c_set"), (ShipRole.TOTAL_DELAY, ShipRole.SET_POINT_SCALE)
     pair = []
     for delay, factor in ((0.120, 1.00), (0.140, 1.01)):
-        parts = [quantity(fingerprint, name=n, value=v, std=0.001) for n, v in zip(names, (delay, factor), strict=True)]
+        parts = [
+            quantity(fingerprint, name=name, value=value, std=0.001, role=role)
+            for name, value, role in zip(names, (delay, factor), roles, strict=True)
+        ]
         alone = with_quantities(fingerprint, quantity(fingerprint, value=17.0, std=1.0))
         pair.append(alone.model_copy(update={"combinations": tuple(parts)}))
     found = {one.first.name: one for one in differences(*pair)}
@@ -295,9 +299,10 @@ def test_a_change_is_named_as_often_as_its_size_allows(fingerprint, change, powe
 
 def test_a_physical_value_is_as_lopsided_as_its_parameter(fingerprint):
     """K_p of 5 lies between 4.5 and 8, so an action of 10 lies between 9 and 16; 14 +/- 1 is no surprise then."""
-    gain = quantity(fingerprint, name="K_p", unit="-", value=5.0, std=0.2, interval_95=(4.5, 8.0))
+    gain_role = ShipRole.PROPORTIONAL_GAIN
+    gain = quantity(fingerprint, name="K_p", unit="-", value=5.0, std=0.2, interval_95=(4.5, 8.0), role=gain_role)
     actions = [
-        quantity(fingerprint, name="governor proportional action", value=value, std=std)
+        quantity(fingerprint, name="governor proportional action", value=value, std=std, role=gain_role)
         for value, std in ((10.0, 0.4), (14.0, 1.0))
     ]
     first, other = (with_quantities(fingerprint, action) for action in actions)

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.cli._numbers import plain, with_uncertainty
 from shaftprint.cli._terminal import echo
 from shaftprint.fingerprint import Fingerprint, Quantity
@@ -31,12 +32,12 @@ def _value(quantity: Quantity) -> str:
 
 def _given(quantity: Quantity, fingerprint: Fingerprint) -> str:
     """Return that a physical value was known beforehand, if its parameter was: then the test did not find it."""
-    if FOLLOWS_FROM.get(quantity.name) not in fingerprint.priors or quantity.expected is None:
+    parameter = fingerprint.multiplied(quantity)
+    if parameter is None or parameter.name not in fingerprint.priors or quantity.expected is None:
         return ""
     return f", known from the vessel file as {with_uncertainty(quantity.expected, quantity.expected_std or 0.0)}"
 
 
-FOLLOWS_FROM = {"I_up": "tau_up", "I_dn": "tau_dn"}
 SENTENCES = {
     "I_dn": "Propeller, shaft and entrained water, the inertia behind the torque gauge",
     "I_up": "Engine, coupling and gearbox, the inertia before the torque gauge",
@@ -50,10 +51,11 @@ SENTENCES = {
 
 def _of_the_thesis(fingerprint: Fingerprint, core: Identification) -> list[str]:
     """Return what the thesis' way finds in the same recording, and why."""
-    upstream, tau_up, tau = fingerprint.quantity("I_up"), fingerprint.quantity("tau_up"), core.value("tau_n")
-    if upstream.expected is None:
+    upstream = fingerprint.quantity("I_up")
+    inertia_time, core_name = fingerprint.multiplied(upstream), core.structure.named_as(ShipRole.INERTIA)
+    if upstream.expected is None or inertia_time is None or core_name is None:
         return []
-    expected = tau_up.value * upstream.expected / upstream.value
+    tau, expected = core.value(core_name), inertia_time.value * upstream.expected / upstream.value
     return [
         f"The thesis' way finds an inertia time of {tau:.3f} s in the same recording and expects {expected:.3f} s from "
         f"the {upstream.expected:.1f} kg m2 before the gauge: a factor {expected / tau:.1f}. A gauge shows only what "

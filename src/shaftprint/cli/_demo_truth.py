@@ -2,14 +2,13 @@
 
 import numpy as np
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.models import Structure, margins
 from shaftprint.signals import Signals, StripAngles
 from shaftprint.tug import StripTruth, Truth
 from shaftprint.units import rpm_from_rev_s
 
 DEGREES_PER_REVOLUTION = 360.0
-# Parameters that are normalised with speed over torque of the working point: inertia times and governor gains.
-SPEED_OVER_TORQUE = ("tau_up", "tau_dn", "tau_n", "K_p", "K_i")
 
 
 def fingerprint_truth(truth: Truth, structure: Structure, signals: Signals) -> dict[str, float]:
@@ -48,19 +47,25 @@ def _parameters(truth: Truth, structure: Structure, signals: Signals) -> dict[st
     """Return the true parameters, normalised at the working point that was measured.
 
     The load of the propeller drifts, so the line was tested at a torque that is up to a per cent off the nominal one.
-    ``c_set`` is the true slope of the set point over the one that the signals have. The latency of the simulated
-    torque telemetry is exactly that of the vessel file, which ``t_gauge = 0`` says.
+    The scale of the set point is its true slope over the one that the signals have. The latency of the simulated
+    torque telemetry is exactly that of the vessel file: no error is left.
     """
     point, line = signals.working_point, signals.calibration
     moved = rpm_from_rev_s(point.engine_speed_rev_s) / truth.engine_speed_rpm
     moved *= truth.shaft_torque_nm / point.shaft_torque_nm
     slope = rpm_from_rev_s(line.slope_rev_s_per_v) * signals.dc_scale
-    known = {**truth.normalised, "c_set": truth.set_point_slope_rpm_per_v / slope, "t_gauge": 0.0}
-    return {
-        name: value * moved if name in SPEED_OVER_TORQUE else value
-        for name, value in known.items()
-        if name in structure.names
+    of_sensors = {
+        ShipRole.SET_POINT_SCALE: truth.set_point_slope_rpm_per_v / slope,
+        ShipRole.TORQUE_LATENCY: 0.0,
     }
+    values = {}
+    for parameter in structure.parameters:
+        if parameter.role in of_sensors:
+            values[parameter.name] = of_sensors[parameter.role]
+        elif parameter.name in truth.normalised:
+            scale = moved if parameter.role and parameter.role.over_torque else 1.0
+            values[parameter.name] = truth.normalised[parameter.name] * scale
+    return values
 
 
 def _calibration(truth: Truth, signals: Signals) -> dict[str, float]:

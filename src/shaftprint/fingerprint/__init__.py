@@ -20,11 +20,9 @@ from shaftprint.fingerprint._fingerprint import (
     Quality,
     Quantity,
     SourceFile,
-    fingerprint_sha256,
-    read_fingerprint,
-    write_fingerprint,
 )
 from shaftprint.fingerprint._inertia import inertia_beside
+from shaftprint.fingerprint._json_file import fingerprint_sha256, read_fingerprint, write_fingerprint
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._model import IdentifiedModel, identified_model, named_structure
 from shaftprint.fingerprint._physical import GAUGE_ZERO, physical_quantities

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.torsion import Beside, ExpectedInertia, beside_identified, expected_inertia
 from shaftprint.units import rev_s_from_rpm
@@ -29,6 +30,15 @@ def inertia_beside(fingerprint: Fingerprint, vessel: "Vessel") -> tuple[Expected
         engine_speed_rev_s=rev_s_from_rpm(conditions.engine_speed.value),
         shaft_torque_nm=conditions.shaft_torque.value,
     )
-    numbers = (*fingerprint.parameters, *fingerprint.physical)
-    told = frozenset(fingerprint.priors) | {name.replace("tau_", "I_", 1) for name in fingerprint.priors}
-    return expected, beside_identified(expected, {item.name: (item.value, item.std) for item in numbers}, told=told)
+    names = dict(zip((ShipRole.INERTIA_UPSTREAM, ShipRole.INERTIA_DOWNSTREAM), expected.times, strict=True))
+    numbers = {number.name: (number.value, number.std) for number in fingerprint.physical}
+    known: set[str] = set()
+    for parameter in fingerprint.parameters:
+        if parameter.role in names:
+            numbers[names[parameter.role].name] = (parameter.value, parameter.std)
+            if parameter.name in fingerprint.priors:
+                known |= {
+                    names[parameter.role].name,
+                    *(q.name for q in fingerprint.physical if q.role == parameter.role),
+                }
+    return expected, beside_identified(expected, numbers, told=frozenset(known))

@@ -39,31 +39,7 @@ UNLIKELY = 0.05
 # Standard deviation of the torque that one propeller takes at one speed from day to day, as a share, beside what the
 # windows of a test show of it. No test of one day tells it; see docs/watching.md.
 LOAD_REPEATABILITY = 0.005
-# Parameters and combinations in which speed and torque of the working point cancel, or do not stand: they are of the
-# ship like physical values. The load of each window is in the fit, so that its wander is not in ``v K_i / (k_q - g)``.
-OF_THE_SHIP = frozenset(
-    ("t_d", "t_sp", "t_d + t_sp", "omega_n", "zeta", "K_p / K_i", "v K_i / (k_q - g)", "v K_p / (tau_up + tau_dn)")
-)
 TORQUE_COEFFICIENT = "K_Q"
-# Normalised numbers by the physical value that tells the same without the working point.
-TOLD_BY = {
-    "tau_dn": "I_dn",
-    "tau_up": "I_up",
-    "tau_n": "I",
-    "K_p": "governor proportional action",
-    "K_i": "governor integral action",
-    "v K_p": "governor proportional action",
-    "v K_i": "governor integral action",
-    "k_q": GAUGE_ZERO,
-}
-# Physical values that are a parameter times what is known better: where the parameter has a lopsided interval from its
-# profile, theirs is as lopsided, which their standard deviation to first order does not know.
-FOLLOWS_FROM = {
-    "I_dn": "tau_dn",
-    "I_up": "tau_up",
-    "governor proportional action": "K_p",
-    "governor integral action": "K_i",
-}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -116,19 +92,28 @@ def differences(
     pair = _Pair(first=first, other=other, common=shared_errors(first, other).common, load=load_repeatability)
     kept = _shared(pair, ("physical", "margins"))
     rest = _shared(pair, ("combinations", "parameters"))
-    kept += [found for found in rest if found.first.name in OF_THE_SHIP]
-    there = {found.first.name for found in kept}
-    moving = [_moving(found, there) for found in rest if found.first.name not in OF_THE_SHIP]
+    kept += [found for found in rest if _is_of_line(found.first)]
+    moving = [_moving(found, first.physical) for found in rest if not _is_of_line(found.first)]
     return (*_judged(kept), *_judged(moving))
 
 
-def _moving(found: Difference, there: Collection[str]) -> Difference:
-    """Return a number that is normalised with the working point, uncompared where another tells the same without it."""
+def _is_of_line(number: "Quantity") -> bool:
+    """Return whether speed and torque of the working point cancel in a parameter or combination, or do not stand there.
+
+    Such a number is of the ship like a physical value. The load of each window is in the fit, so that its wander is not
+    in ``v K_i / (k_q - g)``.
+    """
+    return number.role is not None and number.role.is_of_line
+
+
+def _moving(found: Difference, physical: "Sequence[Quantity]") -> Difference:
+    """Return a number that is normalised with the working point, uncompared where a physical value says the same."""
     found = replace(found, normalised=True)
-    twin = TOLD_BY.get(found.first.name)
-    if twin is None:
+    role = found.first.role
+    twin = next((number.name for number in physical if role is not None and number.role == role), "")
+    if not twin and (role is None or role.physical is None):
         return found
-    because = "moving with the working point" + (f"; see {twin}" if twin in there else "")
+    because = "moving with the working point" + (f"; see {twin}" if twin else "")
     return replace(found, interval_95=None, p_value=None, outcome="cannot be compared", because=because)
 
 
@@ -189,15 +174,14 @@ def _between_tests(quantity: "Quantity", load: float) -> float:
 def _interval(quantity: "Quantity", fingerprint: "Fingerprint") -> tuple[tuple[float, float], tuple[bool, bool]]:
     """Return the 95 % interval of a number and which ends are open, as those of the parameter that it follows from."""
     low, high = limits(quantity)
-    if quantity.interval_95 is not None or quantity.name not in FOLLOWS_FROM:
+    parameter = fingerprint.multiplied(quantity)
+    if quantity.interval_95 is not None or parameter is None or parameter.value == 0.0:
         return (low, high), quantity.interval_open
-    for parameter in fingerprint.parameters:
-        if parameter.name == FOLLOWS_FROM[quantity.name] and parameter.value != 0.0:
-            scale = quantity.value / parameter.value
-            ends = zip((scale * end for end in limits(parameter)), parameter.interval_open, strict=True)
-            (lowest, open_low), (highest, open_high) = sorted(ends)
-            return (min(low, lowest), max(high, highest)), (open_low, open_high)
-    return (low, high), quantity.interval_open
+    # to first order a standard deviation does not know how lopsided the profile of the parameter is
+    scale = quantity.value / parameter.value
+    ends = zip((scale * end for end in limits(parameter)), parameter.interval_open, strict=True)
+    (lowest, open_low), (highest, open_high) = sorted(ends)
+    return (min(low, lowest), max(high, highest)), (open_low, open_high)
 
 
 def _told(fingerprint: "Fingerprint", name: str, common: Collection[str]) -> dict[str, float]:

@@ -117,7 +117,8 @@ def _ranged(quantity: "Quantity") -> str:
 def _inertia(fingerprint: "Fingerprint") -> list[Card]:
     """Return whether the inertia behind the gauge is the calculated one; nothing where the test did not measure it."""
     found = [q for q in fingerprint.physical if q.name == "I_dn" and q.expected is not None]
-    if not found or "tau_dn" in fingerprint.priors:
+    parameter = fingerprint.multiplied(found[0]) if found else None
+    if not found or (parameter is not None and parameter.name in fingerprint.priors):
         return []
     (quantity,) = found
     question = "Is the inertia of propeller and shaft as calculated?"

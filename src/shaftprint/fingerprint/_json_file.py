@@ -1,0 +1,91 @@
+"""Fingerprints in files: JSON, written whole or not at all, read with every wrong field named."""
+
+import hashlib
+import json
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from shaftprint.arguments import refusing_none
+from shaftprint.errors import FingerprintError, ShaftprintError
+from shaftprint.files import written_whole
+from shaftprint.fingerprint._earlier_files import with_roles
+from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
+from shaftprint.publication import complete
+
+
+def write_fingerprint(fingerprint: Fingerprint, path: str | Path) -> None:
+    """Write a fingerprint as JSON, whole or not at all; an existing file is replaced.
+
+    Raises
+    ------
+    FingerprintError
+        If the file cannot be written.
+    """
+    place = Path(path)
+    try:
+        with written_whole(place, overwrite=True) as part:
+            part.write_bytes(_content(fingerprint))
+    except OSError as error:
+        raise FingerprintError(f"{place}: the fingerprint cannot be written: {error}.") from None
+
+
+def fingerprint_sha256(fingerprint: Fingerprint) -> str:
+    """Return the SHA-256 of the file that ``write_fingerprint`` writes, hexadecimal."""
+    return hashlib.sha256(_content(fingerprint)).hexdigest()
+
+
+def _content(fingerprint: Fingerprint) -> bytes:
+    # bytes, not text: the same on every system
+    return (fingerprint.model_dump_json(indent=2) + "\n").encode()
+
+
+@refusing_none(FingerprintError)
+def read_fingerprint(path: str | Path) -> Fingerprint:
+    """Read a fingerprint from JSON; what was written comes back equal.
+
+    Raises
+    ------
+    FingerprintError
+        If the file is missing, is no fingerprint, is of another schema, or has fields that are wrong; all of them are
+        listed.
+    PublicationError
+        If its folder holds new results that cannot be put in place.
+    """
+    place = Path(path)
+    complete(place.parent)
+    text = _fingerprint_text(place)
+    try:
+        return with_roles(Fingerprint.model_validate_json(text))
+    except ValidationError as error:
+        wrong = "; ".join(_described(details["loc"], details["msg"]) for details in error.errors())
+        raise FingerprintError(f"{place} is not a fingerprint of schema {SCHEMA_VERSION}: {wrong}.") from None
+    except ShaftprintError as error:
+        # what other rooms ask of their own nouns, such as a prior
+        raise FingerprintError(f"{place} is not a fingerprint of schema {SCHEMA_VERSION}: {error}") from None
+
+
+def _described(place: tuple[int | str, ...], message: str) -> str:
+    """Return an error of a field; one of the whole record names its fields itself."""
+    words = message.removeprefix("Value error, ")
+    return f"{'.'.join(str(part) for part in place)}: {words}" if place else words
+
+
+def _fingerprint_text(place: Path) -> str:
+    """Return the content of a file that claims to be a fingerprint of the schema that is known here."""
+    try:
+        text = place.read_text(encoding="utf-8")
+        content = json.loads(text)
+    except OSError as error:
+        raise FingerprintError(f"{place}: expected a fingerprint in JSON, but it cannot be read: {error}.") from None
+    except (ValueError, RecursionError) as error:
+        raise FingerprintError(f"{place}: expected a fingerprint in JSON, found something else: {error}.") from None
+    schema = content.get("schema_version") if isinstance(content, dict) else None
+    if schema is None:
+        raise FingerprintError(f"{place}: expected a fingerprint, found JSON without a schema_version.")
+    if schema != SCHEMA_VERSION:
+        raise FingerprintError(
+            f"{place}: expected a fingerprint of schema {SCHEMA_VERSION}, found schema {schema}; read it with the "
+            "version of shaftprint that wrote it, or a newer one."
+        )
+    return text
