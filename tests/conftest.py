@@ -1,18 +1,68 @@
 """One short voyage for all tests that want what the program leaves behind."""
 
-import contextlib
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
 
-from shaftprint.cli import shaftprint
+LONGEST_WAIT_S = 1200.0
 
 
 @pytest.fixture(scope="session")
 def demo(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Result]:
-    """The folder and the output of one short demo, called as the pages call it."""
-    place = tmp_path_factory.mktemp("voyage")
-    with contextlib.chdir(place):
-        result = CliRunner().invoke(shaftprint, ["demo", "--short"], catch_exceptions=False)
+    """The folder and the output of one short demo, called as the pages call it.
+
+    It is the dearest thing that tests share: made once for all workers, and without counting coverage, which would
+    double its time. Each worker has its own copy.
+    """
+    base = tmp_path_factory.getbasetemp()
+    place = base / "voyage"
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        shutil.copytree(_made_once(base.parent / "voyage", _sail), place)
+    else:
+        _sail(place)
+    printed = {name: (place / f"{name}.txt").read_bytes() for name in ("stdout", "stderr")}
+    result = Result(
+        runner=CliRunner(),
+        stdout_bytes=printed["stdout"],
+        stderr_bytes=printed["stderr"],
+        output_bytes=printed["stdout"] + printed["stderr"],
+        return_value=None,
+        exit_code=int((place / "exit_code.txt").read_text()),
+        exception=None,
+    )
     return place / "demo", result
+
+
+def _sail(place: Path) -> None:
+    """Run the short demo in a new folder, its output beside it."""
+    place.mkdir()
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("COV")}
+    done = subprocess.run(
+        [sys.executable, "-m", "shaftprint", "demo", "--short"], cwd=place, env=environment, capture_output=True
+    )
+    (place / "stdout.txt").write_bytes(done.stdout)
+    (place / "stderr.txt").write_bytes(done.stderr)
+    (place / "exit_code.txt").write_text(str(done.returncode))
+
+
+def _made_once(place: Path, make: Callable[[Path], None]) -> Path:
+    """Let the first of several processes make a folder, and the others wait for it."""
+    try:
+        place.with_name(f"{place.name}_begun").mkdir()
+    except FileExistsError:
+        end = time.monotonic() + LONGEST_WAIT_S
+        while not place.exists():
+            assert time.monotonic() < end, f"{place} was begun by another worker and is not there"
+            time.sleep(0.2)
+    else:
+        making = place.with_name(f"{place.name}_making")
+        make(making)
+        making.rename(place)
+    return place
