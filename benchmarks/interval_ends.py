@@ -23,11 +23,12 @@ from benchmarks.monte_carlo_cases import GAUGE, KNOWN, THESIS, TRUTH, TUG, Case,
 from benchmarks.monte_carlo_responses import draw
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.catalogue import structure
+from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import ShaftprintError
-from shaftprint.identify import Identification, Interval, Settings, identify, profile
+from shaftprint.identify import Identification, Settings, identify, profile
 from shaftprint.identify.search._levenberg_marquardt import descend
+from shaftprint.identify.uncertainty import Interval
 from shaftprint.identify.uncertainty._numbers import Numbers, all_numbers
-from shaftprint.normal import NORMAL_95
 
 SEED = 34
 STRUCTURES: Mapping[str, Mapping[str, float]] = {

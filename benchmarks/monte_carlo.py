@@ -26,7 +26,8 @@ from benchmarks.monte_carlo_outcome import Outcome, Result, together  # noqa: E4
 from benchmarks.monte_carlo_recordings import NAME, sailed  # noqa: E402
 from benchmarks.monte_carlo_responses import linearised, named_cases, simulate  # noqa: E402
 from benchmarks.monte_carlo_search import finds_global_optimum  # noqa: E402
-from shaftprint.identify import MaximumLikelihood, StudentT, Weighting  # noqa: E402
+from shaftprint.identify import MaximumLikelihood, StudentT  # noqa: E402
+from shaftprint.identify.likelihood import Weighting  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "monte-carlo.md"
 ROBUST = ("CL4", "GAUGE-ECU")

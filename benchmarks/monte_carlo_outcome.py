@@ -7,8 +7,9 @@ import numpy as np
 from scipy.stats import kstest
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify import Estimate, Interval
-from shaftprint.normal import NORMAL_95
+from shaftprint.distributions import NORMAL_95
+from shaftprint.identify.fit import Estimate
+from shaftprint.identify.uncertainty import Interval
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

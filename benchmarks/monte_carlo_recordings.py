@@ -14,7 +14,8 @@ from benchmarks.monte_carlo_outcome import Outcome, row_of
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import PRIOR_OF_G, Identification, Settings, identify, priors_from_vessel, profile
+from shaftprint.identify import Identification, Settings, identify, priors_from_vessel, profile
+from shaftprint.identify.likelihood import PRIOR_OF_G
 from shaftprint.recording import read_recording
 from shaftprint.signals import Signals, prepare_signals
 from shaftprint.spectra import estimate_response

@@ -25,11 +25,12 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.monte_carlo_tables import table, write_between_marks  # noqa: E402
 from shaftprint.catalogue import structure  # noqa: E402
+from shaftprint.distributions import NORMAL_95  # noqa: E402
 from shaftprint.errors import ShaftprintError  # noqa: E402
 from shaftprint.fingerprint import Fingerprint, Quantity  # noqa: E402
-from shaftprint.identify import PRIOR_OF_G, Settings  # noqa: E402
+from shaftprint.identify import Settings  # noqa: E402
+from shaftprint.identify.likelihood import PRIOR_OF_G  # noqa: E402
 from shaftprint.models import margins  # noqa: E402
-from shaftprint.normal import NORMAL_95  # noqa: E402
 from shaftprint.survey import Trial, fingerprint_of, fit, load_trial, measure, priors_of  # noqa: E402
 from shaftprint.tug import (  # noqa: E402
     Noise,

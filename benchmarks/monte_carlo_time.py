@@ -23,8 +23,8 @@ from benchmarks.validation import MOTORING_NM, STRONGER
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
+from shaftprint.distributions import NORMAL_95
 from shaftprint.identify import Identification, Settings, identify
-from shaftprint.normal import NORMAL_95
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.spectra import estimate_response

@@ -27,9 +27,9 @@ sys.path.insert(0, str(ROOT))
 
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
 from shaftprint.catalogue import structure  # noqa: E402
+from shaftprint.distributions import NORMAL_95  # noqa: E402
 from shaftprint.fingerprint import GAUGE_ZERO, Fingerprint  # noqa: E402
 from shaftprint.identify import Settings  # noqa: E402
-from shaftprint.normal import NORMAL_95  # noqa: E402
 from shaftprint.report import Difference, differences  # noqa: E402
 from shaftprint.survey import Trial, fingerprint_of, fit, load_trial, measure, priors_of  # noqa: E402
 from shaftprint.tug import Noise, Tug, sail  # noqa: E402

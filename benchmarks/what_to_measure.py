@@ -19,7 +19,6 @@ from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.identify import (
     STAN_TUG_NOISE,
-    Draw,
     Identification,
     NoiseLevels,
     Prior,
@@ -28,12 +27,13 @@ from shaftprint.identify import (
     identify,
     identify_jointly,
     noise_levels,
-    planned_lines,
     planned_response,
     predict_accuracy,
     priors_from_vessel,
     profile,
 )
+from shaftprint.identify.prediction import planned_lines
+from shaftprint.identify.search import Draw
 from shaftprint.models import Structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals

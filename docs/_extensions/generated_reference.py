@@ -17,6 +17,8 @@ FOLDER = "reference/generated"
 COMMANDS_PAGE = "commands"
 # The command line is described by its commands, the entry point by none of them.
 NOT_DESCRIBED = {"__main__", "cli"}
+# Rooms whose folders have names for other rooms that are not at the room's own door.
+ROOMS_WITH_DOORS = ("identify",)
 
 
 def rooms() -> tuple[str, ...]:
@@ -51,11 +53,23 @@ def directive(value: object) -> str:
 
 
 def room_page(room: str) -> str:
-    """Return the page of one room in reStructuredText: its quantities, a list of its names, each name."""
+    """Return the page of one room in reStructuredText: what is at its door, then at those of its folders."""
     full = f"shaftprint.{room}"
     module = importlib.import_module(full)
-    parts = [f"{full}\n{'=' * len(full)}\n\n.. automodule:: {full}\n   :no-members:\n\n"]
     names = public_names(module)
+    parts = [_section(full, "=", names)]
+    if room in ROOMS_WITH_DOORS:
+        for found in pkgutil.iter_modules(module.__path__):
+            inner = f"{full}.{found.name}"
+            more = tuple(name for name in public_names(importlib.import_module(inner)) if name not in names)
+            parts.append(_section(inner, "-", more))
+    return "".join(parts)
+
+
+def _section(full: str, line: str, names: tuple[str, ...]) -> str:
+    """Return what a module says of itself, a list of names, and each name."""
+    module = importlib.import_module(full)
+    parts = [f"{full}\n{line * len(full)}\n\n.. automodule:: {full}\n   :no-members:\n\n"]
     if names:
         parts.append(".. list-table::\n   :widths: 30 70\n\n")
     parts += [
@@ -78,7 +92,7 @@ def commands_page() -> str:
         "when it was interrupted.\n",
     ]
     for name, words in COMMANDS.items():
-        command = importlib.import_module(f"shaftprint.cli.commands._{name.replace('-', '_')}").command
+        command = importlib.import_module(f"shaftprint.cli._{name.replace('-', '_')}").command
         context = click.Context(command, info_name=f"shaftprint {name}", max_content_width=96, terminal_width=96)
         text = "\n".join(f"   {line}".rstrip() for line in command.get_help(context).splitlines())
         parts.append(f"\n{name}\n{'-' * len(name)}\n\n{words}\n\n.. code-block:: none\n\n{text}\n")

@@ -4,6 +4,7 @@ from shaftprint import arrays as arrays
 from shaftprint import campaign as campaign
 from shaftprint import catalogue as catalogue
 from shaftprint import clocks as clocks
+from shaftprint import distributions as distributions
 from shaftprint import errors as errors
 from shaftprint import escape as escape
 from shaftprint import export as export
@@ -13,7 +14,6 @@ from shaftprint import identify as identify
 from shaftprint import kernels as kernels
 from shaftprint import limits as limits
 from shaftprint import models as models
-from shaftprint import normal as normal
 from shaftprint import propeller as propeller
 from shaftprint import publication as publication
 from shaftprint import reasons as reasons

@@ -12,6 +12,7 @@ import pytest
 import shaftprint
 
 ROOMS = sorted(room.name for room in pkgutil.iter_modules(shaftprint.__path__) if room.name not in {"__main__", "cli"})
+ROOMS += [f"identify.{folder.name}" for folder in pkgutil.iter_modules(shaftprint.identify.__path__)]
 ARRAYS = re.compile(r"\b(Float|Complex|Bool|Int)Array\b")
 UNITS = {
     "_s": "s",

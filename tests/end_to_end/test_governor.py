@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
+from shaftprint.distributions import NORMAL_95
 from shaftprint.identify import Settings, identify, priors_from_vessel
-from shaftprint.normal import NORMAL_95
 from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.spectra import estimate_response

@@ -9,7 +9,8 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.fingerprint import SourceFile, take_fingerprint
-from shaftprint.identify import Cluster, Prior, Settings, identify
+from shaftprint.identify import Prior, Settings, identify
+from shaftprint.identify.fit import Cluster
 from shaftprint.signals import Repair, SetPointCalibration, Signals, SpeedSignal, StripAngles, WorkingPoint
 from shaftprint.spectra import FrequencyResponse, SignalToNoise
 from shaftprint.vessel import load_vessel

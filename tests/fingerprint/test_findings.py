@@ -8,7 +8,8 @@ import pytest
 
 from shaftprint.fingerprint import Quantity, physical_quantities
 from shaftprint.fingerprint._findings import findings_of
-from shaftprint.identify import Budget, BudgetRow, Prior, Settings, Unweighted, budget
+from shaftprint.identify import Prior, Settings, Unweighted
+from shaftprint.identify.uncertainty import Budget, BudgetRow, budget
 
 NO_BUDGET = Budget(sources=(), rows=())
 

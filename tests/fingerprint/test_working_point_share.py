@@ -17,7 +17,8 @@ from shaftprint.fingerprint._working_point_share import (
     widened,
     widened_covariance,
 )
-from shaftprint.identify import Prior, Settings, budget, identify, priors_from_vessel
+from shaftprint.identify import Prior, Settings, identify, priors_from_vessel
+from shaftprint.identify.uncertainty import budget
 
 MORE = 0.01
 

@@ -15,12 +15,10 @@ from shaftprint.identify import (
     expected_response,
     identify,
     identify_jointly,
-    planned_lines,
     planned_response,
     predict_accuracy,
-    predict_intervals,
-    predict_joint_accuracy,
 )
+from shaftprint.identify.prediction import planned_lines, predict_intervals, predict_joint_accuracy
 from shaftprint.models import Combination, Delay, Parameter, SecondOrderLag, Structure
 
 TRUTH = {

@@ -7,15 +7,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import (
-    Prior,
-    Settings,
-    Unweighted,
-    bootstrap,
-    identify,
-    identify_jointly,
-    profile_intervals,
-)
+from shaftprint.identify import Prior, Settings, Unweighted, bootstrap, identify, identify_jointly, profile_intervals
 from shaftprint.identify.likelihood import estimated_shapes
 from shaftprint.models import Combination, Gain, Parameter, Structure
 

@@ -7,8 +7,8 @@ import pytest
 import scipy.stats
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import MaximumLikelihood, Prior, Settings, identify, refit
-from shaftprint.identify.fit import estimate_covariance
+from shaftprint.identify import MaximumLikelihood, Prior, Settings, identify
+from shaftprint.identify.fit import estimate_covariance, refit
 from shaftprint.identify.likelihood import build_objective
 
 REPEATS = 2000

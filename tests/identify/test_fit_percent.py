@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import fit_ceiling, fit_percent, identify
+from shaftprint.identify import fit_percent, identify
+from shaftprint.identify.likelihood import fit_ceiling
 
 
 def test_fit_percent_by_hand():

@@ -7,7 +7,8 @@ import pytest
 import scipy.stats
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import FitTest, Prior, Settings, Unweighted, identify
+from shaftprint.identify import Prior, Settings, Unweighted, identify
+from shaftprint.identify.fit import FitTest
 
 
 def rng():

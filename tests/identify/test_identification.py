@@ -5,7 +5,8 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Estimate, Settings, Unweighted, identify
+from shaftprint.identify import Settings, Unweighted, identify
+from shaftprint.identify.fit import Estimate
 from shaftprint.models import margins
 
 

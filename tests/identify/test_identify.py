@@ -8,7 +8,8 @@ import scipy.optimize
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Draw, LatinHypercube, MaximumLikelihood, Prior, Settings, Unweighted, identify
+from shaftprint.identify import LatinHypercube, MaximumLikelihood, Prior, Settings, Unweighted, identify
+from shaftprint.identify.search import Draw
 from shaftprint.models import Delay, Parameter, PIGovernor, Sensitivity, Shaft, Structure, unstable_poles
 
 S1_TO_S16_HZ = np.array(

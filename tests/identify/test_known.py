@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import PRIOR_OF_G, Prior, priors_from_vessel
+from shaftprint.identify import Prior, priors_from_vessel
+from shaftprint.identify.likelihood import PRIOR_OF_G
 from shaftprint.vessel import load_vessel
 
 

@@ -5,7 +5,8 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Settings, Unweighted, identify, profile_curve, profile_intervals
+from shaftprint.identify import Settings, Unweighted, identify, profile_intervals
+from shaftprint.identify.uncertainty import profile_curve
 from shaftprint.models import Combination, Gain, Parameter, Structure
 
 

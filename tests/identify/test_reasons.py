@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import ShipRole, structure
-from shaftprint.identify import Estimate, Prior, Settings, assess, identify, profile
+from shaftprint.identify import Prior, Settings, assess, identify, profile
+from shaftprint.identify.fit import Estimate
 from shaftprint.identify.judgement import HANGING, by_weight, hangs_on
 from shaftprint.reasons import Reason, ReasonKind
 

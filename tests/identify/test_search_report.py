@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import Cluster, Draw, Settings, Unweighted, identify, report_search, scan
+from shaftprint.identify import Settings, Unweighted, identify
+from shaftprint.identify.fit import Cluster, scan
+from shaftprint.identify.judgement import report_search
+from shaftprint.identify.search import Draw
 from shaftprint.models import Delay, Gain, Parameter, PIGovernor, Sensitivity, Shaft, Structure
 from shaftprint.spectra import FrequencyResponse
 

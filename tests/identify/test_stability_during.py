@@ -5,8 +5,8 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Draw, Settings, identify, identify_jointly
-from shaftprint.identify.search import Descent, beside_border, descend, stable_models
+from shaftprint.identify import Settings, identify, identify_jointly
+from shaftprint.identify.search import Descent, Draw, beside_border, descend, stable_models
 from shaftprint.models import Delay, Parameter, PIGovernor, Sensitivity, Shaft, Structure, is_stable
 
 DURING = Settings(stability="during")

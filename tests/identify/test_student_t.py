@@ -7,8 +7,8 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import MaximumLikelihood, Settings, StudentT, identify, profile_intervals, refit
-from shaftprint.identify.fit import estimate_covariance
+from shaftprint.identify import MaximumLikelihood, Settings, StudentT, identify, profile_intervals
+from shaftprint.identify.fit import estimate_covariance, refit
 
 REPEATS = 2000
 TRUTHS = {

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import Prior, Settings, identify, identify_jointly, suspects_of
+from shaftprint.identify import Prior, Settings, identify, identify_jointly
+from shaftprint.identify.judgement import suspects_of
 from shaftprint.models import Delay, Gain, Parameter, Structure
 from shaftprint.spectra import FrequencyResponse
 

@@ -7,7 +7,7 @@ import pytest
 
 from shaftprint.catalogue import ShipRole
 from shaftprint.fingerprint import SourceFile
-from shaftprint.identify import Budget, BudgetRow
+from shaftprint.identify.uncertainty import Budget, BudgetRow
 from shaftprint.report import change_in_words, differences
 
 

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import Settings, Unweighted, compare_fits, identify, scan
+from shaftprint.identify import Settings, Unweighted, identify
+from shaftprint.identify.comparison import compare_fits
+from shaftprint.identify.fit import scan
 from shaftprint.report import plot_scan
 from shaftprint.report.sections._results import verdict_section
 from shaftprint.report.sections._search import comparison_section, search_section

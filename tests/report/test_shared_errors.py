@@ -3,7 +3,8 @@
 import pytest
 
 from shaftprint.fingerprint import SourceFile, vessel_fields
-from shaftprint.identify import Budget, BudgetRow, Prior
+from shaftprint.identify import Prior
+from shaftprint.identify.uncertainty import Budget, BudgetRow
 from shaftprint.report import vessel_file_sentences
 from shaftprint.report._shared_errors import shared_errors
 from shaftprint.report._vessel_file_words import vessel_file_table

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from shaftprint.identify import Budget, BudgetRow, budget, profile_intervals, step_band
+from shaftprint.identify import profile_intervals
+from shaftprint.identify.uncertainty import Budget, BudgetRow, budget, step_band
 from shaftprint.report.figures._covariance import plot_budget
 from shaftprint.report.figures._profiles import plot_profiles
 from shaftprint.report.figures._step_band import plot_step_band

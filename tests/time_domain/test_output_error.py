@@ -7,18 +7,10 @@ import pytest
 from scipy.signal import lfilter
 
 from shaftprint.errors import IdentificationError, StructureError
-from shaftprint.identify import (
-    Draw,
-    Settings,
-    Unweighted,
-    assess,
-    bootstrap,
-    compare_fits,
-    identify,
-    identify_jointly,
-    profile,
-    refit,
-)
+from shaftprint.identify import Settings, Unweighted, assess, bootstrap, identify, identify_jointly, profile
+from shaftprint.identify.comparison import compare_fits
+from shaftprint.identify.fit import refit
+from shaftprint.identify.search import Draw
 from shaftprint.identify.uncertainty import propagation
 from shaftprint.models import FirstOrderLag, Gain, Parameter, Structure
 from shaftprint.simulation import Trace

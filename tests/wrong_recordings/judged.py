@@ -11,11 +11,11 @@ from tests.wrong_recordings.cases import Case
 from tests.wrong_recordings.trial import Trial, clean
 
 from shaftprint.catalogue import structure
+from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import ShaftprintError
 from shaftprint.fingerprint import Fingerprint, Quantity, take_fingerprint
 from shaftprint.identify import Settings, identify, priors_from_vessel
 from shaftprint.models import margins
-from shaftprint.normal import NORMAL_95
 from shaftprint.signals import prepare_signals
 from shaftprint.spectra import estimate_spectra
 from shaftprint.tug import Truth

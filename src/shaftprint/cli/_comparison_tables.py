@@ -2,7 +2,7 @@
 
 from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo
-from shaftprint.identify import Candidate, Comparison, LikelihoodRatio
+from shaftprint.identify.comparison import Candidate, Comparison, LikelihoodRatio
 
 
 def print_comparison(comparison: Comparison) -> None:

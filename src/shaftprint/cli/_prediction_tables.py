@@ -8,7 +8,9 @@ from shaftprint.cli._fingerprint_tables import print_findings
 from shaftprint.cli._numbers import plain, with_uncertainty
 from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo
-from shaftprint.identify import Accuracy, Estimate, Identifiability, Interval
+from shaftprint.identify.fit import Estimate
+from shaftprint.identify.prediction import Accuracy, Identifiability
+from shaftprint.identify.uncertainty import Interval
 from shaftprint.spectra import FrequencyResponse
 
 

@@ -3,10 +3,10 @@
 import math
 from typing import TypeAlias
 
+from shaftprint.distributions import NORMAL_95
 from shaftprint.export._model_response import ModelResponse
 from shaftprint.fingerprint import Fingerprint, Quantity
 from shaftprint.models import Structure
-from shaftprint.normal import NORMAL_95
 
 Cell: TypeAlias = str | float | bool | None
 Row: TypeAlias = dict[str, Cell]

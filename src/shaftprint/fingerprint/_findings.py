@@ -5,7 +5,10 @@ import numpy as np
 from shaftprint.fingerprint._fingerprint import Quantity
 from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER
-from shaftprint.identify import Budget, Estimate, Identification, Profile, doubts_of
+from shaftprint.identify import Identification
+from shaftprint.identify.fit import Estimate
+from shaftprint.identify.judgement import doubts_of
+from shaftprint.identify.uncertainty import Budget, Profile
 
 # A combination is worth naming when it is known this much better, relative to its size, than a parameter in it.
 BETTER_KNOWN = 0.4

@@ -17,12 +17,13 @@ from pydantic import (
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import ROLES, ShipRole
+from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._vessel_fields import FieldValue
-from shaftprint.identify import Budget, Prior, Verdict
+from shaftprint.identify import Prior, Verdict
+from shaftprint.identify.uncertainty import Budget
 from shaftprint.models import Role
-from shaftprint.normal import NORMAL_95
 
 SCHEMA_VERSION: Final = 1
 # An end of the interval further than this share of its width from the end that a standard deviation gives: only the

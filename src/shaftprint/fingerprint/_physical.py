@@ -24,8 +24,9 @@ from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import ROLES, ShipRole
 from shaftprint.fingerprint._fingerprint import Quantity
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER, shares_over_torque, shifts_of_working_point
-from shaftprint.identify import Budget, Identification, budget
+from shaftprint.identify import Identification
 from shaftprint.identify.likelihood import inertia_from_vessel
+from shaftprint.identify.uncertainty import Budget, budget
 from shaftprint.models import Combination, Structure
 from shaftprint.normalisation import Normalisation
 

@@ -34,7 +34,9 @@ from shaftprint.fingerprint._working_point_share import (
     widened,
     widened_covariance,
 )
-from shaftprint.identify import Budget, Estimate, Identification, Interval, assess, budget, profile
+from shaftprint.identify import Identification, assess, profile
+from shaftprint.identify.fit import Estimate
+from shaftprint.identify.uncertainty import Budget, Interval, budget
 from shaftprint.models import Combination
 from shaftprint.units import SECONDS_PER_MINUTE
 

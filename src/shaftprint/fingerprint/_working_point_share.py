@@ -18,8 +18,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify import Budget, Identification
-from shaftprint.normal import NORMAL_95
+from shaftprint.distributions import NORMAL_95
+from shaftprint.identify import Identification
+from shaftprint.identify.uncertainty import Budget
 
 if TYPE_CHECKING:
     from shaftprint.signals import WorkingPoint

@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from shaftprint.identify import Estimate, Identification
+from shaftprint.identify import Identification
+from shaftprint.identify.fit import Estimate
 from shaftprint.limits._suspects import STRUCTURE_LIMITS, Kind, parameters_of
 from shaftprint.limits.prediction import PredictedTorque
 

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from shaftprint.distributions import NORMAL_95
 from shaftprint.limits._limit_fit import LimitNumber
 from shaftprint.limits._search import Fitted
 from shaftprint.limits._set_point_quantum import Quantum
 from shaftprint.limits._suspects import SUSPECTS, Kind, Suspect
 from shaftprint.limits._uncertainty import LevelInterval, Spread, profile_interval
 from shaftprint.limits.prediction import Messages
-from shaftprint.normal import NORMAL_95
 from shaftprint.signals import Signals
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import Vessel

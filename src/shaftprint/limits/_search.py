@@ -8,7 +8,8 @@ import numpy as np
 from shaftprint.arrays import BoolArray, FloatArray, frozen_bool
 from shaftprint.campaign import Campaign
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Draw, Identification, Prior, Settings, identify_jointly
+from shaftprint.identify import Identification, Prior, Settings, identify_jointly
+from shaftprint.identify.search import Draw
 from shaftprint.limits._suspects import IDLE, SUSPECTS, Kind, Suspect, parameters_of, starts_of
 from shaftprint.limits.prediction import OUTPUT, GovernorRecord, GovernorTest, Messages, PredictionError, messages_of
 from shaftprint.models import Structure

@@ -14,10 +14,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import IdentificationError
 from shaftprint.limits._search import Fitted, fitted
 from shaftprint.limits.prediction import GovernorTest, PredictionError
-from shaftprint.normal import NORMAL_95
 from shaftprint.signals import Signals
 from shaftprint.vessel import Vessel
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.normal import NORMAL_95
+from shaftprint.distributions import NORMAL_95
 from shaftprint.report._fingerprint_tables import limits
 from shaftprint.report._numbers import decimals_of, interval, plain, rounded, with_deviation
 from shaftprint.report._symbols import unit_text

@@ -24,8 +24,8 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
+from shaftprint.distributions import NORMAL_95, normal_cdf
 from shaftprint.fingerprint import GAUGE_ZERO
-from shaftprint.normal import NORMAL_95
 from shaftprint.report._fingerprint_tables import limits
 from shaftprint.report._shared_errors import shared_errors
 
@@ -158,7 +158,7 @@ def _difference(a: "Quantity", b: "Quantity", pair: _Pair) -> Difference:
     below = math.sqrt(own_b * (b.value - low_b) ** 2 + own_a * (high_a - a.value) ** 2 + more)
     above = math.sqrt(own_b * (high_b - b.value) ** 2 + own_a * (a.value - low_a) ** 2 + more)
     facing = below if rising else above
-    p_value = math.erfc(abs(apart) / (facing / NORMAL_95) / math.sqrt(2.0)) if facing > 0.0 else float(apart == 0.0)
+    p_value = 2.0 * float(normal_cdf(-abs(apart) / (facing / NORMAL_95))) if facing > 0.0 else float(apart == 0.0)
     return Difference(
         first=a, other=b, interval_95=(apart - below, apart + above), p_value=p_value, outcome="no difference seen"
     )

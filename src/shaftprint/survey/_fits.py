@@ -5,15 +5,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from shaftprint.identify import (
-    Comparison,
-    Identification,
-    Prior,
-    Settings,
-    compare_fits,
-    identify,
-    priors_from_vessel,
-)
+from shaftprint.identify import Identification, Prior, Settings, identify, priors_from_vessel
+from shaftprint.identify.comparison import Comparison, compare_fits
 from shaftprint.models import Structure
 from shaftprint.signals import Signals
 from shaftprint.survey._measurement import Measurement, response_of

@@ -7,7 +7,7 @@ from pathlib import Path
 from shaftprint.clocks import logger_clocks
 from shaftprint.errors import StructureError
 from shaftprint.fingerprint import clock_findings, clock_influences
-from shaftprint.identify import has_measured_inputs
+from shaftprint.identify.fit import has_measured_inputs
 from shaftprint.models import Structure
 from shaftprint.recording import read_recording
 from shaftprint.signals import Mode, Signals, prepare_signals

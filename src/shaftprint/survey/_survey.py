@@ -12,7 +12,8 @@ import numpy as np
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import shipped_structure
 from shaftprint.fingerprint import Fingerprint, SourceFile, take_fingerprint
-from shaftprint.identify import Comparison, Identification, Settings
+from shaftprint.identify import Identification, Settings
+from shaftprint.identify.comparison import Comparison
 from shaftprint.limits import limit_hints
 from shaftprint.models import Structure
 from shaftprint.signals import Mode, Signals

@@ -22,10 +22,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.special import fdtrc
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify import CheckKind, TermCheck
+from shaftprint.distributions import f_tail
+from shaftprint.identify.likelihood import CheckKind, TermCheck
 from shaftprint.time_domain._flexible_directions import impulse_responses, small_and_large, through_poles, up_and_down
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise
 from shaftprint.time_domain._nuisance import orthonormal, without
@@ -191,7 +191,7 @@ class FlexibleModel:
         enough = spare > 0 and span.rank > 0 and beyond > 0.0
         return _Difference(
             size=self._sizes(directions, np.sqrt(beyond) * span.turn, shares, fitted),
-            p_value=float(fdtrc(span.rank, spare, explained / span.rank / beyond)) if enough else 1.0,
+            p_value=f_tail(explained / span.rank / beyond, span.rank, spare) if enough else 1.0,
         )
 
     def _sizes(self, directions: FloatArray, turn: FloatArray, shares: FloatArray, fitted: FloatArray) -> FloatArray:

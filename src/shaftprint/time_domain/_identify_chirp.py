@@ -6,17 +6,10 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import (
-    Cluster,
-    Draw,
-    Identification,
-    MaximumLikelihood,
-    Settings,
-    identify,
-    identify_jointly,
-    with_load,
-    with_sensor,
-)
+from shaftprint.identify import Identification, MaximumLikelihood, Settings, identify, identify_jointly
+from shaftprint.identify.fit import Cluster, with_sensor
+from shaftprint.identify.likelihood import with_load
+from shaftprint.identify.search import Draw
 from shaftprint.models import Integrator, Structure, free_responses
 from shaftprint.time_domain._nodes import Nodes
 from shaftprint.time_domain._record import Record

@@ -16,7 +16,9 @@ from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import ShipRole
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Identification, Settings, Term, identify_jointly, with_load, with_sensor
+from shaftprint.identify import Identification, Settings, identify_jointly
+from shaftprint.identify.fit import with_sensor
+from shaftprint.identify.likelihood import Term, with_load
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain._input_response import noise_of

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify import Estimate, PseudoInverse
+from shaftprint.identify.fit import Estimate, PseudoInverse
 from shaftprint.models import Structure
 from shaftprint.simulation import equilibrium
 from shaftprint.time_domain._nuisance import without

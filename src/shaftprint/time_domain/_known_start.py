@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify import Draw
+from shaftprint.identify.search import Draw
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -13,7 +13,8 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Estimate, LineTest, Repeats, Term, TermTest
+from shaftprint.identify.fit import Estimate
+from shaftprint.identify.likelihood import LineTest, Repeats, Term, TermTest
 from shaftprint.models import Structure
 from shaftprint.time_domain._at_once import at_once
 from shaftprint.time_domain._flexible_model import FlexibleModel

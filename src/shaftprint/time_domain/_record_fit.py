@@ -6,7 +6,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_float
-from shaftprint.identify import Estimate, FittedTerm, TermCheck, fit_ceiling, fit_percent
+from shaftprint.identify import fit_percent
+from shaftprint.identify.fit import Estimate
+from shaftprint.identify.likelihood import FittedTerm, TermCheck, fit_ceiling
 from shaftprint.models import Structure
 from shaftprint.time_domain._flexible_model import FlexibleModel
 from shaftprint.time_domain._noise_model import NoiseModel

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray
-from shaftprint.identify import FittedTerm, LineTest, Repeats, Term, TermCheck, TermTest
+from shaftprint.identify.likelihood import FittedTerm, LineTest, Repeats, Term, TermCheck, TermTest
 from shaftprint.models import Structure
 from shaftprint.time_domain._bands import ORDERS
 from shaftprint.time_domain._nodes import Nodes

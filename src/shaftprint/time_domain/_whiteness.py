@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.special import chdtrc
 
 from shaftprint.arrays import FloatArray
+from shaftprint.distributions import chi_square_tail
 
 
 def whiteness_p_value(whitened: FloatArray, *, lags: int, fitted: int, lengths: Sequence[int] | None = None) -> float:
@@ -38,4 +38,4 @@ def whiteness_p_value(whitened: FloatArray, *, lags: int, fitted: int, lengths: 
             continue
         covariance = sum((ahead.T @ behind for ahead, behind in pairs), np.zeros((outputs, outputs))) / count
         total += count**2 / number * float(np.trace(covariance.T @ inverse @ covariance @ inverse))
-    return float(chdtrc(outputs**2 * (lags - fitted), total))
+    return chi_square_tail(total, outputs**2 * (lags - fitted))

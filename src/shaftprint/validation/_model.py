@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.identify import Identification, Part
+from shaftprint.identify import Identification
+from shaftprint.identify.likelihood import Part
 from shaftprint.models import Structure
 
 

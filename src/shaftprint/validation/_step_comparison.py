@@ -9,10 +9,9 @@ their covariance, to first order.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import stdtrit
 
 from shaftprint.arrays import FloatArray
-from shaftprint.normal import deviations
+from shaftprint.distributions import deviations
 from shaftprint.validation.measures import STEP_NUMBERS, Compared, step_numbers
 
 _FEWEST_PIECES = 3
@@ -79,7 +78,7 @@ def compare_steps(
     if usable:
         expected, std = _moments(step_numbers(smooth.model + pieces, time_s, settled_share=settled_share))
     # few pieces of noise give a deviation that is itself not well known: Student's t instead of the normal distribution
-    noise_reach = float(stdtrit(max(pieces.shape[0] - 1, 1), 0.5 + 0.5 * coverage))
+    noise_reach = deviations(coverage, max(pieces.shape[0] - 1, 1))
     band = _band(smooth, time_s, covariance, settled_share, draws, rng)
     found = []
     for place, (name, unit) in enumerate(STEP_NUMBERS.items()):

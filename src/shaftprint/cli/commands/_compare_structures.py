@@ -10,7 +10,8 @@ from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, st
 from shaftprint.cli._inputs import campaign_option, vessel_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.identify import compare_structures, expect_comparable
+from shaftprint.identify import compare_structures
+from shaftprint.identify.comparison import expect_comparable
 from shaftprint.survey import load_trial, measure, response_of
 
 

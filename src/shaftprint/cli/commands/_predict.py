@@ -24,9 +24,9 @@ from shaftprint.identify import (
     noise_levels,
     planned_response,
     predict_accuracy,
-    predict_intervals,
     priors_from_vessel,
 )
+from shaftprint.identify.prediction import predict_intervals
 from shaftprint.models import Structure
 from shaftprint.signals import WorkingPoint
 from shaftprint.spectra import FrequencyResponse, open_loop

@@ -14,9 +14,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.distributions import chi_square_tail
 from shaftprint.identify.comparison._nesting import NO_GAIN, Nesting
 from shaftprint.identify.fit import Identification, refit
-from shaftprint.identify.likelihood import MaximumLikelihood, chi_square_tail
+from shaftprint.identify.likelihood import MaximumLikelihood
 from shaftprint.identify.search import spread
 
 DRAWS = 199

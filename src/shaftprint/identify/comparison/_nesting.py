@@ -10,9 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.distributions import chi_square_tail
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Identification, identify
-from shaftprint.identify.likelihood import Objective, chi_square_tail, load_factors
+from shaftprint.identify.likelihood import Objective, load_factors
 from shaftprint.spectra import FrequencyResponse
 
 # Squared distance over the square of the response itself below which nothing is left.

@@ -18,7 +18,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify.likelihood import LineTest, Objective, TermTest, chi_square_tail
+from shaftprint.distributions import chi_square_tail
+from shaftprint.identify.likelihood import LineTest, Objective, TermTest
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

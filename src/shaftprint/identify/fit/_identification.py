@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
+from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._covariance import variance_along
 from shaftprint.identify.fit._fit_test import FitTest
 from shaftprint.identify.likelihood import FittedTerm, LineTest, Objective, Part
 from shaftprint.identify.search import Settings
 from shaftprint.models import Margins, Role, Structure, margins
-from shaftprint.normal import NORMAL_95
 from shaftprint.spectra import FrequencyResponse
 
 

@@ -9,11 +9,12 @@ holds too where the model is not linear in its parameters between here and there
 
 import numpy as np
 
+from shaftprint.distributions import chi_square_tail
 from shaftprint.identify.fit import Identification
 from shaftprint.identify.judgement._evidence import Evidence
 from shaftprint.identify.judgement._phrases import probability, spans
 from shaftprint.identify.judgement._requirements import Requirements
-from shaftprint.identify.likelihood import Experiment, build_joint_objective, channels_of, chi_square_tail
+from shaftprint.identify.likelihood import Experiment, build_joint_objective, channels_of
 from shaftprint.identify.search import polish
 
 # Other optima of the search from which the lines are taken in again, too.

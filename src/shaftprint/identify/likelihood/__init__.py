@@ -1,9 +1,7 @@
 """What a fit minimises: lines, records and earlier knowledge as terms of one likelihood, with their weights."""
 
 from shaftprint.identify.likelihood._build_objective import Source, build_joint_objective, build_objective
-from shaftprint.identify.likelihood._chi_square import chi_square_tail
 from shaftprint.identify.likelihood._experiment import Experiment, ResponseRepeats
-from shaftprint.identify.likelihood._f_distribution import f_tail
 from shaftprint.identify.likelihood._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify.likelihood._fitted_response import Part, channel_names, channels_of
 from shaftprint.identify.likelihood._known import PRIOR_OF_G, inertia_from_vessel, priors_from_vessel
@@ -41,10 +39,8 @@ __all__ = [
     "build_objective",
     "channel_names",
     "channels_of",
-    "chi_square_tail",
     "estimated_shapes",
     "estimated_tails",
-    "f_tail",
     "fit_ceiling",
     "fit_percent",
     "inertia_from_vessel",

@@ -56,7 +56,7 @@ class Experiment(Term):
     s: ComplexArray
     """Laplace variable of the fitted lines [rad/s], shape (lines,), complex."""
     factors: Mapping[str, FloatArray]
-    """Factor on a parameter at each fitted line: the propeller load of its window acts on ``k_q``."""
+    """Factor on a parameter at each fitted line, shape (lines,): the propeller load of its window acts on ``k_q``."""
     data: FloatArray
     """[Re, Im] of the fitted lines, shape (lines, size)."""
     measured: ComplexArray

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from shaftprint.identify.likelihood._f_distribution import f_tail
+from shaftprint.distributions import f_tail
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_float
+from shaftprint.distributions import deviations
 from shaftprint.identify.fit import Identification
 from shaftprint.identify.uncertainty._bootstrap import Bootstrap
 from shaftprint.identify.uncertainty._parameter_spread import Spread, spread_of
 from shaftprint.models import Structure, step_response
-from shaftprint.normal import deviations
 from shaftprint.units import decibel
 
 DECIBEL_PER_NEPER = 20.0 / np.log(10.0)

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import SAME_PLACE, Identification
 from shaftprint.identify.uncertainty._contour import furthest
 from shaftprint.identify.uncertainty._numbers import Numbers, all_numbers
 from shaftprint.models import Combination
-from shaftprint.normal import NORMAL_95
 
 # No curve of a profile rises by more.
 MOST_RISE = 4.0

@@ -14,9 +14,9 @@ after a minute. ``T`` is uniform in its logarithm, the invariant prior of a widt
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.special import ndtr
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
+from shaftprint.distributions import normal_cdf
 from shaftprint.limits.prediction._governor_test import GovernorTest
 from shaftprint.limits.prediction._prediction_error import PredictionError
 
@@ -137,7 +137,7 @@ def explained(late_s: FloatArray, std_s: FloatArray, mean_std_s: float) -> Messa
     prior = -0.5 * (mean / mean_std_s) ** 2
     off = late[:, None, None] - mean[None, None, :]
     half = 0.5 * cycle[None, :, None]
-    within = ndtr((off + half) / std[:, None, None]) - ndtr((off - half) / std[:, None, None])
+    within = normal_cdf((off + half) / std[:, None, None]) - normal_cdf((off - half) / std[:, None, None])
     sharpest = std[:, None, None] * np.sqrt(2.0 * np.pi)
     logs = prior + np.sum(np.log(np.maximum(within * sharpest / cycle[None, :, None], SMALLEST)), axis=0)
     at_best = logs.max(axis=1)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.artist import Artist
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.identify import model_band
+from shaftprint.identify.uncertainty import model_band
 from shaftprint.report._symbols import plain_label
 from shaftprint.report.figures._style import DATA, Handle, LineLook
 from shaftprint.report.figures._uncertainty import measured_points

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.normal import NORMAL_95
+from shaftprint.distributions import NORMAL_95
 from shaftprint.report.figures._style import (
     DATA,
     house_style,

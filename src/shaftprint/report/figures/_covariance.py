@@ -11,7 +11,8 @@ from shaftprint.report.figures._style import house_style, legend_below, legend_e
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from shaftprint.identify import Budget, Identification
+    from shaftprint.identify import Identification
+    from shaftprint.identify.uncertainty import Budget
 
 DARK = 0.6
 PERCENT = 100.0

@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.catalogue import AHEAD_S
-from shaftprint.normal import NORMAL_95
+from shaftprint.distributions import NORMAL_95
 from shaftprint.report.figures._style import (
     DATA,
     REFERENCE,

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.identify import profile_curve
+from shaftprint.identify.uncertainty import profile_curve
 from shaftprint.report._symbols import mathtext, unit_text
 from shaftprint.report.figures._style import REFERENCE, house_style, legend_below, legend_entries, look, new_figure
 
@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from shaftprint.identify import Identification, ProfileCurve
+    from shaftprint.identify import Identification
+    from shaftprint.identify.uncertainty import ProfileCurve
 
 COLUMNS = 4
 ROW_CM = 4.0

@@ -3,11 +3,10 @@
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import chdtri
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.identify import load_factors
-from shaftprint.normal import NORMAL_95
+from shaftprint.distributions import NORMAL_95, chi_square_quantile
+from shaftprint.identify.likelihood import load_factors
 from shaftprint.report._symbols import mathtext
 from shaftprint.report.figures._style import (
     REFERENCE,
@@ -116,7 +115,7 @@ def _draw_chi_square(axes: "Axes", identification: "Identification") -> None:
                 markerfacecolor=fill,
                 label=text,
             )
-    limit = float(chdtri(size, 1.0 - COVERAGE))
+    limit = chi_square_quantile(COVERAGE, size)
     axes.axhline(limit, color=REFERENCE, label=f"95 % limit, {limit:.1f} for {size} numbers")
     axes.set_ylabel("chi-square of the line [-]")
     plain_log_axis(axes, "y")

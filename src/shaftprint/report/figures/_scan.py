@@ -5,14 +5,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.normal import NORMAL_95
+from shaftprint.distributions import NORMAL_95
 from shaftprint.report._symbols import mathtext, with_unit
 from shaftprint.report.figures._style import REFERENCE, house_style, legend_below, legend_entries, look, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from shaftprint.identify import Identification, Scan
+    from shaftprint.identify import Identification
+    from shaftprint.identify.fit import Scan
 
 
 def plot_scan(scan: "Scan", identification: "Identification") -> "Figure":

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.normal import deviations
+from shaftprint.distributions import deviations
 from shaftprint.report._symbols import mathtext, with_unit
 from shaftprint.report.figures._envelope import STRETCHES, envelope
 from shaftprint.report.figures._style import (

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.identify import step_band
+from shaftprint.identify.uncertainty import step_band
 from shaftprint.report._symbols import mathtext, response_label
 from shaftprint.report.figures._style import house_style, legend_below, legend_entries, letter_panels, look, new_figure
 

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.special import stdtrit
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.normal import NORMAL_95
+from shaftprint.distributions import deviations
 from shaftprint.units import decibel
 
 if TYPE_CHECKING:
@@ -63,6 +62,5 @@ def measured_points(response: "FrequencyResponse", channel: int) -> MeasuredPoin
 
 
 def _quantile(degrees_of_freedom: FloatArray) -> FloatArray:
-    finite = np.isfinite(degrees_of_freedom)
-    safe = np.where(finite, np.maximum(degrees_of_freedom, 1.0), 1.0)
-    return np.where(finite, stdtrit(safe, 0.5 + COVERAGE / 2.0), NORMAL_95)
+    different, places = np.unique(np.maximum(degrees_of_freedom, 1.0), return_inverse=True)
+    return np.array([deviations(COVERAGE, float(freedom)) for freedom in different])[places]

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.normal import deviations
+from shaftprint.distributions import deviations
 from shaftprint.report._symbols import mathtext
 from shaftprint.report.figures._envelope import envelope, worthwhile
 from shaftprint.report.figures._style import (

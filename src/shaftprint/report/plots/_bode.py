@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.identify import model_band
+from shaftprint.identify.uncertainty import model_band
 from shaftprint.report.figures import BAND_STEP, ENDLESS_DB, channel_of, measured_phase_deg, measured_points, trace_of
 from shaftprint.report.plots._panels import TWO_LEGEND_ROWS_PX, Grid
 from shaftprint.report.plots._plot import Json, Plot

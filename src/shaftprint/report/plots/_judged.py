@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.identify import profile_curve
-from shaftprint.normal import NORMAL_95
+from shaftprint.distributions import NORMAL_95
+from shaftprint.identify.uncertainty import profile_curve
 from shaftprint.report.figures import PERCENT, ROOM, THESIS_LIMIT_DB, normalised_residuals
 from shaftprint.report.plots._panels import TWO_LEGEND_ROWS_PX, Grid, room_px
 from shaftprint.report.plots._plot import Json, Plot
@@ -13,7 +13,8 @@ from shaftprint.report.plots._traces import MARKERS, colour, line, points, strai
 from shaftprint.report.plots._words import axis_text, name_text
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Budget, Identification
+    from shaftprint.identify import Identification
+    from shaftprint.identify.uncertainty import Budget
     from shaftprint.spectra import Spectra
 
 COLUMNS = 3

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify import step_band
-from shaftprint.normal import deviations
+from shaftprint.distributions import deviations
+from shaftprint.identify.uncertainty import step_band
 from shaftprint.report.figures import DURATION_S, envelope, worthwhile
 from shaftprint.report.plots._panels import Grid
 from shaftprint.report.plots._plot import Json, Plot, packed

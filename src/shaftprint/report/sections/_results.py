@@ -3,7 +3,7 @@
 import math
 from typing import TYPE_CHECKING
 
-from shaftprint.normal import NORMAL_95
+from shaftprint.distributions import NORMAL_95
 from shaftprint.report._curve import Curve
 from shaftprint.report._fingerprint_tables import (
     combination_table,

@@ -4,7 +4,8 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup
 
-from shaftprint.identify import report_search, scan
+from shaftprint.identify.fit import scan
+from shaftprint.identify.judgement import report_search
 from shaftprint.models import Delay
 from shaftprint.report._numbers import plain, rounded
 from shaftprint.report._symbols import unit_text
@@ -13,7 +14,9 @@ from shaftprint.report.figures import plot_scan
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Candidate, Comparison, Identification, LikelihoodRatio, Optimum
+    from shaftprint.identify import Identification
+    from shaftprint.identify.comparison import Candidate, Comparison, LikelihoodRatio
+    from shaftprint.identify.fit import Optimum
 
 MOST_OPTIMA = 8
 

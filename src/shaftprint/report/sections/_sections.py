@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
     from shaftprint.clocks import LoggerClock
     from shaftprint.fingerprint import Fingerprint
-    from shaftprint.identify import Comparison, Identification
+    from shaftprint.identify import Identification
+    from shaftprint.identify.comparison import Comparison
     from shaftprint.models import Structure
     from shaftprint.recording import Recording
     from shaftprint.report.plots import Plot

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint import GAUGE_ZERO
-from shaftprint.normal import NORMAL_95
 from shaftprint.report._fingerprint_tables import expected_text, limits
 from shaftprint.report._numbers import decimals_of, interval, plain, with_deviation
 from shaftprint.report._symbols import unit_text

@@ -10,7 +10,7 @@ from shaftprint.report.plots import budget_plot, profile_plot
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 
 if TYPE_CHECKING:
-    from shaftprint.identify import Budget
+    from shaftprint.identify.uncertainty import Budget
 
 # A share that is printed as 0 % says as much.
 SMALLEST_PERCENT = 0.5

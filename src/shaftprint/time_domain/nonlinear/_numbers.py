@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.identify import Estimate, Identification
+from shaftprint.identify import Identification
+from shaftprint.identify.fit import Estimate
 from shaftprint.signals import WorkingPoint
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import Vessel

@@ -7,7 +7,9 @@ from typing import TypeAlias
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify import Draw, Identification, LatinHypercube, Prior, Settings, Term, identify_jointly
+from shaftprint.identify import Identification, LatinHypercube, Prior, Settings, identify_jointly
+from shaftprint.identify.likelihood import Term
+from shaftprint.identify.search import Draw
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain.nonlinear._settings import NonlinearSettings

@@ -15,11 +15,10 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from scipy.special import gammaincc
 
 from shaftprint.arrays import FloatArray
+from shaftprint.distributions import chi_square_tail, deviations
 from shaftprint.identify import fit_percent
-from shaftprint.normal import deviations
 from shaftprint.validation.measures._noise_pieces import NoisePieces, correlated
 
 Outcome = Literal["passes", "fails", "undecided"]
@@ -164,4 +163,4 @@ def _tail(found: float, expected: float, variance: float) -> float:
     """Return the share of a scaled chi-square of that mean and variance at or beyond what was found."""
     if not variance > 0.0:
         return float(found <= expected)
-    return float(gammaincc(expected**2 / variance, found * expected / variance))
+    return chi_square_tail(2.0 * found * expected / variance, 2.0 * expected**2 / variance)
