@@ -92,7 +92,7 @@ def commands_page() -> str:
         "when it was interrupted.\n",
     ]
     for name, words in COMMANDS.items():
-        command = importlib.import_module(f"shaftprint.cli._{name.replace('-', '_')}").command
+        command = importlib.import_module(f"shaftprint.cli.commands._{name.replace('-', '_')}").command
         context = click.Context(command, info_name=f"shaftprint {name}", max_content_width=96, terminal_width=96)
         text = "\n".join(f"   {line}".rstrip() for line in command.get_help(context).splitlines())
         parts.append(f"\n{name}\n{'-' * len(name)}\n\n{words}\n\n.. code-block:: none\n\n{text}\n")
