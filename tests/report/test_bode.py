@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.report import Curve, plot_bode, plot_closed_loop_response, plot_governor_fits, plot_line_selection
-from shaftprint.report.figures._bode_parts import measured_phase_deg, trace_of
+from shaftprint.report.figures import measured_phase_deg, trace_of
 
 
 def line_of(axes, label):

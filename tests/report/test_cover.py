@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from shaftprint.reasons import Reason
-from shaftprint.report.sections._superintendent import cover_of
+from shaftprint.report.sections import cover_of
 
 
 def answers(fingerprint, validations=()):

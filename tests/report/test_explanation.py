@@ -18,7 +18,7 @@ from shaftprint.report import (
     integral_table,
     plot_missing_damping,
 )
-from shaftprint.report.thesis._integral_gain import integral_gain
+from shaftprint.report.thesis import integral_gain
 from shaftprint.spectra import open_loop
 from shaftprint.survey import SET_POINT_OFF, ThesisMode
 

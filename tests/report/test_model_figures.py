@@ -7,8 +7,7 @@ from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
 from shaftprint.models import loop_gain
 from shaftprint.report import Curve, plot_correlation, plot_nyquist, plot_residuals, plot_sensitivity, thesis_families
-from shaftprint.report.figures._residuals import line_chi_square, normalised_residuals
-from shaftprint.report.figures._sensitivity import parameter_steps
+from shaftprint.report.figures import line_chi_square, normalised_residuals, parameter_steps
 
 
 def test_nyquist_margins_lie_where_they_are_defined(identification):

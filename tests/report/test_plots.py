@@ -12,20 +12,20 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import ReportError
 from shaftprint.report import Curve
-from shaftprint.report.figures._style import shorter_svg
+from shaftprint.report.figures import shorter_svg
 from shaftprint.report.plots import (
     Plot,
     bode_plot,
     budget_plot,
     excitation_plot,
     nyquist_plot,
+    packed,
     plotly_script,
     plotly_sheets,
     plotly_version,
     signal_to_noise_plot,
     validation_plot,
 )
-from shaftprint.report.plots._plot import packed
 
 
 def trace(plot, name, axes="x"):

@@ -12,7 +12,7 @@ from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.report import _page as page_module
 from shaftprint.report import _render as render_module
 from shaftprint.report import render_report
-from shaftprint.report.sections._measurement import time_section
+from shaftprint.report.sections import time_section
 from shaftprint.survey import ThesisMode
 
 VOID = {"meta", "img", "br", "link"}

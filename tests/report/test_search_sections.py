@@ -11,8 +11,7 @@ from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.identify.comparison import compare_fits
 from shaftprint.identify.fit import scan
 from shaftprint.report import plot_scan
-from shaftprint.report.sections._results import verdict_section
-from shaftprint.report.sections._search import comparison_section, search_section
+from shaftprint.report.sections import comparison_section, search_section, verdict_section
 
 
 def cells(table):

@@ -14,7 +14,7 @@ from shaftprint.report import (
     plot_step_delays,
     plot_strip_angles,
 )
-from shaftprint.report.figures._campaign import spread
+from shaftprint.report.figures import spread
 
 
 def legend_of(figure):

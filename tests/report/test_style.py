@@ -4,7 +4,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.report import Curve, plot_bode, save_figure
 from shaftprint.report._symbols import mathtext, with_unit
-from shaftprint.report.figures._style import LOOKS, house_style, legend_below, new_figure
+from shaftprint.report.figures import LOOKS, house_style, legend_below, new_figure
 
 
 def test_matplotlib_is_left_as_it_was():

@@ -1,4 +1,5 @@
 import math
+from types import SimpleNamespace
 
 import pytest
 
@@ -14,7 +15,12 @@ from shaftprint.report._fingerprint_tables import (
 )
 from shaftprint.report._signal_tables import calibration_table, repair_table, step_table, strip_table, window_table
 from shaftprint.report._table import Table, sentence_html, symbol_html
-from shaftprint.report.sections._results import _against_vessel, _explained, _well_known
+from shaftprint.report.sections import summary_section
+
+
+def summary(fingerprint):
+    """The paragraphs of the summary: conditions, fit, what is well known, physical values."""
+    return summary_section(SimpleNamespace(fingerprint=fingerprint)).paragraphs
 
 
 def with_parameters(fingerprint, *quantities):
@@ -60,9 +66,9 @@ def test_fit_table_without_a_likelihood(fingerprint):
     quality = fingerprint.quality.model_copy(update={"chi_square": None})
     unweighted = fingerprint.model_copy(update={"quality": quality})
     assert fit_table(unweighted).note.startswith("10 of 10 starts") or "of 10 starts" in fit_table(unweighted).note
-    assert "not weighted by the noise" in _explained(unweighted)
+    assert "not weighted by the noise" in summary(unweighted)[1]
     bad = fingerprint.model_copy(update={"quality": fingerprint.quality.model_copy(update={"p_value": 0.009})})
-    assert "does not explain" in _explained(bad)
+    assert "does not explain" in summary(bad)[1]
 
 
 def test_expected_values():
@@ -108,5 +114,4 @@ def test_meaning_is_that_of_the_structure(fingerprint):
 def test_a_summary_of_what_is_not_well_known(fingerprint):
     vague = Quantity(name="g", unit="-", value=0.0, std=0.1)
     changed = fingerprint.model_copy(update={"parameters": (vague,), "combinations": (), "physical": ()})
-    assert _well_known(changed) == []
-    assert _against_vessel(changed) == []
+    assert len(summary(changed)) == 2

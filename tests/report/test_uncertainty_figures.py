@@ -5,10 +5,8 @@ import pytest
 
 from shaftprint.identify import profile_intervals
 from shaftprint.identify.uncertainty import Budget, BudgetRow, budget, step_band
-from shaftprint.report.figures._covariance import plot_budget
-from shaftprint.report.figures._profiles import plot_profiles
-from shaftprint.report.figures._step_band import plot_step_band
-from shaftprint.report.sections._uncertainty import budget_table
+from shaftprint.report.figures import plot_budget, plot_profiles, plot_step_band
+from shaftprint.report.sections import budget_table
 
 STATED = Budget(
     sources=("noise of n", "noise of M_s", "TVC", "air"),

@@ -18,7 +18,7 @@ from shaftprint.report.plots._bode import bode_plot
 from shaftprint.report.plots._differences import difference_plot
 from shaftprint.report.plots._judged import budget_plot, profile_plot, residual_plot, signal_to_noise_plot
 from shaftprint.report.plots._nyquist import nyquist_plot
-from shaftprint.report.plots._plot import Plot
+from shaftprint.report.plots._plot import Plot, packed
 from shaftprint.report.plots._quick_script import quick_script
 from shaftprint.report.plots._script import plotly_script, plotly_sheets, plotly_version
 from shaftprint.report.plots._time import excitation_plot, step_plot, validation_plot
@@ -30,6 +30,7 @@ __all__ = [
     "difference_plot",
     "excitation_plot",
     "nyquist_plot",
+    "packed",
     "plotly_script",
     "plotly_sheets",
     "plotly_version",

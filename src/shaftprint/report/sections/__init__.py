@@ -21,7 +21,7 @@ from shaftprint.report.sections._results import (
 from shaftprint.report.sections._search import comparison_section, search_section
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 from shaftprint.report.sections._superintendent import cover_of
-from shaftprint.report.sections._uncertainty import uncertainty_section
+from shaftprint.report.sections._uncertainty import budget_table, uncertainty_section
 from shaftprint.report.sections._validation import validation_section
 
 __all__ = [
@@ -29,6 +29,7 @@ __all__ = [
     "Inputs",
     "Picture",
     "Section",
+    "budget_table",
     "change_in_words",
     "comparison_cover",
     "comparison_section",

@@ -2,7 +2,8 @@
 
 from shaftprint.report.thesis._explanation import Explanation, can_explain, explain_thesis
 from shaftprint.report.thesis._families import Family, thesis_families
-from shaftprint.report.thesis._thesis_mode import thesis_findings, thesis_fit_table
+from shaftprint.report.thesis._integral_gain import integral_gain
+from shaftprint.report.thesis._thesis_mode import calculated_inertia_time_s, thesis_findings, thesis_fit_table
 from shaftprint.report.thesis._words import (
     damping_table,
     explanation_sentences,
@@ -14,12 +15,14 @@ from shaftprint.report.thesis._words import (
 __all__ = [
     "Explanation",
     "Family",
+    "calculated_inertia_time_s",
     "can_explain",
     "damping_table",
     "explain_thesis",
     "explanation_sentences",
     "gain_table",
     "inertia_table",
+    "integral_gain",
     "integral_table",
     "thesis_families",
     "thesis_findings",
