@@ -46,7 +46,7 @@ propeller = KnownPropeller(
     propellers=vessel.hull.shafts,
     water_density_kg_m3=vessel.water_density_kg_m3,
     shaft_speed_rev_s=signals.working_point.engine_speed_rev_s / vessel.gearbox.ratio,
-    ship_speed_m_s=signals.ship_speed.working_point_m_s,
+    ship_speed_m_s=signals.channels["v_s"].reference,
 )
 plain = structure("FREE-SHIP").held_at(t_gauge=0.0)
 known = with_known_propeller(plain, propeller, mass_kg=vessel.hull.surging_mass_kg)

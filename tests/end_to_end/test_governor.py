@@ -39,7 +39,7 @@ def identified(vessel, campaign, path, tug, seed):
     settings = Settings(priors=priors_from_vessel(chosen, vessel, signals.working_point))
     fit = identify(chosen, response, rng=np.random.default_rng(1), settings=settings)
     truth = read_truth(truth_path(path))
-    rack = truth.normalised["X_0"] / signals.rack.working_point
+    rack = truth.normalised["X_0"] / signals.channels["X"].reference
     rack *= rpm_from_rev_s(signals.working_point.engine_speed_rev_s) / truth.engine_speed_rpm
     true = {
         "K_p": tug.proportional_gain * rack,

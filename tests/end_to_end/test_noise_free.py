@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.made_signals import made_channels
 
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import structure
 from shaftprint.identify import identify
 from shaftprint.recording import read_recording
-from shaftprint.signals import SetPointCalibration, Signals, SpeedSignal, WorkingPoint, prepare_signals
+from shaftprint.signals import SetPointCalibration, Signals, WorkingPoint, prepare_signals
 from shaftprint.spectra import estimate_response
 from shaftprint.tug import Noise, Tug, linearised_response, sail, simulate_signals
 
@@ -60,29 +61,25 @@ def sailed(request, vessel, campaign):
     tug = Tug(**request.param)
     ideal = simulate_signals(vessel, campaign, tug=tug)
     assert not ideal.limited.any()
-    speed = SpeedSignal(
-        name="n_e",
-        channel="PTM_e",
-        speed_rev_s=ideal.engine_speed_rev_s,
-        pulse_rate_hz=1e6,
-        averaging_s=0.0,
-        hold_s=0.0,
-        delay_s=0.0,
+    point = WorkingPoint(
+        engine_speed_rev_s=N_0,
+        shaft_torque_nm=1725.0,
+        engine_speed_std_rev_s=0.0,
+        shaft_torque_std_nm=0.0,
+        set_point_v=-5.0495,
+        load_std=0.0,
     )
     signals = Signals(
         rate_hz=200.0,
         start_s=0.0,
-        set_point_rev_s=ideal.set_point_rev_s,
-        shaft_torque_nm=ideal.shaft_torque_nm,
-        speeds={"n_e": speed},
-        working_point=WorkingPoint(
-            engine_speed_rev_s=N_0,
-            shaft_torque_nm=1725.0,
-            engine_speed_std_rev_s=0.0,
-            shaft_torque_std_nm=0.0,
-            set_point_v=-5.0495,
-            load_std=0.0,
+        channels=made_channels(
+            point,
+            ideal.set_point_rev_s,
+            ideal.shaft_torque_nm,
+            {"n_e": {"channel": "PTM_e", "values": ideal.engine_speed_rev_s, "pulse_rate_hz": 1e6}},
+            per_volt=-250.97 / 60.0,
         ),
+        working_point=point,
         calibration=SetPointCalibration(
             slope_rev_s_per_v=-250.97 / 60.0,
             intercept_rev_s=-83.467 / 60.0,

@@ -42,7 +42,7 @@ def test_without_noise_the_rack_is_that_of_the_linear_line(found, with_bus, sens
     ship, tug = fine(with_bus, **sensor), Tug(noise=QUIET)
     signals, spectra = found(ship, tug)
     # 465.54 of 1172.44 N m
-    assert signals.rack.working_point == pytest.approx(0.39707, abs=5e-5)
+    assert signals.channels["X"].reference == pytest.approx(0.39707, abs=5e-5)
     response = spectra.response
     truth = linearised_response(tug, ship, response.frequency_hz, outputs=("n", "M_s", "X"))
     assert measured(response).all()
@@ -68,7 +68,7 @@ def test_thesis_mode_leaves_all_of_the_latency_in(found, with_bus):
     ship, tug = fine(with_bus), Tug(noise=QUIET)
     signals, spectra = found(ship, tug, mode="thesis")
     with_latency, _ = found(ship, tug)
-    assert signals.rack.start_s - with_latency.rack.start_s == pytest.approx(0.01)
+    assert signals.channels["X"].start_s - with_latency.channels["X"].start_s == pytest.approx(0.01)
     speed, torque, rack = spectra.response.response[:, 0]
     assert spectra.response.outputs == ("n", "M_s", "X")
     # the speed is late by about a revolution there: the engine shows the latency alone
@@ -86,7 +86,7 @@ def test_governor_is_found_as_well_as_stated(found, with_bus):
     governor, engine = governor_and_engine(spectra.response, set_point_latency_s=tug.set_point_latency_s)
     s = 1j * governor.omega_rad_s
     # normalised with what was measured, not with the truth
-    scale = 0.39707 / signals.rack.working_point * signals.working_point.engine_speed_rev_s / 19.73
+    scale = 0.39707 / signals.channels["X"].reference * signals.working_point.engine_speed_rev_s / 19.73
     error = governor.response[0, 0] - scale * (5.7 + 4.27 / s)
     parts = np.stack([error.real, error.imag], axis=1)
     weighed = np.einsum("li,lij,lj->l", parts, np.linalg.inv(governor.covariance), parts)

@@ -54,7 +54,7 @@ def propeller(trip):
         propellers=2,
         water_density_kg_m3=1025.0,
         shaft_speed_rev_s=signals.working_point.engine_speed_rev_s / 3.82,
-        ship_speed_m_s=signals.ship_speed.working_point_m_s,
+        ship_speed_m_s=signals.channels["v_s"].reference,
     )
 
 
@@ -87,8 +87,8 @@ def with_combinations(truth):
 
 def test_working_point_is_that_of_the_ship(trip):
     signals, _, truth = trip
-    assert signals.ship_speed.working_point_m_s == pytest.approx(truth["v_0"], rel=2e-3)
-    assert signals.ship_speed.working_point_std_m_s < 0.01
+    assert signals.channels["v_s"].reference == pytest.approx(truth["v_0"], rel=2e-3)
+    assert signals.channels["v_s"].reference_std < 0.01
     assert signals.working_point.engine_speed_rev_s == pytest.approx(RPM / 60.0, rel=1e-3)
 
 
@@ -174,5 +174,5 @@ def test_log_at_the_quay_is_left_out(tmp_path):
     sail(vessel, campaign, tmp_path / "quay.nc", seed=3)
     with read_recording(tmp_path / "quay.nc") as recording:
         signals = prepare_signals(recording, vessel, campaign)
-    assert signals.ship_speed is None
+    assert "v_s" not in signals.channels
     assert any("the ship had no way on" in finding for finding in signals.findings)

@@ -6,12 +6,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from tests.made_signals import made_channels
 
 from shaftprint.catalogue import structure
 from shaftprint.fingerprint import SourceFile, take_fingerprint
 from shaftprint.identify import Prior, Settings, identify
 from shaftprint.identify.fit import Cluster
-from shaftprint.signals import Repair, SetPointCalibration, Signals, SpeedSignal, StripAngles, WorkingPoint
+from shaftprint.signals import Repair, SetPointCalibration, Signals, StripAngles, WorkingPoint
 from shaftprint.spectra import FrequencyResponse, SignalToNoise
 from shaftprint.vessel import load_vessel
 
@@ -109,19 +110,9 @@ def signals(working_point):
     return Signals(
         rate_hz=200.0,
         start_s=0.0,
-        set_point_rev_s=still,
-        shaft_torque_nm=still,
-        speeds={
-            "n_e": SpeedSignal(
-                name="n_e",
-                channel="PTM_e",
-                speed_rev_s=still,
-                pulse_rate_hz=19.73,
-                averaging_s=0.0,
-                hold_s=0.0,
-                delay_s=0.0,
-            )
-        },
+        channels=made_channels(
+            working_point, still, still, {"n_e": {"channel": "PTM_e", "values": still, "pulse_rate_hz": 19.73}}
+        ),
         working_point=working_point,
         calibration=SetPointCalibration(
             slope_rev_s_per_v=-4.2,

@@ -12,10 +12,9 @@ from shaftprint.identify import identify
 from shaftprint.spectra import FrequencyResponse
 
 CHANNELS = {"n_set": "U", "n": "PTM_e", "M_s": "M_s"}
-VESSEL = SimpleNamespace(
-    sensors=SimpleNamespace(set_point=SimpleNamespace(channel="U"), shaft_torque=SimpleNamespace(channel="M_s"))
+SIGNALS = SimpleNamespace(
+    channels={"n_e" if name == "n" else name: SimpleNamespace(channel=channel) for name, channel in CHANNELS.items()}
 )
-SIGNALS = SimpleNamespace(speeds={"n_e": SimpleNamespace(channel="PTM_e")}, rack=None, ship_speed=None)
 
 
 def clock(channels, std_s):
@@ -57,7 +56,7 @@ def two_lines(used=(True, True)):
 )
 def test_two_lines_by_hand(channels, moved, information):
     spectra = SimpleNamespace(response=two_lines(), speed="n_e")
-    (found,) = clock_influences([clock(channels, 0.01)], spectra=spectra, signals=SIGNALS, vessel=VESSEL)
+    (found,) = clock_influences([clock(channels, 0.01)], spectra=spectra, signals=SIGNALS)
     assert found.moved == moved
     assert found.delay_std_s == pytest.approx(information**-0.5)
     assert found.shift == pytest.approx(0.01 * information**0.5)
@@ -66,28 +65,26 @@ def test_two_lines_by_hand(channels, moved, information):
 
 def test_lines_that_are_not_used_tell_nothing():
     spectra = SimpleNamespace(response=two_lines((True, False)), speed="n_e")
-    (found,) = clock_influences([clock(("M_s",), 0.01)], spectra=spectra, signals=SIGNALS, vessel=VESSEL)
+    (found,) = clock_influences([clock(("M_s",), 0.01)], spectra=spectra, signals=SIGNALS)
     assert (found.line, found.delay_std_s) == ("line 1", pytest.approx(0.2))
 
 
 def test_a_test_without_a_line_to_use_is_said_nothing_of():
     spectra = SimpleNamespace(response=two_lines((False, False)), speed="n_e")
-    assert clock_influences([clock(("M_s",), 0.01)], spectra=spectra, signals=SIGNALS, vessel=VESSEL) == ()
+    assert clock_influences([clock(("M_s",), 0.01)], spectra=spectra, signals=SIGNALS) == ()
 
 
 @pytest.mark.parametrize("channels", [("U", "PTM_e", "M_s"), ("PTM_1",)])
 def test_a_clock_that_moves_nothing_against_the_set_point(channels):
     spectra = SimpleNamespace(response=two_lines(), speed="n_e")
-    (found,) = clock_influences([clock(channels, 10.0)], spectra=spectra, signals=SIGNALS, vessel=VESSEL)
+    (found,) = clock_influences([clock(channels, 10.0)], spectra=spectra, signals=SIGNALS)
     assert (found.moved, found.shift, found.phase_rad) == ((), 0.0, 0.0)
     assert clock_findings([found]) == ()
 
 
 def test_a_bad_clock_is_remarked():
     spectra = SimpleNamespace(response=two_lines(), speed="n_e")
-    good, bad = clock_influences(
-        [clock(("M_s",), 1e-4), clock(("M_s",), 0.2)], spectra=spectra, signals=SIGNALS, vessel=VESSEL
-    )
+    good, bad = clock_influences([clock(("M_s",), 1e-4), clock(("M_s",), 0.2)], spectra=spectra, signals=SIGNALS)
     (sentence,) = clock_findings([good, bad])
     assert "shaft.nc is known to 200 ms only" in sentence
     assert "up to 2.2 of their standard deviations" in sentence
@@ -100,7 +97,7 @@ def test_no_parameter_of_a_fit_moves_further(gauge_fit):
     moved = replace(response, response=response.response * turn[:, None, :])
     again = identify(gauge_fit.structure, moved, rng=np.random.default_rng(7), settings=gauge_fit.settings)
     spectra = SimpleNamespace(response=response, speed="n_e")
-    (found,) = clock_influences([clock(("M_s",), late_s)], spectra=spectra, signals=SIGNALS, vessel=VESSEL)
+    (found,) = clock_influences([clock(("M_s",), late_s)], spectra=spectra, signals=SIGNALS)
     moves = [abs(b.value - a.value) / a.std for a, b in zip(gauge_fit.parameters, again.parameters, strict=True)]
     assert max(moves) < found.shift
     assert max(moves) > 0.3 * found.shift

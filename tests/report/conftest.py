@@ -4,6 +4,7 @@ from datetime import UTC, datetime
 
 import numpy as np
 import pytest
+from tests.made_signals import made_channels
 
 from shaftprint.campaign import Campaign, setpoint
 from shaftprint.catalogue import structure
@@ -14,7 +15,6 @@ from shaftprint.signals import (
     Repair,
     SetPointCalibration,
     Signals,
-    SpeedSignal,
     StepDelay,
     StripAngles,
     WorkingPoint,
@@ -166,32 +166,23 @@ def signals(volts):
     speed = np.concatenate([np.full(lag, set_point[0]), set_point[:-lag]]) + 0.02 * rng.standard_normal(volts.size)
     torque = 1725.0 * (speed / 19.53) ** 2 * (1.0 + 0.05 * rng.standard_normal(volts.size))
     sensors = {
-        name: SpeedSignal(
-            name=name,
-            channel=channel,
-            speed_rev_s=speed,
-            pulse_rate_hz=rate,
-            averaging_s=0.0,
-            hold_s=0.0,
-            delay_s=0.0,
-        )
+        name: {"channel": channel, "values": speed, "pulse_rate_hz": rate}
         for name, channel, rate in (("n_e", "PTM_e", 19.73), ("n_e1", "PTM_1", 5.16), ("n_e4", "PTM_4", 20.66))
     }
     levels = np.array([-6.0, -5.0, -4.0])
+    point = WorkingPoint(
+        engine_speed_rev_s=19.53,
+        shaft_torque_nm=1725.0,
+        engine_speed_std_rev_s=0.01,
+        shaft_torque_std_nm=8.0,
+        set_point_v=-5.0,
+        load_std=0.005,
+    )
     return Signals(
         rate_hz=RATE_HZ,
         start_s=START_S,
-        set_point_rev_s=set_point,
-        shaft_torque_nm=torque,
-        speeds=sensors,
-        working_point=WorkingPoint(
-            engine_speed_rev_s=19.53,
-            shaft_torque_nm=1725.0,
-            engine_speed_std_rev_s=0.01,
-            shaft_torque_std_nm=8.0,
-            set_point_v=-5.0,
-            load_std=0.005,
-        ),
+        channels=made_channels(point, set_point, torque, sensors, per_volt=-250.97 / 60.0),
+        working_point=point,
         calibration=SetPointCalibration(
             slope_rev_s_per_v=-250.97 / 60.0,
             intercept_rev_s=-83.467 / 60.0,

@@ -6,6 +6,7 @@ from xml.etree import ElementTree as ET
 
 import numpy as np
 import pytest
+from tests.made_signals import with_channels
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, Unweighted, identify
@@ -65,7 +66,7 @@ def thesis(signals, spectra, open_responses):
     rng = np.random.default_rng(6)
     data = {"OL1": core, "OL2": governor, "OL5": governor}
     return ThesisMode(
-        signals=replace(signals, mode="thesis", speeds=late),
+        signals=replace(with_channels(signals, **late), mode="thesis"),
         spectra=replace(spectra, response=everything),
         identifications={name: identify(structure(name), r, rng=rng, settings=settings) for name, r in data.items()},
     )

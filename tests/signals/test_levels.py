@@ -260,7 +260,7 @@ def test_two_sensors_of_one_shaft_have_no_gear_ratio_to_blame():
     sensors = [SimpleNamespace(name=name, shaft="engine") for name in ("a", "b")]
     vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=3.82))
     speeds = tuple(
-        SimpleNamespace(name=name, channel=name.upper(), speed_rev_s=np.full(5, value))
+        SimpleNamespace(name=name, channel=name.upper(), values=np.full(5, value))
         for name, value in (("a", 20.0), ("b", 20.04))
     )
     (finding,) = compare_speeds(speeds, vessel)
@@ -271,7 +271,7 @@ def test_gear_ratio_the_other_way_round():
     sensors = [SimpleNamespace(name="shaft", shaft="propeller"), SimpleNamespace(name="engine", shaft="engine")]
     vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=4.0))
     speeds = tuple(
-        SimpleNamespace(name=name, channel=name, speed_rev_s=np.full(5, value))
+        SimpleNamespace(name=name, channel=name, values=np.full(5, value))
         for name, value in (("shaft", 20.0), ("engine", 19.0))
     )
     # the shaft turns at 5 rev/s and the engine at 19: the ratio is 3.8

@@ -52,8 +52,8 @@ def signal_of(channel, sensor=SENSOR, stretches=None, block_samples=BLOCK):
 def test_messages_stay_on_their_own_clock(messages):
     percent = percent_of(np.arange(1200) / 20.0)
     found = signal_of(messages(percent))
-    assert found.fraction == pytest.approx(0.01 * np.rint(percent), abs=1e-12)
-    assert not found.fraction.flags.writeable
+    assert found.values == pytest.approx(0.01 * np.rint(percent), abs=1e-12)
+    assert not found.values.flags.writeable
     assert (found.rate_hz, found.cycle_s, found.nyquist_hz) == (20.0, 0.05, 10.0)
     # the first message, 10 ms late
     assert found.start_s == pytest.approx(0.003)
@@ -66,7 +66,7 @@ def test_values_that_a_logger_holds_are_means_of_a_tenth_of_a_cycle(messages, bl
     percent = percent_of(np.arange(1200) / 20.0)
     held = messages(np.repeat(percent, 100), rate_hz=2000.0, start_s=1.0)
     found = signal_of(held, block_samples=block_samples)
-    assert found.fraction.reshape(-1, 10) == pytest.approx(np.tile(0.01 * np.rint(percent), (10, 1)).T, abs=1e-12)
+    assert found.values.reshape(-1, 10) == pytest.approx(np.tile(0.01 * np.rint(percent), (10, 1)).T, abs=1e-12)
     assert (found.rate_hz, found.cycle_s, found.hold_s) == (200.0, 0.05, 0.05)
     assert found.averaging_s == pytest.approx(0.005)
     # the middle of the first ten samples, 10 ms late
@@ -146,8 +146,8 @@ def test_long_gap_is_kept_out_of_the_working_point(make_channel, nothing):
     (gap,) = found.gaps
     assert (gap.start_s, gap.stop_s) == pytest.approx((20.0 - SENSOR.latency_s, 22.25 - SENSOR.latency_s))
     assert gap.reason == "has no torque available"
-    assert found.working_point == whole.working_point
-    assert np.isfinite(found.fraction).all()
+    assert found.reference == whole.reference
+    assert np.isfinite(found.values).all()
 
 
 @pytest.mark.parametrize("noise_steps", [0.0, 0.2, 0.4, 1.0])
@@ -160,8 +160,8 @@ def test_working_point_is_as_uncertain_as_stated(messages, noise_steps):
         percent = true + noise_steps * rng.standard_normal(1200)
         percent[-1] += 5.0
         found = signal_of(messages(percent, start_s=0.0), stretches=stretches)
-        errors.append(100.0 * found.working_point - true)
-        stated.append(100.0 * found.working_point_std)
+        errors.append(100.0 * found.reference - true)
+        stated.append(100.0 * found.reference_std)
     ratio = np.sqrt(np.mean(np.square(errors)) / np.mean(np.square(stated)))
     # noise of a fifth of a step is half hidden by the steps: the uncertainty is then stated twice too large
     assert 0.45 < ratio < 1.1
@@ -174,7 +174,7 @@ def test_another_load_of_a_stretch_is_no_error_of_the_working_point(messages, ap
     percent = 40.0 + rng.standard_normal(1200) + np.repeat([-0.5 * apart, 0.5 * apart], 600)
     percent[-1] += 5.0
     found = signal_of(messages(percent, start_s=0.0), stretches=(stretch(0.0, 30.0), stretch(30.0, 60.0)))
-    assert 100.0 * found.working_point_std == pytest.approx(np.sqrt((1.0 + 1.0 / 12.0) / 1200), rel=0.25)
+    assert 100.0 * found.reference_std == pytest.approx(np.sqrt((1.0 + 1.0 / 12.0) / 1200), rel=0.25)
 
 
 @pytest.fixture(scope="module")
@@ -202,19 +202,19 @@ def test_signals_hold_the_rack_and_are_otherwise_the_same(logged, with_bus, vess
     recording = logged()
     plain = prepare_signals(recording, vessel, campaign)
     signals = prepare_signals(recording, with_bus, campaign)
-    assert plain.rack is None
+    assert "X" not in plain.channels
     assert np.array_equal(plain.shaft_torque_nm, signals.shaft_torque_nm)
     assert np.array_equal(plain.set_point_rev_s, signals.set_point_rev_s)
     assert np.array_equal(plain.engine_speed.speed_rev_s, signals.engine_speed.speed_rev_s)
     assert (plain.working_point, plain.repairs, plain.findings) == (
         signals.working_point, signals.repairs, signals.findings,
     )  # fmt: skip
-    rack = signals.rack
+    rack = signals.channels["X"]
     expected = signals.working_point.shaft_torque_nm / (3.82 * 0.97 * 1172.44)
-    assert abs(rack.working_point - expected) < 3.0 * rack.working_point_std
-    assert rack.working_point_std == pytest.approx(0.01 / np.sqrt(12.0), rel=0.5)
+    assert abs(rack.reference - expected) < 3.0 * rack.reference_std
+    assert rack.reference_std == pytest.approx(0.01 / np.sqrt(12.0), rel=0.5)
     assert rack.start_s == pytest.approx(0.003)
-    assert prepare_signals(recording, with_bus, campaign, mode="thesis").rack.start_s == pytest.approx(0.013)
+    assert prepare_signals(recording, with_bus, campaign, mode="thesis").channels["X"].start_s == pytest.approx(0.013)
 
 
 def test_bridged_messages_are_among_the_repairs(logged, with_bus, campaign):

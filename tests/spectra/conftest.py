@@ -3,14 +3,23 @@
 import numpy as np
 import pytest
 from scipy.special import stdtrit
+from tests.made_signals import made_channels
 
 from shaftprint.campaign import Campaign, Sine
-from shaftprint.signals import SetPointCalibration, Signals, SpeedSignal, WorkingPoint
+from shaftprint.signals import SetPointCalibration, Signals, WorkingPoint
 from shaftprint.spectra import Window, WindowSamples
 
 SPEED_REV_S = 20.0
 TORQUE_NM = 1700.0
 SLOPE_REV_S_PER_V = -4.0
+POINT = WorkingPoint(
+    engine_speed_rev_s=SPEED_REV_S,
+    shaft_torque_nm=TORQUE_NM,
+    engine_speed_std_rev_s=0.01,
+    shaft_torque_std_nm=1.0,
+    set_point_v=-5.0,
+    load_std=0.0,
+)
 
 
 @pytest.fixture
@@ -49,32 +58,28 @@ def make_campaign():
 def make_signals():
     """Signals from deviations over the working point: set point, torque and speeds by name."""
 
-    def make(set_point, torque, speeds, *, rate_hz=20.0, pulse_rate_hz=np.inf, mode="shaftprint", **changes):
+    def make(
+        set_point, torque, speeds, *, rate_hz=20.0, pulse_rate_hz=np.inf, mode="shaftprint", scale_std=0.0, **changes
+    ):
         given = {
             "rate_hz": rate_hz,
             "start_s": 0.0,
-            "set_point_rev_s": SPEED_REV_S * (1.0 + set_point),
-            "shaft_torque_nm": TORQUE_NM * (1.0 + torque),
-            "speeds": {
-                name: SpeedSignal(
-                    name=name,
-                    channel=f"PTM_{name}",
-                    speed_rev_s=SPEED_REV_S * (1.0 + speed),
-                    pulse_rate_hz=pulse_rate_hz,
-                    averaging_s=0.0,
-                    hold_s=0.0,
-                    delay_s=0.0,
-                )
-                for name, speed in speeds.items()
-            },
-            "working_point": WorkingPoint(
-                engine_speed_rev_s=SPEED_REV_S,
-                shaft_torque_nm=TORQUE_NM,
-                engine_speed_std_rev_s=0.01,
-                shaft_torque_std_nm=1.0,
-                set_point_v=-5.0,
-                load_std=0.0,
+            "channels": made_channels(
+                POINT,
+                SPEED_REV_S * (1.0 + set_point),
+                TORQUE_NM * (1.0 + torque),
+                {
+                    name: {
+                        "channel": f"PTM_{name}",
+                        "values": SPEED_REV_S * (1.0 + speed),
+                        "pulse_rate_hz": pulse_rate_hz,
+                    }
+                    for name, speed in speeds.items()
+                },
+                per_volt=SLOPE_REV_S_PER_V,
+                scale_std=scale_std,
             ),
+            "working_point": POINT,
             "calibration": SetPointCalibration(
                 slope_rev_s_per_v=SLOPE_REV_S_PER_V,
                 intercept_rev_s=0.0,

@@ -66,12 +66,12 @@ def test_the_estimate_names_what_it_added(make_signals, make_campaign):
     set_point = wave.imag
     speed = (0.9 * np.exp(-0.2j) * wave).imag + 0.01 * rng.standard_normal(time_s.size)
     torque = (2.1 * np.exp(0.1j) * wave).imag + 0.03 * rng.standard_normal(time_s.size)
-    signals = replace(make_signals(set_point, torque, {"n_e": speed}), dc_scale_std=0.002)
+    signals = make_signals(set_point, torque, {"n_e": speed}, scale_std=0.002)
     campaign = make_campaign(("S1", 0.05, 20.0, 420.0))
     found = estimate_response(signals, campaign)
-    certain = estimate_response(replace(signals, dc_scale_std=0.0), campaign)
+    certain = estimate_response(signals.with_channel("n_set", scale_std=0.0), campaign)
     common = found.common["set-point calibration"][:, 0]
-    np.testing.assert_allclose(common, 0.002 / signals.dc_scale * found.response[:, 0])
+    np.testing.assert_allclose(common, 0.002 * found.response[:, 0])
     direction = np.concatenate([common.real, common.imag]).T
     part = direction[:, :, None] * direction[:, None, :]
     np.testing.assert_allclose(found.covariance - part, certain.covariance, rtol=1e-6, atol=1e-12)

@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.made_signals import with_channels
 
 from shaftprint.errors import ResponseError
-from shaftprint.signals import RackSignal
+from shaftprint.signals import MessageSignal
 from shaftprint.spectra import (
     ExactBin,
     FrequencyResponse,
@@ -43,18 +44,19 @@ def waves(time_s, response, sines=SINES):
 
 def rack_of(deviation, **changes):
     given = {
+        "name": "X",
         "channel": "X_percent",
-        "fraction": WORKING_POINT * (1.0 + deviation),
+        "values": WORKING_POINT * (1.0 + deviation),
         "rate_hz": 20.0,
         "start_s": 0.0,
         "resolution": 1e-9,
         "cycle_s": 0.05,
         "averaging_s": 0.0,
         "hold_s": 0.0,
-        "working_point": WORKING_POINT,
-        "working_point_std": 0.001,
+        "reference": WORKING_POINT,
+        "reference_std": 0.001,
     }
-    return RackSignal(**(given | changes))
+    return MessageSignal(**(given | changes))
 
 
 @pytest.fixture
@@ -78,7 +80,7 @@ def ship(make_signals, make_campaign):
             resolution=WORKING_POINT * step if step else 1e-9,
         )
         signals = make_signals(set_point, torque, {"n_e": speed}, **given)
-        return replace(signals, rack=rack), make_campaign(*sines)
+        return with_channels(signals, X=rack), make_campaign(*sines)
 
     return build
 
@@ -95,11 +97,11 @@ def test_a_known_response_comes_back_from_any_clock(ship, rate_hz, start_s):
 
 
 def test_speed_and_torque_are_what_they_are_without_a_rack(ship):
-    signals, campaign = ship(dc_scale_std=0.003)
+    signals, campaign = ship(scale_std=0.003)
     rng = np.random.default_rng(3)
     torque = signals.shaft_torque_nm + 20.0 * rng.standard_normal(signals.samples)
-    signals = replace(signals, shaft_torque_nm=torque)
-    alone = estimate_response(replace(signals, rack=None), campaign)
+    signals = signals.with_channel("M_s", values=torque)
+    alone = estimate_response(with_channels(signals, X=None), campaign)
     some = estimate_response(signals, campaign).of_outputs("n", "M_s")
     assert np.array_equal(some.response, alone.response)
     assert some.covariance == pytest.approx(alone.covariance, rel=1e-9, abs=1e-18)
@@ -121,10 +123,10 @@ def test_what_a_logger_holds_is_divided_out(ship):
     sent_s = phase_s + 0.05 * np.floor((time_s - phase_s) / 0.05 + 1e-9)
     held = waves(sent_s, lambda hz: plant(hz)[2]).reshape(-1, 10).mean(axis=1)
     rack = rack_of(held, rate_hz=200.0, start_s=4.5 / 2000.0, averaging_s=0.005, hold_s=0.05)
-    found = estimate_response(replace(signals, rack=rack), campaign)
+    found = estimate_response(with_channels(signals, X=rack), campaign)
     # the logger sees a message up to a sample late: a quarter of a millisecond on average, 0.3 degrees at 3.1 Hz
     assert np.abs(found.response[2, 0] / plant(found.frequency_hz)[2] - 1.0).max() < 0.006
-    plain = estimate_response(replace(signals, rack=replace(rack, hold_s=0.0)), campaign)
+    plain = estimate_response(with_channels(signals, X=replace(rack, hold_s=0.0)), campaign)
     assert np.abs(plain.response[2, 0, -1] / plant(3.1)[2] - 1.0) > 0.4
 
 
@@ -145,7 +147,7 @@ def correlated(coloured, make_signals, make_campaign, *, slope, repeats):
         torque, rack = torque + 0.1 * noise[0], rack + 0.2 * noise[1]
         signals = make_signals(set_point[::3], torque[::3], {"n_e": speed[::3]})
         logged = rack_of(rack[1::4], rate_hz=15.0, start_s=1.0 / 60.0, cycle_s=1.0 / 15.0)
-        yield estimate_response(replace(signals, rack=logged), make_campaign(*sines))
+        yield estimate_response(with_channels(signals, X=logged), make_campaign(*sines))
 
 
 def test_covariance_is_the_scatter_over_repeats(coloured, make_signals, make_campaign):
@@ -184,13 +186,11 @@ def test_steps_are_white_noise_where_noise_moves_the_rack(ship):
     signals, campaign = ship()
     rng = np.random.default_rng(8)
     errors, stated = [], []
-    step = 0.01
+    step, logged = 0.01, signals.channels["X"].values
     for _ in range(40):
-        rough = (
-            signals.rack.fraction / WORKING_POINT - 1.0 + 2.0 * step * rng.standard_normal(signals.rack.fraction.size)
-        )
+        rough = logged / WORKING_POINT - 1.0 + 2.0 * step * rng.standard_normal(logged.size)
         rack = rack_of(step * np.rint(rough / step), start_s=0.0137, resolution=WORKING_POINT * step)
-        found = estimate_response(replace(signals, rack=rack), campaign)
+        found = estimate_response(with_channels(signals, X=rack), campaign)
         errors.append(found.response[2, 0] - plant(found.frequency_hz)[2])
         stated.append(found.covariance[:, 2, 2] + found.covariance[:, 5, 5])
     ratio = np.mean(np.abs(errors) ** 2, axis=0) / np.mean(stated, axis=0)
@@ -201,7 +201,7 @@ def test_steps_are_white_noise_where_noise_moves_the_rack(ship):
 
 
 def test_line_too_fast_for_the_messages_keeps_speed_and_torque(ship):
-    signals, campaign = ship(rate_hz=5.0, dc_scale_std=0.002)
+    signals, campaign = ship(rate_hz=5.0, scale_std=0.002)
     spectra = estimate_spectra(signals, campaign)
     found = spectra.response
     assert measured(found).tolist() == [[True] * 4, [True] * 4, [True, True, True, False]]
@@ -211,7 +211,7 @@ def test_line_too_fast_for_the_messages_keeps_speed_and_torque(ship):
     fast = found.covariance[3]
     assert (fast[2, 2], fast[5, 5]) == pytest.approx((1e4, 1e4), rel=1e-12)
     assert not np.any(np.delete(fast[2], 2))
-    alone = estimate_response(replace(signals, rack=None), campaign)
+    alone = estimate_response(with_channels(signals, X=None), campaign)
     # the covariance stays positive definite in double precision: 1e-15 of the largest is added to all
     assert found.of_outputs("n", "M_s").covariance == pytest.approx(alone.covariance, rel=1e-9, abs=2e-11)
     # a governor of gain 3, and a model that is wrong by as much: it weighs next to nothing
@@ -226,13 +226,13 @@ def test_line_too_fast_for_the_messages_keeps_speed_and_torque(ship):
 
 def test_line_that_was_not_logged_or_does_not_move_is_left_open(ship):
     signals, campaign = ship()
-    late = replace(signals, rack=replace(signals.rack, fraction=signals.rack.fraction[9500:], start_s=475.0137))
+    late = signals.with_channel("X", values=signals.channels["X"].values[9500:], start_s=475.0137)
     found = estimate_response(late, campaign)
     assert measured(found)[2].tolist() == [False, False, True, True]
     assert found.remarks["S2"] == ("X is not measured: the window is not inside 475.0 to 899.0 s, when it was logged")
-    still = signals.rack.fraction.copy()
+    still = signals.channels["X"].values.copy()
     still[13_000:16_000] = WORKING_POINT
-    found = estimate_response(replace(signals, rack=replace(signals.rack, fraction=still)), campaign)
+    found = estimate_response(signals.with_channel("X", values=still), campaign)
     assert measured(found)[2].tolist() == [True, True, False, True]
     assert found.remarks["S3"] == "X is not measured: it moves by less than the step of its channel"
     assert found.used.all()
@@ -305,7 +305,7 @@ def test_line_without_rack_is_used_for_torque_over_error_only(ship):
 
 def test_response_without_rack_is_refused(ship):
     signals, campaign = ship()
-    found = estimate_response(replace(signals, rack=None), campaign)
+    found = estimate_response(with_channels(signals, X=None), campaign)
     with pytest.raises(ResponseError, match="expected a response from n_set to n, M_s and X, found n_set to n, M_s"):
         governor_and_engine(found)
     silent = noisy_response()

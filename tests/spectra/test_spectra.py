@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.made_signals import with_channels
 
 from shaftprint.errors import ResponseError
 from shaftprint.signals import Gap
@@ -93,12 +94,8 @@ def test_errors_are_as_large_as_stated(ship):
 
 def test_the_response_does_not_depend_on_units_or_start(ship, make_signals):
     signals, campaign = ship(noise=0.01)
-    point = signals.working_point
-    scaled = replace(
-        signals,
-        shaft_torque_nm=3.0 * signals.shaft_torque_nm,
-        working_point=replace(point, shaft_torque_nm=3.0 * point.shaft_torque_nm),
-    )
+    torque = signals.channels["M_s"]
+    scaled = signals.with_channel("M_s", values=3.0 * torque.values, reference=3.0 * torque.reference)
     shifted = replace(signals, start_s=1000.0)
     later = tuple(
         sine.model_copy(update={key: getattr(sine, key) + 1000.0 for key in ("start_s", "settled_s", "stop_s")})
@@ -116,7 +113,7 @@ def test_the_response_does_not_depend_on_units_or_start(ship, make_signals):
 def test_set_point_scale_moves_both_responses_along(ship):
     signals, campaign = ship(noise=0.01)
     plain = estimate_response(signals, campaign)
-    spread = estimate_response(replace(signals, dc_scale=0.5, dc_scale_std=0.01), campaign)
+    spread = estimate_response(signals.with_channel("n_set", scale_std=0.02), campaign)
     # the scale is already in the set point: the response stays, its covariance grows by (0.01 / 0.5)^2 H H^T
     assert spread.response == pytest.approx(plain.response)
     for line in range(4):
@@ -144,8 +141,8 @@ def test_the_ways_of_the_past_agree_where_there_is_no_noise(ship, method):
 
 def test_sensor_timing_and_load_go_with_the_response(ship):
     signals, campaign = ship()
-    speed = replace(signals.speeds["n_e"], averaging_s=0.05, hold_s=0.06, delay_s=0.07)
-    signals = replace(signals, speeds={"n_e": speed}, shaft_torque_nm=1.03 * signals.shaft_torque_nm)
+    signals = signals.with_channel("n_e", averaging_s=0.05, hold_s=0.06, delay_s=0.07)
+    signals = signals.with_channel("M_s", values=1.03 * signals.shaft_torque_nm)
     spectra = estimate_spectra(signals, campaign)
     found = spectra.response
     assert (found.averaging_s, found.hold_s, found.pick_up_delay_s) == (0.05, 0.06, 0.07)
@@ -181,7 +178,7 @@ def test_thesis_mode_normalises_each_line_by_its_own_offset(ship):
             (signals.set_point_rev_s - 0.01 * point, shifted),
             (0.99 * signals.set_point_rev_s, scaled),
         ):
-            found = estimate_response(replace(signals, set_point_rev_s=set_point), campaign, method=method).response
+            found = estimate_response(signals.with_channel("n_set", values=set_point), campaign, method=method).response
             assert found / plain == pytest.approx(np.full(plain.shape, factor), rel=1e-6)
 
 
@@ -208,7 +205,7 @@ def test_a_gap_costs_its_line_and_is_never_looked_at(ship):
         reason="has no values",
     )
     whole = estimate_spectra(signals, campaign)
-    spectra = estimate_spectra(replace(signals, shaft_torque_nm=torque, gaps=(gap,)), campaign)
+    spectra = estimate_spectra(replace(signals.with_channel("M_s", values=torque), gaps=(gap,)), campaign)
     assert spectra.response.lines == tuple(line for line in whole.response.lines if line != "S2")
     assert spectra.remarks["S2"] == f"left out: {gap.sentence}"
     kept = [whole.response.lines.index(line) for line in spectra.response.lines]
@@ -217,11 +214,8 @@ def test_a_gap_costs_its_line_and_is_never_looked_at(ship):
 
 def test_a_recording_that_ends_early_keeps_the_lines_it_holds(ship):
     signals, campaign = ship()
-    cut = replace(
-        signals,
-        set_point_rev_s=signals.set_point_rev_s[:13_400],
-        shaft_torque_nm=signals.shaft_torque_nm[:13_400],
-        speeds={"n_e": replace(signals.speeds["n_e"], speed_rev_s=signals.speeds["n_e"].speed_rev_s[:13_400])},
+    cut = with_channels(
+        signals, **{name: replace(one, values=one.values[:13_400]) for name, one in signals.channels.items()}
     )
     spectra = estimate_spectra(cut, campaign)
     assert spectra.response.lines == ("S1", "S2")
@@ -381,7 +375,7 @@ def test_a_dead_torque_gauge(ship):
     signals, campaign = ship()
     torque = np.full(signals.samples, 1700.0)
     with pytest.raises(ResponseError, match="S1: expected M_s to move, found a constant between 20 and 420 s"):
-        estimate_response(replace(signals, shaft_torque_nm=torque), campaign)
+        estimate_response(signals.with_channel("M_s", values=torque), campaign)
 
 
 def test_values_that_are_not_numbers(ship):
@@ -389,7 +383,7 @@ def test_values_that_are_not_numbers(ship):
     torque = signals.shaft_torque_nm.copy()
     torque[10_000] = np.nan
     with pytest.raises(ResponseError, match=r"S2: expected numbers in M_s, found one that is not finite at 500.000 s"):
-        estimate_response(replace(signals, shaft_torque_nm=torque), campaign)
+        estimate_response(signals.with_channel("M_s", values=torque), campaign)
 
 
 def test_a_single_line_has_no_neighbours_to_compare(ship):

@@ -11,7 +11,6 @@ from shaftprint.spectra._line_measurement import measure_line, strongest_frequen
 from shaftprint.spectra._load_drift import load_drift
 from shaftprint.spectra._modulation import without_modulation
 from shaftprint.spectra._noise import ShaftRelation, residual_spectrum
-from shaftprint.spectra._pick_up_gain import pick_up_gain
 from shaftprint.spectra._signal_to_noise import signal_to_noise
 
 UNRELATED = ShaftRelation(speed=1, torque=2, ratio=0.0)
@@ -176,19 +175,18 @@ def test_gain_of_a_spline_through_pulses(place):
     speed = CubicSpline(knot_s, angle_rev).derivative()(time_s) - pulse_rate_hz
     found = 2.0 * np.mean(speed * np.exp(-2j * np.pi * f * time_s)) / depth
     signal = SpeedSignal(
-        name="n_e", channel="PTM_e", speed_rev_s=time_s, pulse_rate_hz=pulse_rate_hz, averaging_s=0.0, hold_s=0.0,
-        delay_s=0.0,
+        name="n_e", channel="PTM_e", values=time_s, reference=1.0, pulse_rate_hz=pulse_rate_hz,
     )  # fmt: skip
-    assert pick_up_gain(signal, f) == pytest.approx(found, abs=2e-5)
-    assert pick_up_gain(signal, 10.1) == 1.0
+    assert signal.gain(f) == pytest.approx(found, abs=2e-5)
+    assert signal.gain(10.1) == 1.0
 
 
 def test_an_averaged_speed_is_left_to_the_model():
     signal = SpeedSignal(
-        name="n_e", channel="PTM_e", speed_rev_s=np.ones(2), pulse_rate_hz=20.0, averaging_s=0.05, hold_s=0.05,
-        delay_s=0.05,
+        name="n_e", channel="PTM_e", values=np.ones(2), reference=1.0, pulse_rate_hz=20.0, averaging_s=0.05,
+        hold_s=0.05, delay_s=0.05,
     )  # fmt: skip
-    assert pick_up_gain(signal, 5.0) == 1.0
+    assert signal.gain(5.0) == 1.0
 
 
 def test_strongest_frequency_lies_between_bins():

@@ -4,9 +4,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.made_signals import made_channels
 
 from shaftprint.campaign import load_campaign
-from shaftprint.signals import RackSignal, SpeedSignal
+from shaftprint.signals import MessageSignal
 from shaftprint.spectra import estimate_spectra, governor_and_engine, measured, open_loop
 from shaftprint.tug import Tug, linearised_response, simulate_signals
 from shaftprint.vessel import load_vessel
@@ -21,9 +22,10 @@ def ship():
 
 def percent_torque(rack):
     """Messages of 1 % every 50 ms, of a rack at 100 Hz; the first comes 30 ms after the start."""
-    return RackSignal(
+    return MessageSignal(
+        name="X",
         channel="X_percent",
-        fraction=0.01 * np.rint(100.0 * rack[3::5]),
+        values=0.01 * np.rint(100.0 * rack[3::5]),
         rate_hz=20.0,
         start_s=0.03,
         resolution=0.01,
@@ -31,8 +33,8 @@ def percent_torque(rack):
         averaging_s=0.0,
         hold_s=0.0,
         # 465.54 of 1172.44 N m
-        working_point=0.39707,
-        working_point_std=0.001,
+        reference=0.39707,
+        reference_std=0.001,
     )
 
 
@@ -48,25 +50,20 @@ def sailed(ship, make_signals):
         truth = vessel.working_point
         speed_rev_s, torque_nm = truth.engine_speed_rpm / 60.0, truth.shaft_torque_nm
         signals = make_signals(np.zeros(2), np.zeros(2), {})
+        point = replace(signals.working_point, engine_speed_rev_s=speed_rev_s, shaft_torque_nm=torque_nm)
         return replace(
             signals,
             rate_hz=100.0,
-            set_point_rev_s=ideal.set_point_rev_s,
-            shaft_torque_nm=ideal.shaft_torque_nm,
-            speeds={
-                "n_e": SpeedSignal(
-                    name="n_e",
-                    channel="PTM_e",
-                    speed_rev_s=ideal.engine_speed_rev_s,
-                    pulse_rate_hz=np.inf,
-                    averaging_s=0.0,
-                    hold_s=0.0,
-                    delay_s=0.0,
-                )
-            },
-            working_point=replace(signals.working_point, engine_speed_rev_s=speed_rev_s, shaft_torque_nm=torque_nm),
+            channels=made_channels(
+                point,
+                ideal.set_point_rev_s,
+                ideal.shaft_torque_nm,
+                {"n_e": {"channel": "PTM_e", "values": ideal.engine_speed_rev_s, "pulse_rate_hz": np.inf}},
+                per_volt=tug.set_point_slope_rpm_per_v / 60.0,
+                **({"X": percent_torque(ideal.rack_given)} if messages else {}),
+            ),
+            working_point=point,
             calibration=replace(signals.calibration, slope_rev_s_per_v=tug.set_point_slope_rpm_per_v / 60.0),
-            rack=percent_torque(ideal.rack_given) if messages else None,
         )
 
     return sail

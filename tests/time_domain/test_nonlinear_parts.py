@@ -4,12 +4,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from tests.made_signals import made_channels
 
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import limited
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Estimate
-from shaftprint.signals import SetPointCalibration, Signals, SpeedSignal, WorkingPoint
+from shaftprint.signals import SetPointCalibration, Signals, WorkingPoint
 from shaftprint.time_domain import NonlinearSettings, limit_numbers, record_from_arrays, structure_for, without_orders
 from shaftprint.time_domain.nonlinear import Given, SomeDrawn, sharpened, touched
 from shaftprint.vessel import load_vessel
@@ -83,15 +84,10 @@ def test_orders_of_the_shaft_leave_the_torque_and_slow_motion_stays(vessel):
     turned = 20.0 * time - 4.0 / (2.0 * np.pi * 0.05) * (np.cos(2.0 * np.pi * 0.05 * time) - 1.0)
     slow = 1700.0 * (speed / 20.0) ** 2 + 60.0 * np.sin(2.0 * np.pi * 0.7 * time)
     waves = 0.13 * np.cos(2.0 * np.pi * turned / 2.0 + 0.3) + 0.09 * np.sin(2.0 * np.pi * turned / vessel.gearbox.ratio)
-    sensor = SpeedSignal(
-        name="n_e", channel="PTM", speed_rev_s=speed, pulse_rate_hz=20.0, averaging_s=0.0, hold_s=0.0, delay_s=0.0
-    )
     signals = Signals(
         rate_hz=200.0,
         start_s=0.0,
-        set_point_rev_s=speed,
-        shaft_torque_nm=slow * (1.0 + waves),
-        speeds={"n_e": sensor},
+        channels=made_channels(POINT, speed, slow * (1.0 + waves), {"n_e": {"channel": "PTM", "values": speed}}),
         working_point=POINT,
         calibration=SetPointCalibration(
             slope_rev_s_per_v=-4.0,
@@ -117,7 +113,7 @@ def test_orders_of_the_shaft_leave_the_torque_and_slow_motion_stays(vessel):
     assert abs(np.mean(left)) < 1.0
     assert clean.set_point_rev_s is signals.set_point_rev_s
     assert clean.shaft_torque_nm.flags.writeable is False
-    lost = replace(signals, shaft_torque_nm=np.full(time.size, np.nan))
+    lost = signals.with_channel("M_s", values=np.full(time.size, np.nan))
     assert np.all(np.isnan(without_orders(lost, vessel).shaft_torque_nm))
 
 

@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.made_signals import made_channels, with_channels
 
 from shaftprint.campaign import load_campaign
 from shaftprint.errors import SignalError
-from shaftprint.signals import Gap, Repair, SetPointCalibration, Signals, SpeedSignal, WorkingPoint
+from shaftprint.signals import Gap, Repair, SetPointCalibration, Signals, WorkingPoint
 from shaftprint.time_domain import Decimator, record_from_arrays, records_of
 
 RATE = 200.0
@@ -24,27 +25,27 @@ def signals(campaign):
     samples = round(campaign.duration_s * RATE)
     time = np.arange(samples) / RATE
     speed = 20.0 * (1.0 + 0.05 * np.sin(2 * np.pi * 0.7 * time))
+    point = WorkingPoint(
+        engine_speed_rev_s=20.0,
+        shaft_torque_nm=1700.0,
+        engine_speed_std_rev_s=0.01,
+        shaft_torque_std_nm=1.0,
+        set_point_v=-5.0,
+        load_std=0.001,
+    )
     return Signals(
         rate_hz=RATE,
         start_s=0.0,
-        set_point_rev_s=20.0 * (1.0 + 0.1 * np.cos(2 * np.pi * 0.3 * time)),
-        shaft_torque_nm=1700.0 * (1.0 + 0.2 * np.sin(2 * np.pi * 1.9 * time)),
-        speeds={
-            "n_e": SpeedSignal(
-                name="n_e", channel="E", speed_rev_s=speed, pulse_rate_hz=20.0, averaging_s=0.0, hold_s=0.0, delay_s=0.0
-            ),
-            "n_s": SpeedSignal(
-                name="n_s", channel="S", speed_rev_s=speed, pulse_rate_hz=20.0, averaging_s=0.2, hold_s=0.2, delay_s=0.1
-            ),
-        },
-        working_point=WorkingPoint(
-            engine_speed_rev_s=20.0,
-            shaft_torque_nm=1700.0,
-            engine_speed_std_rev_s=0.01,
-            shaft_torque_std_nm=1.0,
-            set_point_v=-5.0,
-            load_std=0.001,
+        channels=made_channels(
+            point,
+            20.0 * (1.0 + 0.1 * np.cos(2 * np.pi * 0.3 * time)),
+            1700.0 * (1.0 + 0.2 * np.sin(2 * np.pi * 1.9 * time)),
+            {
+                "n_e": {"channel": "E", "values": speed},
+                "n_s": {"channel": "S", "values": speed, "averaging_s": 0.2, "hold_s": 0.2, "delay_s": 0.1},
+            },
         ),
+        working_point=point,
         calibration=SetPointCalibration(
             slope_rev_s_per_v=-1.0,
             intercept_rev_s=0.0,
@@ -134,7 +135,7 @@ def test_records_hold_what_the_signals_are_at_their_times(signals, campaign):
 
 
 def test_load_is_torque_over_the_square_of_speed(signals, campaign):
-    heavy = replace(signals, shaft_torque_nm=1.1 * signals.shaft_torque_nm)
+    heavy = signals.with_channel("M_s", values=1.1 * signals.shaft_torque_nm)
     (record,) = records_of(heavy, campaign, [campaign.sines[0].name])
     assert record.load == pytest.approx(1.1 / (1.0 + 0.05**2 / 2), rel=3e-3)
 
@@ -201,13 +202,13 @@ def test_gaps_of_the_signals_are_gaps_of_the_record(signals, campaign):
     whole = records_of(signals, campaign, [name])[0]
     middle = whole.start_s + 0.5 * whole.samples / whole.rate_hz
     gap = Gap(channel="M_s", start_s=middle, stop_s=middle + 1.0, reason="has no values", reach_s=0.05)
-    found = records_of(replace(signals, gaps=(gap,), set_point_channel="U"), campaign, [name])[0]
+    found = records_of(replace(signals, gaps=(gap,)), campaign, [name])[0]
     lost = whole.used & ~found.used
     assert np.all(~found.used[(found.time_s > middle) & (found.time_s < middle + 1.0)])
     every = round(signals.rate_hz / whole.rate_hz)
     reach_s = Decimator(every=every).half / signals.rate_hz
     assert lost.sum() / whole.rate_hz == pytest.approx(1.1 + 2.0 * reach_s, abs=1.1 / whole.rate_hz)
-    spoilt = replace(signals, gaps=(replace(gap, channel="U"),), set_point_channel="U")
+    spoilt = replace(signals, gaps=(replace(gap, channel="U"),))
     with pytest.raises(SignalError, match=rf"record {name}: expected the set point .* but channel U has no values"):
         records_of(spoilt, campaign, [name])
 
@@ -216,7 +217,7 @@ def test_values_that_are_no_numbers_are_gaps(signals, campaign):
     sine = campaign.sines[0]
     torque = signals.shaft_torque_nm.copy()
     torque[round((sine.start_s + 20.0) * RATE)] = np.nan
-    (record,) = records_of(replace(signals, shaft_torque_nm=torque), campaign, [sine.name])
+    (record,) = records_of(signals.with_channel("M_s", values=torque), campaign, [sine.name])
     lost = record.time_s[~record.used]
     assert len(record.stretches) == 2
     assert abs(lost.mean() - sine.start_s - 20.0) < 0.05
@@ -270,11 +271,8 @@ def test_wrong_requests_are_refused(signals, campaign, names, options, message):
 
 
 def test_excitation_outside_the_recording_is_refused(signals, campaign):
-    short = replace(
-        signals,
-        set_point_rev_s=signals.set_point_rev_s[:1000],
-        shaft_torque_nm=signals.shaft_torque_nm[:1000],
-        speeds={"n_e": replace(signals.engine_speed, speed_rev_s=signals.engine_speed.speed_rev_s[:1000])},
+    short = with_channels(
+        signals, **{name: replace(one, values=one.values[:1000]) for name, one in signals.channels.items()}
     )
     last = campaign.excitations[-1].name
     with pytest.raises(SignalError, match=f"record {last}: expected signals from"):

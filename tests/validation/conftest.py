@@ -2,38 +2,30 @@
 
 import numpy as np
 import pytest
+from tests.made_signals import made_channels
 
 from shaftprint.campaign import Campaign
-from shaftprint.signals import SetPointCalibration, Signals, SpeedSignal, WorkingPoint
+from shaftprint.signals import SetPointCalibration, Signals, WorkingPoint
 
 RATE_HZ = 100.0
 
 
 def _signals_from(set_point, speed, torque, *, rate_hz=RATE_HZ, start_s=0.0):
     """Return prepared signals from deviations of set point, speed and torque from the working point."""
-    sensor = SpeedSignal(
-        name="n_e",
-        channel="PTM_e",
-        speed_rev_s=20.0 * (1.0 + speed),
-        pulse_rate_hz=20.0,
-        averaging_s=0.0,
-        hold_s=0.0,
-        delay_s=0.0,
+    point = WorkingPoint(
+        engine_speed_rev_s=20.0,
+        shaft_torque_nm=1700.0,
+        engine_speed_std_rev_s=0.01,
+        shaft_torque_std_nm=5.0,
+        set_point_v=-5.0,
+        load_std=0.0,
     )
+    speeds = {"n_e": {"channel": "PTM_e", "values": 20.0 * (1.0 + speed)}}
     return Signals(
         rate_hz=rate_hz,
         start_s=start_s,
-        set_point_rev_s=20.0 * (1.0 + set_point),
-        shaft_torque_nm=1700.0 * (1.0 + torque),
-        speeds={"n_e": sensor},
-        working_point=WorkingPoint(
-            engine_speed_rev_s=20.0,
-            shaft_torque_nm=1700.0,
-            engine_speed_std_rev_s=0.01,
-            shaft_torque_std_nm=5.0,
-            set_point_v=-5.0,
-            load_std=0.0,
-        ),
+        channels=made_channels(point, 20.0 * (1.0 + set_point), 1700.0 * (1.0 + torque), speeds),
+        working_point=point,
         calibration=SetPointCalibration(
             slope_rev_s_per_v=-4.0,
             intercept_rev_s=0.0,

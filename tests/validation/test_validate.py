@@ -273,7 +273,7 @@ def test_a_structure_is_taken_with_its_default_values(made, campaign):
 
 def test_a_pick_up_of_the_signals_is_in_the_model(made, campaign):
     signals, _ = made
-    late = replace(signals, speeds={"n_e": replace(signals.engine_speed, delay_s=0.05, averaging_s=0.02, hold_s=0.01)})
+    late = signals.with_channel("n_e", delay_s=0.05, averaging_s=0.02, hold_s=0.01)
     found = validate(structure("GAUGE-CLOSED"), late, campaign, rng=np.random.default_rng(6), records=("St1",))
     named = dict(zip(found.model.structure.names, found.model.values, strict=True))
     assert (named["t_pickup"], named["T_average"], named["T_hold"]) == (0.05, 0.02, 0.01)
@@ -316,7 +316,7 @@ def test_a_gap_costs_the_steps_that_it_touches(made, campaign):
     gap = Gap(channel="M_s", start_s=300.0, stop_s=304.0, reason="has no values", reach_s=0.05)
     torque = signals.shaft_torque_nm.copy()
     torque[30_000:30_400] = 1e5
-    spoilt = replace(signals, shaft_torque_nm=torque, gaps=(gap,))
+    spoilt = replace(signals.with_channel("M_s", values=torque), gaps=(gap,))
     both = [
         validate(structure("CL4"), one, campaign, rng=np.random.default_rng(6), records=("St1",))
         for one in (signals, spoilt)

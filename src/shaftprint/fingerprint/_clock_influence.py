@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from shaftprint.clocks import LoggerClock
     from shaftprint.signals import Signals
     from shaftprint.spectra import FrequencyResponse, Spectra
-    from shaftprint.vessel import Vessel
 
 NOTABLE_SHIFT = 0.3
 """Shift that is worth a remark: with it a standard deviation is a twentieth too small."""
@@ -53,7 +52,7 @@ class ClockInfluence:
 
 
 def clock_influences(
-    clocks: "Sequence[LoggerClock]", *, spectra: "Spectra", signals: "Signals", vessel: "Vessel"
+    clocks: "Sequence[LoggerClock]", *, spectra: "Spectra", signals: "Signals"
 ) -> tuple[ClockInfluence, ...]:
     """Return what the uncertainty of every merged logger's clock does to the response; nothing if no line is used.
 
@@ -61,12 +60,12 @@ def clock_influences(
     ----------
     clocks
         Clock maps of the recording (see ``logger_clocks``).
-    spectra, signals, vessel
+    spectra, signals
         What was measured from it.
     """
     if not spectra.response.used.any():
         return ()
-    channels = _channels(spectra, signals, vessel)
+    channels = _channels(spectra, signals)
     return tuple(_influence(clock, spectra.response, channels) for clock in clocks)
 
 
@@ -81,18 +80,10 @@ def clock_findings(influences: Sequence[ClockInfluence]) -> tuple[str, ...]:
     )
 
 
-def _channels(spectra: "Spectra", signals: "Signals", vessel: "Vessel") -> dict[str, str]:
+def _channels(spectra: "Spectra", signals: "Signals") -> dict[str, str]:
     """Return which channel of the recording each input and output of the response comes from."""
-    found = {
-        "n_set": vessel.sensors.set_point.channel,
-        "n": signals.speeds[spectra.speed].channel,
-        "M_s": vessel.sensors.shaft_torque.channel,
-    }
-    if signals.rack is not None:
-        found["X"] = signals.rack.channel
-    if signals.ship_speed is not None:
-        found["v_s"] = signals.ship_speed.channel
-    return found
+    channels = {name: signal.channel for name, signal in signals.channels.items()}
+    return channels | {"n": channels[spectra.speed]}
 
 
 def _influence(clock: "LoggerClock", response: "FrequencyResponse", channels: Mapping[str, str]) -> ClockInfluence:

@@ -80,8 +80,8 @@ def take_fingerprint(
         raise FingerprintError("now: expected a time with time zone, such as datetime.now(UTC), found one without.")
     own = identification.own_values()
     margins = margin_numbers(identification.structure, own)
-    rack = signals.rack
-    rack_share = 0.0 if rack is None else rack.working_point_std / rack.working_point
+    rack = signals.channels.get("X")
+    rack_share = 0.0 if rack is None else rack.reference_std / rack.reference
     shifts = shifts_of_working_point(identification, signals.working_point, rack_share)
     stated = _budget(identification, signals.working_point, vessel, margins, shifts)
     physical = physical_quantities(identification, signals.working_point, vessel, stated)

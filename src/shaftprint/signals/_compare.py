@@ -1,11 +1,12 @@
 """The speed channels side by side: on one rigid shaft line they must agree."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shaftprint.errors import SignalError
-from shaftprint.signals._signals import SpeedSignal
+from shaftprint.signals._pick_up import PickUp
 
 if TYPE_CHECKING:
     from shaftprint.vessel import Vessel
@@ -16,7 +17,7 @@ LARGEST_DIFFERENCE = 1e-2
 _FINDING = 1e-3
 
 
-def compare_speeds(speeds: tuple[SpeedSignal, ...], vessel: "Vessel") -> tuple[str, ...]:
+def compare_speeds(speeds: Sequence[PickUp], vessel: "Vessel") -> tuple[str, ...]:
     """Compare the mean of every speed with that of the first.
 
     Returns
@@ -33,7 +34,7 @@ def compare_speeds(speeds: tuple[SpeedSignal, ...], vessel: "Vessel") -> tuple[s
     first = speeds[0]
     findings = []
     for other in speeds[1:]:
-        ratio = float(np.mean(other.speed_rev_s) / np.mean(first.speed_rev_s))
+        ratio = float(np.mean(other.values) / np.mean(first.values))
         if abs(ratio - 1.0) <= _FINDING:
             continue
         message = (

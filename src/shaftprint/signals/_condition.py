@@ -1,5 +1,6 @@
 """A continuous channel from raw counts to its unit on the grid: faults replaced, rate lowered."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -17,15 +18,17 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Conditioned:
-    """A channel on the grid."""
+class Reading:
+    """A channel that was read: on the grid, but for one with a clock of its own."""
 
     values: FloatArray
-    """Values in the unit of the channel, straight lines in gaps, shape (grid.count,)."""
-    repairs: list[Repair]
+    """Values, straight lines in gaps, shape (samples,)."""
+    repairs: Sequence[Repair]
     """What was replaced, in order of time."""
     gaps: tuple[Gap, ...]
     """What is missing, in order of time."""
+    findings: tuple[str, ...] = ()
+    """What the reader should know."""
 
 
 def conditioned(
@@ -36,7 +39,7 @@ def conditioned(
     mode: Literal["shaftprint", "thesis"],
     block_samples: int,
     advance: Advance | None = None,
-) -> Conditioned:
+) -> Reading:
     """Return a channel on the grid, in its own unit, with what was replaced and what is missing.
 
     Parameters
@@ -73,4 +76,4 @@ def conditioned(
     reaching = sorted((replace(gap, reach_s=reach_s) for gap in gaps), key=lambda gap: gap.start_s)
     rate_hz = channel.rate_hz / grid.step
     bridge(values, reaching, start_s=channel.start_s + grid.first / channel.rate_hz, rate_hz=rate_hz)
-    return Conditioned(values=values, repairs=repairs, gaps=tuple(reaching))
+    return Reading(values=values, repairs=repairs, gaps=tuple(reaching))

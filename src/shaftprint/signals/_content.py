@@ -75,5 +75,5 @@ def content_of(channel: "Channel", sensor: "SpeedSensor | None" = None, *, rate_
             rate_hz=rate_hz,
             count=int(channel.duration_s * rate_hz),
             block_samples=DEFAULT_BLOCK_SAMPLES,
-        ).speed.speed_rev_s
+        ).values
     return Content(name=channel.name, start_s=channel.start_s, rate_hz=rate_hz, values=frozen_float(values))

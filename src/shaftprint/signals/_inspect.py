@@ -2,27 +2,29 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, Counts, blocks
+from shaftprint.signals._clock import clock_of
 from shaftprint.signals._edges import find_edges, pulse_levels
 from shaftprint.signals._gaps import Gap, clock_gaps
-from shaftprint.signals._outliers import FaultLimits, fault_limits, flagged
+from shaftprint.signals._kinds import find_sources
+from shaftprint.signals._outliers import FaultLimits, flagged
 from shaftprint.signals._patch import Patcher
 from shaftprint.signals._pick_up import numbered_strips, pulse_gaps, pulse_repairs
-from shaftprint.signals._rack import read_rack
-from shaftprint.signals._signals import Repair
-from shaftprint.signals._sources import find_sources
-from shaftprint.signals._torque import judge_saturation, torque_limits
+from shaftprint.signals._signals import Repair, Role
+from shaftprint.signals._torque import judge_saturation
+from shaftprint.vessel import SpeedSensor
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel, Recording
-    from shaftprint.vessel import RackSensor, SpeedSensor, Vessel
+    from shaftprint.signals._kind import Source
+    from shaftprint.vessel import Vessel
 
-Use: TypeAlias = Literal["speed", "shaft torque", "set point", "fuel rack"]
+_ORDER = (Role.RESPONSE, Role.EXCITATION, Role.SIDE)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -31,7 +33,7 @@ class ChannelReport:
 
     channel: str
     """Name of the channel in the recording."""
-    use: Use
+    use: str
     """What the vessel file uses it for."""
     unit: str
     """Unit of the values below."""
@@ -89,14 +91,17 @@ def inspect_channels(recording: "Recording", vessel: "Vessel") -> tuple[ChannelR
     SignalError
         If a channel is missing, empty, in another unit, or holds no numbers.
     """
-    sources = find_sources(recording, vessel)
-    sensors = vessel.sensors
-    return (
-        *(_inspect_pulses(channel, sensor) for channel, sensor in zip(sources.speed, sensors.speed, strict=True)),
-        _inspect_values(sources.torque, "shaft torque", torque_limits(sources.torque, sensors.shaft_torque)),
-        _inspect_values(sources.set_point, "set point", fault_limits(sources.set_point, holds=False)),
-        *_inspect_rack(sources.rack, sensors.rack),
-    )
+    sources = sorted(find_sources(recording, vessel), key=lambda source: _ORDER.index(source.kind.role))
+    return tuple(report for source in sources for report in _inspected(source))
+
+
+def _inspected(source: "Source[Any]") -> tuple[ChannelReport, ...]:
+    limits = source.kind.limits(source)
+    if limits is not None:
+        return (_inspect_values(source, limits),)
+    if source.kind.own_clock:
+        return (_inspect_messages(source),)
+    return (_inspect_pulses(source),) if isinstance(source.sensor, SpeedSensor) else ()
 
 
 class _Extremes:
@@ -122,7 +127,8 @@ class _Extremes:
         return self._total / self._samples if self._samples else np.nan
 
 
-def _inspect_pulses(channel: "Channel", sensor: "SpeedSensor") -> ChannelReport:
+def _inspect_pulses(source: "Source[SpeedSensor]") -> ChannelReport:
+    channel, sensor = source.channel, source.sensor
     extremes = _Extremes()
     pulses, problem = None, None
     faults: tuple[Repair, ...] = ()
@@ -142,10 +148,11 @@ def _inspect_pulses(channel: "Channel", sensor: "SpeedSensor") -> ChannelReport:
     except SignalError as error:
         problem = str(error)
         _exhaust(extremes.watched(channel))
-    return _report(channel, "speed", extremes, pulses, faults, gaps, problem)
+    return _report(source, extremes, pulses, faults, gaps, problem)
 
 
-def _inspect_values(channel: "Channel", use: Use, limits: FaultLimits) -> ChannelReport:
+def _inspect_values(source: "Source[Any]", limits: FaultLimits) -> ChannelReport:
+    channel = source.channel
     extremes = _Extremes()
     repairs: list[Repair] = []
     gaps = clock_gaps(channel)
@@ -157,19 +164,17 @@ def _inspect_values(channel: "Channel", use: Use, limits: FaultLimits) -> Channe
     except SignalError as error:
         problem = str(error)
         _exhaust(extremes.watched(channel))
-    return _report(channel, use, extremes, None, tuple(repairs), tuple(gaps), problem)
+    return _report(source, extremes, None, tuple(repairs), tuple(gaps), problem)
 
 
-def _inspect_rack(channel: "Channel | None", sensor: "RackSensor | None") -> tuple[ChannelReport, ...]:
-    if channel is None or sensor is None:
-        return ()
+def _inspect_messages(source: "Source[Any]") -> ChannelReport:
     extremes = _Extremes()
-    _exhaust(extremes.watched(channel))
+    _exhaust(extremes.watched(source.channel))
     try:
-        read = read_rack(channel, sensor, block_samples=DEFAULT_BLOCK_SAMPLES)
+        reading = source.kind.read(source, clock_of(source.channel))
     except SignalError as error:
-        return (_report(channel, "fuel rack", extremes, None, (), (), str(error)),)
-    return (_report(channel, "fuel rack", extremes, None, tuple(read.repairs), read.gaps, None),)
+        return _report(source, extremes, None, (), (), str(error))
+    return _report(source, extremes, None, tuple(reading.repairs), reading.gaps, None)
 
 
 def _exhaust(passing: Iterable[object]) -> None:
@@ -178,18 +183,18 @@ def _exhaust(passing: Iterable[object]) -> None:
 
 
 def _report(
-    channel: "Channel",
-    use: Use,
+    source: "Source[Any]",
     extremes: _Extremes,
     pulses: PulseReport | None,
     faults: tuple[Repair, ...],
     gaps: tuple[Gap, ...],
     problem: str | None,
 ) -> ChannelReport:
+    channel = source.channel
     ends = [count * channel.scale + channel.offset for count in (extremes.lowest, extremes.highest)]
     return ChannelReport(
         channel=channel.name,
-        use=use,
+        use=source.kind.use,
         unit=channel.unit,
         rate_hz=channel.rate_hz,
         start_s=channel.start_s,

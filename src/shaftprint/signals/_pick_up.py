@@ -7,18 +7,22 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.signals._channels import Advance, blocks, time_of
+from shaftprint.signals._channels import Advance, blocks, find_channel, time_of
+from shaftprint.signals._condition import Reading
 from shaftprint.signals._edges import find_edges, pulse_levels
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps
+from shaftprint.signals._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals._pulses import PulseTrain, number_pulses
 from shaftprint.signals._signals import Repair, SpeedSignal, StripAngles
 from shaftprint.signals._speed import spline_speed
 from shaftprint.signals._strips import find_strips, renumbered, revolutions, unplaced_stretches
 from shaftprint.signals._thesis import pulse_period_speed
+from shaftprint.vessel import SpeedSensor
 
 if TYPE_CHECKING:
-    from shaftprint.recording import Channel
-    from shaftprint.vessel import SpeedSensor
+    from shaftprint.recording import Channel, Recording
+    from shaftprint.signals._clock import Clock
+    from shaftprint.vessel import Vessel
 
 # Over a gap longer than this the speed cannot be told from the pulses around it.
 _LONGEST_GAP_S, _LONGEST_GAP_PULSES = 1.0, 8
@@ -26,25 +30,75 @@ _LONGEST_GAP_S, _LONGEST_GAP_PULSES = 1.0, 8
 _REACH_PULSES = 4
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class PickUp:
-    """What one pulse channel gives."""
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class PickUp(Reading):
+    """What one pulse channel gives: the speed on the grid and its pulses."""
 
-    speed: SpeedSignal
-    """The speed on the grid."""
+    name: str
+    """Name of the sensor."""
+    channel: str
+    """Name of the channel."""
+    pulse_rate_hz: float
+    """Mean number of pulses a second [Hz]."""
+    period_s: float
+    """Time over which a value is a mean and is held, and by which it is late [s]; 0 where the spline removes it."""
     strips: StripAngles | None
     """Angles between the strips, where there are several."""
-    repairs: tuple[Repair, ...]
-    """Pulses that were missing or doubled."""
-    gaps: tuple[Gap, ...]
-    """Stretches without pulses, in order of time."""
-    findings: tuple[str, ...]
-    """What the reader should know."""
+
+
+class Speed(ChannelKind[SpeedSensor]):
+    """Speed of the engine from the pulses of a pick-up [rev/s]; the first one counts."""
+
+    sensor, name, use, needed = "speed", "n", "speed", True
+
+    def sources(self, recording: "Recording", vessel: "Vessel") -> tuple[Source[SpeedSensor], ...]:
+        """Return the pulse channels in the order of the vessel file."""
+        return tuple(
+            Source(
+                kind=self,
+                name=sensor.name,
+                channel=find_channel(recording, sensor.channel, unit=sensor.unit, use=f"{self.use} {sensor.name}"),
+                sensor=sensor,
+                vessel=vessel,
+                spare=sensor is not vessel.sensors.speed[0],
+            )
+            for sensor in vessel.sensors.speed
+        )
+
+    def read(self, source: Source[SpeedSensor], clock: "Clock") -> PickUp:
+        """Return the engine-side speed on the grid."""
+        return read_pick_up(
+            source.channel,
+            source.sensor,
+            gear_ratio=source.vessel.gearbox.ratio,
+            mode=clock.mode,
+            start_s=clock.start_s,
+            rate_hz=clock.rate_hz,
+            count=clock.count,
+            block_samples=clock.block_samples(source.channel),
+            advance=clock.advance,
+        )
+
+    def signal(self, source: Source[SpeedSensor], reading: Reading, steady: SteadyState) -> SpeedSignal | None:
+        """Return the speed over that of the working point."""
+        if not isinstance(reading, PickUp):
+            return None
+        return SpeedSignal(
+            name=source.name,
+            channel=source.channel.name,
+            values=frozen_float(reading.values),
+            reference=steady.working_point.engine_speed_rev_s,
+            reference_std=steady.working_point.engine_speed_std_rev_s,
+            pulse_rate_hz=reading.pulse_rate_hz,
+            averaging_s=reading.period_s,
+            hold_s=reading.period_s,
+            delay_s=reading.period_s,
+        )
 
 
 def read_pick_up(
     channel: "Channel",
-    sensor: "SpeedSensor",
+    sensor: SpeedSensor,
     *,
     gear_ratio: float,
     mode: Literal["shaftprint", "thesis"],
@@ -96,15 +150,11 @@ def read_pick_up(
     bridge(speed, gaps, start_s=start_s, rate_hz=rate_hz)
     speed *= ratio
     return PickUp(
-        speed=SpeedSignal(
-            name=sensor.name,
-            channel=channel.name,
-            speed_rev_s=frozen_float(speed),
-            pulse_rate_hz=sensor.pulses_per_revolution / turn_s,
-            averaging_s=period,
-            hold_s=period,
-            delay_s=period,
-        ),
+        name=sensor.name,
+        channel=channel.name,
+        values=speed,
+        pulse_rate_hz=sensor.pulses_per_revolution / turn_s,
+        period_s=period,
         strips=strips,
         repairs=pulse_repairs(channel, train, gaps),
         gaps=gaps,
@@ -112,7 +162,7 @@ def read_pick_up(
     )
 
 
-def numbered_strips(edges: FloatArray, sensor: "SpeedSensor") -> tuple[PulseTrain, StripAngles | None]:
+def numbered_strips(edges: FloatArray, sensor: SpeedSensor) -> tuple[PulseTrain, StripAngles | None]:
     """Return the numbered pulses of a channel and, with several strips, the angles between them.
 
     Raises
@@ -184,7 +234,7 @@ def _counted(train: PulseTrain, time_s: FloatArray, gaps: Sequence[Gap]) -> tupl
     return seconds, pulses
 
 
-def _upside_down(sensor: "SpeedSensor", duty: float) -> tuple[str, ...]:
+def _upside_down(sensor: SpeedSensor, duty: float) -> tuple[str, ...]:
     if duty <= 0.5:
         return ()
     other = "rising" if sensor.edge == "falling" else "falling"

@@ -13,14 +13,17 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import blocks, time_of
-from shaftprint.signals._condition import Conditioned
+from shaftprint.signals._condition import Reading
 from shaftprint.signals._gaps import Coverage, Gap, clock_gaps, joined, runs_of
-from shaftprint.signals._signals import RackSignal, Repair
+from shaftprint.signals._kind import ChannelKind, Source, SteadyState
+from shaftprint.signals._signals import MessageSignal, Repair, Role
 from shaftprint.signals._steady import SteadyStretch
+from shaftprint.signals._working_point import find_working_point
+from shaftprint.vessel import RackSensor
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
-    from shaftprint.vessel import RackSensor
+    from shaftprint.signals._clock import Clock
 
 # Beyond the range of the message stand "error" and "not available" (SAE J1939-71).
 _HIGHEST_PERCENT = 125.0
@@ -33,7 +36,30 @@ _BLOCK_S = 1.0
 _PERCENT = 0.01
 
 
-def read_rack(channel: "Channel", sensor: "RackSensor", *, block_samples: int) -> Conditioned:
+class Rack(ChannelKind[RackSensor]):
+    """Fuel rack that the governor gives [fraction]: 1 gives rated torque at rated speed."""
+
+    sensor, name, use, role, own_clock = "rack", "X", "fuel rack", Role.SIDE, True
+
+    def read(self, source: Source[RackSensor], clock: "Clock") -> Reading:
+        """Return the rack at the times of its messages."""
+        return read_rack(source.channel, source.sensor, block_samples=clock.block_samples(source.channel))
+
+    def signal(self, source: Source[RackSensor], reading: Reading, steady: SteadyState) -> MessageSignal:
+        """Return the rack with the working point that belongs to the mean load of the test."""
+        torque_nm = find_working_point(steady.stretches).shaft_torque_nm
+        return rack_signal(
+            reading.values,
+            source.channel,
+            source.sensor,
+            steady.stretches,
+            latency_s=steady.clock.latency_s(source.sensor.latency_s),
+            gaps=reading.gaps,
+            load=steady.working_point.shaft_torque_nm / torque_nm,
+        )
+
+
+def read_rack(channel: "Channel", sensor: RackSensor, *, block_samples: int) -> Reading:
     """Return the fuel rack [fraction], one value a message or a part of one, with what was repaired and is missing.
 
     Parameters
@@ -58,19 +84,19 @@ def read_rack(channel: "Channel", sensor: "RackSensor", *, block_samples: int) -
             f"channel {channel.name}: expected a percent torque that moves, found {percent[0]:g} % from beginning to "
             "end; check the message it was taken from, or take [sensors.rack] out of the vessel file."
         )
-    return Conditioned(values=_PERCENT * percent, repairs=repairs, gaps=tuple(gaps))
+    return Reading(values=_PERCENT * percent, repairs=repairs, gaps=tuple(gaps))
 
 
 def rack_signal(
     fraction: FloatArray,
     channel: "Channel",
-    sensor: "RackSensor",
+    sensor: RackSensor,
     stretches: tuple[SteadyStretch, ...],
     *,
     latency_s: float,
     gaps: tuple[Gap, ...] = (),
     load: float = 1.0,
-) -> RackSignal:
+) -> MessageSignal:
     """Return the fuel rack with its clock, its sampling and its working point.
 
     Parameters
@@ -107,22 +133,23 @@ def rack_signal(
             f"channel {channel.name}: expected a positive percent torque while the line stands still, as near "
             f"{stretches[0].start_s:.0f} s, found {found}; check the message it was taken from and when it was logged."
         )
-    return RackSignal(
+    return MessageSignal(
+        name=Rack.name,
         channel=channel.name,
-        fraction=frozen_float(fraction),
+        values=frozen_float(fraction),
         rate_hz=rate_hz,
         start_s=start_s,
         resolution=resolution,
         cycle_s=sensor.cycle_s if held else 1.0 / channel.rate_hz,
         averaging_s=group / channel.rate_hz if group > 1 else 0.0,
         hold_s=sensor.cycle_s if held else 0.0,
-        working_point=mean * load,
-        working_point_std=std * load,
+        reference=mean * load,
+        reference_std=std * load,
         gaps=tuple(replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in gaps),
     )
 
 
-def _samples_together(channel: "Channel", sensor: "RackSensor") -> int:
+def _samples_together(channel: "Channel", sensor: RackSensor) -> int:
     """Return how many samples make one value: one where they are messages, a part of a cycle where they are held."""
     for_one = channel.rate_hz * sensor.cycle_s
     if for_one >= _HELD_RATE:

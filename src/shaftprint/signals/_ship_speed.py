@@ -11,16 +11,17 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import blocks, time_of
-from shaftprint.signals._condition import Conditioned
+from shaftprint.signals._condition import Reading
 from shaftprint.signals._gaps import Gap, clock_gaps, joined, runs_of
-from shaftprint.signals._signals import ShipSpeedSignal
+from shaftprint.signals._kind import ChannelKind, Source, SteadyState
+from shaftprint.signals._signals import ChannelSignal, Role
 from shaftprint.signals._steady import SteadyStretch
 from shaftprint.signals._working_point import mean_of_stretches
+from shaftprint.vessel import ShipSpeedSensor
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
-    from shaftprint.signals._sources import Clock
-    from shaftprint.vessel import ShipSpeedSensor
+    from shaftprint.signals._clock import Clock
 
 # Below this a ship is moored, whatever its log says [m/s].
 _NO_WAY_M_S = 0.2
@@ -30,7 +31,23 @@ _HELD_RATE = 2.0
 _LONGEST_GAP_S = 2.0
 
 
-def read_ship_speed(channel: "Channel", sensor: "ShipSpeedSensor", clock: "Clock", *, latency_s: float) -> Conditioned:
+class ShipSpeed(ChannelKind[ShipSpeedSensor]):
+    """Speed of the ship from its log [m/s], where the ship has way on."""
+
+    sensor, name, use, role = "ship_speed", "v_s", "speed of the ship", Role.SIDE
+    absence = "the ship had no way on"
+
+    def read(self, source: Source[ShipSpeedSensor], clock: "Clock") -> Reading:
+        """Return the speed on the grid."""
+        latency_s = clock.latency_s(source.sensor.latency_s)
+        return read_ship_speed(source.channel, source.sensor, clock, latency_s=latency_s)
+
+    def signal(self, source: Source[ShipSpeedSensor], reading: Reading, steady: SteadyState) -> ChannelSignal | None:
+        """Return the speed over that of the working point; nothing where the ship had no way on."""
+        return ship_speed_signal(reading.values, source.channel, source.sensor, steady.clock, steady.stretches)
+
+
+def read_ship_speed(channel: "Channel", sensor: ShipSpeedSensor, clock: "Clock", *, latency_s: float) -> Reading:
     """Return the speed of the ship [m/s] on the common grid, with what is missing.
 
     Parameters
@@ -80,16 +97,16 @@ def read_ship_speed(channel: "Channel", sensor: "ShipSpeedSensor", clock: "Clock
         if stop - first > _LONGEST_GAP_S * channel.rate_hz
     ]
     values = np.interp(grid, time, joined(speed))
-    return Conditioned(values=values, repairs=[], gaps=(*gaps, *clock_gaps(channel)))
+    return Reading(values=values, repairs=[], gaps=(*gaps, *clock_gaps(channel)))
 
 
 def ship_speed_signal(
     speed_m_s: FloatArray,
     channel: "Channel",
-    sensor: "ShipSpeedSensor",
+    sensor: ShipSpeedSensor,
     clock: "Clock",
     stretches: tuple[SteadyStretch, ...],
-) -> ShipSpeedSignal | None:
+) -> ChannelSignal | None:
     """Return the speed of the ship with its working point; nothing where the ship had no way on.
 
     Parameters
@@ -117,12 +134,14 @@ def ship_speed_signal(
     if mean < _NO_WAY_M_S:
         return None
     held = channel.rate_hz * sensor.cycle_s >= _HELD_RATE
-    return ShipSpeedSignal(
+    return ChannelSignal(
+        name=ShipSpeed.name,
         channel=channel.name,
-        speed_m_s=frozen_float(speed_m_s),
+        role=ShipSpeed.role,
+        values=frozen_float(speed_m_s),
         cycle_s=sensor.cycle_s,
         hold_s=sensor.cycle_s if held else 0.0,
         join_s=0.0 if held else 1.0 / channel.rate_hz,
-        working_point_m_s=mean,
-        working_point_std_m_s=std,
+        reference=mean,
+        reference_std=std,
     )

@@ -1,12 +1,21 @@
 """The noun of the room: what a prepared recording consists of."""
 
+import math
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from enum import Enum
+from typing import Any, Literal
+
+import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.reasons import Reason
 from shaftprint.signals._gaps import Coverage, Gap
+
+# Nearer to half the rate of a sensor's values a sine and its alias are hard to tell apart.
+_HIGHEST_SHARE_OF_RATE = 0.45
+# Terms of the spline's images fall with the fourth power: the next one is below 1e-7.
+_IMAGES = 40
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -90,100 +99,149 @@ class StepDelay:
         return self.speed_time_s - self.set_point_time_s
 
 
+class Role(Enum):
+    """What a channel is to a test."""
+
+    EXCITATION = "excitation"
+    """What the test moves: the input of a response."""
+    RESPONSE = "response"
+    """What answers, on the clock of the logger."""
+    SIDE = "side signal"
+    """What answers too but comes seldom: it may be missing where the others are not."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class SpeedSignal:
-    """One speed channel, referred to the engine side, on the common grid, with what its sensor does to it."""
+class ChannelSignal:
+    """One channel in physical units, with its working point and what its sensor does to a sine.
+
+    It is on the common grid, but for a `MessageSignal`.
+    """
 
     name: str
-    """Name of the sensor in the vessel file, such as ``n_e``."""
+    """Symbol of the quantity, such as ``M_s``; of a speed its name in the vessel file, such as ``n_e``."""
     channel: str
     """Name of the channel in the recording."""
-    speed_rev_s: FloatArray
-    """Engine-side speed [rev/s], shape (samples,)."""
+    role: Role = Role.RESPONSE
+    """What it is to a test."""
+    values: FloatArray
+    """Values in the unit of the quantity, known latency taken off, shape (samples,)."""
+    reference: float
+    """Value at the working point, over which deviations are taken."""
+    reference_std: float = 0.0
+    """Standard deviation of the value at the working point, without the scale of the sensor."""
+    cycle_s: float = 0.0
+    """Time from one value to the next, which is how often the quantity is really sampled [s]; 0 at every sample."""
+    averaging_s: float = 0.0
+    """Length of the window over which a value is a mean [s]; 0 for single values and where it has been removed."""
+    hold_s: float = 0.0
+    """Time for which a value is held until the next [s]; 0 where values are interpolated."""
+    join_s: float = 0.0
+    """Length of the straight lines from one value to the next [s]; 0 where values are held."""
+
+    @property
+    def nyquist_hz(self) -> float:
+        """Highest frequency that the sensor shows without aliasing [Hz]."""
+        return 0.5 / self.cycle_s if self.cycle_s else math.inf
+
+    @property
+    def highest_hz(self) -> float:
+        """Highest frequency at which a sine and its alias are told apart [Hz]."""
+        return _HIGHEST_SHARE_OF_RATE / self.cycle_s if self.cycle_s else math.inf
+
+    def gain(self, frequency_hz: float) -> complex:
+        """Return what holding, joining and averaging about their own time make of a sine of amplitude 1.
+
+        ``sinc^2`` of the periods in a straight line; ``sinc`` and half the hold late where values are held; ``sinc`` of
+        the periods in a mean.
+        """
+        held = frequency_hz * self.hold_s
+        joined = np.sinc(frequency_hz * self.join_s) ** 2 * np.sinc(held) * np.exp(-1j * np.pi * held)
+        return complex(joined * np.sinc(frequency_hz * self.averaging_s))
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ExcitationSignal(ChannelSignal):
+    """What a test moves, such as the set point of the speed."""
+
+    role: Role = Role.EXCITATION
+    """What it is to a test."""
+    input: str = "set_point"
+    """Table of the vessel file's sensors, by which a campaign names it."""
+    per_volt: float
+    """Change of the quantity for one volt of the campaign, in its unit per V."""
+    scale_std: float = 0.0
+    """Standard deviation of the scale, as a fraction."""
+    shown_unit: str = ""
+    """Unit in which amplitudes are told to the reader."""
+    shown_reference: float = 1.0
+    """The working point in that unit."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class SpeedSignal(ChannelSignal):
+    """One speed channel [rev/s], referred to the engine side, with what its sensor does to it.
+
+    A window over which a value is a mean, and a hold, belong to the model of the sensor: they are in no ``gain``.
+    """
+
     pulse_rate_hz: float
     """Mean number of pulses a second: the rate at which the speed is really sampled [Hz]."""
-    averaging_s: float
-    """Length of the window over which the value is a mean [s]; 0 where the averaging has been removed."""
-    hold_s: float
-    """Time for which a value is held until the next [s]; 0 where values are interpolated."""
-    delay_s: float
+    delay_s: float = 0.0
     """Total delay of the value behind the true speed [s]; 0 where values are stamped at mid-period."""
+
+    @property
+    def speed_rev_s(self) -> FloatArray:
+        """Engine-side speed [rev/s], shape (samples,)."""
+        return self.values
 
     @property
     def nyquist_hz(self) -> float:
         """Highest frequency that this sensor shows without aliasing [Hz]."""
         return self.pulse_rate_hz / 2.0
 
+    def gain(self, frequency_hz: float) -> complex:
+        """Return the factor by which the spline through the pulses shows a sine too small.
+
+        A cubic spline through the shaft angles at the pulses, differentiated, shows a sine of ``x`` periods a pulse
+        with
+
+        ``sinc(x)^4 / sum_k sinc(x + k)^4``
+
+        (Unser, Aldroubi and Eden, "B-spline signal processing: Part I", IEEE Transactions on Signal Processing 41
+        (1993): frequency response of the cardinal cubic spline): 0.996 at a fifth of the pulse rate, 0.963 at three
+        tenths, one half at half the pulse rate. It is 1 for a signal that is averaged or held, since that belongs to
+        the model of the sensor, and above half the pulse rate, where the signal shows an alias.
+        """
+        if self.averaging_s > 0.0 or self.hold_s > 0.0 or frequency_hz > self.nyquist_hz:
+            return 1.0
+        images = np.sinc(frequency_hz / self.pulse_rate_hz + np.arange(-_IMAGES, _IMAGES + 1)) ** 4
+        return float(images[_IMAGES] / images.sum())
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class RackSignal:
-    """Fuel rack that the governor gives, from the percent torque on the CAN bus, on the channel's own clock.
+class MessageSignal(ChannelSignal):
+    """A channel on its own clock, such as the fuel rack on the CAN bus: between two messages nothing is known."""
 
-    It is not on the common grid: between two messages nothing is known.
-    """
-
-    channel: str
-    """Name of the channel in the recording."""
-    fraction: FloatArray
-    """Fuel rack ``X`` [fraction]: 1 gives rated torque at rated speed; shape (values,)."""
+    role: Role = Role.SIDE
+    """What it is to a test."""
     rate_hz: float
     """Values a second [Hz]."""
     start_s: float
     """Time of the first value, in seconds of the recording; the known latency has been taken off."""
     resolution: float
-    """Step of the channel [fraction]."""
-    cycle_s: float
-    """Time from one message to the next [s]: how often the rack is really sampled."""
-    averaging_s: float
-    """Length of the window over which a value is a mean, about its own time [s]; 0 for single samples."""
-    hold_s: float
-    """Time for which a message is held until the next [s]; 0 where every value is a message."""
-    working_point: float
-    """Mean rack ``X_0`` of the steady state for normalisation [fraction]."""
-    working_point_std: float
-    """Standard deviation of ``X_0`` [fraction]; it holds the steps of the channel."""
+    """Step of the channel, in the unit of the quantity."""
     gaps: tuple[Gap, ...] = ()
-    """Where no torque was available for long, in order of time; straight lines there."""
-
-    @property
-    def nyquist_hz(self) -> float:
-        """Highest frequency that the messages show without aliasing [Hz]."""
-        return 0.5 / self.cycle_s
+    """Where nothing was available for long, in order of time; straight lines there."""
 
     @property
     def coverage(self) -> Coverage:
-        """Where torque was available."""
+        """Where values were available."""
         return Coverage(gaps=self.gaps)
 
     @property
     def stop_s(self) -> float:
         """Time after the last value, each counted with its period, in seconds of the recording."""
-        return self.start_s + self.fraction.size / self.rate_hz
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ShipSpeedSignal:
-    """Speed of the ship from its log, on the common grid."""
-
-    channel: str
-    """Name of the channel in the recording."""
-    speed_m_s: FloatArray
-    """Speed [m/s], shape (samples,); the known latency has been taken off."""
-    cycle_s: float
-    """Time from one value of the log to the next [s]."""
-    hold_s: float
-    """Time for which a value is held until the next [s]; 0 where straight lines join them."""
-    join_s: float
-    """Length of the straight lines from one value to the next [s]; 0 where values are held."""
-    working_point_m_s: float
-    """Mean speed ``v_0`` of the steady state for normalisation [m/s]."""
-    working_point_std_m_s: float
-    """Standard deviation of ``v_0`` [m/s]: scatter between steady stretches, without the error of the log itself."""
-
-    @property
-    def nyquist_hz(self) -> float:
-        """Highest frequency that the log shows without aliasing [Hz]."""
-        return 0.5 / self.cycle_s
+        return self.start_s + self.values.size / self.rate_hz
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -197,12 +255,9 @@ class Signals:
     """Sample rate of the grid [Hz]."""
     start_s: float
     """Time of the first sample, in seconds of the recording."""
-    set_point_rev_s: FloatArray
-    """Engine-speed set point ``n_set`` [rev/s], shape (samples,)."""
-    shaft_torque_nm: FloatArray
-    """Shaft torque ``M_s`` at the gauge [N m], shape (samples,)."""
-    speeds: Mapping[str, SpeedSignal]
-    """Every speed channel by sensor name, in the order of the vessel file; the first is the one that is identified."""
+    channels: Mapping[str, ChannelSignal]
+    """Every channel by its symbol or, of speeds, by the sensor's name: what is excited, speeds in the order of the
+    vessel file, the other channels."""
     working_point: WorkingPoint
     """Steady state for normalisation."""
     calibration: SetPointCalibration
@@ -229,17 +284,35 @@ class Signals:
     """SHA-256 of the raw file."""
     recording_name: str
     """File name of the raw recording."""
-    set_point_channel: str = ""
-    """Name of the set-point channel in the recording."""
-    rack: RackSignal | None = None
-    """Fuel rack, where the vessel file names the percent torque of the engine's control unit."""
-    ship_speed: ShipSpeedSignal | None = None
-    """Speed of the ship, where the vessel file names a log and the ship had way on."""
+
+    @property
+    def excitations(self) -> Mapping[str, ExcitationSignal]:
+        """Every channel that a test may move, by its symbol; the set point of the speed is the first."""
+        return {name: one for name, one in self.channels.items() if isinstance(one, ExcitationSignal)}
+
+    @property
+    def speeds(self) -> Mapping[str, SpeedSignal]:
+        """Every speed channel by sensor name, in the order of the vessel file; the first is the one identified."""
+        return {name: one for name, one in self.channels.items() if isinstance(one, SpeedSignal)}
 
     @property
     def engine_speed(self) -> SpeedSignal:
         """The speed channel that is identified: the first of the vessel file."""
         return next(iter(self.speeds.values()))
+
+    @property
+    def set_point_rev_s(self) -> FloatArray:
+        """Engine-speed set point ``n_set`` [rev/s], shape (samples,)."""
+        return self.channels["n_set"].values
+
+    @property
+    def shaft_torque_nm(self) -> FloatArray:
+        """Shaft torque ``M_s`` at the gauge [N m], shape (samples,)."""
+        return self.channels["M_s"].values
+
+    def with_channel(self, name: str, **changes: Any) -> "Signals":
+        """Return the signals with some fields of one channel changed."""
+        return replace(self, channels={**self.channels, name: replace(self.channels[name], **changes)})
 
     @property
     def coverage(self) -> Coverage:

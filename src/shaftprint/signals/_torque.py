@@ -1,19 +1,24 @@
 """Shaft torque from the gauge: unit, zero, known latency, dropouts, and whether the gauge is alive."""
 
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign import Campaign, Sine
 from shaftprint.errors import SignalError
+from shaftprint.signals._condition import Reading, conditioned
 from shaftprint.signals._gaps import EVERYTHING, Coverage
+from shaftprint.signals._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals._outliers import FaultLimits, fault_limits
-from shaftprint.signals._signals import Repair
+from shaftprint.signals._signals import ChannelSignal, Repair
+from shaftprint.vessel import ShaftTorqueSensor
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
-    from shaftprint.vessel import ShaftTorqueSensor
+    from shaftprint.signals._clock import Clock
 
 # So near to full scale counts as there.
 _RAIL_SHARE = 0.999
@@ -24,7 +29,47 @@ _SLOW_HZ = 1.0
 _LEAST_MOVEMENT = 1e-3
 
 
-def torque_limits(channel: "Channel", sensor: "ShaftTorqueSensor") -> FaultLimits:
+class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
+    """Torque of the propeller shaft at its gauge [N m]."""
+
+    sensor, name, use, needed = "shaft_torque", "M_s", "shaft torque", True
+
+    def limits(self, source: Source[ShaftTorqueSensor]) -> FaultLimits:
+        """Return the limits of the gauge."""
+        return torque_limits(source.channel, source.sensor)
+
+    def read(self, source: Source[ShaftTorqueSensor], clock: "Clock") -> Reading:
+        """Return the torque on the grid."""
+        channel, sensor = source.channel, source.sensor
+        latency_s = clock.latency_s(sensor.latency_s)
+        reading = conditioned(
+            channel,
+            self.limits(source),
+            clock.grid(channel, latency_s),
+            mode=clock.mode,
+            block_samples=clock.block_samples(channel),
+            advance=clock.advance,
+        )
+        gaps = (replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in reading.gaps)
+        return replace(
+            reading,
+            values=sensor.torque_nm(reading.values),
+            gaps=tuple(gaps),
+            findings=judge_saturation(channel, reading.repairs),
+        )
+
+    def signal(self, source: Source[ShaftTorqueSensor], reading: Reading, steady: SteadyState) -> ChannelSignal:
+        """Return the torque over that of the working point."""
+        return ChannelSignal(
+            name=self.name,
+            channel=source.channel.name,
+            values=frozen_float(reading.values),
+            reference=steady.working_point.shaft_torque_nm,
+            reference_std=steady.working_point.shaft_torque_std_nm,
+        )
+
+
+def torque_limits(channel: "Channel", sensor: ShaftTorqueSensor) -> FaultLimits:
     """Return what counts as a fault of the gauge, with rails at the full scale of the telemetry."""
     reach = abs(sensor.full_scale_nm / sensor.scale_nm_per_unit)
     ends = [(side * reach - channel.offset) / channel.scale for side in (-1.0, 1.0)]
@@ -35,7 +80,7 @@ def torque_limits(channel: "Channel", sensor: "ShaftTorqueSensor") -> FaultLimit
     return fault_limits(channel, holds=True, lowest=lowest, highest=highest)
 
 
-def judge_saturation(channel: "Channel", repairs: list[Repair]) -> tuple[str, ...]:
+def judge_saturation(channel: "Channel", repairs: Sequence[Repair]) -> tuple[str, ...]:
     """Return a finding where crests of the torque are cut off at full scale.
 
     Raises
@@ -60,7 +105,7 @@ def judge_saturation(channel: "Channel", repairs: list[Repair]) -> tuple[str, ..
 def expect_moving_torque(
     torque_nm: FloatArray,
     campaign: Campaign,
-    sensor: "ShaftTorqueSensor",
+    sensor: ShaftTorqueSensor,
     *,
     rate_hz: float,
     start_s: float,

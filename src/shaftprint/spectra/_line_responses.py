@@ -9,9 +9,7 @@ from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.spectra._cross_term import without_cross_term
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._line_measurement import LineMeasurement
-from shaftprint.spectra._pick_up_gain import pick_up_gain
 from shaftprint.spectra._response_covariance import response_of_line, weight_factor, with_common_error
-from shaftprint.spectra._ship_line import log_gain, shows
 
 if TYPE_CHECKING:
     from shaftprint.signals import Signals, SpeedSignal
@@ -70,8 +68,8 @@ def response_of_lines(
     load
         Propeller load of each window over that at the working point, shape (lines,).
     """
-    ship = signals.ship_speed
-    outputs = ("n", "M_s", *(() if ship is None else ("v_s",)), *(() if signals.rack is None else ("X",)))
+    ship = signals.channels.get("v_s")
+    outputs = ("n", "M_s", *(() if ship is None else ("v_s",)), *(() if "X" not in signals.channels else ("X",)))
     response = np.empty((len(outputs), 1, len(measurements)), dtype=np.complex128)
     common = np.zeros_like(response)
     covariance = np.empty((len(measurements), 2 * len(outputs), 2 * len(outputs)))
@@ -83,7 +81,7 @@ def response_of_lines(
         values, spread = response_of_line(amplitude, noise, complex_samples=samples, weighted=len(outputs))
         # the common error takes part in the factor of the weights: speed and torque alone keep what they would have
         more = weight_factor(samples, len(outputs)) / weight_factor(samples, _SPEED_AND_TORQUE)
-        share = signals.dc_scale_std / signals.dc_scale * np.sqrt(more)
+        share = signals.excitations["n_set"].scale_std * np.sqrt(more)
         spread = with_common_error(spread, values, share)
         common[[outputs.index(name) for name in known], 0, place] = share * values
         for position, name in enumerate(outputs):
@@ -109,7 +107,7 @@ def response_of_lines(
 def _known_outputs(signals: "Signals", line: LineMeasurement) -> tuple[str, ...]:
     """Return the outputs that were measured at a line."""
     known = ["n", "M_s"]
-    if signals.ship_speed is not None and shows(signals.ship_speed, line.window.frequency_hz):
+    if "v_s" in signals.channels and line.window.frequency_hz <= signals.channels["v_s"].highest_hz:
         known.append("v_s")
     if line.rack is not None:
         known.append("X")
@@ -126,9 +124,9 @@ def _amplitudes(
     (section 3.3): a set point that is off by a constant is then off by a factor.
     """
     frequency = line.window.frequency_hz
-    scale = np.array([1.0, 1.0 / pick_up_gain(sensor, frequency), 1.0], dtype=np.complex128)
-    if len(channels) > scale.size and signals.ship_speed is not None:
-        scale = np.append(scale, 1.0 / log_gain(signals.ship_speed, frequency))
+    scale = np.array([1.0, 1.0 / sensor.gain(frequency), 1.0], dtype=np.complex128)
+    if len(channels) > scale.size:
+        scale = np.append(scale, 1.0 / signals.channels["v_s"].gain(frequency))
     amplitude = line.amplitude[channels]
     noise = line.noise.covariance[np.ix_(channels, channels)]
     if line.rack is not None:

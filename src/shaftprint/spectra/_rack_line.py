@@ -17,7 +17,7 @@ from shaftprint.spectra._noise import ShaftRelation, line_noise
 from shaftprint.spectra._signal_to_noise import NEIGHBOUR_BINS, LineVariances, line_variances
 
 if TYPE_CHECKING:
-    from shaftprint.signals import RackSignal
+    from shaftprint.signals import MessageSignal
     from shaftprint.spectra._windows import Window
 
 # Taking sidebands out leaves less, or by chance a little more.
@@ -25,9 +25,6 @@ _ENLARGED = 2.0
 
 # Samples nearer to each other than this part of a period count as one.
 _PHASES = 1000
-
-# Nearer to half the rate of the messages a sine and its alias are hard to tell apart.
-_HIGHEST_SHARE_OF_RATE = 0.45
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -58,7 +55,7 @@ class RackLine:
     """Variances for the signal-to-noise ratio, of the one channel."""
 
 
-def cut_rack(rack: "RackSignal", window: "Window") -> RackWindow:
+def cut_rack(rack: "MessageSignal", window: "Window") -> RackWindow:
     """Cut a window out of the fuel rack.
 
     Parameters
@@ -74,15 +71,14 @@ def cut_rack(rack: "RackSignal", window: "Window") -> RackWindow:
     the channel does not cover the window and where it stands still.
     """
     frequency = window.frequency_hz
-    holding = np.sinc(frequency * rack.hold_s) * np.exp(-1j * np.pi * frequency * rack.hold_s)
     result = RackWindow(
         samples=None,
-        gain=complex(holding * np.sinc(frequency * rack.averaging_s)),
-        step=rack.resolution / rack.working_point,
+        gain=rack.gain(frequency),
+        step=rack.resolution / rack.reference,
         messages=window.duration_s / rack.cycle_s,
         remark="",
     )
-    highest = _HIGHEST_SHARE_OF_RATE / rack.cycle_s
+    highest = rack.highest_hz
     if frequency > highest:
         return replace(
             result, remark=f"X is not measured: {frequency:g} Hz is above {highest:g} Hz, what messages show"
@@ -90,7 +86,7 @@ def cut_rack(rack: "RackSignal", window: "Window") -> RackWindow:
     missing = rack.coverage.missing(window.start_s, window.stop_s)
     if missing:
         return replace(result, remark=f"X is not measured: {missing}")
-    cut = cut_window(window, (rack.fraction / rack.working_point,), rate_hz=rack.rate_hz, start_s=rack.start_s)
+    cut = cut_window(window, (rack.values / rack.reference,), rate_hz=rack.rate_hz, start_s=rack.start_s)
     if cut is None:
         span = f"{rack.start_s:.1f} to {rack.stop_s:.1f} s"
         return replace(result, remark=f"X is not measured: the window is not inside {span}, when it was logged")

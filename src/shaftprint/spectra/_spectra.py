@@ -9,6 +9,7 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ResponseError
 from shaftprint.reasons import Reason
+from shaftprint.signals import MessageSignal
 from shaftprint.spectra._clock_check import clock_reasons
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._harmonics import Harmonics, collect_harmonics
@@ -19,7 +20,6 @@ from shaftprint.spectra._load_drift import LoadDrift, load_drift
 from shaftprint.spectra._rack_line import cut_rack
 from shaftprint.spectra._set_point_check import amplitude_remark, check_frequency_unit, check_set_point, shape_reasons
 from shaftprint.spectra._shift_check import shift_reasons
-from shaftprint.spectra._ship_line import shows
 from shaftprint.spectra._signal_to_noise import SignalToNoise, signal_to_noise
 from shaftprint.spectra._sine_fit import WholePeriodSine
 from shaftprint.spectra._windows import Window, plan_windows
@@ -113,17 +113,17 @@ def estimate_spectra(
         not move, no sine of the campaign is in the recording, or frequencies are in rad/s.
     """
     sensor = _speed_signal(signals, speed)
-    ship = () if signals.ship_speed is None else ("v_s",)
+    ship = () if "v_s" not in signals.channels else ("v_s",)
     names = ("n_set", *signals.speeds, *ship, "M_s")
     used_channels = [0, names.index(sensor.name), len(names) - 1, *(names.index(name) for name in ship)]
-    cuts, left_out = _cut_windows(signals, campaign)
+    cuts, left_out = _cut_windows(signals, campaign, names)
     measurements = [_measure(signals, cut, names, method) for cut in cuts]
     check_frequency_unit(measurements)
     measurements, silent = _without_silent(signals, campaign, measurements)
     ratios = signal_to_noise(
-        [line.variances if signals.rack is None else line.variances_with_rack for line in measurements],
+        [line.variances if signals.channels.get("X") is None else line.variances_with_rack for line in measurements],
         lines=tuple(line.window.line for line in measurements),
-        channels=names if signals.rack is None else (*names, "X"),
+        channels=names if signals.channels.get("X") is None else (*names, "X"),
     )
     remarks, usable = _judge(signals, campaign, measurements, sensor, ratios.local_db[:, 0])
     drift = load_drift(measurements, speed=used_channels[1], torque=used_channels[2])
@@ -170,17 +170,13 @@ def _speed_signal(signals: "Signals", speed: str | None) -> "SpeedSignal":
     return signals.speeds[speed]
 
 
-def _cut_windows(signals: "Signals", campaign: "Campaign") -> tuple[list[WindowSamples], dict[str, str]]:
+def _cut_windows(
+    signals: "Signals", campaign: "Campaign", names: Sequence[str]
+) -> tuple[list[WindowSamples], dict[str, str]]:
     """Cut every line out of the normalised channels; say which lines the recording does not hold."""
-    point = signals.working_point
-    speeds = [speed.speed_rev_s for speed in signals.speeds.values()]
-    ship = [] if signals.ship_speed is None else [signals.ship_speed.speed_m_s]
-    # the torque stays last: what is known of its noise goes with that place
-    channels = (signals.set_point_rev_s, *speeds, *ship, signals.shaft_torque_nm)
-    scale = np.full((len(channels), 1), 1.0 / point.engine_speed_rev_s)
-    if signals.ship_speed is not None:
-        scale[-2] = 1.0 / signals.ship_speed.working_point_m_s
-    scale[-1] = 1.0 / point.shaft_torque_nm
+    rows = [signals.channels[name] for name in names]
+    channels = tuple(row.values for row in rows)
+    scale = np.array([[1.0 / row.reference] for row in rows])
     cuts, left_out = [], {}
     for window in plan_windows(campaign):
         if window.frequency_hz > _HIGHEST_SHARE_OF_RATE * signals.rate_hz:
@@ -226,7 +222,8 @@ def _measure(signals: "Signals", cut: WindowSamples, names: Sequence[str], metho
             f"{window.line}: expected {names[1 + int(np.argmax(still))]} to move, found a constant "
             f"between {window.start_s:g} and {window.stop_s:g} s: the sensor or its channel is dead."
         )
-    return measure_line(cut, method, None if signals.rack is None else cut_rack(signals.rack, window))
+    rack = signals.channels.get("X")
+    return measure_line(cut, method, cut_rack(rack, window) if isinstance(rack, MessageSignal) else None)
 
 
 def _expected_amplitude(signals: "Signals", campaign: "Campaign", line: LineMeasurement) -> float:
@@ -276,8 +273,8 @@ def _judge(
             found.append(f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased")
         if line.rack_remark:
             found.append(line.rack_remark)
-        if signals.ship_speed is not None and not shows(signals.ship_speed, line.window.frequency_hz):
-            cycle = signals.ship_speed.cycle_s
+        if "v_s" in signals.channels and not line.window.frequency_hz <= signals.channels["v_s"].highest_hz:
+            cycle = signals.channels["v_s"].cycle_s
             found.append(
                 f"v_s is not measured: a value every {cycle:g} s is too seldom for {line.window.frequency_hz:g} Hz"
             )

@@ -54,7 +54,7 @@ def measure(
     progress.begin("Measuring the test lines")
     method = ExactBin() if mode == "thesis" else WholePeriodSine()
     spectra = estimate_spectra(signals, trial.campaign, method=method)
-    influences = clock_influences(clocks, spectra=spectra, signals=signals, vessel=trial.vessel)
+    influences = clock_influences(clocks, spectra=spectra, signals=signals)
     signals = replace(signals, findings=(*signals.findings, *clock_findings(influences)))
     latency = trial.vessel.sensors.set_point.latency_s or 0.0
     responses = responses_of(spectra.response, set_point_latency_s=latency)

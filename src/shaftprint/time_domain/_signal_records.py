@@ -190,7 +190,7 @@ def _lost(signals: Signals, name: str, time_s: FloatArray, every: int) -> BoolAr
     begin, end = float(time_s[0]) - reach_s, float(time_s[-1]) + reach_s
     lost = np.zeros(time_s.size, dtype=np.bool_)
     for gap in signals.coverage.touching(begin, end):
-        if gap.channel == signals.set_point_channel:
+        if gap.channel == signals.channels["n_set"].channel:
             raise SignalError(
                 f"record {name}: expected the set point from {begin:.1f} to {end:.1f} s, but {gap.sentence}; leave "
                 "this excitation out."

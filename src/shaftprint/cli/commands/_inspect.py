@@ -125,7 +125,7 @@ def _print_test(opened: Recording, ship: Vessel, asked: Campaign, *, hidden: boo
         spectra = estimate_spectra(signals, asked)
     print_signals(signals)
     print_lines(spectra)
-    influences = clock_influences(logger_clocks(opened), spectra=spectra, signals=signals, vessel=ship)
+    influences = clock_influences(logger_clocks(opened), spectra=spectra, signals=signals)
     print_findings("Findings on the signals", [*signals.findings, *clock_findings(influences)])
     print_findings("Limits", limit_hints(spectra.harmonics))
     echo(verdict(spectra))

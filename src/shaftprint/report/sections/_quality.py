@@ -50,7 +50,7 @@ def quality_section(inputs: Inputs) -> Section:
 
 def _clocks(inputs: Inputs) -> list[str]:
     """Return what is known of the clock of every logger that was merged into the recording."""
-    found = clock_influences(inputs.clocks, spectra=inputs.spectra, signals=inputs.signals, vessel=inputs.vessel)
+    found = clock_influences(inputs.clocks, spectra=inputs.spectra, signals=inputs.signals)
     return [clock_sentences(clock, influence) for clock, influence in zip(inputs.clocks, found, strict=True)]
 
 

@@ -10,8 +10,6 @@ found by least squares above the band in which a governor acts. Half an engine o
 taken; blades and firings are above half the rate of a record.
 """
 
-from dataclasses import replace
-
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
@@ -33,7 +31,7 @@ def without_orders(signals: Signals, vessel: Vessel) -> Signals:
     for part in np.array_split(np.arange(signals.samples), count):
         own = slice(int(part[0]), int(part[-1]) + 1)
         torque[own] -= _orders(torque[own], speed[own], signals.rate_hz, orders)
-    return replace(signals, shaft_torque_nm=frozen_float(torque))
+    return signals.with_channel("M_s", values=frozen_float(torque))
 
 
 def _orders(torque: FloatArray, speed_rev_s: FloatArray, rate_hz: float, orders: tuple[float, ...]) -> FloatArray:

@@ -1,0 +1,127 @@
+"""What a kind of channel is: where the vessel file names it, what it is to a test, how it is read and normalised."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
+
+from shaftprint.signals._channels import find_channel
+from shaftprint.signals._condition import Reading
+from shaftprint.signals._signals import ChannelSignal, Role
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel, Recording
+    from shaftprint.signals._clock import Clock
+    from shaftprint.signals._dc_scale import DcScale
+    from shaftprint.signals._outliers import FaultLimits
+    from shaftprint.signals._signals import SetPointCalibration, WorkingPoint
+    from shaftprint.signals._steady import SteadyStretch
+    from shaftprint.vessel import Vessel
+
+
+class Sensor(Protocol):
+    """What the vessel file says of every sensor."""
+
+    @property
+    def channel(self) -> str:
+        """Name of the channel in the recording."""
+
+    @property
+    def unit(self) -> str:
+        """Unit of the channel."""
+
+
+SensorT = TypeVar("SensorT", bound=Sensor)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Source(Generic[SensorT]):
+    """One channel of a recording with what the vessel file says of it."""
+
+    kind: "ChannelKind[SensorT]"
+    """What kind of channel it is."""
+    name: str
+    """Name of its signal."""
+    channel: "Channel"
+    """The raw channel."""
+    sensor: SensorT
+    """What the vessel file says of it."""
+    vessel: "Vessel"
+    """The installation."""
+    spare: bool = False
+    """Whether another sensor shows the same, so that this one is left out where it fails."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class SteadyState:
+    """What set point, speed and torque together say of the working point and of the set point's line."""
+
+    clock: "Clock"
+    """The common grid."""
+    stretches: "tuple[SteadyStretch, ...]"
+    """Where the line stands still at the working point."""
+    working_point: "WorkingPoint"
+    """The working point."""
+    calibration: "SetPointCalibration"
+    """The line from set-point voltage to speed."""
+    scale: "DcScale"
+    """By how much that line was stretched."""
+
+
+class ChannelKind(ABC, Generic[SensorT]):
+    """One kind of sensor: everything that the room knows of it."""
+
+    sensor: ClassVar[str]
+    """Table of the vessel file's sensors."""
+    name: ClassVar[str]
+    """Symbol of the quantity."""
+    use: ClassVar[str]
+    """What it is, in words."""
+    role: ClassVar[Role] = Role.RESPONSE
+    """What it is to a test."""
+    needed: ClassVar[bool] = False
+    """Whether no test goes without it."""
+    own_clock: ClassVar[bool] = False
+    """Whether its values stay at their own times instead of the common grid."""
+    absence: ClassVar[str] = ""
+    """Why there may be no signal though the channel was logged."""
+
+    def sources(self, recording: "Recording", vessel: "Vessel") -> "tuple[Source[SensorT], ...]":
+        """Return the channels of this kind that the vessel file names.
+
+        Raises
+        ------
+        SignalError
+            If one is missing, empty or in another unit.
+        """
+        sensor: SensorT | None = getattr(vessel.sensors, self.sensor)
+        if sensor is None:
+            return ()
+        way_out = "correct the name there"
+        if not self.needed:
+            way_out += f", or take [sensors.{self.sensor}] out where it was not logged"
+        channel = find_channel(recording, sensor.channel, unit=sensor.unit, use=self.use, way_out=way_out)
+        return (Source(kind=self, name=self.name, channel=channel, sensor=sensor, vessel=vessel),)
+
+    def limits(self, source: Source[SensorT]) -> "FaultLimits | None":
+        """Return what counts as a fault where samples follow the quantity; nothing for pulses and messages."""
+        return None
+
+    @abstractmethod
+    def read(self, source: Source[SensorT], clock: "Clock") -> Reading:
+        """Return the values of a channel in the unit of the quantity, with what was repaired and what is missing.
+
+        Raises
+        ------
+        SignalError
+            If the channel cannot be used.
+        """
+
+    @abstractmethod
+    def signal(self, source: Source[SensorT], reading: Reading, steady: SteadyState) -> ChannelSignal | None:
+        """Return the signal with its working point; nothing where the channel says nothing in this test.
+
+        Raises
+        ------
+        SignalError
+            If the channel contradicts the working point.
+        """

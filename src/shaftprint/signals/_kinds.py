@@ -1,0 +1,32 @@
+"""Every kind of channel, in one table: a new sensor is a file with its kind, and a line here."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+from shaftprint.signals._pick_up import Speed
+from shaftprint.signals._rack import Rack
+from shaftprint.signals._set_point import SetPoint
+from shaftprint.signals._ship_speed import ShipSpeed
+from shaftprint.signals._torque import ShaftTorque
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Recording
+    from shaftprint.signals._kind import ChannelKind, Source
+    from shaftprint.vessel import Vessel
+
+KINDS: "Mapping[str, ChannelKind[Any]]" = MappingProxyType(
+    {kind.name: kind for kind in (SetPoint(), Speed(), ShipSpeed(), ShaftTorque(), Rack())}
+)
+"""Kinds by symbol, in the order in which their signals stand."""
+
+
+def find_sources(recording: "Recording", vessel: "Vessel") -> "tuple[Source[Any], ...]":
+    """Return the channels that the vessel file names.
+
+    Raises
+    ------
+    SignalError
+        If one is missing, empty or in another unit.
+    """
+    return tuple(source for kind in KINDS.values() for source in kind.sources(recording, vessel))

@@ -1,0 +1,126 @@
+"""All channels of a recording, read two at a time."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from shaftprint.errors import SignalError
+from shaftprint.signals._condition import Reading
+from shaftprint.signals._gaps import Coverage, Gap, within
+from shaftprint.signals._pick_up import PickUp
+from shaftprint.signals._signals import Repair, Role
+
+if TYPE_CHECKING:
+    from shaftprint.arrays import FloatArray
+    from shaftprint.recording import Channel
+    from shaftprint.signals._clock import Clock
+    from shaftprint.signals._kind import Source
+
+# One thread computes while the other waits for the file; more would only queue for the file.
+_THREADS = 2
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Readings:
+    """Everything that was read, before it is put together."""
+
+    clock: "Clock"
+    """The common grid."""
+    sources: "tuple[Source[Any], ...]"
+    """What was read, in the order of the kinds."""
+    by_name: Mapping[str, Reading]
+    """What each of them gave."""
+    gaps: tuple[Gap, ...]
+    """Where a channel of the grid says nothing, in order of time."""
+    findings: tuple[str, ...]
+    """What the reader should know of the channels."""
+
+    @property
+    def pick_ups(self) -> tuple[PickUp, ...]:
+        """The speed channels; the first is the one that is identified."""
+        return tuple(reading for reading in self.by_name.values() if isinstance(reading, PickUp))
+
+    @property
+    def set_point(self) -> "FloatArray":
+        """Values of the set point, which become a speed by its line, shape (samples,)."""
+        return self.by_name["n_set"].values
+
+    @property
+    def torque_nm(self) -> "FloatArray":
+        """Shaft torque [N m], shape (samples,)."""
+        return self.by_name["M_s"].values
+
+    @property
+    def repairs(self) -> tuple[Repair, ...]:
+        """What was repaired, in order of time."""
+        repairs = [repair for reading in self.by_name.values() for repair in reading.repairs]
+        return tuple(sorted(repairs, key=lambda repair: repair.time_s))
+
+    @property
+    def coverage(self) -> Coverage:
+        """What the grid covers."""
+        clock = self.clock
+        stop_s = clock.start_s + clock.count / clock.rate_hz
+        return Coverage(start_s=clock.start_s, stop_s=stop_s, step_s=1.0 / clock.rate_hz, gaps=self.gaps)
+
+
+def logger_channels(sources: "Sequence[Source[Any]]") -> "list[Channel]":
+    """Return the channels of the logger, which span the grid; side signals come seldom."""
+    return [source.channel for source in sources if source.kind.role is not Role.SIDE]
+
+
+def read_all(sources: "Sequence[Source[Any]]", clock: "Clock") -> Readings:
+    """Read every channel, two at a time; a spare sensor that fails is left out.
+
+    Raises
+    ------
+    SignalError
+        If a channel cannot be used.
+    """
+    by_name: dict[str, Reading] = {}
+    failed: list[str] = []
+    pool = ThreadPoolExecutor(max_workers=_THREADS)
+    try:
+        jobs = {source.name: pool.submit(source.kind.read, source, clock) for source in sources}
+        for source in sources:
+            if not source.spare:
+                by_name[source.name] = jobs[source.name].result()
+        gaps = [gap for s in sources if s.name in by_name and not s.kind.own_clock for gap in by_name[s.name].gaps]
+        for source in sources:
+            if source.spare:
+                try:
+                    by_name[source.name] = _without_gaps_of_its_own(jobs[source.name].result(), gaps)
+                except SignalError as error:
+                    failed.append(f"{source.name} was left out: {error}")
+    finally:
+        pool.shutdown(cancel_futures=True)
+    used = tuple(source for source in sources if source.name in by_name)
+    readings = {source.name: by_name[source.name] for source in used}
+    pick_ups = [reading for reading in readings.values() if isinstance(reading, PickUp)]
+    others = [reading for reading in readings.values() if not isinstance(reading, PickUp)]
+    return Readings(
+        clock=clock,
+        sources=used,
+        by_name=readings,
+        gaps=tuple(sorted((gap for gap in gaps if gap.last_s > clock.start_s), key=lambda gap: gap.start_s)),
+        findings=(*_findings(others), *failed, *_findings(pick_ups)),
+    )
+
+
+def _findings(readings: Iterable[Reading]) -> Iterator[str]:
+    return (finding for reading in readings for finding in reading.findings)
+
+
+def _without_gaps_of_its_own(reading: Reading, gaps: Sequence[Gap]) -> Reading:
+    """Return what a spare sensor gives if it misses nothing but what the other channels miss too.
+
+    Raises
+    ------
+    SignalError
+        If it has a gap of its own: that must not cost the windows of the first sensor.
+    """
+    for gap in reading.gaps:
+        if not within(gap, gaps):
+            raise SignalError(f"{gap.sentence}; check the pick-up.")
+    return reading

@@ -1,0 +1,56 @@
+"""The set point of the speed, from the voltage that asks the governor for it."""
+
+from typing import TYPE_CHECKING
+
+from shaftprint.arrays import frozen_float
+from shaftprint.signals._condition import Reading, conditioned
+from shaftprint.signals._kind import ChannelKind, Source, SteadyState
+from shaftprint.signals._outliers import FaultLimits, fault_limits
+from shaftprint.signals._signals import ExcitationSignal, Role
+from shaftprint.units import rpm_from_rev_s
+from shaftprint.vessel import SetPointSensor
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel
+    from shaftprint.signals._clock import Clock
+
+
+class SetPoint(ChannelKind[SetPointSensor]):
+    """Engine speed that is asked for [rev/s]; its line from the voltage is found in the recording."""
+
+    sensor, name, use, role, needed = "set_point", "n_set", "set point", Role.EXCITATION, True
+
+    def limits(self, source: Source[SetPointSensor]) -> FaultLimits:
+        """Return the limits of a voltage that may stand still."""
+        return fault_limits(source.channel, holds=False)
+
+    def read(self, source: Source[SetPointSensor], clock: "Clock") -> Reading:
+        """Return the voltage on the grid [V]."""
+        return read_voltage(source.channel, clock)
+
+    def signal(self, source: Source[SetPointSensor], reading: Reading, steady: SteadyState) -> ExcitationSignal:
+        """Return the set point, whose values have become a speed by its line."""
+        calibration, scale, speed_rev_s = steady.calibration, steady.scale, steady.working_point.engine_speed_rev_s
+        return ExcitationSignal(
+            name=self.name,
+            channel=source.channel.name,
+            values=frozen_float(reading.values),
+            reference=speed_rev_s,
+            reference_std=steady.working_point.engine_speed_std_rev_s,
+            per_volt=calibration.slope_rev_s_per_v,
+            scale_std=scale.std / scale.value,
+            shown_unit="rpm",
+            shown_reference=rpm_from_rev_s(speed_rev_s),
+        )
+
+
+def read_voltage(channel: "Channel", clock: "Clock") -> Reading:
+    """Return the voltage of a set point on the grid [V]."""
+    return conditioned(
+        channel,
+        fault_limits(channel, holds=False),
+        clock.grid(channel),
+        mode=clock.mode,
+        block_samples=clock.block_samples(channel),
+        advance=clock.advance,
+    )
