@@ -5,18 +5,16 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
-from shaftprint.models._parameter import Parameter
+from shaftprint.models._numerical_derivative import numerical_derivative
 from shaftprint.models._structure import Structure
 
 # Half a decade apart and off round numbers, where a user's resonance may lie.
 OMEGA_RAD_S = np.geomspace(0.0123, 1230.0, 21)
-# Where between its bounds a free parameter is tried, beside its value.
-PLACES = (0.37, 0.71)
-# Two numerical derivatives, with steps of these shares of a value, must agree before they are held against a formula,
-# and the rounding of the response must be as small a share of them: two that have lost all digits may agree by chance.
-STEPS = (1e-4, 1e-5)
-AGREEMENT = 1e-5
-ROUNDING = float(np.finfo(np.float64).eps)
+# Where between their bounds parameters are tried, besides their values: each at another share, so that two with the
+# same bounds do not get the same value and hide that their derivatives are swapped.
+SHARES = (0.37, 0.71)
+GOLDEN = 0.618034
+LOWEST, HIGHEST = 0.1, 0.9
 # A formula is wrong when it is off by more than this share.
 WRONG = 1e-3
 SAME = 1e-9
@@ -25,8 +23,8 @@ SAME = 1e-9
 def check_structure(structure: Structure) -> None:
     """Check that responses, derivatives and coefficients of every block agree with each other.
 
-    They are evaluated at the values of the parameters and at two places between their bounds. An error that a block
-    raises by itself comes through as it is.
+    They are evaluated at the values of the parameters and at two sets of values between their bounds. An error that a
+    block raises by itself comes through as it is.
 
     Raises
     ------
@@ -49,14 +47,18 @@ def check_structure(structure: Structure) -> None:
 
 
 def _table(structure: Structure) -> FloatArray:
-    """Return the sets of parameters to try, shape (sets, parameters)."""
+    """Return the sets of parameters to try, shape (sets, parameters).
+
+    Held parameters are moved as well: held at 0, as the averaging of a speed sensor is, one may hide that its
+    derivative is wrong.
+    """
     rows = [structure.vector({})]
-    for place in PLACES:
-        moved = {
-            p.name: p.lower + place * (p.upper - p.lower)
-            for p in structure.free
-            if np.isfinite(p.lower) and np.isfinite(p.upper)
-        }
+    for first in SHARES:
+        moved = {}
+        for index, p in enumerate(structure.parameters):
+            share = LOWEST + (HIGHEST - LOWEST) * ((first + GOLDEN * index) % 1.0)
+            if np.isfinite(p.lower) and np.isfinite(p.upper):
+                moved[p.name] = p.lower + share * (p.upper - p.lower)
         rows.append(structure.vector(moved))
     return np.array(rows)
 
@@ -120,37 +122,18 @@ def _check_ratio(
 def _check_derivatives(
     where: str, block: Block, s: ComplexArray, values: tuple[FloatArray, ...], response: ComplexArray
 ) -> None:
-    found = block.derivatives(s, response, *values)
-    if len(found) != len(values):
-        raise StructureError(f"{where}: derivatives() gives {len(found)} arrays for {len(values)} parameters.")
-    for place, parameter in enumerate(block.parameters):
-        one, two = (_difference(block, s, values, place, share) for share in STEPS)
-        smallest = _step(parameter, values[place], min(STEPS))
-        sure = np.abs(one - two) <= AGREEMENT * np.abs(one)
-        sure &= ROUNDING * np.abs(response) <= AGREEMENT * smallest * np.abs(one)
-        formula = np.broadcast_to(found[place], response.shape)
-        if not _agree(formula[sure], one[sure], WRONG):
-            own, other, omega = _furthest(np.where(sure, formula, one), one)
+    derivatives = block.derivatives(s, response, *values)
+    if len(derivatives) != len(values):
+        raise StructureError(f"{where}: derivatives() gives {len(derivatives)} arrays for {len(values)} parameters.")
+    for index, parameter in enumerate(block.parameters):
+        numerical, certain = numerical_derivative(block, s, response, values, index)
+        formula = np.broadcast_to(derivatives[index], response.shape)
+        if not _agree(formula[certain], numerical[certain], WRONG):
+            stated, other, omega = _furthest(np.where(certain, formula, numerical), numerical)
             raise StructureError(
-                f"{where}: its derivative to {parameter.name} is {own:.4g} at {omega:.3g} rad/s, the numerical one "
+                f"{where}: its derivative to {parameter.name} is {stated:.4g} at {omega:.3g} rad/s, the numerical one "
                 f"{other:.4g}; correct derivatives(), or leave it out to have them numerically."
             )
-
-
-def _difference(
-    block: Block, s: ComplexArray, values: tuple[FloatArray, ...], place: int, share: float
-) -> ComplexArray:
-    value = values[place]
-    step = _step(block.parameters[place], value, share)
-    ahead = block.transfer(s, *values[:place], value + step, *values[place + 1 :])
-    behind = block.transfer(s, *values[:place], value - step, *values[place + 1 :])
-    return np.asarray((ahead - behind) / (2.0 * step))
-
-
-def _step(parameter: Parameter, value: FloatArray, share: float) -> FloatArray:
-    """Return the step of a numerical derivative in the parameter's unit, shape of the value."""
-    width = parameter.upper - parameter.lower
-    return np.asarray(share * np.maximum(np.abs(value), 1e-2 * width if np.isfinite(width) else 1e-2))
 
 
 def _agree(found: ComplexArray, expected: ComplexArray, share: float) -> bool:

@@ -1,7 +1,6 @@
 """Blocks that a user makes from a function, without a class."""
 
 import inspect
-import warnings
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -14,8 +13,8 @@ from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
 from shaftprint.models._expression import Polynomials
 from shaftprint.models._formula import Formula
+from shaftprint.models._imaginary_step import NOT_DIFFERENTIABLE, slope, stepped
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._tie import IMAGINARY_STEP
 
 Coefficients: TypeAlias = Callable[..., tuple[Sequence[ArrayLike], Sequence[ArrayLike]]]
 
@@ -57,8 +56,7 @@ class RationalBlock(Block):
     """A transfer function ``N(s) / D(s)`` whose coefficients are formulas of physical parameters.
 
     From the formulas come the response, its exact derivatives and its poles. Derivatives of the coefficients are taken
-    by an imaginary step, which is exact for real formulas (Squire and Trapp, Using complex variables to estimate
-    derivatives of real functions, 1998). They use arithmetic and NumPy functions, but no ``abs``, ``min`` or ``if``.
+    by an imaginary step: they use arithmetic and NumPy functions, but no ``abs``, ``min`` or ``if``.
     """
 
     coefficients: Coefficients
@@ -90,18 +88,17 @@ class RationalBlock(Block):
         """Return ``(dN - H dD) / D`` for each parameter."""
         _, denominator = self._lists(*values)
         inverse = 1.0 / _polynomial(denominator, s)
-        found = []
-        for place, value in enumerate(values):
-            moved = (*values[:place], value + 1j * IMAGINARY_STEP, *values[place + 1 :])
-            top, bottom = (_slopes(part) for part in self._moved(place, moved))
-            found.append((_polynomial(top, s) - response * _polynomial(bottom, s)) * inverse)
-        return tuple(found)
+        derivatives = []
+        for index in range(len(values)):
+            top, bottom = ([slope(coefficient) for coefficient in part] for part in self._stepped(index, values))
+            derivatives.append((_polynomial(top, s) - response * _polynomial(bottom, s)) * inverse)
+        return tuple(derivatives)
 
     def ratio(self, *values: float) -> Polynomials:
         """Return the coefficients."""
         numerator, denominator = self._lists(*values)
         # of formulas instead of numbers where the equations in time are wanted
-        kind = object if any(isinstance(value, Formula) for value in values) else np.float64
+        kind = object if any(isinstance(value, Formula) for value in values) else np.result_type(np.float64, *values)
         return np.array(numerator, dtype=kind), np.array(denominator, dtype=kind)
 
     def _lists(self, *values: ArrayLike) -> tuple[Sequence[ArrayLike], Sequence[ArrayLike]]:
@@ -112,23 +109,21 @@ class RationalBlock(Block):
         StructureError
             If there are not two, each a list: an array alone would be taken for the list of its rows.
         """
-        found = self.coefficients(*values)
-        if isinstance(found, list | tuple) and [isinstance(part, list | tuple) for part in found] == [True, True]:
-            return found[0], found[1]
+        lists = self.coefficients(*values)
+        if isinstance(lists, list | tuple) and [isinstance(part, list | tuple) for part in lists] == [True, True]:
+            return lists[0], lists[1]
         raise StructureError(
             f"{block_words(self.of)}: expected two lists, numerator and denominator, highest power first, such as "
             "([K], [T, 1.0])."
         )
 
-    def _moved(self, place: int, values: tuple[ArrayLike, ...]) -> tuple[Sequence[ArrayLike], Sequence[ArrayLike]]:
+    def _stepped(self, index: int, values: tuple[FloatArray, ...]) -> tuple[Sequence[ArrayLike], Sequence[ArrayLike]]:
         try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("error", np.exceptions.ComplexWarning)
-                return self._lists(*values)
-        except (TypeError, np.exceptions.ComplexWarning) as error:
+            return stepped(self._lists, values, index)
+        except NOT_DIFFERENTIABLE as error:
             raise StructureError(
                 f"{block_words(self.of)}: the coefficients could not be differentiated to "
-                f"{self.of[place].name} ({error}): use arithmetic and NumPy functions only, or a FunctionBlock."
+                f"{self.of[index].name} ({error}): use arithmetic and NumPy functions only, or a FunctionBlock."
             ) from None
 
 
@@ -175,7 +170,3 @@ def _polynomial(coefficients: Sequence[ArrayLike], s: ComplexArray) -> ComplexAr
     for coefficient in coefficients:
         value = value * s + np.asarray(coefficient)
     return value
-
-
-def _slopes(coefficients: Sequence[ArrayLike]) -> list[FloatArray]:
-    return [np.imag(coefficient) / IMAGINARY_STEP for coefficient in coefficients]

@@ -1,18 +1,13 @@
 """A parameter that follows from others: tied to them, or another form of one of them."""
 
 import inspect
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-
-import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.models._expression import Gradient
-
-# Imaginary step on a real formula: its square is lost beside 1, so that no digit of the derivative is.
-IMAGINARY_STEP = 1e-30
+from shaftprint.models._imaginary_step import NOT_DIFFERENTIABLE, slope, stepped
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,12 +49,9 @@ class Tie:
         StructureError
             If the formula cannot take complex numbers.
         """
-        moved = (values[name] + 1j * IMAGINARY_STEP if name == to else values[name] for name in self.arguments)
         try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("error", np.exceptions.ComplexWarning)
-                return np.asarray(np.imag(self.of(*moved)) / IMAGINARY_STEP)
-        except (TypeError, np.exceptions.ComplexWarning) as error:
+            return slope(stepped(self.of, [values[name] for name in self.arguments], self.arguments.index(to)))
+        except NOT_DIFFERENTIABLE as error:
             raise StructureError(
                 f"tied parameter {self.name}: its formula could not be differentiated to {to} ({error}); use "
                 "arithmetic and NumPy functions only."
