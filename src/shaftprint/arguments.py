@@ -33,8 +33,8 @@ def refusing_none(error: type[Exception]) -> Callable[[Callable[_Given, _Result]
 
         @functools.wraps(verb)
         def checked(*args: _Given.args, **kwargs: _Given.kwargs) -> _Result:
-            given = signature.bind(*args, **kwargs).arguments
-            missing = [f"{name} ({kind})" for name, kind in kinds.items() if given[name] is None]
+            arguments = signature.bind(*args, **kwargs).arguments
+            missing = [f"{name} ({kind})" for name, kind in kinds.items() if arguments[name] is None]
             if missing:
                 raise error(f"{verb.__name__}: expected {' and '.join(missing)}, found None; it cannot be left out.")
             return verb(*args, **kwargs)

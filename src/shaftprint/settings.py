@@ -122,8 +122,8 @@ def load_settings(path_or_name: str | Path, model_class: type[_Model], *, shippe
 
 def shipped_names(shipped: Traversable) -> tuple[str, ...]:
     """Return the names of the settings files in a folder of the package, sorted."""
-    found = (entry.name for entry in shipped.iterdir() if entry.name.endswith(".toml"))
-    return tuple(sorted(name.removesuffix(".toml").replace("_", "-") for name in found))
+    names = (entry.name for entry in shipped.iterdir() if entry.name.endswith(".toml"))
+    return tuple(sorted(name.removesuffix(".toml").replace("_", "-") for name in names))
 
 
 def write_template(kind: Literal["vessel", "campaign"], path: str | Path) -> None:
@@ -163,8 +163,8 @@ def _describe(details: ErrorDetails, model_class: type[Settings], content: Any) 
         case "missing":
             return f"{where}: expected a value, found none; add the key."
         case "extra_forbidden":
-            known = _known_keys(model_class, details["loc"][:-1])
-            return f"{where}: expected no such key; {_advice(str(details['loc'][-1]), known)}"
+            keys = _known_keys(model_class, details["loc"][:-1])
+            return f"{where}: expected no such key; {_advice(str(details['loc'][-1]), keys)}"
         case "value_error":
             return f"{where}: {details['msg'].removeprefix('Value error, ')}"
         case "too_short":
@@ -209,16 +209,16 @@ def _model_within(annotation: Any) -> type[Settings]:
     return _model_within(get_args(annotation)[0])
 
 
-def _advice(key: str, known: Sequence[str]) -> str:
-    for candidate in known:
+def _advice(key: str, keys: Sequence[str]) -> str:
+    for candidate in keys:
         if _without_unit(candidate) == _without_unit(key):
             hertz = key.endswith("_rad_s") and candidate.endswith("_hz")
             how = "divide it by 2 pi" if hertz else "convert it to that unit"
             return f"the value is wanted as {candidate}: {how}."
-    close = difflib.get_close_matches(key, known, n=1)
+    close = difflib.get_close_matches(key, keys, n=1)
     if close:
         return f"is {close[0]} meant?"
-    return f"the known keys are {', '.join(known)}."
+    return f"the known keys are {', '.join(keys)}."
 
 
 def _without_unit(key: str) -> str:

@@ -120,14 +120,14 @@ def with_known_propeller(
     resistance = Parameter("R", "N", 0.02 * thrust, 3.0 * thrust, 0.8 * thrust, "resistance at the working point")
     if resistance_n is not None:
         resistance = resistance.held_at(resistance_n)
-    found = structure.tied("a", lambda w: propeller.slopes(w)[0], wake)
-    found = found.tied("b", lambda w: propeller.slopes(w)[1])
+    sailing = structure.tied("a", lambda w: propeller.slopes(w)[0], wake)
+    sailing = sailing.tied("b", lambda w: propeller.slopes(w)[1])
     if "p" in structure.names:
-        found = found.tied("p", lambda w: propeller.pitch_slopes(w)[0]).tied(
+        sailing = sailing.tied("p", lambda w: propeller.pitch_slopes(w)[0]).tied(
             "q", lambda w: propeller.pitch_slopes(w)[1]
         )
-    found = found.tied("tau_u", lambda m, R: m * speed / R, mass, resistance)
-    return _with_thrust_deduction(found, propeller)
+    sailing = sailing.tied("tau_u", lambda m, R: m * speed / R, mass, resistance)
+    return _with_thrust_deduction(sailing, propeller)
 
 
 def _with_thrust_deduction(structure: Structure, propeller: KnownPropeller) -> Structure:

@@ -186,8 +186,8 @@ class LimitedEngine:
         drawn: Number = observer(burnt) if observer else 0.0
         rack = self._governor(flow, error, speed, lowest, highest, drawn, p)
         late = second_order_lag(flow, flow.delayed(rack, p.t_d), p.omega_n, p.zeta)
-        asked = p.v * late + p.g * speed
-        brake = flow.close(burnt, asked if lowest is None else clip(asked, lowest, highest), "engine torque")
+        demanded = p.v * late + p.g * speed
+        brake = flow.close(burnt, demanded if lowest is None else clip(demanded, lowest, highest), "engine torque")
         return brake, rack
 
     def _torque_limits(self, flow: Flow, speed: Formula, burnt: Formula, p: Any) -> tuple[Formula | None, Formula]:

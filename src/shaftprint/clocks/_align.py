@@ -71,13 +71,16 @@ def align(
     _expect_line(delays, line, names)
     scatter = _scatter(delays, line)
     line = _widened(line, scatter)
-    found = line if is_slower else line.inverse()
-    covariance = found.covariance + np.array([[latency_std_s**2, 0.0], [0.0, 0.0]])
-    found = ClockMap(
-        offset_s=found.offset_s + latency_s, drift=found.drift, middle_s=found.middle_s, covariance=covariance
+    clock_map = line if is_slower else line.inverse()
+    covariance = clock_map.covariance + np.array([[latency_std_s**2, 0.0], [0.0, 0.0]])
+    clock_map = ClockMap(
+        offset_s=clock_map.offset_s + latency_s,
+        drift=clock_map.drift,
+        middle_s=clock_map.middle_s,
+        covariance=covariance,
     )
     return Alignment(
-        map=found,
+        map=clock_map,
         span_s=(other.start_s, float(other.time_s[-1])),
         stretches=tuple(_stretch(delay, latency_s, is_slower=is_slower) for delay in delays),
         scatter=scatter,

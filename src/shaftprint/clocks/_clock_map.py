@@ -67,13 +67,13 @@ class ClockMap:
     def then(self, following: "ClockMap") -> Self:
         """Return the map to the clock that a following map leads to; errors of the two are independent."""
         there_s = self.middle_s + self.offset_s - following.middle_s
-        own = (1.0 + following.drift) * np.eye(2)
+        first = (1.0 + following.drift) * np.eye(2)
         theirs = np.array([[1.0, there_s], [0.0, 1.0 + self.drift]])
         return replace(
             self,
             offset_s=self.offset_s + following.offset_s + following.drift * there_s,
             drift=self.drift + following.drift + self.drift * following.drift,
-            covariance=own @ self.covariance @ own.T + theirs @ following.covariance @ theirs.T,
+            covariance=first @ self.covariance @ first.T + theirs @ following.covariance @ theirs.T,
         )
 
     def inverse(self) -> Self:

@@ -81,8 +81,8 @@ def _correlation(still: FloatArray, moved: FloatArray) -> tuple[FloatArray, Floa
     count = np.maximum(np.rint(slid(ones, others)), 1.0)
     energy = np.maximum(slid(still**2, others), 0.0) * np.maximum(slid(ones, moved**2), 0.0)
     floor = 1e-9 * np.sum(still**2) * np.sum(moved**2)
-    found = slid(still, moved) / np.sqrt(np.maximum(energy, floor)) if floor > 0.0 else np.zeros(count.size)
-    return np.clip(found, -1.0, 1.0), count
+    correlation = slid(still, moved) / np.sqrt(np.maximum(energy, floor)) if floor > 0.0 else np.zeros(count.size)
+    return np.clip(correlation, -1.0, 1.0), count
 
 
 def _hill(shared: FloatArray, best: int) -> BoolArray:
@@ -90,8 +90,10 @@ def _hill(shared: FloatArray, best: int) -> BoolArray:
     low = shared < VALLEY * shared[best]
     # a fast content swings within the drift of a long recording: two seconds belong to the best at least
     least = round(2.0 * RATE_HZ)
-    left = np.flatnonzero(low[: max(best - least, 0)])
+    falls_before = np.flatnonzero(low[: max(best - least, 0)])
     right = np.flatnonzero(low[best + least :])
     hill = np.zeros(shared.size, dtype=np.bool_)
-    hill[left[-1] + 1 if left.size else 0 : best + least + (right[0] if right.size else shared.size)] = True
+    hill[
+        falls_before[-1] + 1 if falls_before.size else 0 : best + least + (right[0] if right.size else shared.size)
+    ] = True
     return hill

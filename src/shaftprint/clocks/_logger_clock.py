@@ -53,8 +53,8 @@ def logger_clocks(recording: Recording) -> tuple[LoggerClock, ...]:
         clocks = [entry.clock(recording.channels) for entry in entries]
     except ValidationError as error:
         first = error.errors()[0]
-        place = ".".join(str(part) for part in first["loc"])
-        raise _broken(recording, f"{place[:80]!r}: {first['msg']}" if place else first["msg"]) from None
+        field = ".".join(str(part) for part in first["loc"])
+        raise _broken(recording, f"{field[:80]!r}: {first['msg']}" if field else first["msg"]) from None
     except (ClockError, UnicodeError) as error:
         raise _broken(recording, str(error).rstrip(".")) from None
     return tuple(clock for clock in clocks if clock.channels)
@@ -98,13 +98,13 @@ class _Entry(BaseModel):
         )
         stretches = (Stretch(time_s=time, offset_s=offset, std_s=std) for time, offset, std in self.stretches)
         alignment = Alignment(map=line, span_s=self.span_s, stretches=tuple(stretches), scatter=self.scatter)
-        known = set(there)
+        channels = set(there)
         return LoggerClock(
             logger=printable(self.logger),
             sha256=self.sha256,
             reference=printable(self.reference),
             reference_sha256=self.reference_sha256,
-            channels=tuple(name for name in self.channels if name in known),
+            channels=tuple(name for name in self.channels if name in channels),
             alignment=alignment,
         )
 
@@ -133,8 +133,8 @@ def _entry(clock: LoggerClock) -> _Entry:
     )
 
 
-def _broken(recording: Recording, found: str) -> RecordingError:
+def _broken(recording: Recording, problem: str) -> RecordingError:
     return RecordingError(
         f"{recording.path}, attribute {CLOCK_MAPS}: expected the clock maps of a merged recording, found something "
-        f"else ({found}); merge the loggers again."
+        f"else ({problem}); merge the loggers again."
     )

@@ -74,7 +74,7 @@ def _clocks(
         for clock in logger_clocks(other)
     ]
     theirs = {name for clock in earlier for name in clock.channels}
-    own = LoggerClock(
+    new_clock = LoggerClock(
         logger=other.path.name,
         sha256=other.sha256,
         reference=reference.path.name,
@@ -82,7 +82,7 @@ def _clocks(
         channels=tuple(name for name in names.values() if name not in theirs),
         alignment=alignment,
     )
-    return [own, *earlier]
+    return [new_clock, *earlier]
 
 
 def joined(parts: Sequence[Recording], *, follow_on: bool = False) -> Recording:
@@ -151,13 +151,13 @@ def _chain(parts: Sequence[tuple[Recording, Channel]], follow_on: bool) -> Chann
 
 
 def _expect_same(recording: Recording, channel: Channel, first: Channel) -> None:
-    own = (channel.unit, channel.scale, channel.offset, channel.read(0, 0).dtype)
-    theirs = (first.unit, first.scale, first.offset, first.read(0, 0).dtype)
-    if own != theirs or abs(channel.rate_hz / first.rate_hz - 1.0) > SAME_RATE:
+    channel_format = (channel.unit, channel.scale, channel.offset, channel.read(0, 0).dtype)
+    first_format = (first.unit, first.scale, first.offset, first.read(0, 0).dtype)
+    if channel_format != first_format or abs(channel.rate_hz / first.rate_hz - 1.0) > SAME_RATE:
         raise ClockError(
             f"{recording.path}, channel {channel.name}: expected {first.rate_hz:g} Hz, unit, scale and offset "
-            f"{theirs[:3]} as in the part before it, found {channel.rate_hz:g} Hz and {own[:3]}; these parts were not "
-            "logged alike."
+            f"{first_format[:3]} as in the part before it, found {channel.rate_hz:g} Hz and {channel_format[:3]}; these "
+            "parts were not logged alike."
         )
 
 

@@ -67,31 +67,31 @@ def delays_of(slow: Content, fast: Content, expected: FloatArray, within_s: floa
     if time_s.size < length:
         return []
     there = CubicSpline(fast.time_s, fast.values)(time_s + expected)
-    own, there = shared_band(slow.values[inside], there, slow.rate_hz)
+    slow_band, there = shared_band(slow.values[inside], there, slow.rate_hz)
     spline = CubicSpline(time_s, there)
-    found = []
+    delays = []
     for first in range(0, time_s.size - length + 1, length):
         part = slice(first, first + length)
-        left_s, std_s = _left(spline, time_s[part], own[part], within_s)
-        found.append(
+        left_s, std_s = _left(spline, time_s[part], slow_band[part], within_s)
+        delays.append(
             Delay(
                 time_s=float(time_s[first] + time_s[first + length - 1]) / 2.0,
                 delay_s=float(expected[first + length // 2]) + left_s,
                 std_s=std_s,
                 energy=float(np.var(there[part])),
-                likeness=_correlation(own[part], spline(time_s[part] + left_s)),
+                likeness=_correlation(slow_band[part], spline(time_s[part] + left_s)),
             )
         )
-    return found
+    return delays
 
 
 def _left(spline: CubicSpline, time_s: FloatArray, values: FloatArray, within_s: float) -> tuple[float, float]:
     """Return what is left of the delay of one stretch with its standard deviation, infinite where it cannot be told."""
     line, _ = np.linalg.qr(np.stack([np.ones(time_s.size), time_s - time_s[0]], axis=1))
-    own = values - line @ (line.T @ values)
-    if not np.any(np.abs(own) > 1e-12 * np.max(np.abs(values))):
+    detrended = values - line @ (line.T @ values)
+    if not np.any(np.abs(detrended) > 1e-12 * np.max(np.abs(values))):
         return 0.0, np.inf
-    delay_s = _searched(spline, time_s, own, line, within_s)
+    delay_s = _searched(spline, time_s, detrended, line, within_s)
     for _ in range(ITERATIONS):
         x, slope = spline(time_s + delay_s), spline(time_s + delay_s, 1)
         basis, _ = np.linalg.qr(np.column_stack([line, x]))
@@ -101,12 +101,12 @@ def _left(spline: CubicSpline, time_s: FloatArray, values: FloatArray, within_s:
         information = gain * float(turned @ turned)
         if information == 0.0:
             return 0.0, np.inf
-        left = values - basis @ (basis.T @ values)
-        step = float(turned @ left) / information
+        residual = values - basis @ (basis.T @ values)
+        step = float(turned @ residual) / information
         delay_s += float(np.clip(step, -within_s, within_s))
         if abs(delay_s) > 1.5 * within_s + STEP_S:
             return 0.0, np.inf
-    scores = turned * (left - step * gain * turned)
+    scores = turned * (residual - step * gain * turned)
     return delay_s, float(np.sqrt(_long_run(scores, time_s)) / abs(information))
 
 
@@ -116,15 +116,17 @@ def _correlation(one: FloatArray, two: FloatArray) -> float:
     return float(one @ two) / size if size > 0.0 else 0.0
 
 
-def _searched(spline: CubicSpline, time_s: FloatArray, own: FloatArray, line: FloatArray, within_s: float) -> float:
+def _searched(
+    spline: CubicSpline, time_s: FloatArray, detrended: FloatArray, line: FloatArray, within_s: float
+) -> float:
     """Return the delay on a raster at which the contents are most alike."""
     places = np.arange(-np.ceil(within_s / STEP_S), np.ceil(within_s / STEP_S) + 1) * STEP_S
     shared = np.empty(places.size)
-    for i, place in enumerate(places):
-        x = spline(time_s + place)
+    for i, delay_s in enumerate(places):
+        x = spline(time_s + delay_s)
         x = x - line @ (line.T @ x)
         size = float(x @ x)
-        shared[i] = abs(float(own @ x)) / np.sqrt(size) if size > 0.0 else 0.0
+        shared[i] = abs(float(detrended @ x)) / np.sqrt(size) if size > 0.0 else 0.0
     return float(places[int(np.argmax(shared))])
 
 

@@ -13,8 +13,8 @@ _FUNCTIONS = {"absolute": "fabs", "minimum": "least", "maximum": "most"}
 
 def identifier(text: str) -> str:
     """Return a text as a name in C: letters, digits and underscores, not a digit first."""
-    found = re.sub(r"[^A-Za-z0-9_]", "_", text) or "_"
-    return f"_{found}" if found[0].isdigit() else found
+    letters = re.sub(r"[^A-Za-z0-9_]", "_", text) or "_"
+    return f"_{letters}" if letters[0].isdigit() else letters
 
 
 def c_number(value: float) -> str:
@@ -63,7 +63,7 @@ def c_function(name: str, formulas: Sequence[Formula], leaves: Mapping[str, Sequ
                 by_text[text] = f"t{len(by_text)}"
                 lines.append(f"const double {by_text[text]} = {text};")
             names[id(node)] = by_text[text]
-    results = [f"out[{place}] = {names[id(formula)]};" for place, formula in enumerate(formulas)]
+    results = [f"out[{index}] = {names[id(formula)]};" for index, formula in enumerate(formulas)]
     body = [*used.values(), *lines, *results]
     if not used:
         body.insert(0, "(void)v;")
@@ -75,10 +75,10 @@ def c_function(name: str, formulas: Sequence[Formula], leaves: Mapping[str, Sequ
 
 def _leaf(node: Formula, leaves: Mapping[str, Sequence[str]], used: dict[str, str]) -> str:
     """Return the name of a leaf, and note the line that gives it its value."""
-    member, *own = leaves[node.operation]
-    name = own[node.place] if own else member
-    place = f"v->{member}[{node.place}]" if own else f"v->{member}"
-    used.setdefault(name, f"const double {name} = {place};")
+    member, *prefixes = leaves[node.operation]
+    name = prefixes[node.place] if prefixes else member
+    member_text = f"v->{member}[{node.place}]" if prefixes else f"v->{member}"
+    used.setdefault(name, f"const double {name} = {member_text};")
     return name
 
 

@@ -142,14 +142,14 @@ def _order(linear: DelayModel, wanted: int | None) -> int:
 def _without_delays(linear: DelayModel, order: int) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Return a state space in which every delay is approximated."""
     into, out = len(linear.inputs), len(linear.outputs)
-    whole = (linear.a, linear.b, linear.c, linear.d)
+    system = (linear.a, linear.b, linear.c, linear.d)
     if linear.tau_s.size:
-        whole = _closed(whole, _side_by_side([pade(tau, order) for tau in linear.tau_s]), into, out)
+        system = _closed(system, _side_by_side([pade(tau, order) for tau in linear.tau_s]), into, out)
     if np.any(linear.shift_s > 0.0):
         one = (np.zeros((0, 0)), np.zeros((0, 1)), np.zeros((1, 0)), np.ones((1, 1)))
         behind = _side_by_side([pade(shift, order) if shift > 0.0 else one for shift in linear.shift_s])
-        whole = _in_series(whole, behind)
-    return whole
+        system = _in_series(system, behind)
+    return system
 
 
 System = tuple[FloatArray, FloatArray, FloatArray, FloatArray]
@@ -173,12 +173,12 @@ def _in_series(first: System, second: System) -> System:
     )
 
 
-def _closed(whole: System, late: System, into: int, out: int) -> System:
+def _closed(system: System, late: System, into: int, out: int) -> System:
     """Return a system whose last outputs come back to its last inputs through another.
 
     ``z = C_2 x + D_21 u + D_22 w`` and ``w = G q + H z`` give ``(1 - D_22 H) z = C_2 x + D_21 u + D_22 G q``.
     """
-    a, b, c, d = whole
+    a, b, c, d = system
     e, f, g, h = late
     loop = np.linalg.inv(np.eye(h.shape[0]) - d[out:, into:] @ h)
     z_x, z_q, z_u = loop @ c[out:], loop @ d[out:, into:] @ g, loop @ d[out:, :into]

@@ -76,8 +76,8 @@ def write_csv(
         written.response: response_rows(model_response(model, omega_rad_s)),
     }
     with ExitStack() as stack:
-        for place, rows in tables.items():
-            _write(stack.enter_context(written_whole(place, overwrite=overwrite)), rows)
+        for csv_path, rows in tables.items():
+            _write(stack.enter_context(written_whole(csv_path, overwrite=overwrite)), rows)
     return written
 
 

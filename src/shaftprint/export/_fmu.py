@@ -98,7 +98,7 @@ def write_fmu(
     """
     if samples and rng is None:
         raise ExportError("FMU of posterior samples: expected rng, a source of random numbers, found none.")
-    place, wanted = Path(path), can_build() if platforms is None else tuple(dict.fromkeys(platforms))
+    fmu_path, wanted = Path(path), can_build() if platforms is None else tuple(dict.fromkeys(platforms))
     ready = fmu_program(model.structure, model.values)
     draws = posterior_deviations(model, samples, rng if rng is not None else np.random.default_rng(0))
     pole = largest_pole(ready, model.values + draws)
@@ -110,11 +110,11 @@ def write_fmu(
         settings=(model.engine_speed_rpm, model.shaft_torque_nm, _internal_step(model, pole)),
         draws=draws,
     )
-    description, texts = _described(model, equations, identifier(place.stem), version)
-    with written_whole(place, overwrite=overwrite) as part, tempfile.TemporaryDirectory() as folder:
+    description, texts = _described(model, equations, identifier(fmu_path.stem), version)
+    with written_whole(fmu_path, overwrite=overwrite) as part, tempfile.TemporaryDirectory() as folder:
         _pack(part, Path(folder), description, texts, version, wanted)
     return WrittenFmu(
-        path=place,
+        path=fmu_path,
         version=version,
         platforms=wanted,
         internal_step_s=equations.settings[2],
@@ -208,6 +208,6 @@ def _template(name: str) -> str:
 def _late_outputs(ready: FmuProgram, model: ExportedModel) -> tuple[str, ...]:
     """Return the outputs whose time stamps lie ahead of what can be known, by name."""
     leaves = {("parameter", i): value for i, value in enumerate(model.values)}
-    found = evaluate(ready.lateness, leaves)
+    delays_s = evaluate(ready.lateness, leaves)
     names = ready.program.outputs
-    return tuple(fmu_signal(name).name for name, late in zip(names, found, strict=True) if float(late) > 0.0)
+    return tuple(fmu_signal(name).name for name, late in zip(names, delays_s, strict=True) if float(late) > 0.0)

@@ -111,10 +111,10 @@ def build_binary(folder: Path, sources: Sequence[str], name: str, binary: Path) 
     except (OSError, subprocess.TimeoutExpired) as error:
         raise ExportError(f"FMU for {name}: the compiler {command[0]} could not be run: {error}.") from None
     if done.returncode != 0 or not binary.is_file():
-        said = " ".join(done.stderr.split())[:500]
+        messages = " ".join(done.stderr.split())[:500]
         raise ExportError(
-            f"FMU for {name}: the compiler ended with {done.returncode}: {said or 'no words'}; leave this system out "
-            "with --platform, or write sources only."
+            f"FMU for {name}: the compiler ended with {done.returncode}: {messages or 'no words'}; leave this system "
+            "out with --platform, or write sources only."
         )
 
 

@@ -36,8 +36,8 @@ class FmuDescription:
 
 def description_of_fmi_2(d: FmuDescription) -> bytes:
     """Return ``modelDescription.xml`` of FMI 2.0 (Functional Mock-up Interface, version 2.0.4, 2022, chapter 2.2)."""
-    own = [variable for variable in d.variables if variable.causality != "independent"]
-    places = {variable.reference: str(place) for place, variable in enumerate(own, start=1)}
+    variables = [variable for variable in d.variables if variable.causality != "independent"]
+    places = {variable.reference: str(number) for number, variable in enumerate(variables, start=1)}
     root = _root(d, "2.0", "guid")
     root.set("numberOfEventIndicators", str(len(d.indicators)))
     can = {"canGetAndSetFMUstate": "true", "canSerializeFMUstate": "true", "canNotUseMemoryManagementFunctions": "true"}
@@ -48,12 +48,12 @@ def description_of_fmi_2(d: FmuDescription) -> bytes:
             files = SubElement(interface, "SourceFiles")
             for name in d.sources:
                 SubElement(files, "File", name=name)
-    _common(root, d, own)
+    _common(root, d, variables)
     listed = SubElement(root, "ModelVariables")
-    for variable in own:
+    for variable in variables:
         _variable_2(listed, variable, places)
     structure = SubElement(root, "ModelStructure")
-    for title, members in _unknowns(own).items():
+    for title, members in _unknowns(variables).items():
         if members:
             group = SubElement(structure, title)
             for variable in members:
@@ -65,8 +65,8 @@ def description_of_fmi_2(d: FmuDescription) -> bytes:
 
 def description_of_fmi_3(d: FmuDescription) -> bytes:
     """Return ``modelDescription.xml`` of FMI 3.0 (Functional Mock-up Interface, version 3.0.2, 2024, section 2.4)."""
-    own = [*d.variables, *d.indicators]
-    references = {variable.reference: str(variable.reference) for variable in own}
+    variables = [*d.variables, *d.indicators]
+    references = {variable.reference: str(variable.reference) for variable in variables}
     root = _root(d, "3.0", "instantiationToken")
     can = {"canGetAndSetFMUState": "true", "canSerializeFMUState": "true"}
     if d.model_exchange:
@@ -74,13 +74,13 @@ def description_of_fmi_3(d: FmuDescription) -> bytes:
         SubElement(root, "ModelExchange", {"modelIdentifier": d.identifier, **needs, **can})
     steps = {"canHandleVariableCommunicationStepSize": "true"}
     SubElement(root, "CoSimulation", {"modelIdentifier": d.identifier, **steps, **can})
-    _common(root, d, own)
+    _common(root, d, variables)
     listed = SubElement(root, "ModelVariables")
-    for variable in own:
+    for variable in variables:
         _variable_3(listed, variable)
     structure = SubElement(root, "ModelStructure")
     titles = {"Outputs": "Output", "Derivatives": "ContinuousStateDerivative", "InitialUnknowns": "InitialUnknown"}
-    for title, members in _unknowns(own).items():
+    for title, members in _unknowns(variables).items():
         for variable in members:
             unknown = SubElement(structure, titles[title], valueReference=str(variable.reference))
             if title != "InitialUnknowns":
@@ -114,8 +114,8 @@ def _root(d: FmuDescription, version: str, token: str) -> Element:
     )
 
 
-def _common(root: Element, d: FmuDescription, own: Sequence[Variable]) -> None:
-    root.append(unit_definitions(variable.unit for variable in own))
+def _common(root: Element, d: FmuDescription, variables: Sequence[Variable]) -> None:
+    root.append(unit_definitions(variable.unit for variable in variables))
     categories = SubElement(root, "LogCategories")
     for name in ("logStatusError", "logStatusFatal"):
         SubElement(categories, "Category", name=name)
@@ -129,19 +129,19 @@ def _common(root: Element, d: FmuDescription, own: Sequence[Variable]) -> None:
     )
 
 
-def _unknowns(own: Sequence[Variable]) -> dict[str, list[Variable]]:
-    outputs = [variable for variable in own if variable.causality == "output"]
-    derivatives = [variable for variable in own if variable.derivative_of is not None]
+def _unknowns(variables: Sequence[Variable]) -> dict[str, list[Variable]]:
+    outputs = [variable for variable in variables if variable.causality == "output"]
+    derivatives = [variable for variable in variables if variable.derivative_of is not None]
     inner = {variable.derivative_of for variable in derivatives}
-    states = [variable for variable in own if variable.reference in inner]
-    calculated = [variable for variable in own if variable.causality == "calculatedParameter"]
-    initial = sorted([*outputs, *calculated, *states, *derivatives], key=own.index)
+    states = [variable for variable in variables if variable.reference in inner]
+    calculated = [variable for variable in variables if variable.causality == "calculatedParameter"]
+    initial = sorted([*outputs, *calculated, *states, *derivatives], key=variables.index)
     return {"Outputs": outputs, "Derivatives": derivatives, "InitialUnknowns": initial}
 
 
 def _dependencies(variable: Variable, names: dict[int, str]) -> str:
-    found = sorted(int(names[reference]) for reference in (*variable.inputs, *variable.states))
-    return " ".join(str(place) for place in found)
+    numbers = sorted(int(names[reference]) for reference in (*variable.inputs, *variable.states))
+    return " ".join(str(number) for number in numbers)
 
 
 def _variable_2(listed: Element, variable: Variable, places: dict[int, str]) -> None:
@@ -180,9 +180,9 @@ def _variable_3(listed: Element, variable: Variable) -> None:
 
 
 def _value(variable: Variable) -> dict[str, str]:
-    found = {"unit": unit_name(variable.unit)} if variable.unit else {}
+    attributes = {"unit": unit_name(variable.unit)} if variable.unit else {}
     if variable.integers is not None:
-        found |= {"min": str(variable.integers[0]), "max": str(variable.integers[1])}
+        attributes |= {"min": str(variable.integers[0]), "max": str(variable.integers[1])}
     if variable.start is not None:
-        found["start"] = repr(float(variable.start)) if variable.integers is None else str(int(variable.start))
-    return found
+        attributes["start"] = repr(float(variable.start)) if variable.integers is None else str(int(variable.start))
+    return attributes

@@ -80,11 +80,11 @@ class FmuEquations:
             "DERIVATIVE": sizes["STATES"],
             "INDICATOR": sizes["INDICATORS"],
         }
-        found, first = {}, 0
+        references, first = {}, 0
         for name, count in counts.items():
-            found[name] = first
+            references[name] = first
             first += count
-        return found
+        return references
 
     def header(self, token: str) -> str:
         """Return ``model.h``.
@@ -120,11 +120,11 @@ class FmuEquations:
             "rates": list(program.rates),
             "lates": [late.signal for late in program.pasts],
             "drifts": [late.drift for late in program.pasts],
-            "values": [taken.value for taken in program.samples],
+            "values": [sample.value for sample in program.samples],
             "outputs": list(program.signals),
             "lateness": list(ready.lateness),
             "delays": [late.delay for late in program.pasts],
-            "periods": [taken.period for taken in program.samples],
+            "periods": [sample.period for sample in program.samples],
             "indicators": ready.indicators,
             "steady": ready.left_over,
             "steady_slopes": ready.left_over_slopes,

@@ -44,7 +44,7 @@ class FmuProgram:
         return [
             *(program.rates[i] for i in self.still),
             *(p.signal - p.delay * p.drift - Formula("past", place=i) for i, p in enumerate(program.pasts)),
-            *(taken.value - Formula("sample", place=i) for i, taken in enumerate(program.samples)),
+            *(sample.value - Formula("sample", place=i) for i, sample in enumerate(program.samples)),
         ]
 
     @property
@@ -64,27 +64,27 @@ class FmuProgram:
         program = self.program
         inner = [
             *program.rates,
-            *(taken.value for taken in program.samples),
+            *(sample.value for sample in program.samples),
             *(late.signal for late in program.pasts),
             *(late.delay for late in program.pasts),
         ]
-        found = {node.place for node in postorder(inner) if node.operation == "past"}
-        return tuple(place in found for place in range(len(program.pasts)))
+        pasts = {node.place for node in postorder(inner) if node.operation == "past"}
+        return tuple(index in pasts for index in range(len(program.pasts)))
 
     @property
     def indicators(self) -> list[Formula]:
         """Differences that change sign where a limit begins or ends to act."""
         program = self.program
         formulas = [*program.rates, *(late.signal for late in program.pasts), *(s.value for s in program.samples)]
-        found = []
+        indicators = []
         for node in postorder(formulas):
             if node.operation in _COMPARED and not all(part.is_number for part in node.of[:2]):
-                found.append(node.of[0] - node.of[1])
+                indicators.append(node.of[0] - node.of[1])
             elif node.operation == "absolute":
-                found.append(node.of[0])
+                indicators.append(node.of[0])
             elif node.operation == "table":
-                found += [node.of[0] - place for place, _ in node.points]
-        return found
+                indicators += [node.of[0] - corner for corner, _ in node.points]
+        return indicators
 
     @property
     def asks_input_rates(self) -> bool:
@@ -132,10 +132,10 @@ def _drift(program: Program, signal: Formula) -> Formula:
     """Return how fast a signal changes in steady running, where only sums that go on for ever do."""
     moving = [(Formula("state", place=i), program.rates[i]) for i, runs in enumerate(program.running) if runs]
     moving += [(Formula("past", place=i), late.drift) for i, late in enumerate(program.pasts)]
-    found = Formula("number", value=0.0)
+    drift = Formula("number", value=0.0)
     for leaf, rate in moving:
-        found = found + derivatives([signal], leaf)[0] * rate
-    return found
+        drift = drift + derivatives([signal], leaf)[0] * rate
+    return drift
 
 
 def _rows(formulas: Sequence[Formula], leaves: Sequence[Formula]) -> list[Formula]:
@@ -159,8 +159,8 @@ def largest_pole(ready: FmuProgram, values: FloatArray) -> float:
     counts |= {"sample": len(program.samples), "input": len(program.inputs), "input rate": len(program.inputs)}
     leaves |= {(kind, i): np.asarray(0.0) for kind, count in counts.items() for i in range(count)}
     size = len(program.states)
-    found = [np.broadcast_to(entry, (sets,)) for entry in evaluate(ready.state_slopes, leaves)]
-    matrices = np.stack(found, axis=-1).reshape(sets, size, size)
+    entries = [np.broadcast_to(entry, (sets,)) for entry in evaluate(ready.state_slopes, leaves)]
+    matrices = np.stack(entries, axis=-1).reshape(sets, size, size)
     if not np.all(np.isfinite(matrices)):
         return float("inf")
     return float(np.abs(np.linalg.eigvals(matrices)).max())

@@ -28,13 +28,13 @@ def posterior_deviations(model: ExportedModel, samples: int, rng: np.random.Gene
     ExportError
         If the covariance is not known, or hardly a sample keeps to the bounds.
     """
-    found = np.zeros((1 + samples, len(model.structure.parameters)))
+    deviations = np.zeros((1 + samples, len(model.structure.parameters)))
     if not samples:
-        return frozen_float(found)
+        return frozen_float(deviations)
     if not model.uncertain:
         raise ExportError("FMU of posterior samples: expected parameters with a covariance, found none.")
     places = [model.structure.names.index(name) for name in model.uncertain]
-    chosen = [model.structure.parameters[place] for place in places]
+    chosen = [model.structure.parameters[index] for index in places]
     estimate = model.values[places]
     lower = np.minimum([p.lower for p in chosen], estimate)
     upper = np.maximum([p.upper for p in chosen], estimate)
@@ -44,9 +44,9 @@ def posterior_deviations(model: ExportedModel, samples: int, rng: np.random.Gene
         step = root @ rng.standard_normal(len(places))
         if np.all((estimate + step >= lower) & (estimate + step <= upper)):
             row += 1
-            found[row, places] = step
+            deviations[row, places] = step
             if row == samples:
-                return frozen_float(found)
+                return frozen_float(deviations)
     raise ExportError(
         f"FMU of posterior samples: expected {samples} samples within the bounds of {', '.join(model.uncertain)}, "
         f"found {row} in {MOST_TRIES * samples}: the parameters are too uncertain for samples."

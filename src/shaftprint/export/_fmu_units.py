@@ -27,10 +27,10 @@ def unit_name(unit: str) -> str:
 
 def unit_definitions(units: Iterable[str]) -> Element:
     """Return the definitions of units, each once."""
-    found = Element("UnitDefinitions")
+    definitions = Element("UnitDefinitions")
     for unit in dict.fromkeys(unit for unit in units if unit):
-        definition = SubElement(found, "Unit", name=unit_name(unit))
+        definition = SubElement(definitions, "Unit", name=unit_name(unit))
         if unit in BASE_UNITS:
             powers = {name: repr(value) for name, value in BASE_UNITS[unit].items()}
             SubElement(definition, "BaseUnit", powers)
-    return found
+    return definitions

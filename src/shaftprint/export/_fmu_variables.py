@@ -77,8 +77,8 @@ def _signals(model: ExportedModel, equations: FmuEquations) -> Iterator[Variable
             variability="continuous",
             meaning=f"{signal.meaning}, {model.title}",
             unit=signal.unit,
-            inputs=tuple(references["INPUT"] + place for place in inputs),
-            states=tuple(references["STATE"] + place for place in states),
+            inputs=tuple(references["INPUT"] + index for index in inputs),
+            states=tuple(references["STATE"] + index for index in states),
         )
 
 
@@ -165,8 +165,8 @@ def _inner(equations: FmuEquations) -> Iterator[Variable]:
             variability="continuous",
             meaning=f"how fast state {i + 1} changes",
             derivative_of=references["STATE"] + i,
-            inputs=tuple(references["INPUT"] + place for place in inputs),
-            states=tuple(references["STATE"] + place for place in states),
+            inputs=tuple(references["INPUT"] + index for index in inputs),
+            states=tuple(references["STATE"] + index for index in states),
         )
 
 

@@ -80,11 +80,11 @@ def write_json(
         "linear": _linear(delay_model(model)),
         "response": _response(model_response(model, omega_rad_s)),
     }
-    place = Path(path)
+    json_path = Path(path)
     text = json.dumps(content, indent=1, allow_nan=False, ensure_ascii=False)
-    with written_whole(place, overwrite=overwrite) as part:
+    with written_whole(json_path, overwrite=overwrite) as part:
         part.write_text(f"{text}\n", encoding="utf-8")
-    return place
+    return json_path
 
 
 def _signal(model: ExportedModel, name: str) -> dict[str, Any]:
@@ -112,15 +112,15 @@ def _linear(linear: DelayModel) -> dict[str, Any]:
     }
 
 
-def _response(found: ModelResponse) -> dict[str, Any]:
+def _response(modelled: ModelResponse) -> dict[str, Any]:
     return {
         "axes": ["output", "input", "frequency"],
-        "omega_rad_s": found.omega_rad_s.tolist(),
-        "real": found.response.real.tolist(),
-        "imaginary": found.response.imag.tolist(),
-        "magnitude_db": found.magnitude_db.tolist(),
-        "magnitude_std_db": found.magnitude_std_db.tolist(),
-        "phase_deg": found.phase_deg.tolist(),
-        "phase_std_deg": found.phase_std_deg.tolist(),
-        "covariance_of_real_and_imaginary": found.channel_covariance.tolist(),
+        "omega_rad_s": modelled.omega_rad_s.tolist(),
+        "real": modelled.response.real.tolist(),
+        "imaginary": modelled.response.imag.tolist(),
+        "magnitude_db": modelled.magnitude_db.tolist(),
+        "magnitude_std_db": modelled.magnitude_std_db.tolist(),
+        "phase_deg": modelled.phase_deg.tolist(),
+        "phase_std_deg": modelled.phase_std_deg.tolist(),
+        "covariance_of_real_and_imaginary": modelled.channel_covariance.tolist(),
     }

@@ -91,11 +91,11 @@ def matlab_name(stem: str) -> str:
     ExportError
         If it holds no letter.
     """
-    found = re.sub(r"[^A-Za-z0-9_]", "_", stem)
-    found = re.sub(r"^[^A-Za-z]+", "", found)[:LONGEST_NAME]
-    if not found:
+    name = re.sub(r"[^A-Za-z0-9_]", "_", stem)
+    name = re.sub(r"^[^A-Za-z]+", "", name)[:LONGEST_NAME]
+    if not name:
         raise ExportError(f"{stem}: expected a file name with a letter from A to Z, which MATLAB can call; rename it.")
-    return found
+    return name
 
 
 def _script(name: str, data: str, model: ExportedModel) -> str:
@@ -115,7 +115,7 @@ def _script(name: str, data: str, model: ExportedModel) -> str:
 def _content(
     model: ExportedModel, response: ModelResponse, linear: DelayModel, measured: FrequencyResponse | None
 ) -> dict[str, Any]:
-    found: dict[str, Any] = {
+    content: dict[str, Any] = {
         "title": printable(model.title),
         # Octave counts bytes where the file counts letters, and would cut a title that is not in ASCII
         "title_utf8": np.frombuffer(printable(model.title).encode(), dtype=np.uint8),
@@ -137,7 +137,7 @@ def _content(
             "full_covariance": np.moveaxis(response.covariance, 0, -1),
         },
     }
-    return found | ({} if measured is None else {"measured": _measured(measured)})
+    return content | ({} if measured is None else {"measured": _measured(measured)})
 
 
 def _signals(model: ExportedModel, names: tuple[str, ...]) -> dict[str, Any]:
@@ -196,6 +196,6 @@ def _measured(measured: FrequencyResponse) -> dict[str, Any]:
 
 def _cell(texts: tuple[str, ...] | list[str]) -> NDArray[np.object_]:
     """Return texts as what becomes a column of a cell array."""
-    found = np.empty((len(texts), 1), dtype=object)
-    found[:, 0] = texts
-    return found
+    cell = np.empty((len(texts), 1), dtype=object)
+    cell[:, 0] = texts
+    return cell

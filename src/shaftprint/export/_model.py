@@ -87,17 +87,17 @@ def exported_model(fingerprint: Fingerprint, *, of: Structure | None = None) -> 
     FingerprintError
         If there is no shipped structure of that name, or it has other parameters than the fingerprint.
     """
-    found = identified_model(fingerprint, named_structure(fingerprint) if of is None else of)
+    model = identified_model(fingerprint, named_structure(fingerprint) if of is None else of)
     std = {quantity.name: quantity.std for quantity in fingerprint.parameters}
     uncertain = tuple(name for name in std if np.isfinite(std[name]) and std[name] > 0.0)
     return ExportedModel(
         title=fingerprint.conditions.vessel,
-        structure=found.structure,
-        values=found.values,
+        structure=model.structure,
+        values=model.values,
         engine_speed_rpm=fingerprint.conditions.engine_speed.value,
         shaft_torque_nm=fingerprint.conditions.shaft_torque.value,
         uncertain=uncertain,
         intervals={q.name: q.interval_95 for q in fingerprint.parameters if q.interval_95 and q.stated_std is None},
         covariance=frozen_float(fingerprint.covariance_of(uncertain)),
-        not_known=found.not_known,
+        not_known=model.not_known,
     )

@@ -60,8 +60,8 @@ class ModelResponse:
     def _along(self, real: FloatArray, imaginary: FloatArray) -> FloatArray:
         """Return the variance along a direction of each response, over the fourth power of its size."""
         direction = np.stack([real, imaginary], axis=-1)
-        found = np.einsum("...i,...ij,...j->...", direction, self.channel_covariance, direction)
-        return np.asarray(np.maximum(found, 0.0) / np.abs(self.response) ** 4)
+        variance = np.einsum("...i,...ij,...j->...", direction, self.channel_covariance, direction)
+        return np.asarray(np.maximum(variance, 0.0) / np.abs(self.response) ** 4)
 
 
 def channel_covariance(covariance: FloatArray, outputs: int) -> FloatArray:

@@ -44,10 +44,10 @@ def write_osp(model: ExportedModel, fmu: str | Path, *, overwrite: bool = False)
     FileExistsError
         If the file exists and is not to be replaced.
     """
-    place = Path(fmu).with_name(f"{Path(fmu).stem}{ENDING}")
-    with written_whole(place, overwrite=overwrite) as part:
+    xml_path = Path(fmu).with_name(f"{Path(fmu).stem}{ENDING}")
+    with written_whole(xml_path, overwrite=overwrite) as part:
         part.write_bytes(osp_description(model))
-    return place
+    return xml_path
 
 
 def osp_description(model: ExportedModel) -> bytes:
@@ -58,11 +58,11 @@ def osp_description(model: ExportedModel) -> bytes:
     root.append(unit_definitions(signal.unit for signal in (*inputs, *outputs)))
     groups = SubElement(root, "VariableGroups")
     port = _port(inputs, outputs)
-    left = [signal for signal in (*inputs, *outputs) if signal not in port]
-    for signal in left:
+    plain = [signal for signal in (*inputs, *outputs) if signal not in port]
+    for signal in plain:
         if _kind(signal) == "Generic":
             _variable(SubElement(groups, "Generic", name=signal.name), signal)
-    for signal in left:
+    for signal in plain:
         if _kind(signal) == "Torque":
             _variable(SubElement(groups, "Torque", name=signal.name), signal)
     if port:
@@ -70,7 +70,7 @@ def osp_description(model: ExportedModel) -> bytes:
         shaft = SubElement(groups, "AngularMechanicalPort", name="shaft")
         _variable(SubElement(shaft, "Torque", name=torque.name), torque)
         _variable(SubElement(shaft, "AngularVelocity", name=speed.name), speed)
-    for signal in left:
+    for signal in plain:
         if _kind(signal) == "ShaftSpeed":
             _variable(SubElement(groups, "ShaftSpeed", name=signal.name), signal)
     return xml_document(root)
@@ -85,10 +85,10 @@ def _kind(signal: FmuSignal) -> str:
 
 def _port(inputs: Sequence[FmuSignal], outputs: Sequence[FmuSignal]) -> tuple[FmuSignal, ...]:
     """Return torque and speed of the shaft where one comes in and the other goes out."""
-    known = {"shaft_torque", "engine_speed"}
-    into = {signal.name: signal for signal in inputs if signal.name in known}
-    out = {signal.name: signal for signal in outputs if signal.name in known}
-    if not into or not out or set(into) & set(out) or set(into) | set(out) != known:
+    names = {"shaft_torque", "engine_speed"}
+    into = {signal.name: signal for signal in inputs if signal.name in names}
+    out = {signal.name: signal for signal in outputs if signal.name in names}
+    if not into or not out or set(into) & set(out) or set(into) | set(out) != names:
         return ()
     both = into | out
     return both["shaft_torque"], both["engine_speed"]

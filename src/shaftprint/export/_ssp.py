@@ -39,10 +39,10 @@ def write_ssv(model: ExportedModel, path: str | Path, *, overwrite: bool = False
     FileExistsError
         If the file exists and is not to be replaced.
     """
-    place = Path(path)
-    with written_whole(place, overwrite=overwrite) as part:
+    ssv_path = Path(path)
+    with written_whole(ssv_path, overwrite=overwrite) as part:
         part.write_bytes(parameter_set(model))
-    return place
+    return ssv_path
 
 
 def parameter_set(model: ExportedModel) -> bytes:
@@ -54,9 +54,9 @@ def parameter_set(model: ExportedModel) -> bytes:
     listed, units = SubElement(root, f"{{{SSV}}}Parameters"), dict[str, None]()
     for parameter, unit, value, words in _entries(model):
         entry = SubElement(listed, f"{{{SSV}}}Parameter", name=parameter, description=words)
-        known = {"unit": unit_name(unit)} if unit in BASE_UNITS else {}
-        units |= {unit: None} if known else {}
-        SubElement(entry, f"{{{SSV}}}Real", {"value": repr(value), **known})
+        attributes = {"unit": unit_name(unit)} if unit in BASE_UNITS else {}
+        units |= {unit: None} if attributes else {}
+        SubElement(entry, f"{{{SSV}}}Real", {"value": repr(value), **attributes})
     if units:
         defined = SubElement(root, f"{{{SSV}}}Units")
         for unit in units:
@@ -67,9 +67,9 @@ def parameter_set(model: ExportedModel) -> bytes:
 
 def _entries(model: ExportedModel) -> list[tuple[str, str, float, str]]:
     """Return name, unit, value and meaning of each parameter that the FMU has."""
-    found = [
+    entries = [
         ("working_point.engine_speed", "rpm", model.engine_speed_rpm, "engine speed of the working point"),
         ("working_point.shaft_torque", "N m", model.shaft_torque_nm, "shaft torque at the gauge of the working point"),
     ]
-    found += [(structured_name(p.name), p.unit, value, words) for p, value, words in described_parameters(model)]
-    return found
+    entries += [(structured_name(p.name), p.unit, value, words) for p, value, words in described_parameters(model)]
+    return entries

@@ -14,11 +14,11 @@ Row: TypeAlias = dict[str, Cell]
 
 def parameter_rows(fingerprint: Fingerprint, structure: Structure) -> list[Row]:
     """Return a row for each parameter of the structure; of those that were held no uncertainty is known."""
-    found = {quantity.name: quantity for quantity in fingerprint.parameters}
+    quantities = {quantity.name: quantity for quantity in fingerprint.parameters}
     rows = []
     for parameter in structure.parameters:
-        if parameter.name in found:
-            rows.append(quantity_row(found[parameter.name]) | {"held": False})
+        if parameter.name in quantities:
+            rows.append(quantity_row(quantities[parameter.name]) | {"held": False})
             continue
         held = Quantity(
             name=parameter.name,
@@ -39,7 +39,7 @@ def number_rows(fingerprint: Fingerprint) -> list[Row]:
         "margin": fingerprint.margins,
         "calibration": fingerprint.calibration,
     }
-    return [{"kind": kind, **quantity_row(quantity)} for kind, found in kinds.items() for quantity in found]
+    return [{"kind": kind, **quantity_row(quantity)} for kind, quantities in kinds.items() for quantity in quantities]
 
 
 def quantity_row(quantity: Quantity) -> Row:
@@ -68,15 +68,15 @@ def quantity_row(quantity: Quantity) -> Row:
     }
 
 
-def response_rows(found: ModelResponse) -> list[Row]:
+def response_rows(modelled: ModelResponse) -> list[Row]:
     """Return a row for each output, input and frequency: the response and its 95 % band to first order."""
-    magnitude, phase = found.magnitude_db, found.phase_deg
-    half_db, half_deg = NORMAL_95 * found.magnitude_std_db, NORMAL_95 * found.phase_std_deg
+    magnitude, phase = modelled.magnitude_db, modelled.phase_deg
+    half_db, half_deg = NORMAL_95 * modelled.magnitude_std_db, NORMAL_95 * modelled.phase_std_deg
     rows: list[Row] = []
-    for i, output in enumerate(found.outputs):
-        for j, source in enumerate(found.inputs):
-            for k, omega in enumerate(found.omega_rad_s):
-                level, turn, value = magnitude[i, j, k], phase[i, j, k], found.response[i, j, k]
+    for i, output in enumerate(modelled.outputs):
+        for j, source in enumerate(modelled.inputs):
+            for k, omega in enumerate(modelled.omega_rad_s):
+                level, turn, value = magnitude[i, j, k], phase[i, j, k], modelled.response[i, j, k]
                 numbers = {
                     "omega_rad_s": omega,
                     "frequency_hz": omega / (2.0 * math.pi),

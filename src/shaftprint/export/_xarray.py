@@ -36,26 +36,26 @@ def to_xarray(model: ExportedModel | Fingerprint, omega_rad_s: ArrayLike | None 
     """
     xarray = library("xarray", "to_xarray")
     model = exported_model(model) if isinstance(model, Fingerprint) else model
-    found, std = model_response(model, omega_rad_s), model.std
+    modelled, std = model_response(model, omega_rad_s), model.std
     axes = ("output", "input", "omega")
     names = list(model.structure.names)
-    made: Dataset = xarray.Dataset(
+    dataset: Dataset = xarray.Dataset(
         {
             "response": (
                 axes,
-                np.array(found.response),
+                np.array(modelled.response),
                 {"long_name": "output over input, both over the working point"},
             ),
-            "magnitude_std": (axes, found.magnitude_std_db, {"units": "dB"}),
-            "phase_std": (axes, found.phase_std_deg, {"units": "deg"}),
+            "magnitude_std": (axes, modelled.magnitude_std_db, {"units": "dB"}),
+            "phase_std": (axes, modelled.phase_std_deg, {"units": "deg"}),
             "value": ("parameter", np.array(model.values)),
             "std": ("parameter", np.array([std.get(name, np.nan) for name in names])),
             "covariance": (("uncertain", "uncertain_too"), np.array(model.covariance_matrix)),
         },
         coords={
-            "output": list(found.outputs),
-            "input": list(found.inputs),
-            "omega": ("omega", np.array(found.omega_rad_s), {"units": "rad/s", "long_name": "angular frequency"}),
+            "output": list(modelled.outputs),
+            "input": list(modelled.inputs),
+            "omega": ("omega", np.array(modelled.omega_rad_s), {"units": "rad/s", "long_name": "angular frequency"}),
             "parameter": names,
             "unit": ("parameter", [parameter.unit for parameter in model.structure.parameters]),
             "meaning": ("parameter", [parameter.meaning for parameter in model.structure.parameters]),
@@ -70,4 +70,4 @@ def to_xarray(model: ExportedModel | Fingerprint, omega_rad_s: ArrayLike | None 
             "not_known": list(model.not_known),
         },
     )
-    return made
+    return dataset

@@ -72,11 +72,11 @@ def clock_influences(
 def clock_findings(influences: Sequence[ClockInfluence]) -> tuple[str, ...]:
     """Return a sentence on every clock that is known too badly for the standard deviations of a fit to stand."""
     return tuple(
-        f"The clock of {found.logger} is known to {MILLI * found.std_s:.3g} ms only: parameters may be off by up to "
-        f"{found.shift:.1f} of their standard deviations, which do not hold it; merge by a channel that shows faster "
-        "movements, or a longer recording."
-        for found in influences
-        if found.shift > NOTABLE_SHIFT
+        f"The clock of {influence.logger} is known to {MILLI * influence.std_s:.3g} ms only: parameters may be off by up "
+        f"to {influence.shift:.1f} of their standard deviations, which do not include it; merge by a channel that shows "
+        "faster movements, or a longer recording."
+        for influence in influences
+        if influence.shift > NOTABLE_SHIFT
     )
 
 
@@ -91,15 +91,15 @@ def _influence(clock: "LoggerClock", response: "FrequencyResponse", channels: Ma
         return channels[name] in clock.channels
 
     moved = tuple(name for name in response.outputs if is_own(name) != is_own(response.inputs[0]))
-    place = int(np.flatnonzero(response.used)[-1])
+    line = int(np.flatnonzero(response.used)[-1])
     std_s = clock.alignment.worst_std_s
     return ClockInfluence(
         logger=clock.logger,
         std_s=std_s,
         moved=moved,
-        line=response.lines[place],
-        frequency_hz=float(response.frequency_hz[place]),
-        phase_rad=float(response.omega_rad_s[place]) * std_s if moved else 0.0,
+        line=response.lines[line],
+        frequency_hz=float(response.frequency_hz[line]),
+        phase_rad=float(response.omega_rad_s[line]) * std_s if moved else 0.0,
         delay_std_s=_delay_std(response, moved),
     )
 

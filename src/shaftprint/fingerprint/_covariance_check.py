@@ -22,17 +22,17 @@ def covariance_fault(rows: Sequence[Sequence[float]], std: Sequence[float]) -> s
     """
     size, lengths = len(std), sorted({len(row) for row in rows})
     if len(rows) != size or (rows and lengths != [size]):
-        found = f"{len(rows)} rows of {', '.join(str(length) for length in lengths) or 'nothing'}"
-        return f"expected {size} rows of {size}, one for each parameter, found {found}"
-    known = [place for place, value in enumerate(std) if np.isfinite(value) and value > 0.0]
-    matrix = np.array(rows, dtype=np.float64).reshape(size, size)[np.ix_(known, known)]
+        shape = f"{len(rows)} rows of {', '.join(str(length) for length in lengths) or 'nothing'}"
+        return f"expected {size} rows of {size}, one for each parameter, found {shape}"
+    determined = [index for index, value in enumerate(std) if np.isfinite(value) and value > 0.0]
+    matrix = np.array(rows, dtype=np.float64).reshape(size, size)[np.ix_(determined, determined)]
     variance = np.diag(matrix)
     if not np.all(np.isfinite(matrix)) or not np.all(variance > 0.0):
         return "expected finite numbers and positive variances where a standard deviation is known, found others"
     scale = np.sqrt(variance)
     with np.errstate(all="ignore"):
         correlation = matrix / scale[:, None] / scale
-    if known and not _is_correlation(correlation):
+    if determined and not _is_correlation(correlation):
         return "expected a symmetric matrix without a negative variance in any direction, found another"
     return ""
 

@@ -102,15 +102,15 @@ def _search(identification: Identification) -> list[str]:
 def _hardly_known(identification: Identification, profile: Profile | None) -> list[str]:
     """Return the parameters that the verdict does not trust, with the combinations that are known better."""
     doubts = doubts_of(identification, identification.parameters, profile)
-    found = []
+    findings = []
     for estimate in identification.parameters:
         if estimate.name not in doubts or estimate.name in identification.settings.priors or estimate.at_bound:
             continue
         text = f"{estimate.name} = {_written(estimate)} is hardly known from this test"
         better = [c for c in identification.combinations if _is_better(c, estimate, identification)]
-        known = ", ".join(f"{c.name} = {_written(c)}" for c in better)
-        found.append(text + (f"; known is {known}." if better else "."))
-    return found
+        precise = ", ".join(f"{c.name} = {_written(c)}" for c in better)
+        findings.append(text + (f"; known is {precise}." if better else "."))
+    return findings
 
 
 def _is_better(combination: Estimate, estimate: Estimate, identification: Identification) -> bool:
@@ -118,9 +118,9 @@ def _is_better(combination: Estimate, estimate: Estimate, identification: Identi
         return False
     of = next(c.of for c in identification.structure.combinations if c.name == combination.name)
     values = identification.objective.named(identification.values)
-    place = identification.objective.names.index(estimate.name)
+    index = identification.objective.names.index(estimate.name)
     moved = identification.values.copy()
-    moved[place] += max(1e-3, 1e-3 * abs(moved[place]))
+    moved[index] += max(1e-3, 1e-3 * abs(moved[index]))
     if of(identification.objective.named(moved)) == of(values):
         return False
     share = combination.std / max(abs(combination.value), 1e-300)
@@ -129,10 +129,10 @@ def _is_better(combination: Estimate, estimate: Estimate, identification: Identi
 
 def _known_beforehand(identification: Identification, stated: Budget) -> list[str]:
     """Return which numbers more or better lines would hardly improve: their variance is not that of this test."""
-    told = [name for name in stated.sources if not name.startswith(MEASURED) and name not in _common(identification)]
+    assumed = [name for name in stated.sources if not name.startswith(MEASURED) and name not in _common(identification)]
     resting = []
     for row in stated.rows:
-        shares = {source: row.shares.get(source, 0.0) for source in told}
+        shares = {source: row.shares.get(source, 0.0) for source in assumed}
         if row.name not in identification.settings.priors and sum(shares.values()) > MOSTLY:
             largest = max(shares, key=lambda source: shares[source])
             resting.append(f"{row.name} ({largest} {PERCENT * shares[largest]:.0f} %)")
@@ -158,7 +158,7 @@ def _gauge_zero(physical: tuple[Quantity, ...]) -> list[str]:
 
 
 def _against_expected(physical: tuple[Quantity, ...]) -> list[str]:
-    found = []
+    findings = []
     for quantity in physical:
         # the zero of the gauge, expected at zero, has its own sentence
         if not quantity.expected:
@@ -167,11 +167,11 @@ def _against_expected(physical: tuple[Quantity, ...]) -> list[str]:
         if abs(quantity.value - quantity.expected) > SURPRISING * spread:
             factor = max(quantity.expected / quantity.value, quantity.value / quantity.expected)
             unit = _unit(quantity)
-            found.append(
+            findings.append(
                 f"{quantity.name} = {quantity.value:.4g}{unit} against {quantity.expected:.4g}{unit} of the vessel "
                 f"file: a factor {factor:.2f}.{WHY.get(quantity.name, '')}"
             )
-    return found
+    return findings
 
 
 def _written(estimate: Estimate) -> str:

@@ -239,12 +239,12 @@ class Fingerprint(_Record):
         FingerprintError
             If there is none of that name.
         """
-        found = (*self.parameters, *self.combinations, *self.physical, *self.margins, *self.calibration)
-        for quantity in found:
+        quantities = (*self.parameters, *self.combinations, *self.physical, *self.margins, *self.calibration)
+        for quantity in quantities:
             if quantity.name == name:
                 return quantity
         raise FingerprintError(
-            f"the fingerprint has no {name!r}; it has {', '.join(quantity.name for quantity in found)}."
+            f"the fingerprint has no {name!r}; it has {', '.join(quantity.name for quantity in quantities)}."
         )
 
     def multiplied(self, number: Quantity) -> Quantity | None:

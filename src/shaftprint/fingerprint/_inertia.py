@@ -32,13 +32,13 @@ def inertia_beside(fingerprint: Fingerprint, vessel: "Vessel") -> tuple[Expected
     )
     names = dict(zip((ShipRole.INERTIA_UPSTREAM, ShipRole.INERTIA_DOWNSTREAM), expected.times, strict=True))
     numbers = {number.name: (number.value, number.std) for number in fingerprint.physical}
-    known: set[str] = set()
+    assumed: set[str] = set()
     for parameter in fingerprint.parameters:
         if parameter.role in names:
             numbers[names[parameter.role].name] = (parameter.value, parameter.std)
             if parameter.name in fingerprint.priors:
-                known |= {
+                assumed |= {
                     names[parameter.role].name,
                     *(q.name for q in fingerprint.physical if q.role == parameter.role),
                 }
-    return expected, beside_identified(expected, numbers, told=frozenset(known))
+    return expected, beside_identified(expected, numbers, assumed=frozenset(assumed))

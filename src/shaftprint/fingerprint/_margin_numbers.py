@@ -28,12 +28,12 @@ MEANINGS: Mapping[str, tuple[str, str]] = {
 }
 
 
-def margin_values(found: Margins) -> dict[str, float]:
+def margin_values(margins: Margins) -> dict[str, float]:
     """Return gain, phase [deg] and delay margin [s] by name."""
     return {
-        "gain margin": found.gain_margin,
-        "phase margin": float(np.degrees(found.phase_margin_rad)),
-        "delay margin": found.delay_margin_s,
+        "gain margin": margins.gain_margin,
+        "phase margin": float(np.degrees(margins.phase_margin_rad)),
+        "delay margin": margins.delay_margin_s,
     }
 
 
@@ -51,14 +51,14 @@ def margin_numbers(structure: Structure, values: FloatArray) -> tuple[Combinatio
     if structure.loop is None:
         return ()
     omega = _frequencies(structure, values)
-    found = []
+    numbers = []
     for name, expected in margin_values(margins(structure, values)).items():
         unit, meaning = MEANINGS[name]
         of = _follow(structure, omega, NUMBERS[name])
         seen = float(of({key: np.array([value]) for key, value in structure.named(values).items()})[0])
         if np.isfinite(expected) and abs(seen - expected) <= SAME * abs(expected):
-            found.append(Combination(name=name, unit=unit, of=of, meaning=meaning))
-    return tuple(found)
+            numbers.append(Combination(name=name, unit=unit, of=of, meaning=meaning))
+    return tuple(numbers)
 
 
 def _follow(
@@ -149,7 +149,7 @@ def _crossings(
 
 def _nearest(value: FloatArray, distance: FloatArray, rows: IntArray, count: int) -> FloatArray:
     """Return the value of least distance of every row; infinite where a row has none."""
-    found = np.full(count, np.inf)
+    nearest = np.full(count, np.inf)
     order = np.argsort(-distance, kind="stable")
-    found[rows[order]] = value[order]
-    return found
+    nearest[rows[order]] = value[order]
+    return nearest

@@ -28,15 +28,15 @@ def margin_quantities(
     stated
         Its uncertainty budget with the margins among the numbers; made here when not given.
     """
-    found = identification.margins
-    if found is None:
+    margins = identification.margins
+    if margins is None:
         return ()
     if stated is None:
-        own = identification.own_values()
-        stated = budget(identification, margin_numbers(identification.structure, own))
+        values = identification.own_values()
+        stated = budget(identification, margin_numbers(identification.structure, values))
     std = {row.name: row.std for row in stated.rows}
     quantities = []
-    for name, value in margin_values(found).items():
+    for name, value in margin_values(margins).items():
         if not np.isfinite(value):
             continue
         interval = None if profile is None else profile.intervals.get(name)

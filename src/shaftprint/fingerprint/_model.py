@@ -48,15 +48,15 @@ def identified_model(fingerprint: Fingerprint, structure: Structure) -> Identifi
     FingerprintError
         If the structure has other parameters than the fingerprint.
     """
-    found = {quantity.name: quantity.value for quantity in fingerprint.parameters}
-    named = found | fingerprint.held
+    estimates = {quantity.name: quantity.value for quantity in fingerprint.parameters}
+    named = estimates | fingerprint.held
     apart = sorted(set(structure.names) ^ set(named))
     if apart:
         raise FingerprintError(
             f"fingerprint of {fingerprint.structure}: expected the parameters of structure {structure.name}, found a "
             f"difference in {', '.join(apart)}; name the structure that it was identified with."
         )
-    bounds = {p.name: (p.lower, p.upper) for p in structure.parameters if p.name in found}
+    bounds = {p.name: (p.lower, p.upper) for p in structure.parameters if p.name in estimates}
     identified = structure.held_at(**fingerprint.held).free_between(**bounds)
     return IdentifiedModel(
         structure=identified,
@@ -80,10 +80,10 @@ def named_structure(fingerprint: Fingerprint) -> Structure:
         return shipped_structure(fingerprint.structure)
     except StructureError:
         files = [printable(source.name) for source in fingerprint.sources if source.role == "structure"]
-        place = files[0] if files else "my_ship.py"
+        file = files[0] if files else "my_ship.py"
         raise FingerprintError(
             f"fingerprint of {printable(fingerprint.conditions.vessel)}: expected the name of a shipped structure, "
             f"found {printable(fingerprint.structure)!r}, a structure of somebody's own. A fingerprint is data, and no "
-            f"file that it names is run: read {place}, then give it with --structure {place}:NAME, or as a Structure "
+            f"file that it names is run: read {file}, then give it with --structure {file}:NAME, or as a Structure "
             "to the Python call."
         ) from None

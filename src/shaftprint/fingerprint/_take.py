@@ -78,8 +78,8 @@ def take_fingerprint(
     """
     if now.tzinfo is None:
         raise FingerprintError("now: expected a time with time zone, such as datetime.now(UTC), found one without.")
-    own = identification.own_values()
-    margins = margin_numbers(identification.structure, own)
+    values = identification.own_values()
+    margins = margin_numbers(identification.structure, values)
     rack = signals.channels.get("X")
     rack_share = 0.0 if rack is None else rack.reference_std / rack.reference
     shifts = shifts_of_working_point(identification, signals.working_point, rack_share)

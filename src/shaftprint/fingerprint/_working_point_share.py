@@ -79,12 +79,12 @@ def _changes(identification: Identification, powers: Mapping[str, float]) -> dic
     names = [name for name in sizes if name in powers]
     step = np.maximum(np.abs(values), 1.0) * DIFFERENCE
     columns = []
-    for place in objective.free:
+    for index in objective.free:
         there, back = values.copy(), values.copy()
-        there[place] += step[place]
-        back[place] -= step[place]
+        there[index] += step[index]
+        back[index] -= step[index]
         above, below = objective.named(there), objective.named(back)
-        columns.append([float(above[name] - below[name]) / (2.0 * step[place]) for name in names])
+        columns.append([float(above[name] - below[name]) / (2.0 * step[index]) for name in names])
     slopes = np.array(columns).reshape(len(objective.free), len(names)).T
     moving = np.any(slopes != 0.0, axis=1)
     wanted = np.array([powers[name] * float(sizes[name]) for name in names])
@@ -116,8 +116,8 @@ def widened_covariance(
 ) -> FloatArray:
     """Return the covariance of the free parameters with the sources of the working point, shape (free, free)."""
     names = [estimate.name for estimate in identification.parameters]
-    found = np.array(covariance)
+    widened = np.array(covariance)
     for moves in shifts.values():
         along = np.array([moves.get(name, 0.0) for name in names])
-        found += np.outer(along, along)
-    return found
+        widened += np.outer(along, along)
+    return widened

@@ -24,12 +24,12 @@ def compiled(**options: Any) -> Callable[[Callable[..., Any]], Any]:
     """
 
     def decorated(function: Callable[..., Any]) -> Any:
-        made = numba.njit(**options)(function)
+        kernel = numba.njit(**options)(function)
         folder = private_folder()
         # with NUMBA_DISABLE_JIT the function stays Python, and there is nothing to keep
-        if folder is not None and made is not function:
-            _keep(made, str(folder))
-        return made
+        if folder is not None and kernel is not function:
+            _keep(kernel, str(folder))
+        return kernel
 
     return decorated
 

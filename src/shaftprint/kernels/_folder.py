@@ -53,20 +53,20 @@ def private_folder() -> Path | None:
 
 def _is_private(wanted: Path, folder: Path) -> bool:
     """Return whether nobody but the user and the system can change what a folder holds, or put another in its place."""
-    found = folder.stat()
-    if wanted.lstat().st_uid != os.geteuid() or found.st_uid != os.geteuid() or found.st_mode & _OTHERS:
+    status = folder.stat()
+    if wanted.lstat().st_uid != os.geteuid() or status.st_uid != os.geteuid() or status.st_mode & _OTHERS:
         return False
-    return all(_is_trusted(place) for place in folder.parents)
+    return all(_is_trusted(parent) for parent in folder.parents)
 
 
-def _is_trusted(place: Path) -> bool:
+def _is_trusted(folder: Path) -> bool:
     """Return whether only the user and the system can change what lies in a folder around it."""
-    found = place.stat()
-    if found.st_uid not in (0, os.geteuid()):
+    status = folder.stat()
+    if status.st_uid not in (0, os.geteuid()):
         return False
-    if not found.st_mode & _OTHERS or found.st_mode & stat.S_ISVTX:
+    if not status.st_mode & _OTHERS or status.st_mode & stat.S_ISVTX:
         return True
-    return not found.st_mode & stat.S_IWOTH and _is_group_of_one(found.st_gid)
+    return not status.st_mode & stat.S_IWOTH and _is_group_of_one(status.st_gid)
 
 
 def _is_group_of_one(group: int) -> bool:

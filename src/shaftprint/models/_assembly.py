@@ -34,7 +34,7 @@ def channel_paths(
         )
     if not outputs or not all(inputs):
         raise StructureError(f"structure {structure}: expected a named input and at least one output.")
-    found: dict[tuple[str, str], Expression] = {}
+    paths: dict[tuple[str, str], Expression] = {}
     for output, response in outputs.items():
         by_input = response if isinstance(response, Mapping) else {inputs[0]: response}
         if set(by_input) != set(inputs):
@@ -49,14 +49,14 @@ def channel_paths(
                     f"structure {structure}, output {output}{cause}: expected an expression of blocks, found "
                     f"{_words(by_input[name])}."
                 )
-            found[output, name] = by_input[name]
-    return found
+            paths[output, name] = by_input[name]
+    return paths
 
 
-def _words(found: object) -> str:
-    if isinstance(found, Parameter):
-        return f"a parameter; write Gain({found.name})"
-    return f"{found!r}"
+def _words(value: object) -> str:
+    if isinstance(value, Parameter):
+        return f"a parameter; write Gain({value.name})"
+    return f"{value!r}"
 
 
 def block_parameters(structure: str, blocks: Iterable[Block]) -> dict[str, Parameter]:
@@ -67,19 +67,19 @@ def block_parameters(structure: str, blocks: Iterable[Block]) -> dict[str, Param
     StructureError
         If two blocks describe a parameter of one name differently, or something else stands for a parameter.
     """
-    found: dict[str, Parameter] = {}
+    parameters: dict[str, Parameter] = {}
     for block, parameter in ((owner, p) for owner in blocks for p in owner.parameters):
         if not isinstance(parameter, Parameter):
             raise StructureError(
                 f"structure {structure}, block {type(block).__name__}: expected a Parameter, found {parameter!r}; a "
                 "number stands beside a block, as in 2.0 * block, or is a Parameter with held=True."
             )
-        if found.setdefault(parameter.name, parameter) != parameter:
+        if parameters.setdefault(parameter.name, parameter) != parameter:
             raise StructureError(
                 f"structure {structure}: parameter {parameter.name} occurs twice with different bounds, values or "
                 "units; use one Parameter for both."
             )
-    return found
+    return parameters
 
 
 def expect_combinations(

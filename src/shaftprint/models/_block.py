@@ -43,14 +43,14 @@ class Block(Expression):
         Central differences of fourth order where a block has no formula of its own: right to about eleven digits. They
         ask for values a thousandth outside the bounds.
         """
-        return tuple(self._difference(s, values, place) for place in range(len(values)))
+        return tuple(self._difference(s, values, index) for index in range(len(values)))
 
-    def _difference(self, s: ComplexArray, values: tuple[FloatArray, ...], place: int) -> ComplexArray:
-        parameter, value = self.parameters[place], values[place]
+    def _difference(self, s: ComplexArray, values: tuple[FloatArray, ...], index: int) -> ComplexArray:
+        parameter, value = self.parameters[index], values[index]
         step = STEP * np.maximum(np.abs(value), STEP * (parameter.upper - parameter.lower))
 
         def at(steps: float) -> ComplexArray:
-            return self.transfer(s, *values[:place], value + steps * step, *values[place + 1 :])
+            return self.transfer(s, *values[:index], value + steps * step, *values[index + 1 :])
 
         return np.asarray((8.0 * (at(1.0) - at(-1.0)) - (at(2.0) - at(-2.0))) / (12.0 * step))
 
@@ -83,8 +83,8 @@ class Block(Expression):
         """Return numerator and denominator with formulas as coefficients; None where it is not rational."""
         # formulas take the place of numbers
         values: list[Any] = [flow.parameter(parameter.name) for parameter in self.parameters]
-        found = self.ratio(*values)
-        return None if found is None else (coefficients(list(found[0])), coefficients(list(found[1])))
+        ratio = self.ratio(*values)
+        return None if ratio is None else (coefficients(list(ratio[0])), coefficients(list(ratio[1])))
 
     def evaluate(self, walk: Walk) -> Dual:
         """Return the response and the wanted derivatives."""

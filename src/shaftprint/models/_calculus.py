@@ -46,15 +46,15 @@ def replaced(roots: Iterable[Formula], by: Replacement) -> list[Formula]:
         What to put in the place of a part, or None to keep it.
     """
     roots = list(roots)
-    found: dict[int, Formula] = {}
+    replacements: dict[int, Formula] = {}
     keep: list[Formula] = []
     for node in postorder(roots):
         new = by(node)
         if new is None:
-            new = rebuilt(node, tuple(found[id(part)] for part in node.of))
+            new = rebuilt(node, tuple(replacements[id(part)] for part in node.of))
         keep.append(new)
-        found[id(node)] = new
-    return [found[id(root)] for root in roots]
+        replacements[id(node)] = new
+    return [replacements[id(root)] for root in roots]
 
 
 def depends(root: Formula, on: Formula) -> bool:
@@ -87,16 +87,16 @@ def swept(roots: Iterable[Formula], of_leaf: Replacement) -> list[Formula]:
         Derivative of a leaf; None where it is zero.
     """
     roots = list(roots)
-    found: dict[int, Formula] = {}
+    slopes_by_node: dict[int, Formula] = {}
     zero = number(0.0)
     for node in postorder(roots):
         if not node.of or node.operation == "rate":
             slope = of_leaf(node)
-            found[id(node)] = zero if slope is None else slope
+            slopes_by_node[id(node)] = zero if slope is None else slope
             continue
-        slopes = [found[id(part)] for part in node.of]
-        found[id(node)] = zero if all(slope.equals(0.0) for slope in slopes) else _chain(node, slopes)
-    return [found[id(root)] for root in roots]
+        slopes = [slopes_by_node[id(part)] for part in node.of]
+        slopes_by_node[id(node)] = zero if all(slope.equals(0.0) for slope in slopes) else _chain(node, slopes)
+    return [slopes_by_node[id(root)] for root in roots]
 
 
 def _chain(node: Formula, slopes: list[Formula]) -> Formula:

@@ -64,13 +64,13 @@ def _table(structure: Structure) -> FloatArray:
 
 
 def _response(where: str, block: Block, s: ComplexArray, values: tuple[FloatArray, ...]) -> ComplexArray:
-    found = np.asarray(block.transfer(s, *values))
+    raw = np.asarray(block.transfer(s, *values))
     shape = np.broadcast_shapes(s.shape, *(value.shape for value in values))
     try:
-        response = np.broadcast_to(found, shape).astype(np.complex128)
+        response = np.broadcast_to(raw, shape).astype(np.complex128)
     except ValueError:
         raise StructureError(
-            f"{where}: expected a response of shape {shape} for {s.size} frequencies, found {found.shape}."
+            f"{where}: expected a response of shape {shape} for {s.size} frequencies, found {raw.shape}."
         ) from None
     lost = ~np.all(np.isfinite(response), axis=-1)
     if lost.any():
@@ -109,10 +109,10 @@ def _check_ratio(
         ratio = block.ratio(*(float(value[row, 0]) for value in values))
         if ratio is None:
             continue
-        found = np.polyval(ratio[0], s) / np.polyval(ratio[1], s)
+        by_ratio = np.polyval(ratio[0], s) / np.polyval(ratio[1], s)
         expected = response[row] if values else response
-        if not _agree(found, expected, WRONG):
-            one, other, omega = _furthest(found, expected)
+        if not _agree(by_ratio, expected, WRONG):
+            one, other, omega = _furthest(by_ratio, expected)
             raise StructureError(
                 f"{where}: ratio() gives {one:.4g} at {omega:.3g} rad/s, transfer() {other:.4g}: coefficients stand "
                 "highest power first, numerator before denominator."
@@ -136,13 +136,13 @@ def _check_derivatives(
             )
 
 
-def _agree(found: ComplexArray, expected: ComplexArray, share: float) -> bool:
-    found, expected = np.broadcast_arrays(found, expected)
-    return bool(np.all(np.abs(found - expected) <= share * np.abs(expected) + 1e-300))
+def _agree(response: ComplexArray, expected: ComplexArray, share: float) -> bool:
+    response, expected = np.broadcast_arrays(response, expected)
+    return bool(np.all(np.abs(response - expected) <= share * np.abs(expected) + 1e-300))
 
 
-def _furthest(found: ComplexArray, expected: ComplexArray) -> tuple[complex, complex, float]:
+def _furthest(response: ComplexArray, expected: ComplexArray) -> tuple[complex, complex, float]:
     """Return both numbers and the frequency [rad/s] where they differ most."""
-    apart = np.abs(found - expected) / np.maximum(np.abs(expected), 1e-300)
-    place = np.unravel_index(int(np.argmax(apart)), found.shape)
-    return complex(found[place]), complex(expected[place]), float(OMEGA_RAD_S[place[-1]])
+    apart = np.abs(response - expected) / np.maximum(np.abs(expected), 1e-300)
+    index = np.unravel_index(int(np.argmax(apart)), response.shape)
+    return complex(response[index]), complex(expected[index]), float(OMEGA_RAD_S[index[-1]])

@@ -66,8 +66,8 @@ class Diagram:
             If there is no output or further input of that name.
         """
         if source and source not in self.further:
-            known = ", ".join(self.further) or "none"
-            raise StructureError(f"diagram {self.name} has no further input {source}; it has {known}.")
+            names = ", ".join(self.further) or "none"
+            raise StructureError(f"diagram {self.name} has no further input {source}; it has {names}.")
         if output not in self.outputs:
             raise StructureError(f"diagram {self.name} has no output {output}; it has {', '.join(self.outputs)}.")
         return Port(self, output, source)
@@ -81,12 +81,12 @@ class Diagram:
             If the equations do not give the outputs.
         """
         parameters = SimpleNamespace(**{p.name: flow.parameter(p.name) for p in self.of})
-        found = self.equations(flow, signal, parameters)
-        if set(found) != set(self.outputs):
+        signals = self.equations(flow, signal, parameters)
+        if set(signals) != set(self.outputs):
             raise StructureError(
-                f"diagram {self.name}: expected equations of {', '.join(self.outputs)}, found {', '.join(found)}."
+                f"diagram {self.name}: expected equations of {', '.join(self.outputs)}, found {', '.join(signals)}."
             )
-        return found
+        return signals
 
     def program(self, zeros: frozenset[str] = frozenset()) -> Program:
         """Return its equations alone.
@@ -99,13 +99,13 @@ class Diagram:
         names = tuple(p.name for p in self.of)
         inputs = {name: Formula("input", name=name, place=i) for i, name in enumerate(self.inputs)}
         flow = Flow.of_parameters(names, zeros, inputs)
-        found = self.signals(flow, inputs[self.input])
+        signals = self.signals(flow, inputs[self.input])
         return completed(
             flow,
             name=self.name,
             inputs=self.inputs,
             parameters=names,
-            outputs={output: (found[output], number(0.0)) for output in self.outputs},
+            outputs={output: (signals[output], number(0.0)) for output in self.outputs},
         )
 
     def small_signal(self, zeros: frozenset[str]) -> SmallSignal:

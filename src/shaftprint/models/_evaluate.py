@@ -35,16 +35,16 @@ def evaluate(formulas: Sequence[Formula], leaves: Leaves) -> list[Array]:
     leaves
         Values of leaves by kind and place, such as ``("state", 0)``, of shapes that broadcast; real or complex.
     """
-    found: dict[int, Array] = {}
+    values: dict[int, Array] = {}
     with np.errstate(all="ignore"):
         for node in postorder(formulas):
             if node.operation == "number":
-                found[id(node)] = np.asarray(node.value)
+                values[id(node)] = np.asarray(node.value)
             elif not node.of:
-                found[id(node)] = np.asarray(leaves[node.operation, node.place])
+                values[id(node)] = np.asarray(leaves[node.operation, node.place])
             else:
-                found[id(node)] = _value(node, [found[id(part)] for part in node.of])
-    return [found[id(formula)] for formula in formulas]
+                values[id(node)] = _value(node, [values[id(part)] for part in node.of])
+    return [values[id(formula)] for formula in formulas]
 
 
 def _value(node: Formula, of: list[Array]) -> Array:
@@ -70,23 +70,23 @@ def _value(node: Formula, of: list[Array]) -> Array:
 
 def _table(x: Array, real: Array, points: tuple[tuple[float, float], ...]) -> Array:
     places, values = np.array(points).T
-    left = _before(places, real)
+    corner = _before(places, real)
     slope = _table_slope(real, points)
     inside = np.clip(real, places[0], places[-1])
-    return np.asarray(values[left] + (inside - places[left]) * _raw_slope(left, points) + slope * (x - real))
+    return np.asarray(values[corner] + (inside - places[corner]) * _raw_slope(corner, points) + slope * (x - real))
 
 
-def _raw_slope(left: IntArray, points: tuple[tuple[float, float], ...]) -> Array:
+def _raw_slope(corner: IntArray, points: tuple[tuple[float, float], ...]) -> Array:
     places, values = np.array(points).T
-    return np.asarray((np.diff(values) / np.diff(places))[left])
+    return np.asarray((np.diff(values) / np.diff(places))[corner])
 
 
 def _table_slope(real: Array, points: tuple[tuple[float, float], ...]) -> Array:
     """Return the slope, zero beyond the ends; at a corner that of the stretch before."""
     places, _ = np.array(points).T
-    left = _before(places, real)
+    corner = _before(places, real)
     outside = (real <= places[0]) | (real > places[-1])
-    return np.where(outside, 0.0, _raw_slope(left, points))
+    return np.where(outside, 0.0, _raw_slope(corner, points))
 
 
 def _before(places: FloatArray, x: FloatArray) -> IntArray:

@@ -43,15 +43,15 @@ class Walk:
     """Parameter values by name, each of shape (..., 1)."""
     wanted: Collection[str]
     """Names of the parameters whose derivatives are wanted."""
-    known: "dict[int, Dual]" = field(default_factory=dict)
+    duals: "dict[int, Dual]" = field(default_factory=dict)
     """Results of this walk by node."""
 
     def dual(self, node: "Expression") -> Dual:
         """Return value and gradient of a node, evaluated at most once a walk."""
-        found = self.known.get(id(node))
-        if found is None:
-            found = self.known[id(node)] = node.evaluate(self)
-        return found
+        dual = self.duals.get(id(node))
+        if dual is None:
+            dual = self.duals[id(node)] = node.evaluate(self)
+        return dual
 
 
 class Expression(ABC):
@@ -264,8 +264,8 @@ class Inverse(Expression):
 
     def polynomials(self, values: Mapping[str, float]) -> Polynomials | None:
         """Exchange numerator and denominator."""
-        found = self.of.polynomials(values)
-        return None if found is None else (found[1], found[0])
+        ratio = self.of.polynomials(values)
+        return None if ratio is None else (ratio[1], ratio[0])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -296,8 +296,8 @@ class Sensitivity(Expression):
 
     def polynomials(self, values: Mapping[str, float]) -> Polynomials | None:
         """Return ``D / (D + N)`` for the loop gain ``N / D``."""
-        found = self.loop.polynomials(values)
-        return None if found is None else (found[1], np.polyadd(found[1], found[0]))
+        ratio = self.loop.polynomials(values)
+        return None if ratio is None else (ratio[1], np.polyadd(ratio[1], ratio[0]))
 
 
 def feedback(forward: Expression, back: Expression | None = None) -> Expression:

@@ -136,15 +136,15 @@ class Flow:
         leaf = Formula("sample", name="sample", place=len(self.samples))
         # its place is taken before the value asks for further ones
         self.samples.append(Sampled(as_formula(period), leaf, leaf))
-        taken = value(leaf) if callable(value) else value
-        self.samples[leaf.place] = Sampled(as_formula(period), taken, leaf)
+        sample = value(leaf) if callable(value) else value
+        self.samples[leaf.place] = Sampled(as_formula(period), sample, leaf)
         return leaf
 
     @staticmethod
     def period(period: Number) -> Formula:
         """Return the time between two values of a computer [s]; the step of the simulation where it is zero."""
-        given = as_formula(period)
-        return Formula("step", name="step") if given.equals(0.0) else given
+        period_s = as_formula(period)
+        return Formula("step", name="step") if period_s.equals(0.0) else period_s
 
     def change(self, signal: Formula) -> Formula:
         """Return how fast a signal changes."""
@@ -170,19 +170,19 @@ class Flow:
                 raise StructureError(
                     f"{where}: a loop without delay or state is not linear; put a lag or a delay into it."
                 )
-            (rest,) = replaced([value], lambda node: number(0.0) if node is signal else None)
-            value = rest / (1.0 - slope)
+            (constant,) = replaced([value], lambda node: number(0.0) if node is signal else None)
+            value = constant / (1.0 - slope)
         self.unknowns[signal.place] = value
         return signal
 
     def _without_closed(self, value: Formula) -> Formula:
         """Return a formula with what unknown signals turned out to be: a loop may run through one of them."""
-        found = value
+        formula = value
         while True:
-            (opened,) = replaced([found], self._closed)
-            if opened is found:
-                return found
-            found = opened
+            (opened,) = replaced([formula], self._closed)
+            if opened is formula:
+                return formula
+            formula = opened
 
     def _closed(self, node: Formula) -> Formula | None:
         return self.unknowns.get(node.place) if node.operation == "unknown" else None

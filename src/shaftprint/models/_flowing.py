@@ -62,7 +62,7 @@ def along(flow: Flow, chain: Sequence[Expression], signal: Formula) -> Formula:
 
 def _in_order_of(loop: list[Expression], before: Sequence[Expression]) -> list[Expression]:
     """Return the parts ahead of a sensitivity, those of its loop last and in its order, if all may change places."""
-    places = {id(part): place for place, part in enumerate(loop)}
+    places = {id(part): index for index, part in enumerate(loop)}
     if not all(_is_linear(part) for part in before):
         return list(before)
     inside = sorted((part for part in before if id(part) in places), key=lambda part: places[id(part)])
@@ -75,10 +75,10 @@ def _in_order_of_changes(flow: Flow, chain: Sequence[Expression]) -> list[Expres
     The given order is kept where it will do, so that states are shared with other outputs.
     """
     falls = {id(part): _falls(flow, part) for part in chain}
-    known = KNOWN_CHANGES
+    orders = KNOWN_CHANGES
     for fall in (falls[id(part)] for part in chain):
-        known = min(known, KNOWN_CHANGES) if fall is None else known + fall
-        if known < 0 and all(_is_linear(part) for part in chain):
+        orders = min(orders, KNOWN_CHANGES) if fall is None else orders + fall
+        if orders < 0 and all(_is_linear(part) for part in chain):
             return sorted(chain, key=lambda part: _place(falls[id(part)]))
     return list(chain)
 
@@ -136,13 +136,13 @@ def _inverse(flow: Flow, part: Inverse, signal: Formula) -> Formula:
     ratio = ratio_of(flow, part.of)
     if ratio is not None:
         return realised(flow, signal, (ratio[1], ratio[0]), "inverse")
-    found = flow.unknown()
-    made = through(flow, part.of, found)
-    slope = derivative(made, found)
-    if slope.equals(0.0) or depends(slope, found):
+    unknown = flow.unknown()
+    forward = through(flow, part.of, unknown)
+    slope = derivative(forward, unknown)
+    if slope.equals(0.0) or depends(slope, unknown):
         raise StructureError("the inverse of a response that is late or falls off would need the future of a signal.")
-    (rest,) = replaced([made], lambda node: number(0.0) if node is found else None)
-    return flow.close(found, (signal - rest) / slope, "inverse")
+    (constant,) = replaced([forward], lambda node: number(0.0) if node is unknown else None)
+    return flow.close(unknown, (signal - constant) / slope, "inverse")
 
 
 def ratio_of(flow: Flow, expression: Expression) -> Ratio | None:
@@ -152,11 +152,11 @@ def ratio_of(flow: Flow, expression: Expression) -> Ratio | None:
     if isinstance(expression, Block):
         return expression.coefficients_in(flow)
     if isinstance(expression, Inverse):
-        found = ratio_of(flow, expression.of)
-        return None if found is None else (found[1], found[0])
+        ratio = ratio_of(flow, expression.of)
+        return None if ratio is None else (ratio[1], ratio[0])
     if isinstance(expression, Sensitivity):
-        found = ratio_of(flow, expression.loop)
-        return None if found is None else (found[1], total(found[1], found[0]))
+        ratio = ratio_of(flow, expression.loop)
+        return None if ratio is None else (ratio[1], total(ratio[1], ratio[0]))
     if not isinstance(expression, Series | Parallel):
         return None
     one, two = ratio_of(flow, expression.first), ratio_of(flow, expression.second)
@@ -179,7 +179,7 @@ def split_shift(flow: Flow, expression: Expression, signal: Formula) -> tuple[Fo
     while end and _is_linear(parts[end - 1]):
         end -= 1
     shift = number(0.0)
-    rest: list[Expression] = []
+    undelayed: list[Expression] = []
     sensors: list[SpeedSensor] = []
     for part in parts[end:]:
         if isinstance(part, SpeedSensor):
@@ -190,11 +190,11 @@ def split_shift(flow: Flow, expression: Expression, signal: Formula) -> tuple[Fo
         elif isinstance(part, Inverse) and isinstance(part.of, Delay):
             shift = shift - flow.parameter(part.of.time.name)
         else:
-            rest.append(part)
-    found = along(flow, rest, along(flow, parts[:end], signal))
+            undelayed.append(part)
+    response = along(flow, undelayed, along(flow, parts[:end], signal))
     for sensor in sensors:
-        found = sensor.means(flow, found)
-    return found, shift
+        response = sensor.means(flow, response)
+    return response, shift
 
 
 def _is_linear(part: Expression) -> bool:

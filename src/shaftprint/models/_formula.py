@@ -152,10 +152,10 @@ def as_formula(value: Number) -> Formula:
     StructureError
         If it is neither.
     """
-    found = _formula(value)
-    if found is None:
+    formula = _formula(value)
+    if formula is None:
         raise StructureError(f"equations: expected a formula or a number, found {value!r}.")
-    return found
+    return formula
 
 
 def _formula(value: object) -> Formula | None:

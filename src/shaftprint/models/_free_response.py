@@ -54,7 +54,7 @@ class RationalFreeResponse(Block):
     def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
         """Return ``-s^j dD / D^2``; coefficients of ``D`` are of second order in a parameter, or nearly."""
         share = -response / _polynomial(self._lower(values), s)
-        return tuple(share * _polynomial(self._change(values, place), s) for place in range(len(values)))
+        return tuple(share * _polynomial(self._change(values, index), s) for index in range(len(values)))
 
     def _lower(self, values: tuple[FloatArray, ...]) -> FloatArray:
         """Return the coefficients of ``D``, highest power first, shape (..., coefficients)."""
@@ -63,23 +63,23 @@ class RationalFreeResponse(Block):
         ratios = [self.of.ratio(*row) for row in flat.tolist()]
         return np.reshape([ratio[1] for ratio in ratios if ratio is not None], (*rows.shape[1:-1], -1))
 
-    def _change(self, values: tuple[FloatArray, ...], place: int) -> FloatArray:
-        parameter, value = self.parameters[place], values[place]
+    def _change(self, values: tuple[FloatArray, ...], index: int) -> FloatArray:
+        parameter, value = self.parameters[index], values[index]
         step = STEP * np.maximum(np.abs(value), STEP * (parameter.upper - parameter.lower))
 
         def at(steps: float) -> FloatArray:
-            return self._lower((*values[:place], value + steps * step, *values[place + 1 :]))
+            return self._lower((*values[:index], value + steps * step, *values[index + 1 :]))
 
         return np.asarray((at(1.0) - at(-1.0)) / (2.0 * step))
 
 
 def _polynomial(coefficients: FloatArray, s: ComplexArray) -> ComplexArray:
     """Return a polynomial of coefficients (..., powers), highest first, at every ``s``."""
-    found: ComplexArray = np.zeros((*coefficients.shape[:-1], s.size), dtype=np.complex128)
-    found += coefficients[..., :1]
+    value: ComplexArray = np.zeros((*coefficients.shape[:-1], s.size), dtype=np.complex128)
+    value += coefficients[..., :1]
     for power in range(1, coefficients.shape[-1]):
-        found = found * s + coefficients[..., power : power + 1]
-    return found
+        value = value * s + coefficients[..., power : power + 1]
+    return value
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -175,10 +175,10 @@ def free_responses(structure: Structure) -> tuple[Structure, tuple[int, ...]]:
     )
     outputs: dict[str, Expression] = {}
     channels: list[int] = []
-    for place, path in enumerate(structure.paths):
+    for channel, path in enumerate(structure.paths):
         for number, shape in enumerate(finder.free(path)):
-            outputs[f"{structure.channels[place][0]} free {number + 1}"] = shape
-            channels.append(place)
+            outputs[f"{structure.channels[channel][0]} free {number + 1}"] = shape
+            channels.append(channel)
     return replace(structure, outputs=outputs, combinations=()), tuple(channels)
 
 

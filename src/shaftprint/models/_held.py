@@ -79,9 +79,9 @@ def _weights(terms: ComplexArray) -> FloatArray:
     k = np.array([IMAGES / 2.0, float(IMAGES)])
     system = np.array([k**-q, k ** -(q + 2)])
     more = np.linalg.solve(system, np.array([_tail(q), _tail(q + 2)]))
-    for extra, place in zip(more, (IMAGES // 2, IMAGES), strict=True):
-        weights[IMAGES + place] += extra
-        weights[IMAGES - place] += extra
+    for extra, image in zip(more, (IMAGES // 2, IMAGES), strict=True):
+        weights[IMAGES + image] += extra
+        weights[IMAGES - image] += extra
     return weights
 
 

@@ -2,8 +2,8 @@
 
 ``f(x + i h) = f(x) + i h f'(x) - ...``: with ``h`` so small that its square is lost in rounding, the imaginary part
 over ``h`` is the derivative, and no difference is formed that would lose digits (Squire and Trapp, Using complex
-variables to estimate derivatives of real functions, 1998). The formula must be one of arithmetic and NumPy functions: ``abs``
-drops the imaginary part, ``min`` and ``if`` refuse it.
+variables to estimate derivatives of real functions, 1998). The formula must be one of arithmetic and NumPy
+functions: ``abs`` drops the imaginary part, ``min`` and ``if`` refuse it.
 """
 
 import warnings

@@ -76,18 +76,18 @@ def limited_pi(
     state = flow.state("governor integral")
     felt = error - as_formula(droop) * state
     wanted = as_formula(proportional) * felt + state
-    given = clip(wanted, lowest, highest)
-    flow.rate(state, as_formula(integral) * felt + (given - wanted) / as_formula(anti_windup_s) + as_formula(drawn))
-    return Governed(wanted, given)
+    limited = clip(wanted, lowest, highest)
+    flow.rate(state, as_formula(integral) * felt + (limited - wanted) / as_formula(anti_windup_s) + as_formula(drawn))
+    return Governed(wanted, limited)
 
 
 def second_order_lag(flow: Flow, signal: Formula, frequency: Number, damping: Number) -> Formula:
     """Return a signal behind a second-order lag, ``x'' + 2 zeta omega_n x' + omega_n^2 x = omega_n^2 u``."""
     omega = as_formula(frequency)
-    place, speed = flow.state("lag"), flow.state("lag rate")
-    flow.rate(place, speed)
-    flow.rate(speed, omega * (omega * (signal - place) - 2.0 * as_formula(damping) * speed))
-    return place
+    position, speed = flow.state("lag"), flow.state("lag rate")
+    flow.rate(position, speed)
+    flow.rate(speed, omega * (omega * (signal - position) - 2.0 * as_formula(damping) * speed))
+    return position
 
 
 def first_order_lag(flow: Flow, signal: Formula, time_s: Number, name: str = "lag") -> Formula:

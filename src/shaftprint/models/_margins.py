@@ -96,8 +96,8 @@ def poles(structure: Structure, values: ArrayLike) -> ComplexArray:
     expression = structure.loop
     if expression is None:
         ratios = [node.polynomials(named) for node in with_poles(structure)]
-        found = np.concatenate([np.roots(r[1]) for r in ratios if r is not None] or [np.empty(0)])
-        return _tidied(found.astype(np.complex128))
+        roots = np.concatenate([np.roots(r[1]) for r in ratios if r is not None] or [np.empty(0)])
+        return _tidied(roots.astype(np.complex128))
     ratio = expression.polynomials(named)
     if ratio is not None:
         return _tidied(np.roots(np.polyadd(ratio[0], ratio[1])).astype(np.complex128))

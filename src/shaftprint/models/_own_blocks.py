@@ -149,13 +149,13 @@ def expect_function(function: object, first: tuple[str, ...], of: Iterable[Param
         raise StructureError(f"{block_words(parameters)}: expected a function, found {function!r}.")
     if isinstance(function, np.ufunc):
         return
-    taken = inspect.signature(function).parameters.values()
-    if any(p.kind is inspect.Parameter.VAR_POSITIONAL for p in taken):
+    arguments = inspect.signature(function).parameters.values()
+    if any(p.kind is inspect.Parameter.VAR_POSITIONAL for p in arguments):
         return
-    needed = [p.name for p in taken if p.default is inspect.Parameter.empty]
-    if not len(needed) <= len(first) + len(parameters) <= len(taken):
-        wanted, found = (", ".join(names) or "nothing" for names in ((*first, *(p.name for p in parameters)), needed))
-        raise StructureError(f"{block_words(parameters)}: expected a function of {wanted}, found one of {found}.")
+    needed = [p.name for p in arguments if p.default is inspect.Parameter.empty]
+    if not len(needed) <= len(first) + len(parameters) <= len(arguments):
+        wanted, actual = (", ".join(names) or "nothing" for names in ((*first, *(p.name for p in parameters)), needed))
+        raise StructureError(f"{block_words(parameters)}: expected a function of {wanted}, found one of {actual}.")
 
 
 def block_words(parameters: Sequence[Parameter]) -> str:

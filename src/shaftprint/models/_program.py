@@ -103,11 +103,11 @@ def _leaves(structure: Structure, zeros: frozenset[str]) -> dict[str, Formula]:
         for i, name in enumerate(structure.names)
     }
     # a tie is a formula of whatever it is given
-    found = dict(leaves)
+    values = dict(leaves)
     for tie in structure.ties:
         formula: Callable[..., Any] = tie.of
-        found[tie.name] = as_formula(formula(*(leaves[argument] for argument in tie.arguments)))
-    return {name: value * structure.factors.get(name, 1.0) for name, value in found.items()}
+        values[tie.name] = as_formula(formula(*(leaves[argument] for argument in tie.arguments)))
+    return {name: value * structure.factors.get(name, 1.0) for name, value in values.items()}
 
 
 def _output(flow: Flow, structure: Structure, output: str, inputs: Mapping[str, Formula]) -> tuple[Formula, Formula]:
@@ -122,10 +122,10 @@ def _output(flow: Flow, structure: Structure, output: str, inputs: Mapping[str, 
 
 
 def _sum(flow: Flow, paths: Mapping[str, Expression], inputs: Mapping[str, Formula]) -> Formula:
-    found = number(0.0)
+    total = number(0.0)
     for source, path in paths.items():
-        found = found + through(flow, path, inputs[source])
-    return found
+        total = total + through(flow, path, inputs[source])
+    return total
 
 
 def completed(
@@ -257,7 +257,7 @@ class _Resolver:
                 "or a delay into it."
             )
         self._open.add(key)
-        found = make()
+        formula = make()
         self._open.discard(key)
-        self._done[key] = found
-        return found
+        self._done[key] = formula
+        return formula

@@ -13,19 +13,19 @@ Ratio: TypeAlias = tuple[Coefficients, Coefficients]
 
 def coefficients(values: Sequence[Number]) -> Coefficients:
     """Return a polynomial without leading zeros, highest power first."""
-    found = [as_formula(value) for value in values]
-    while len(found) > 1 and found[0].equals(0.0):
-        del found[0]
-    return found
+    formulas = [as_formula(value) for value in values]
+    while len(formulas) > 1 and formulas[0].equals(0.0):
+        del formulas[0]
+    return formulas
 
 
 def product(left: Coefficients, right: Coefficients) -> Coefficients:
     """Return the product of two polynomials."""
-    found: Coefficients = [number(0.0)] * (len(left) + len(right) - 1)
+    terms: Coefficients = [number(0.0)] * (len(left) + len(right) - 1)
     for i, a in enumerate(left):
         for j, b in enumerate(right):
-            found[i + j] = found[i + j] + a * b
-    return coefficients(found)
+            terms[i + j] = terms[i + j] + a * b
+    return coefficients(terms)
 
 
 def total(left: Coefficients, right: Coefficients) -> Coefficients:
@@ -65,8 +65,8 @@ def realised(flow: Flow, signal: Formula, ratio: Ratio, name: str) -> Formula:
         for _ in range(order):
             change = flow.change(change)
         ahead = ahead + factor * change
-        taken = [factor * b for b in bottom] + [number(0.0)] * order
-        top = [t - b for t, b in zip(top[1:], taken[1:], strict=True)]
+        subtracted = [factor * b for b in bottom] + [number(0.0)] * order
+        top = [t - b for t, b in zip(top[1:], subtracted[1:], strict=True)]
         top = top if len(top) <= len(bottom) else coefficients(top)
     top = [number(0.0)] * (len(bottom) - len(top)) + top
     b = [part / bottom[0] for part in top]
@@ -74,6 +74,6 @@ def realised(flow: Flow, signal: Formula, ratio: Ratio, name: str) -> Formula:
     states = [flow.state(name) for _ in a[1:]]
     out = b[0] * signal + states[0] if states else b[0] * signal
     for i, state in enumerate(states, start=1):
-        rest = states[i] if i < len(states) else number(0.0)
-        flow.rate(state, b[i] * signal - a[i] * out + rest)
+        following = states[i] if i < len(states) else number(0.0)
+        flow.rate(state, b[i] * signal - a[i] * out + following)
     return ahead + out

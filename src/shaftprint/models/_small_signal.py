@@ -27,21 +27,21 @@ class SmallSignal:
         self._formulas = [
             *program.rates,
             *(late.signal for late in program.pasts),
-            *(taken.value for taken in program.samples),
+            *(sample.value for sample in program.samples),
             *program.signals,
         ]
         self._columns = [*self._unknown, *(("input", i) for i in range(len(program.inputs)))]
-        self._slopes = [self._column(kind, place) for kind, place in self._columns]
-        self._times = [*(late.delay for late in program.pasts), *(taken.period for taken in program.samples)]
+        self._slopes = [self._column(kind, index) for kind, index in self._columns]
+        self._times = [*(late.delay for late in program.pasts), *(sample.period for sample in program.samples)]
         self._times += program.shifts
         self._moved: dict[int, tuple[list[tuple[list[Formula], list[Formula]]], list[Formula]]] = {}
 
-    def _column(self, kind: str, place: int) -> tuple[list[Formula], list[Formula]]:
+    def _column(self, kind: str, index: int) -> tuple[list[Formula], list[Formula]]:
         """Return the derivatives to a signal and to how fast it changes."""
-        plain = derivatives(self._formulas, Formula(kind, place=place))
+        plain = derivatives(self._formulas, Formula(kind, place=index))
         if kind not in ("past", "input"):
             return plain, []
-        return plain, derivatives(self._formulas, Formula(f"{kind} rate", place=place))
+        return plain, derivatives(self._formulas, Formula(f"{kind} rate", place=index))
 
     def response(
         self,
@@ -74,24 +74,24 @@ class SmallSignal:
         """
         leaves = self._leaves(values, at or {})
         shape = np.broadcast_shapes(s.shape, *(np.shape(value) for value in values))
-        taken = [*range(len(self._unknown)), len(self._unknown) + source]
-        table = self._table([self._slopes[place] for place in taken], leaves, s, shape)
+        columns = [*range(len(self._unknown)), len(self._unknown) + source]
+        table = self._table([self._slopes[parameter] for parameter in columns], leaves, s, shape)
         times = [np.broadcast_to(time, shape) for time in evaluate(self._times, leaves)]
         size, rates = len(self._unknown), len(self.program.rates)
         late = self._lateness(s, times, shape)
         matrix, right = self._system(table, late, s, size, rates)
-        found = _solved(matrix, right)
+        unknowns = _solved(matrix, right)
         row = size + output
         shift = np.exp(-s * times[len(self.program.pasts) + len(self.program.samples) + output])
-        plain = np.einsum("...j,...j->...", table[..., row, :size], found) + table[..., row, size]
+        plain = np.einsum("...j,...j->...", table[..., row, :size], unknowns) + table[..., row, size]
         slopes = []
-        for place in wanted:
-            moved, moved_times = self._moved_by(place)
-            change = self._table([moved[column] for column in taken], leaves, s, shape)
+        for parameter in wanted:
+            moved, moved_times = self._moved_by(parameter)
+            change = self._table([moved[column] for column in columns], leaves, s, shape)
             time_slopes = [np.broadcast_to(time, shape) for time in evaluate(moved_times, leaves)]
             d_late = self._lateness_slope(s, times, time_slopes, late)
-            d_found = _solved(matrix, self._moved_right(table, change, late, d_late, found, size))
-            d_plain = np.einsum("...j,...j->...", change[..., row, :size], found) + change[..., row, size]
+            d_found = _solved(matrix, self._moved_right(table, change, late, d_late, unknowns, size))
+            d_plain = np.einsum("...j,...j->...", change[..., row, :size], unknowns) + change[..., row, size]
             d_plain += np.einsum("...j,...j->...", table[..., row, :size], d_found)
             d_shift = -s * time_slopes[len(self.program.pasts) + len(self.program.samples) + output]
             slopes.append(np.asarray(shift * (d_plain + d_shift * plain)))
@@ -107,12 +107,12 @@ class SmallSignal:
         leaves |= {pair: np.asarray(0.0) for pair in self._unknown if pair[0] != "past"}
         return leaves | {pair: np.asarray(value) for pair, value in at.items()}
 
-    def _moved_by(self, place: int) -> tuple[list[tuple[list[Formula], list[Formula]]], list[Formula]]:
-        if place not in self._moved:
-            to = Formula("parameter", place=place)
+    def _moved_by(self, parameter: int) -> tuple[list[tuple[list[Formula], list[Formula]]], list[Formula]]:
+        if parameter not in self._moved:
+            to = Formula("parameter", place=parameter)
             columns = [(derivatives(plain, to), derivatives(change, to)) for plain, change in self._slopes]
-            self._moved[place] = columns, derivatives(self._times, to)
-        return self._moved[place]
+            self._moved[parameter] = columns, derivatives(self._times, to)
+        return self._moved[parameter]
 
     def _table(
         self,
@@ -150,8 +150,8 @@ class SmallSignal:
             change[..., rates + i] = -s * slopes[i] * late[..., rates + i]
         for i in range(pasts, pasts + len(self.program.samples)):
             x = s * times[i]
-            whole = np.where(x == 0.0, 1.0, x)
-            falling = np.where(x == 0.0, -0.5, (np.exp(-x) - late[..., rates + i]) / whole)
+            divisor = np.where(x == 0.0, 1.0, x)
+            falling = np.where(x == 0.0, -0.5, (np.exp(-x) - late[..., rates + i]) / divisor)
             change[..., rates + i] = s * slopes[i] * falling
         return change
 
@@ -161,8 +161,10 @@ class SmallSignal:
     ) -> tuple[ComplexArray, ComplexArray]:
         """Return matrix and right side of the equations of all unknown signals."""
         matrix = -late[..., None] * table[..., :size, :size]
-        own = np.concatenate([np.broadcast_to(s[:, None], (s.size, rates)), np.ones((s.size, size - rates))], axis=1)
-        matrix[..., np.arange(size), np.arange(size)] += own
+        diagonal = np.concatenate(
+            [np.broadcast_to(s[:, None], (s.size, rates)), np.ones((s.size, size - rates))], axis=1
+        )
+        matrix[..., np.arange(size), np.arange(size)] += diagonal
         return matrix, late * table[..., :size, size]
 
     @staticmethod
@@ -171,12 +173,12 @@ class SmallSignal:
         change: ComplexArray,
         late: ComplexArray,
         d_late: ComplexArray,
-        found: ComplexArray,
+        unknowns: ComplexArray,
         size: int,
     ) -> ComplexArray:
-        made = np.einsum("...ij,...j->...i", table[..., :size, :size], found) + table[..., :size, size]
-        moved = np.einsum("...ij,...j->...i", change[..., :size, :size], found) + change[..., :size, size]
-        return np.asarray(d_late * made + late * moved)
+        signals = np.einsum("...ij,...j->...i", table[..., :size, :size], unknowns) + table[..., :size, size]
+        moved = np.einsum("...ij,...j->...i", change[..., :size, :size], unknowns) + change[..., :size, size]
+        return np.asarray(d_late * signals + late * moved)
 
 
 def _solved(matrix: ComplexArray, right: ComplexArray) -> ComplexArray:

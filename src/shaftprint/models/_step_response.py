@@ -61,5 +61,5 @@ def step_response(
     stacked = structure.stacked(values, s, tuple(wanted)) * (fade / s)
     waves = np.exp(1j * np.outer(order * np.pi / half_period, time))
     sums = (stacked @ waves).real * (np.exp(shift * time) / half_period)
-    found = np.where(time > 0.0, sums, 0.0)
-    return found[0], found[1:]
+    responses = np.where(time > 0.0, sums, 0.0)
+    return responses[0], responses[1:]

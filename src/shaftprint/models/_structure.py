@@ -74,10 +74,10 @@ class Structure:
         object.__setattr__(self, "paths", tuple(paths.values()))
         nodes = self._nodes()
         object.__setattr__(self, "blocks", tuple(node for node in nodes if isinstance(node, Block)))
-        found = block_parameters(self.name, self.blocks)
+        parameters = block_parameters(self.name, self.blocks)
         tied = {tie.name for tie in self.ties}
         if not self.parameters:
-            object.__setattr__(self, "parameters", tuple(p for p in found.values() if p.name not in tied))
+            object.__setattr__(self, "parameters", tuple(p for p in parameters.values() if p.name not in tied))
         for tie in self.ties:
             self._expect_names(tie.arguments)
         expect_combinations(self.name, self.combinations, self.named(self.vector({})))
@@ -161,9 +161,11 @@ class Structure:
         """
         expect_tie(self.name, self.ties, name, new)
         self._expect_names([name])
-        known = [parameter.name for parameter in new if parameter.name in self.names]
-        if known:
-            raise StructureError(f"structure {self.name} has a parameter {', '.join(known)} already; use another name.")
+        repeated = [parameter.name for parameter in new if parameter.name in self.names]
+        if repeated:
+            raise StructureError(
+                f"structure {self.name} has a parameter {', '.join(repeated)} already; use another name."
+            )
         before = self.parameters[self.names.index(name)]
         tie = Tie.from_formula(name, formula)
         followed = Combination(name=name, unit=before.unit, of=tie.value, meaning=before.meaning, role=before.role)
@@ -206,14 +208,14 @@ class Structure:
         ties = tuple(tie for tie in self.ties if tie.name in shown)
         shown |= {argument for tie in ties for argument in tie.arguments}
         kept = tuple(p for p in self.parameters if p.name in shown)
-        known = {p.name: np.asarray(p.value) for p in kept}
-        known |= {tie.name: tie.value(known) for tie in ties}
+        values = {p.name: np.asarray(p.value) for p in kept}
+        values |= {tie.name: tie.value(values) for tie in ties}
         return replace(
             self,
             outputs={name: self.outputs[name] for name in names},
             parameters=kept,
             ties=ties,
-            combinations=tuple(c for c in self.combinations if c.is_defined_by(known)),
+            combinations=tuple(c for c in self.combinations if c.is_defined_by(values)),
         )
 
     def named(self, values: ArrayLike) -> dict[str, FloatArray]:
@@ -229,13 +231,13 @@ class Structure:
             Each of shape (...).
         """
         table = np.asarray(values, dtype=np.float64)
-        found = {name: table[..., place] for place, name in enumerate(self.names)}
-        return found | {tie.name: tie.value(found) for tie in self.ties}
+        columns = {name: table[..., column] for column, name in enumerate(self.names)}
+        return columns | {tie.name: tie.value(columns) for tie in self.ties}
 
     def columns(self, table: FloatArray) -> dict[str, FloatArray]:
         """Return every parameter with its factor, as the blocks take it: shape (..., 1), from (..., parameters)."""
-        found = {name: np.asarray(value)[..., None] for name, value in self.named(table).items()}
-        return found | {name: found[name] * factor for name, factor in self.factors.items()}
+        columns = {name: np.asarray(value)[..., None] for name, value in self.named(table).items()}
+        return columns | {name: columns[name] * factor for name, factor in self.factors.items()}
 
     def vector(self, values: Mapping[str, float]) -> FloatArray:
         """Return all parameter values in order, shape (parameters,); those not named take their default.
@@ -316,18 +318,18 @@ class Structure:
             self._expect_names(wanted)
         laplace = np.atleast_1d(np.asarray(s, dtype=np.complex128))
         columns = self.columns(table)
-        known: dict[str, FloatArray | float] = dict(self.factors)
+        chained: dict[str, FloatArray | float] = dict(self.factors)
         for name, factor in (factors or {}).items():
             if name in columns:
                 columns[name] = columns[name] * factor
-                known[name] = known[name] * factor if name in known else factor
-        independent = {name: table[..., place : place + 1] for place, name in enumerate(self.names)}
+                chained[name] = chained[name] * factor if name in chained else factor
+        independent = {name: table[..., column : column + 1] for column, name in enumerate(self.names)}
         ties = [tie for tie in self.ties if any(argument in names for argument in tie.arguments)]
         walk = Walk(laplace, columns, frozenset([*names, *(tie.name for tie in ties)]))
         stacked = np.empty((*table.shape[:-1], 1 + len(names), len(self.paths), laplace.size), dtype=np.complex128)
         for i, expression in enumerate(self.paths):
             stacked[..., 0, i, :], slopes = walk.dual(expression)
-            slopes = {name: slope * known[name] if name in known else slope for name, slope in slopes.items()}
+            slopes = {name: slope * chained[name] if name in chained else slope for name, slope in slopes.items()}
             if ties:
                 slopes = through_ties(ties, slopes, independent)
             for j, name in enumerate(names, start=1):

@@ -49,8 +49,8 @@ class Tabulated(Block):
     def transfer(self, s: ComplexArray, *values: FloatArray) -> ComplexArray:
         """Return the response at the imaginary part of ``s``, the conjugate where that is negative."""
         omega = np.abs(s.imag)
-        found = np.interp(omega, self.omega_rad_s, self.values)
-        return np.where(s.imag < 0.0, found.conj(), found)
+        response = np.interp(omega, self.omega_rad_s, self.values)
+        return np.where(s.imag < 0.0, response.conj(), response)
 
     def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
         """Return nothing."""

@@ -70,10 +70,10 @@ def through_ties(ties: Sequence[Tie], slopes: Gradient, values: Mapping[str, Flo
     values
         Independent parameters by name, each of shape (..., 1).
     """
-    found = dict(slopes)
+    gradient = dict(slopes)
     for tie in ties:
         for argument in tie.arguments:
             if tie.name in slopes:
                 through = slopes[tie.name] * tie.slope(values, argument)
-                found[argument] = found[argument] + through if argument in found else through
-    return found
+                gradient[argument] = gradient[argument] + through if argument in gradient else through
+    return gradient

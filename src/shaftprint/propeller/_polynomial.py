@@ -39,9 +39,9 @@ class Polynomial:
 
     def powers_of_advance(self, pitch_ratio: float) -> FloatArray:
         """Return the coefficients of ``J^0, J^1, ...`` at one pitch ratio, shape (powers,)."""
-        found = np.zeros(int(self.advance_power.max()) + 1)
-        np.add.at(found, self.advance_power.astype(np.int64), self.coefficient * pitch_ratio**self.pitch_power)
-        return found
+        coefficients = np.zeros(int(self.advance_power.max()) + 1)
+        np.add.at(coefficients, self.advance_power.astype(np.int64), self.coefficient * pitch_ratio**self.pitch_power)
+        return coefficients
 
     @staticmethod
     def _sum(

@@ -73,11 +73,11 @@ def expect_inside(folder: Path, names: Iterable[PurePosixPath]) -> None:
     PublicationError
         If one does.
     """
-    whole = folder.resolve()
+    root = folder.resolve()
     parents = {name.parent: name for name in names}
     for parent, name in parents.items():
-        place = (folder / parent).resolve()
-        if not place.is_relative_to(whole):
+        target = (folder / parent).resolve()
+        if not target.is_relative_to(root):
             raise PublicationError(
-                f"{folder / name}: expected a place inside of the folder, found a link to {place}; delete the link."
+                f"{folder / name}: expected a place inside of the folder, found a link to {target}; delete the link."
             )

@@ -176,9 +176,9 @@ def _expect_all(folder: Path, journal: Journal) -> None:
 
 
 def _not_completed(folder: Path, error: OSError) -> PublicationError:
-    place = error.filename2 or error.filename or folder
+    failed = error.filename2 or error.filename or folder
     return PublicationError(
-        f"{place}: the new results are complete in {folder / STAGING}, but this one cannot be put in its place "
+        f"{failed}: the new results are complete in {folder / STAGING}, but this one cannot be put in its place "
         f"({error.strerror or error}); close what has it open or make the folder writable, then run "
         f"shaftprint show {folder}, which puts all in place."
     )

@@ -63,11 +63,11 @@ class ChannelWriter:
                 self._write(counts[done : done + CHUNK_SAMPLES])
                 done += CHUNK_SAMPLES
                 continue
-            taken = min(CHUNK_SAMPLES - self._waiting_count, counts.size - done)
-            stop = self._waiting_count + taken
-            self._waiting[self._waiting_count : stop] = counts[done : done + taken]
+            copied = min(CHUNK_SAMPLES - self._waiting_count, counts.size - done)
+            stop = self._waiting_count + copied
+            self._waiting[self._waiting_count : stop] = counts[done : done + copied]
             self._waiting_count = stop
-            done += taken
+            done += copied
             if self._waiting_count == CHUNK_SAMPLES:
                 self._write(self._waiting)
                 self._waiting_count = 0

@@ -100,10 +100,10 @@ class _Disk:
         view = memoryview(block).cast("B")
         self._raw.seek(self._place)
         count = self._raw.readinto(view) or 0  # type: ignore[attr-defined]
-        for place, late in self._late:
-            first, last = max(place, self._place), min(place + len(late), self._place + len(view))
+        for begin, late in self._late:
+            first, last = max(begin, self._place), min(begin + len(late), self._place + len(view))
             if first < last:
-                view[first - self._place : last - self._place] = late[first - place : last - place]
+                view[first - self._place : last - self._place] = late[first - begin : last - begin]
                 count = max(count, last - self._place)
         self._place += count
         return int(count)

@@ -62,13 +62,13 @@ class _Counted:
 
     def levels(self) -> Levels:
         """Return the levels of all blocks."""
-        known = self.count > 0
+        has_samples = self.count > 0
         return Levels(
-            lowest=self.lowest if known else np.nan,
-            mean=self.total / self.count if known else np.nan,
-            highest=self.highest if known else np.nan,
-            at_lowest=self.at_lowest / self.count if known else 0.0,
-            at_highest=self.at_highest / self.count if known else 0.0,
+            lowest=self.lowest if has_samples else np.nan,
+            mean=self.total / self.count if has_samples else np.nan,
+            highest=self.highest if has_samples else np.nan,
+            at_lowest=self.at_lowest / self.count if has_samples else 0.0,
+            at_highest=self.at_highest / self.count if has_samples else 0.0,
             missing=self.channel.count - self.count,
             is_pulses=self.is_pulses,
         )

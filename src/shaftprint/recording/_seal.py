@@ -45,10 +45,10 @@ def hashed(path: Path) -> Hashed:
             content.update(block)
             sealed -= len(block)
         end = file.read()
-    whole = content.copy()
-    whole.update(end)
+    digest = content.copy()
+    digest.update(end)
     expected = _MARK + content.hexdigest().encode("ascii") + b"\n"
-    return Hashed(sha256=whole.hexdigest(), is_sealed=end == expected)
+    return Hashed(sha256=digest.hexdigest(), is_sealed=end == expected)
 
 
 def _last_bytes(path: Path) -> bytes:

@@ -35,9 +35,9 @@ def write_recording(
     RecordingError
         If the file exists and may not be replaced, or cannot be written.
     """
-    found = list(channels)
+    written = list(channels)
     with RecordingWriter(path, attributes=attributes, overwrite=overwrite) as writer:
-        for channel in found:
+        for channel in written:
             is_counts = channel.read(0, 0).dtype == np.int16
             writer.declare(
                 channel.name,
@@ -50,8 +50,8 @@ def write_recording(
                 dtype="int16" if is_counts else "float64",
             )
         # block by block, not channel by channel: some formats keep all channels of a moment in one record
-        for start in range(0, max((channel.count for channel in found), default=0), CHUNK_SAMPLES):
-            for channel in found:
+        for start in range(0, max((channel.count for channel in written), default=0), CHUNK_SAMPLES):
+            for channel in written:
                 stop = min(start + CHUNK_SAMPLES, channel.count)
                 if start < stop:
                     writer.append(channel.name, channel.read(start, stop))

@@ -72,12 +72,12 @@ class Built:
     def _split(self, function: Plain, values: FloatArray, step_s: float) -> tuple[FloatArray, ...]:
         program = self.program
         counts = (len(self.hoisted.constants), len(program.pasts), len(program.shifts), len(program.samples))
-        rest = [0.0] * max(len(program.states), len(program.pasts), len(program.inputs), len(program.samples))
+        zeros = [0.0] * max(len(program.states), len(program.pasts), len(program.inputs), len(program.samples))
         with np.errstate(all="ignore"):
-            found = np.array(
-                function(values.tolist(), rest, rest, rest, rest, step_s), dtype=np.result_type(values, 0.0)
+            numbers = np.array(
+                function(values.tolist(), zeros, zeros, zeros, zeros, step_s), dtype=np.result_type(values, 0.0)
             )
-        if not np.all(np.isfinite(found)):
+        if not np.all(np.isfinite(numbers)):
             zero = [name for name, value in zip(program.parameters, values, strict=True) if value == 0.0]
             raise StructureError(
                 f"simulation of {program.name}: expected equations that are finite, found a division by zero or a "
@@ -86,20 +86,20 @@ class Built:
             )
         parts, begin = [], 0
         for count in counts:
-            parts.append(found[begin : begin + count])
+            parts.append(numbers[begin : begin + count])
             begin += count
         return tuple(parts)
 
     def shifts_depend_on(self, names: Sequence[str]) -> bool:
         """Return whether a parameter shifts an output."""
-        found = {node.name for node in postorder(self.program.shifts) if node.operation == "parameter"}
-        return not found.isdisjoint(names)
+        parameters = {node.name for node in postorder(self.program.shifts) if node.operation == "parameter"}
+        return not parameters.isdisjoint(names)
 
     @property
     def _of_parameters(self) -> list[Formula]:
         program = self.program
         delays = [late.delay for late in program.pasts]
-        periods = [taken.period for taken in program.samples]
+        periods = [sample.period for sample in program.samples]
         return [*self.hoisted.constants, *delays, *program.shifts, *periods]
 
 
@@ -114,15 +114,15 @@ def build(structure: Structure, zeros: frozenset[str]) -> Built:
     zeros
         Names of parameters that are zero for good.
     """
-    known = _BUILT.setdefault(structure, {})
-    if zeros not in known:
+    built = _BUILT.setdefault(structure, {})
+    if zeros not in built:
         program = program_of(structure, zeros)
         ready = hoisted(program)
-        known[zeros] = Built(
+        built[zeros] = Built(
             program=program,
             hoisted=ready,
             steady=SteadyEquations(program),
             functions={},
             modules={},
         )
-    return known[zeros]
+    return built[zeros]

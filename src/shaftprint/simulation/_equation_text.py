@@ -139,10 +139,10 @@ class EquationText:
     def functions(self, names: Iterable[str], *, slopes: bool) -> list[str]:
         """Return a function for each group of formulas, and one that finds their derivatives too where wanted."""
         groups = {name: self.groups[name] for name in names}
-        found = [self._function(name, group) for name, group in groups.items()]
+        texts = [self._function(name, group) for name, group in groups.items()]
         if slopes:
-            found += [self._with_slopes(f"{name}_along", group) for name, group in groups.items()]
-        return found
+            texts += [self._with_slopes(f"{name}_along", group) for name, group in groups.items()]
+        return texts
 
     @property
     def _uses_changes(self) -> bool:
@@ -151,25 +151,25 @@ class EquationText:
         return any(node.operation == "past rate" for node in postorder(formulas))
 
     def _function(self, name: str, formulas: Sequence[Formula]) -> str:
-        lines, found = statements(formulas, LEAVES)
-        body = [*self._leaves(formulas), *lines, *self._results(found), "return"]
+        lines, results = statements(formulas, LEAVES)
+        body = [*self._leaves(formulas), *lines, *self._results(results), "return"]
         return f"@INNER\ndef {name}(v):\n{indented(body)}"
 
     def _with_slopes(self, name: str, formulas: Sequence[Formula]) -> str:
         slopes = Slopes(formulas)
         every = [*formulas, *slopes.formulas]
-        lines, found = statements(every, LEAVES)
-        body = [*self._leaves(every), *lines, *self._results(found[: len(formulas)])]
-        factors = found[len(formulas) :]
+        lines, results = statements(every, LEAVES)
+        body = [*self._leaves(every), *lines, *self._results(results[: len(formulas)])]
+        factors = results[len(formulas) :]
         if formulas:
             body.append(f"for lane in range({LANES}):")
-        for place in range(len(formulas)):
+        for index in range(len(formulas)):
             terms = [
                 f"{factor} * w[{LANES * self._place(leaf)} + lane]"
                 for factor, (formula, leaf) in zip(factors, slopes.entries, strict=True)
-                if formula == place
+                if formula == index
             ]
-            result = LANES * (self.starts["result"] + place)
+            result = LANES * (self.starts["result"] + index)
             body.append(f"    w[{result} + lane] = {' + '.join(terms) or '0.0'}")
         return f"@INNER\ndef {name}(v, w):\n{indented([*body, 'return'])}"
 
@@ -183,10 +183,10 @@ class EquationText:
             for node in postorder(formulas)
             if node.operation in LEAVES
         }
-        return [f"{name} = v[{place}]" for name, place in leaves.items()]
+        return [f"{name} = v[{offset}]" for name, offset in leaves.items()]
 
-    def _results(self, found: Sequence[str]) -> list[str]:
-        return [f"v[{self.starts['result'] + place}] = {name}" for place, name in enumerate(found)]
+    def _results(self, results: Sequence[str]) -> list[str]:
+        return [f"v[{self.starts['result'] + index}] = {name}" for index, name in enumerate(results)]
 
 
 def indented(lines: Iterable[str]) -> str:

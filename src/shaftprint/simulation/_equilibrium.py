@@ -60,7 +60,7 @@ def equilibrium(structure: Structure, values: ArrayLike, inputs: Mapping[str, fl
 
 def _each_once(names: Sequence[str]) -> tuple[str, ...]:
     """Return names with a number behind those that came before."""
-    counts = [names[: place + 1].count(name) for place, name in enumerate(names)]
+    counts = [names[: index + 1].count(name) for index, name in enumerate(names)]
     return tuple(name if count == 1 else f"{name} {count}" for name, count in zip(names, counts, strict=True))
 
 

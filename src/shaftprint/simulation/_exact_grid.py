@@ -82,17 +82,17 @@ class ExactGrid:
         begins, ends = np.searchsorted(stretch, numbers), np.searchsorted(stretch, numbers, side="right") - 1
         now = np.arange(step.size) + PRE
         tolerance = max(CLOSE * float(step[step > 0.0].min()), 4.0 * np.spacing(np.abs(times).max()))
-        found = np.empty((step.size, delay_s.size, 3), dtype=np.int64)
+        nodes = np.empty((step.size, delay_s.size, 3), dtype=np.int64)
         for j, delay in enumerate(delay_s):
             for m, share in enumerate((0.0, 0.5, 1.0)):
-                place = self.time_s[:-1] + share * step - delay
+                past_s = self.time_s[:-1] + share * step - delay
                 # an empty step stands on the left of its jump; every other starts on the right and ends on the left
                 after = (step > 0.0) & (share < 1.0)
-                node = np.clip(np.searchsorted(times, place + np.where(after, tolerance, -tolerance)) - 1, 0, None)
+                node = np.clip(np.searchsorted(times, past_s + np.where(after, tolerance, -tolerance)) - 1, 0, None)
                 part = stretch[node] + 1
                 last = np.minimum(ends[part], now)
-                found[:, j, m] = np.clip(node - 1, begins[part], np.maximum(last - NODES + 1, begins[part]))
-        return found
+                nodes[:, j, m] = np.clip(node - 1, begins[part], np.maximum(last - NODES + 1, begins[part]))
+        return nodes
 
 
 def jump_times(jumps_s: FloatArray, delay_s: FloatArray, stop_s: float) -> FloatArray:
@@ -110,16 +110,16 @@ def jump_times(jumps_s: FloatArray, delay_s: FloatArray, stop_s: float) -> Float
     ExactStepsError
         If there are more than can be followed.
     """
-    found = [jumps_s]
+    arrivals = [jumps_s]
     for _ in range(PASSAGES):
-        late = (found[-1][:, None] + delay_s[delay_s > 0.0][None, :]).ravel()
-        found.append(np.unique(late[late < stop_s]))
-        if sum(times.size for times in found) > MOST_JUMPS:
+        late = (arrivals[-1][:, None] + delay_s[delay_s > 0.0][None, :]).ravel()
+        arrivals.append(np.unique(late[late < stop_s]))
+        if sum(times.size for times in arrivals) > MOST_JUMPS:
             raise ExactStepsError(
                 f"exact steps: expected inputs whose jumps and corners arrive at up to {MOST_JUMPS} times, found more; "
                 "shorten the record, or use simulate."
             )
-    times = np.unique(np.concatenate(found))
+    times = np.unique(np.concatenate(arrivals))
     # what arrives by two ways at one time differs by rounding
     distinct = np.concatenate([[True], np.diff(times) > CLOSE * max(1.0, abs(stop_s))])
     return np.asarray(times[distinct])

@@ -44,9 +44,9 @@ def stencils(delay_s: FloatArray, step_s: float, *, varies: bool = False) -> Ste
     varies
         Whether one of them is only what it is at rest.
     """
-    place = np.array([0.5, 1.0])[None, :] - delay_s[:, None] / step_s
-    first = np.minimum(np.floor(place.real).astype(np.int64) - 1, 1 - NODES)
-    weight, change, bend = (np.stack(four, axis=-1) for four in cubic_weights(place - first))
+    position = np.array([0.5, 1.0])[None, :] - delay_s[:, None] / step_s
+    first = np.minimum(np.floor(position.real).astype(np.int64) - 1, 1 - NODES)
+    weight, change, bend = (np.stack(four, axis=-1) for four in cubic_weights(position - first))
     # a delay that varies may grow to eight times what it is at rest; beyond, the oldest signal is taken
     longest = (int(-first.min(initial=0)) + 2) * (8 if varies else 1)
     return Stencils(
@@ -99,9 +99,9 @@ class Shift:
         return self._sum(y, before, 1)
 
     def _sum(self, y: FloatArray, before: FloatArray, kind: int) -> FloatArray:
-        place = -self.steps
-        first = math.floor(place.real) - 1
-        weights = cubic_weights(place - first)[kind]
+        position = -self.steps
+        first = math.floor(position.real) - 1
+        weights = cubic_weights(position - first)[kind]
         ahead = max(0, -first)
         last = (self.samples - 1) * self.every + first + NODES
         behind = max(0, last - y.shape[0])

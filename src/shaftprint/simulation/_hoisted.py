@@ -31,7 +31,7 @@ def hoisted(program: Program) -> Hoisted:
     """Return the program with constants in the place of formulas of parameters alone."""
     constants: list[Formula] = []
     leaves: list[Formula] = []
-    known: dict[int, int] = {}
+    indices: dict[int, int] = {}
     varying = tuple(i for i, late in enumerate(program.pasts) if late.varies)
     delays = [program.pasts[i].delay for i in varying]
     roots = [
@@ -47,17 +47,17 @@ def hoisted(program: Program) -> Hoisted:
     def constant(node: Formula) -> Formula | None:
         if node.operation == "number" or not fixed[id(node)]:
             return None
-        if id(node) not in known:
-            known[id(node)] = len(constants)
+        if id(node) not in indices:
+            indices[id(node)] = len(constants)
             leaves.append(Formula("constant", name="constant", place=len(constants)))
             constants.append(node)
-        return leaves[known[id(node)]]
+        return leaves[indices[id(node)]]
 
     # the walk goes parts first: only what stands directly below something that is not fixed becomes a constant
     outer = {id(part) for node in postorder(roots) if not fixed[id(node)] for part in node.of if fixed[id(part)]}
     outer |= {id(root) for root in roots if fixed[id(root)]}
-    found = replaced(roots, lambda node: constant(node) if id(node) in outer else None)
-    parts = iter(found)
+    replacements = replaced(roots, lambda node: constant(node) if id(node) in outer else None)
+    parts = iter(replacements)
     return Hoisted(
         constants=tuple(constants),
         rates=tuple(islice(parts, len(program.rates))),
@@ -71,24 +71,24 @@ def hoisted(program: Program) -> Hoisted:
 
 def _fixed(roots: Sequence[Formula]) -> dict[int, bool]:
     """Return for every part whether it is a formula of parameters alone."""
-    found: dict[int, bool] = {}
+    fixed: dict[int, bool] = {}
     for node in postorder(roots):
         alone = node.operation in ("parameter", "number", "step")
-        found[id(node)] = all(found[id(part)] for part in node.of) if node.of else alone
-    return found
+        fixed[id(node)] = all(fixed[id(part)] for part in node.of) if node.of else alone
+    return fixed
 
 
 def _without_division(roots: Sequence[Formula]) -> list[Formula]:
     """Return formulas that multiply by the inverse of a formula of parameters instead: that is found once."""
     fixed = _fixed(roots)
-    found: dict[int, Formula] = {}
+    formulas: dict[int, Formula] = {}
     for node in postorder(roots):
-        parts = tuple(found[id(part)] for part in node.of)
+        parts = tuple(formulas[id(part)] for part in node.of)
         if node.operation == "divide" and fixed[id(node.of[1])] and not fixed[id(node)]:
-            found[id(node)] = parts[0] * (1.0 / parts[1])
+            formulas[id(node)] = parts[0] * (1.0 / parts[1])
         else:
-            found[id(node)] = rebuilt(node, parts)
-    return [found[id(root)] for root in roots]
+            formulas[id(node)] = rebuilt(node, parts)
+    return [formulas[id(root)] for root in roots]
 
 
 class Slopes:

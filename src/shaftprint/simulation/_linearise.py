@@ -44,12 +44,12 @@ class Linearisation:
         laplace = np.atleast_1d(np.asarray(s, dtype=np.complex128))
         columns = [np.asarray([value]) for value in self.values]
         outputs = self.small_signal.program.outputs
-        found = [self.small_signal.response(laplace, columns, (), i, self.at)[0] for i in range(len(outputs))]
+        responses = [self.small_signal.response(laplace, columns, (), i, self.at)[0] for i in range(len(outputs))]
         if not normalised:
-            return np.stack(found)
-        given = 1.0 + next(iter(self.equilibrium.inputs.values()))
-        sizes = [given / (1.0 + self.equilibrium.outputs[name]) for name in outputs]
-        return np.stack([size * response for size, response in zip(sizes, found, strict=True)])
+            return np.stack(responses)
+        input_size = 1.0 + next(iter(self.equilibrium.inputs.values()))
+        sizes = [input_size / (1.0 + self.equilibrium.outputs[name]) for name in outputs]
+        return np.stack([size * response for size, response in zip(sizes, responses, strict=True)])
 
 
 def linearise(structure: Structure, values: ArrayLike, inputs: Mapping[str, float]) -> Linearisation:
@@ -70,11 +70,11 @@ def linearise(structure: Structure, values: ArrayLike, inputs: Mapping[str, floa
     vector = np.asarray(values, dtype=np.float64)
     built = build(structure, held_zeros(structure, vector))
     program = built.program
-    given = input_vector(structure, inputs)
-    steady = built.steady.solve(vector, given)
-    at: dict[tuple[str, int], FloatArray] = {("input", i): np.asarray(u) for i, u in enumerate(given)}
-    for kind, found in (("state", steady.states), ("past", steady.pasts), ("sample", steady.samples)):
-        at |= {(kind, i): np.asarray(value) for i, value in enumerate(found)}
+    source = input_vector(structure, inputs)
+    steady = built.steady.solve(vector, source)
+    at: dict[tuple[str, int], FloatArray] = {("input", i): np.asarray(u) for i, u in enumerate(source)}
+    for kind, at_rest in (("state", steady.states), ("past", steady.pasts), ("sample", steady.samples)):
+        at |= {(kind, i): np.asarray(value) for i, value in enumerate(at_rest)}
     return Linearisation(
         equilibrium=Equilibrium.of(program, inputs, steady),
         small_signal=SmallSignal(program),

@@ -122,8 +122,10 @@ class March:
             rows[:, : len(lanes)] = np.stack([lane.kernel for lane in lanes], axis=1)
             arguments = self._arguments(table, every)
             self.built.kernels.advance_with_derivatives(*arguments, y, rows.ravel(), y_slopes)
-            own = y_slopes[:, :, : len(lanes)]
-            slopes[:, :, first : first + len(lanes)] = self._shifted_slopes(y, own, lanes, samples) if moved else own
+            lane_slopes = y_slopes[:, :, : len(lanes)]
+            slopes[:, :, first : first + len(lanes)] = (
+                self._shifted_slopes(y, lane_slopes, lanes, samples) if moved else lane_slopes
+            )
         if not moved:
             return y, slopes
         values = [self._shift(i, samples).value(y[:, i], np.asarray(self.start.outputs[i])) for i in range(count)]
@@ -131,15 +133,17 @@ class March:
 
     def _shifted_slopes(self, y: FloatArray, slopes: FloatArray, lanes: "Sequence[Lane]", samples: int) -> FloatArray:
         """Return the derivatives of shifted outputs, shape (samples, outputs, lanes), from those at all nodes."""
-        found = np.empty((samples, *slopes.shape[1:]))
+        shifted = np.empty((samples, *slopes.shape[1:]))
         for i in range(slopes.shape[1]):
             shift = self._shift(i, samples)
-            own = shift.value(slopes[:, i], np.array([lane.outputs[i] for lane in lanes]))
+            output_slopes = shift.value(slopes[:, i], np.array([lane.outputs[i] for lane in lanes]))
             moves = np.array([lane.shifts[i] for lane in lanes]) / self.step_s
             if np.any(moves):
-                own = own - shift.change(y[:, i], np.asarray(self.start.outputs[i]))[:, None] * moves
-            found[:, i] = own
-        return found
+                output_slopes = (
+                    output_slopes - shift.change(y[:, i], np.asarray(self.start.outputs[i]))[:, None] * moves
+                )
+            shifted[:, i] = output_slopes
+        return shifted
 
     @property
     def _after(self) -> int:
@@ -176,8 +180,8 @@ class March:
         """Return the derivatives to one parameter of all that the run starts from."""
         values = np.asarray(self.values.real, dtype=np.float64)
         constants, delays, shifts, _ = self.built.constant_slopes(values, self.step_s, name)
-        place = self.built.program.parameters.index(name)
-        steady = self.built.steady.slopes(self.start, values, inputs, place, held=self.given)
+        index = self.built.program.parameters.index(name)
+        steady = self.built.steady.slopes(self.start, values, inputs, index, held=self.given)
         parts = (steady.states, steady.pasts, steady.drifts, steady.samples, constants, steady.lates, delays)
         return Lane(kernel=np.concatenate(parts), shifts=shifts, outputs=steady.outputs)
 

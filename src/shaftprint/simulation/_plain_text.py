@@ -67,15 +67,15 @@ def plain_function(formulas: Sequence[Formula]) -> Plain:
 
     All are not numbers where one divides by zero.
     """
-    lines, found = statements(formulas, LEAVES)
+    lines, results = statements(formulas, LEAVES)
     body = "".join(f"    {line}\n" for line in lines)
-    text = f"{HEADER}\n\ndef formulas(p, x, q, z, u, step):\n{body}    return [{', '.join(found)}]\n"
-    made: Plain = plain_module_of(text).formulas
+    text = f"{HEADER}\n\ndef formulas(p, x, q, z, u, step):\n{body}    return [{', '.join(results)}]\n"
+    function: Plain = plain_module_of(text).formulas
 
     def guarded(p: Numbers, x: Numbers, q: Numbers, z: Numbers, u: Numbers, step: float) -> list[float]:
         try:
-            return made(p, x, q, z, u, step)
+            return function(p, x, q, z, u, step)
         except (ZeroDivisionError, OverflowError):
-            return [math.nan] * len(found)
+            return [math.nan] * len(results)
 
     return guarded

@@ -92,8 +92,8 @@ def _run(
     built.exact_kernels.advance(times, u, rise, constants, start.states, before, delay_s, grid.first_nodes(delay_s), y)
     # the last node that stands at a time is the one after its jump
     node = np.searchsorted(grid.time_s, wanted + 1e-12 * max(1.0, abs(stop)), side="right") - 1
-    found = np.take_along_axis(y, np.clip(node, 0, y.shape[0] - 1), axis=0)
-    return np.where(wanted < time[0], start.outputs[None, :], found)
+    sampled = np.take_along_axis(y, np.clip(node, 0, y.shape[0] - 1), axis=0)
+    return np.where(wanted < time[0], start.outputs[None, :], sampled)
 
 
 def _corners(table: FloatArray, *, hold: bool) -> FloatArray:
@@ -107,24 +107,24 @@ def _corners(table: FloatArray, *, hold: bool) -> FloatArray:
 
 def _nearest(keys: FloatArray, jumps: FloatArray) -> FloatArray:
     """Return the keys at which jumps are, those that differ by rounding taken for one."""
-    place = np.clip(np.searchsorted(keys, jumps), 1, keys.size - 1)
-    closer = np.abs(keys[place - 1] - jumps) < np.abs(keys[place] - jumps)
-    return np.unique(keys[np.where(closer, place - 1, place)])
+    index = np.clip(np.searchsorted(keys, jumps), 1, keys.size - 1)
+    closer = np.abs(keys[index - 1] - jumps) < np.abs(keys[index] - jumps)
+    return np.unique(keys[np.where(closer, index - 1, index)])
 
 
 def _stage_inputs(grid: ExactGrid, time: FloatArray, table: FloatArray, *, hold: bool) -> tuple[FloatArray, FloatArray]:
     """Return the inputs at start, middle and end of each step, shape (steps, 3, inputs), and their slopes [1/s]."""
     step = grid.step_s
     middle = grid.time_s[:-1] + 0.5 * step
-    place = np.clip(np.searchsorted(time, middle, side="right") - 1, 0, time.size - 1)
+    row = np.clip(np.searchsorted(time, middle, side="right") - 1, 0, time.size - 1)
     # an empty step stands on the left of its jump
     empty = step == 0.0
-    place = np.where(empty & (place > 0) & (np.abs(time[place] - middle) < 1e-9), place - 1, place)
-    after = np.minimum(place + 1, time.size - 1)
+    row = np.where(empty & (row > 0) & (np.abs(time[row] - middle) < 1e-9), row - 1, row)
+    after = np.minimum(row + 1, time.size - 1)
     if hold:
-        held = np.repeat(table[place][:, None], 3, axis=1)
+        held = np.repeat(table[row][:, None], 3, axis=1)
         return np.ascontiguousarray(held), np.zeros((step.size, table.shape[1]))
-    length = np.where(after > place, time[after] - time[place], 1.0)[:, None]
-    rise = (table[after] - table[place]) / length
-    at = grid.time_s[:-1, None] + step[:, None] * np.array([0.0, 0.5, 1.0]) - time[place][:, None]
-    return table[place][:, None] + at[:, :, None] * rise[:, None], rise
+    length = np.where(after > row, time[after] - time[row], 1.0)[:, None]
+    rise = (table[after] - table[row]) / length
+    at = grid.time_s[:-1, None] + step[:, None] * np.array([0.0, 0.5, 1.0]) - time[row][:, None]
+    return table[row][:, None] + at[:, :, None] * rise[:, None], rise

@@ -75,11 +75,11 @@ class StageText:
             "state": "x{}" if stage.number == 1 else "s{}",
             **{kind: f"{LEAVES[kind]}{stage.time}" for kind in ("input", "past", "past rate")},
         }
-        found = [f"k{stage.number}_{i}" for i in states]
+        results = [f"k{stage.number}_{i}" for i in states]
         if along:
-            found += [f"d{i}" for i in range(len(self.slopes.entries))]
+            results += [f"d{i}" for i in range(len(self.slopes.entries))]
         function = "rates_along" if along else "rates"
-        lines = [f"({', '.join(found)},) = {function}({', '.join(self._names(names))})"]
+        lines = [f"({', '.join(results)},) = {function}({', '.join(self._names(names))})"]
         if along:
             lines += self._stage_along(stage)
         if stage.ahead:
@@ -133,11 +133,11 @@ class StageText:
     def _names(self, names: Mapping[str, str]) -> list[str]:
         """Return what the functions of numbers take, in their order."""
         every = LEAVES | dict(names)
-        return [every[kind].format(place) for kind in LEAVES for place in range(self.counts[kind])]
+        return [every[kind].format(index) for kind in LEAVES for index in range(self.counts[kind])]
 
     def _function(self, name: str, *, along: bool) -> str:
-        lines, found = statements([*self.rates, *(self.slopes.formulas if along else [])], LEAVES)
-        body = [*lines, f"return ({', '.join(found)},)"]
+        lines, results = statements([*self.rates, *(self.slopes.formulas if along else [])], LEAVES)
+        body = [*lines, f"return ({', '.join(results)},)"]
         return f"@INNER\ndef {name}({', '.join(self._names({}))}):\n{indented(body)}"
 
 

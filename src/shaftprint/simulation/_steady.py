@@ -50,16 +50,16 @@ class SteadyEquations:
         places = [("state", i) for i in self._still]
         places += [("past", i) for i in range(len(program.pasts))]
         places += [("sample", i) for i in range(len(program.samples))]
-        self._unknown = [Formula(kind, place=place) for kind, place in places]
+        self._unknown = [Formula(kind, place=index) for kind, index in places]
         formulas = [program.rates[i] for i in self._still]
         formulas += [
             late.signal - late.delay * late.drift - Formula("past", place=i) for i, late in enumerate(program.pasts)
         ]
-        formulas += [taken.value - Formula("sample", place=i) for i, taken in enumerate(program.samples)]
+        formulas += [sample.value - Formula("sample", place=i) for i, sample in enumerate(program.samples)]
         self._formulas = formulas
         self._left = plain_function(formulas)
         self._matrix = plain_function([slope for leaf in self._unknown for slope in derivatives(formulas, leaf)])
-        states = [Formula("state", place=place) for place in range(len(program.states))]
+        states = [Formula("state", place=index) for index in range(len(program.states))]
         self._own = plain_function([slope for leaf in states for slope in derivatives(program.rates, leaf)])
         lates = [late.signal for late in program.pasts]
         self._shown = [*lates, *(late.drift for late in program.pasts), *program.signals]
@@ -88,44 +88,44 @@ class SteadyEquations:
             If there is no steady running.
         """
         at, rows = np.zeros(len(self._unknown)), slice(None)
-        whole = np.zeros(len(self.program.states)) if states is None else states
+        kept_states = np.zeros(len(self.program.states)) if states is None else states
         if states is not None:
             at[: len(self._still)] = states[self._still]
             rows = slice(len(self._still), None)
-        found = self._newton(values, inputs, at, rows, whole)
-        if found is None and states is None:
-            found = self._led(values, inputs)
-        if found is None:
+        unknowns = self._newton(values, inputs, at, rows, kept_states)
+        if unknowns is None and states is None:
+            unknowns = self._led(values, inputs)
+        if unknowns is None:
             raise StructureError(
                 f"structure {self.program.name}: no steady running was found at these inputs and parameters; is the "
                 "engine strong enough for it, and are all gains positive?"
             )
-        return self._split(found, whole, self._at(self._show, values, inputs, found, whole))
+        return self._split(unknowns, kept_states, self._at(self._show, values, inputs, unknowns, kept_states))
 
-    def slopes(self, steady: Steady, values: FloatArray, inputs: FloatArray, place: int, *, held: bool) -> Steady:
+    def slopes(self, steady: Steady, values: FloatArray, inputs: FloatArray, parameter: int, *, held: bool) -> Steady:
         """Return the derivatives of steady running to a parameter.
 
         Parameters
         ----------
-        place
+        parameter
             Place of the parameter.
         held
             Whether the states were given.
         """
         count = len(self._formulas)
-        if place not in self._moved:
-            to = Formula("parameter", place=place)
-            self._moved[place] = plain_function([*derivatives(self._formulas, to), *derivatives(self._shown, to)])
-        given = (values, inputs, steady.states, steady.pasts, steady.samples)
-        moved = self._call(self._moved[place], *given)
+        if parameter not in self._moved:
+            to = Formula("parameter", place=parameter)
+            self._moved[parameter] = plain_function([*derivatives(self._formulas, to), *derivatives(self._shown, to)])
+        arguments = (values, inputs, steady.states, steady.pasts, steady.samples)
+        moved = self._call(self._moved[parameter], *arguments)
         change = np.zeros(count)
         rows = slice(len(self._still), None) if held else slice(None)
         if np.any(moved[:count][rows]):
-            matrix = self._call(self._matrix, *given).reshape(count, count).T[rows, rows]
+            matrix = self._call(self._matrix, *arguments).reshape(count, count).T[rows, rows]
             change[rows] = np.linalg.lstsq(matrix, -moved[:count][rows], rcond=None)[0]
         shown = moved[count:]
         if np.any(change):
-            shown = shown + self._call(self._show_slope_function(), *given).reshape(count, -1).T @ change
+            shown = shown + self._call(self._show_slope_function(), *arguments).reshape(count, -1).T @ change
         return self._split(change, np.zeros(len(self.program.states)), shown)
 
     def _show_slope_function(self) -> Plain:
@@ -137,12 +137,12 @@ class SteadyEquations:
 
     def _led(self, values: FloatArray, inputs: FloatArray) -> FloatArray | None:
         """Return steady running reached by leading the inputs there from rest: no limit is met on the way in vain."""
-        whole = np.zeros(len(self.program.states))
+        kept_states = np.zeros(len(self.program.states))
         for steps in LEADING_STEPS:
             at: FloatArray | None = np.zeros(len(self._unknown))
             for share in np.linspace(0.0, 1.0, steps + 1):
                 if at is not None:
-                    at = self._newton(values, share * inputs, at, slice(None), whole)
+                    at = self._newton(values, share * inputs, at, slice(None), kept_states)
             if at is not None:
                 return at
         return None
@@ -157,8 +157,8 @@ class SteadyEquations:
         samples: FloatArray,
     ) -> FloatArray:
         with np.errstate(all="ignore"):
-            found = function(values.tolist(), states.tolist(), pasts.tolist(), samples.tolist(), inputs.tolist(), 1.0)
-        return np.asarray(found, dtype=np.float64)
+            results = function(values.tolist(), states.tolist(), pasts.tolist(), samples.tolist(), inputs.tolist(), 1.0)
+        return np.asarray(results, dtype=np.float64)
 
     def longest_step(self, values: FloatArray, inputs: FloatArray, steady: Steady, delay_s: FloatArray) -> float:
         """Return the longest step that still follows small signals about steady running [s].
@@ -173,56 +173,56 @@ class SteadyEquations:
         delay_s
             Delays [s], shape (pasts,).
         """
-        given = (values, inputs, steady.states, steady.pasts, steady.samples)
+        arguments = (values, inputs, steady.states, steady.pasts, steady.samples)
         count, still, states = len(self._unknown), len(self._still), len(self.program.states)
-        matrix = self._call(self._matrix, *given).reshape(count, count).T
-        own = self._call(self._own, *given).reshape(states, states)
-        if not still or not (np.all(np.isfinite(matrix)) and np.all(np.isfinite(own))):
+        matrix = self._call(self._matrix, *arguments).reshape(count, count).T
+        state_matrix = self._call(self._own, *arguments).reshape(states, states)
+        if not still or not (np.all(np.isfinite(matrix)) and np.all(np.isfinite(state_matrix))):
             return np.inf
         through = np.linalg.lstsq(matrix[still:, still:], matrix[still:, :still], rcond=None)[0]
         prompt = np.linalg.eigvals(matrix[:still, :still] - matrix[:still, still:] @ through)
-        rates = np.concatenate([np.linalg.eigvals(own), prompt])
+        rates = np.concatenate([np.linalg.eigvals(state_matrix), prompt])
         step = 1.0 / max(np.abs(rates).max() / MOST_DECAY, np.abs(rates.imag).max() / MOST_ANGLE, SLOWEST)
         shortest = float(delay_s.min(initial=np.inf))
         extrapolated = MOST_EXTRAPOLATED / max(np.abs(prompt).max(), SLOWEST)
         return float(min(step, max(shortest, extrapolated)))
 
     def _at(
-        self, function: Plain, values: FloatArray, inputs: FloatArray, at: FloatArray, whole: FloatArray
+        self, function: Plain, values: FloatArray, inputs: FloatArray, at: FloatArray, kept_states: FloatArray
     ) -> FloatArray:
         """Return formulas at a place of the unknowns."""
         still, pasts = len(self._still), len(self.program.pasts)
-        states = whole.copy()
+        states = kept_states.copy()
         states[self._still] = at[:still]
         return self._call(function, values, inputs, states, at[still : still + pasts], at[still + pasts :])
 
     def _newton(
-        self, values: FloatArray, inputs: FloatArray, at: FloatArray, rows: slice, whole: FloatArray
+        self, values: FloatArray, inputs: FloatArray, at: FloatArray, rows: slice, kept_states: FloatArray
     ) -> FloatArray | None:
         """Return a place where the equations of some rows vanish, moving their own unknowns only; None if not found."""
-        left = self._at(self._left, values, inputs, at, whole)[rows]
+        residual = self._at(self._left, values, inputs, at, kept_states)[rows]
         for _ in range(LARGEST_STEPS):
-            if not left.size or np.abs(left).max() <= TOLERANCE * (1.0 + np.abs(at).max(initial=0.0)):
+            if not residual.size or np.abs(residual).max() <= TOLERANCE * (1.0 + np.abs(at).max(initial=0.0)):
                 return at
-            square = self._at(self._matrix, values, inputs, at, whole).reshape(at.size, at.size).T
+            square = self._at(self._matrix, values, inputs, at, kept_states).reshape(at.size, at.size).T
             matrix = square[rows, rows]
-            if not (np.all(np.isfinite(matrix)) and np.all(np.isfinite(left))):
+            if not (np.all(np.isfinite(matrix)) and np.all(np.isfinite(residual))):
                 return None
-            step = np.asarray(np.linalg.lstsq(matrix, -left, rcond=1e-12)[0], dtype=np.float64)
-            moved = self._shortened(values, inputs, at, left, rows, whole, step)
+            step = np.asarray(np.linalg.lstsq(matrix, -residual, rcond=1e-12)[0], dtype=np.float64)
+            moved = self._shortened(values, inputs, at, residual, rows, kept_states, step)
             if moved is None:
                 break
-            at, left = moved
-        return at if np.abs(left).max() <= np.sqrt(TOLERANCE) else None
+            at, residual = moved
+        return at if np.abs(residual).max() <= np.sqrt(TOLERANCE) else None
 
     def _shortened(
         self,
         values: FloatArray,
         inputs: FloatArray,
         at: FloatArray,
-        left: FloatArray,
+        residual: FloatArray,
         rows: slice,
-        whole: FloatArray,
+        kept_states: FloatArray,
         step: FloatArray,
     ) -> tuple[FloatArray, FloatArray] | None:
         """Return the place after a step, halved until what is left falls; None if it does not."""
@@ -230,15 +230,15 @@ class SteadyEquations:
         for _ in range(HALVINGS):
             tried = at.copy()
             tried[rows] += share * step
-            found = self._at(self._left, values, inputs, tried, whole)[rows]
-            if np.all(np.isfinite(found)) and np.linalg.norm(found) < np.linalg.norm(left):
-                return tried, found
+            after = self._at(self._left, values, inputs, tried, kept_states)[rows]
+            if np.all(np.isfinite(after)) and np.linalg.norm(after) < np.linalg.norm(residual):
+                return tried, after
             share *= 0.5
         return None
 
-    def _split(self, at: FloatArray, whole: FloatArray, shown: FloatArray) -> Steady:
+    def _split(self, at: FloatArray, kept_states: FloatArray, shown: FloatArray) -> Steady:
         still, pasts = len(self._still), len(self.program.pasts)
-        states = whole.copy()
+        states = kept_states.copy()
         states[self._still] = at[:still]
         return Steady(
             states=states,

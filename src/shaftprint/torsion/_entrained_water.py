@@ -86,24 +86,26 @@ def water_estimates(vessel: "Vessel") -> tuple[WaterEstimate, ...]:
 
     The formulas need the area ratio of the propeller, the rule of thumb an inertia row with ``part = "propeller"``.
     """
-    found = []
-    own = vessel.propeller
-    if own.area_ratio is not None:
+    estimates = []
+    screw = vessel.propeller
+    if screw.area_ratio is not None:
         blades = Blades(
-            blades=own.blades,
-            pitch_ratio=own.pitch_ratio,
-            area_ratio=own.area_ratio,
-            diameter_m=own.diameter_m,
+            blades=screw.blades,
+            pitch_ratio=screw.pitch_ratio,
+            area_ratio=screw.area_ratio,
+            diameter_m=screw.diameter_m,
             water_density_kg_m3=vessel.water_density_kg_m3,
         )
         for method, value, source in (
             ("Schwanecke", schwanecke_kg_m2(blades), "Schwanecke 1963, from pitch and area of the blades"),
             ("strip theory", strip_theory_kg_m2(blades), "flat-plate strips with the chords of the Ka series"),
         ):
-            found.append(WaterEstimate(method=method, water_kg_m2=value, std_kg_m2=FORMULA_STD * value, source=source))
+            estimates.append(
+                WaterEstimate(method=method, water_kg_m2=value, std_kg_m2=FORMULA_STD * value, source=source)
+            )
     dry = math.fsum(row.referred_kg_m2(vessel.gearbox.ratio) for row in vessel.inertia if row.part == "propeller")
     if dry > 0.0:
-        found.append(
+        estimates.append(
             WaterEstimate(
                 method="1.25 times dry",
                 water_kg_m2=WATER_SHARE * dry,
@@ -111,4 +113,4 @@ def water_estimates(vessel: "Vessel") -> tuple[WaterEstimate, ...]:
                 source="rule of torsional vibration calculations; 1.1 to 1.5",
             )
         )
-    return tuple(found)
+    return tuple(estimates)

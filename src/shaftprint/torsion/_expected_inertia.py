@@ -121,20 +121,20 @@ def expected_inertia(
 
 
 def beside_identified(
-    expected: ExpectedInertia, found: Mapping[str, tuple[float, float]], *, told: frozenset[str] = frozenset()
+    expected: ExpectedInertia, identified: Mapping[str, tuple[float, float]], *, assumed: frozenset[str] = frozenset()
 ) -> tuple[Beside, ...]:
     """Return expected numbers beside those of a test that have the same name.
 
     Parameters
     ----------
-    found
+    identified
         Value and standard deviation by name, such as ``tau_dn``.
-    told
+    assumed
         Names of numbers that the test was told beforehand.
     """
-    rows = ((item, found[item.name]) for item in (*expected.times, *expected.sums) if item.name in found)
+    rows = ((item, identified[item.name]) for item in (*expected.times, *expected.sums) if item.name in identified)
     return tuple(
-        Beside(expected=item, found=value, found_std=std, independent=item.name not in told)
+        Beside(expected=item, found=value, found_std=std, independent=item.name not in assumed)
         for item, (value, std) in rows
     )
 
@@ -158,16 +158,16 @@ def _sums(vessel: "Vessel") -> tuple[ExpectedValue, ...]:
     upstream = [row for row in rows if row.gauge == "upstream"]
     downstream = [row for row in rows if row.gauge == "downstream"]
     propeller = [row for row in rows if row.part == "propeller"]
-    found = [
+    sums = [
         _sum(vessel, engine, "I_e", "all on the engine shaft, at the engine shaft", own_shaft=True),
         _sum(vessel, engine, "I_e i^2", "the same at the propeller shaft"),
         _sum(vessel, upstream, "I_up", "upstream of the torque gauge"),
     ]
     if propeller:
-        found.append(_sum(vessel, propeller, "I_p", "propeller as in the table"))
-        found.append(_sum(vessel, [*upstream, *propeller], "I_up + I_p", "the table's total: upstream and propeller"))
+        sums.append(_sum(vessel, propeller, "I_p", "propeller as in the table"))
+        sums.append(_sum(vessel, [*upstream, *propeller], "I_up + I_p", "the table's total: upstream and propeller"))
     return (
-        *found,
+        *sums,
         _sum(vessel, downstream, "I_dn", "downstream of the torque gauge, with shaft and water"),
         _sum(vessel, list(rows), "I_up + I_dn", "the whole line"),
     )
@@ -190,12 +190,12 @@ def _time(
 
 def _wet(vessel: "Vessel", rows: "list[InertiaRow]", factor: float, scale: float) -> tuple[WetLine, ...]:
     dry = _sum(vessel, [row for row in rows if row.part != "water"], "I_dn", "without water")
-    found = []
+    wet = []
     for water in water_estimates(vessel):
         inertia = dry.value + water.water_kg_m2
         std = math.hypot(dry.std, water.std_kg_m2)
         tau = factor * inertia
-        found.append(
+        wet.append(
             WetLine(
                 water=water,
                 downstream_kg_m2=inertia,
@@ -204,4 +204,4 @@ def _wet(vessel: "Vessel", rows: "list[InertiaRow]", factor: float, scale: float
                 tau_dn_std_s=math.hypot(factor * std, tau * scale),
             )
         )
-    return tuple(found)
+    return tuple(wet)

@@ -73,8 +73,8 @@ def forced_response(line: TorsionalLine, frequency_hz: ArrayLike, torque_nm: Map
     dynamic = line.stiffness_nm_rad * (1.0 + 1j * loss) + s * viscous
     incidence = line.incidence
     matrix = np.einsum("la,fl,lb->fab", incidence, dynamic, incidence)
-    own = s**2 * line.inertia_kg_m2 + s * line.load_nm_s_rad
-    matrix[:, range(own.shape[1]), range(own.shape[1])] += own
+    diagonal = s**2 * line.inertia_kg_m2 + s * line.load_nm_s_rad
+    matrix[:, range(diagonal.shape[1]), range(diagonal.shape[1])] += diagonal
     angle = np.linalg.solve(matrix, torque[:, :, None])[:, :, 0]
     return LineResponse(
         line=line,

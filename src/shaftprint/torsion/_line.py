@@ -91,8 +91,8 @@ class TorsionalLine:
     def incidence(self) -> FloatArray:
         """Twist of each link from the angles of the bodies: 1 on the engine side, -1 on the other; (links, bodies)."""
         table = np.zeros((len(self.links), len(self.bodies)))
-        for place, link in enumerate(self.links):
-            table[place, list(link.between)] = 1.0, -1.0
+        for row, link in enumerate(self.links):
+            table[row, list(link.between)] = 1.0, -1.0
         return table
 
     @property
@@ -104,9 +104,9 @@ class TorsionalLine:
         """Return the equivalent viscous damping of each link at a frequency [N m s/rad], shape (links,)."""
         return np.array([link.viscous_nm_s_rad(omega_rad_s) for link in self.links])
 
-    def link_name(self, place: int) -> str:
+    def link_name(self, link: int) -> str:
         """Return both bodies of a link."""
-        return " - ".join(self.bodies[body] for body in self.links[place].between)
+        return " - ".join(self.bodies[body] for body in self.links[link].between)
 
     def place(self, mass: str) -> int:
         """Return the place of the body that holds a mass.
@@ -124,7 +124,7 @@ class TorsionalLine:
     def is_downstream(self) -> FloatArray:
         """1 for bodies on the propeller's side of the gauge, 0 for others; shape (bodies,)."""
         behind = self.links[self.gauge].between[1]
-        others = [link.between for place, link in enumerate(self.links) if place != self.gauge]
+        others = [link.between for index, link in enumerate(self.links) if index != self.gauge]
         reached = {behind}
         while True:
             more = {body for pair in others if reached & set(pair) for body in pair} - reached
@@ -156,7 +156,7 @@ def torsional_line(vessel: "Vessel", *, load_slope: float = QUADRATIC_LAW) -> To
         )
     ratio = vessel.gearbox.ratio
     groups = _bodies(vessel)
-    body_of = {row.name: place for place, rows in enumerate(groups) for row in rows}
+    body_of = {row.name: index for index, rows in enumerate(groups) for row in rows}
     inertia = np.array([math.fsum(row.referred_kg_m2(ratio) for row in rows) for rows in groups])
     names = tuple(max(rows, key=lambda row: row.referred_kg_m2(ratio)).name for rows in groups)
     links = _links(vessel, body_of)
@@ -193,16 +193,16 @@ def _bodies(vessel: "Vessel") -> "list[list[InertiaRow]]":
 def _links(vessel: "Vessel", body_of: Mapping[str, int]) -> tuple[LineLink, ...]:
     engine = {row.name for row in vessel.inertia if row.shaft == "engine"}
     downstream = {row.name for row in vessel.inertia if row.gauge == "downstream"}
-    found = []
+    links = []
     for link in vessel.links:
         if link.is_rigid:
             continue
         turned = link.between[0] in downstream and link.between[1] not in downstream
         first, second = reversed(link.between) if turned else link.between
-        found.append(
+        links.append(
             _referred(link, vessel.gearbox.ratio**2 if first in engine else 1.0, (body_of[first], body_of[second]))
         )
-    return tuple(found)
+    return tuple(links)
 
 
 def _referred(link: "ShaftLink", factor: float, between: tuple[int, int]) -> LineLink:

@@ -60,15 +60,15 @@ def modes(line: TorsionalLine) -> Modes:
     values = np.linalg.eigvals(system.matrix)
     least = APERIODIC * np.max(np.abs(values))
     starts = values[values.imag > least]
-    found = sorted((_settled(line, complex(start)) for start in starts), key=lambda pair: abs(pair[0]))
-    roots = np.array([root for root, _ in found])
-    shapes = np.array([shape for _, shape in found]).reshape(-1, len(line.bodies))
+    pairs = sorted((_settled(line, complex(start)) for start in starts), key=lambda pair: abs(pair[0]))
+    roots = np.array([root for root, _ in pairs])
+    shapes = np.array([shape for _, shape in pairs]).reshape(-1, len(line.bodies))
     kinetic = line.inertia_kg_m2 * np.abs(shapes) ** 2
     elastic = line.stiffness_nm_rad * np.abs(shapes @ line.incidence.T) ** 2
     return Modes(
         line=line,
         frequency_hz=np.abs(roots) / (2.0 * np.pi),
-        frequency_std_hz=np.array([_std_hz(line, root, shape) for root, shape in found]),
+        frequency_std_hz=np.array([_std_hz(line, root, shape) for root, shape in pairs]),
         damping_ratio=-roots.real / np.abs(roots),
         shape=shapes,
         kinetic_share=kinetic / kinetic.sum(axis=1, keepdims=True),

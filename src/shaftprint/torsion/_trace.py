@@ -83,10 +83,10 @@ def simulate_line(
     system = state_space(line, line.viscous_nm_s_rad(2.0 * np.pi * damping_at_hz))
     torque = np.zeros((time.size, len(line.bodies)))
     for mass, values in torque_nm.items():
-        given = np.asarray(values, dtype=np.float64)
-        if given.shape != time.shape:
-            raise StructureError(f"torque on {mass}: expected {time.size} samples, found an array of {given.shape}.")
-        torque[:, line.place(mass)] += given
+        samples = np.asarray(values, dtype=np.float64)
+        if samples.shape != time.shape:
+            raise StructureError(f"torque on {mass}: expected {time.size} samples, found an array of {samples.shape}.")
+        torque[:, line.place(mass)] += samples
     start = np.zeros(len(line.bodies))
     for mass, size in impulse_nm_s.items():
         start[line.place(mass)] += size
@@ -111,16 +111,16 @@ def _step_of(time: FloatArray) -> float:
 def _march(matrix: FloatArray, gain: FloatArray, torque: FloatArray, step: float, start: FloatArray) -> FloatArray:
     """Return the states at all samples, shape (samples, states)."""
     states, inputs = gain.shape
-    whole = np.zeros((states + 2 * inputs, states + 2 * inputs))
-    whole[:states, :states] = matrix * step
-    whole[:states, states : states + inputs] = gain * step
-    whole[states : states + inputs, states + inputs :] = np.eye(inputs)
-    onward = expm(whole)
+    augmented = np.zeros((states + 2 * inputs, states + 2 * inputs))
+    augmented[:states, :states] = matrix * step
+    augmented[:states, states : states + inputs] = gain * step
+    augmented[states : states + inputs, states + inputs :] = np.eye(inputs)
+    onward = expm(augmented)
     level, ramp = onward[:states, states : states + inputs], onward[:states, states + inputs :]
     pushed = torque[:-1] @ level.T + np.diff(torque, axis=0) @ ramp.T
-    found = np.empty((torque.shape[0], states))
-    found[0] = start
+    states_in_time = np.empty((torque.shape[0], states))
+    states_in_time[0] = start
     transition = onward[:states, :states]
     for sample, push in enumerate(pushed):
-        found[sample + 1] = transition @ found[sample] + push
-    return found
+        states_in_time[sample + 1] = transition @ states_in_time[sample] + push
+    return states_in_time

@@ -77,8 +77,8 @@ def two_masses(line: TorsionalLine, *, driven: Sequence[str]) -> TwoMasses:
     engine = float(np.sum(line.inertia_kg_m2 * (1.0 - behind)))
     propeller = float(np.sum(line.inertia_kg_m2 * behind))
     load = float(np.sum(line.load_nm_s_rad))
-    found = modes(line)
-    omega, ratio = 2.0 * np.pi * float(found.frequency_hz[0]), float(found.damping_ratio[0])
+    mode = modes(line)
+    omega, ratio = 2.0 * np.pi * float(mode.frequency_hz[0]), float(mode.damping_ratio[0])
     pair = 1.0 / engine + 1.0 / propeller
     lost = load * engine / (propeller * (engine + propeller))
     compliance = _compliance(line, line.place(driven[0]), int(np.argmax(line.inertia_kg_m2 * behind)))
@@ -89,7 +89,7 @@ def two_masses(line: TorsionalLine, *, driven: Sequence[str]) -> TwoMasses:
         damping_nm_s_rad=(2.0 * ratio * omega - lost) / pair,
         load_nm_s_rad=load,
         frequency_hz=omega / (2.0 * np.pi),
-        frequency_std_hz=float(found.frequency_std_hz[0]),
+        frequency_std_hz=float(mode.frequency_std_hz[0]),
         damping_ratio=ratio,
         series_hz=float(np.sqrt(pair / compliance)) / (2.0 * np.pi),
         gauge_error=0.0,
@@ -100,8 +100,8 @@ def two_masses(line: TorsionalLine, *, driven: Sequence[str]) -> TwoMasses:
 
 def _with_errors(bare: TwoMasses, line: TorsionalLine, driven: Sequence[str]) -> TwoMasses:
     frequency = bare.frequency_hz * np.append(GRID, 1.0)
-    whole = forced_response(line, frequency, dict.fromkeys(driven, 1.0 / len(driven)))
-    exact = np.stack([whole.speed_of(driven[0]), whole.gauge_torque_nm])
+    exact_line = forced_response(line, frequency, dict.fromkeys(driven, 1.0 / len(driven)))
+    exact = np.stack([exact_line.speed_of(driven[0]), exact_line.gauge_torque_nm])
     errors = np.abs(np.stack(bare.response(frequency)) / exact - 1.0)
     wrong = np.flatnonzero(errors[:, :-1].max(axis=0) > ACCURATE)
     right = int(wrong[0]) if wrong.size else GRID.size
@@ -114,9 +114,9 @@ def _compliance(line: TorsionalLine, first: int, last: int) -> float:
     reached = {first: 0.0}
     while last not in reached:
         for link in line.links:
-            known = [body for body in link.between if body in reached]
-            if len(known) == 1:
-                other = link.between[0] if link.between[1] == known[0] else link.between[1]
+            ends = [body for body in link.between if body in reached]
+            if len(ends) == 1:
+                other = link.between[0] if link.between[1] == ends[0] else link.between[1]
                 bend = 1.0 / link.stiffness_nm_rad if link.stiffness_nm_rad else np.inf
-                reached[other] = reached[known[0]] + bend
+                reached[other] = reached[ends[0]] + bend
     return reached[last]

@@ -61,11 +61,13 @@ class DelayModel:
         laplace = np.atleast_1d(np.asarray(s, dtype=np.complex128))
         count, into, out = len(self.states), len(self.inputs), len(self.outputs)
         resolvent = laplace[:, None, None] * np.eye(count) - self.a
-        whole = self.d + self.c @ np.linalg.solve(resolvent, np.broadcast_to(self.b, (laplace.size, *self.b.shape)))
+        undelayed = self.d + self.c @ np.linalg.solve(resolvent, np.broadcast_to(self.b, (laplace.size, *self.b.shape)))
         late = np.exp(-laplace[:, None] * self.tau_s)[:, :, None]
-        loop = np.eye(self.tau_s.size) - late * whole[:, out:, into:]
-        found = whole[:, :out, :into] + whole[:, :out, into:] @ np.linalg.solve(loop, late * whole[:, out:, :into])
-        shifted = np.exp(-laplace[:, None] * self.shift_s)[:, :, None] * found
+        loop = np.eye(self.tau_s.size) - late * undelayed[:, out:, into:]
+        response = undelayed[:, :out, :into] + undelayed[:, :out, into:] @ np.linalg.solve(
+            loop, late * undelayed[:, out:, :into]
+        )
+        shifted = np.exp(-laplace[:, None] * self.shift_s)[:, :, None] * response
         return np.asarray(np.moveaxis(shifted, 0, -1))
 
 
@@ -87,7 +89,7 @@ def delay_model(model: ExportedModel) -> DelayModel:
         [float(value) for value in evaluate(formulas, leaves)]
         for formulas in (
             [late.delay for late in program.pasts],
-            [taken.period for taken in program.samples],
+            [sample.period for sample in program.samples],
             program.shifts,
         )
     )
@@ -116,8 +118,8 @@ def _rest(program: Program, values: FloatArray) -> Leaves:
 def _of_table(
     program: Program, states: tuple[str, ...], table: LinearTable, pasts: dict[int, float], shift: list[float]
 ) -> DelayModel:
-    late = [place for kind, place in table.columns if kind == "past"]
-    tau_s, shift_s = np.array([pasts[place] for place in late]), np.array(shift)
+    late = [index for kind, index in table.columns if kind == "past"]
+    tau_s, shift_s = np.array([pasts[index] for index in late]), np.array(shift)
     if not all(np.all(np.isfinite(array)) for array in (table.matrix, tau_s, shift_s)):
         raise ExportError(
             f"export of {program.name}: expected finite equations, found a division by zero; hold a time constant "

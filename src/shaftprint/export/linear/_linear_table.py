@@ -43,16 +43,16 @@ class LinearTable:
         """
         down, along = [self.rows.index(label) for label in labels], [self.columns.index(label) for label in labels]
         others = [i for i in range(len(self.rows)) if i not in down]
-        rest = [i for i in range(len(self.columns)) if i not in along]
+        others_in = [i for i in range(len(self.columns)) if i not in along]
         loop = np.eye(len(labels)) - self.matrix[np.ix_(down, along)]
         try:
-            solved = np.linalg.solve(loop, self.matrix[np.ix_(down, rest)])
+            solved = np.linalg.solve(loop, self.matrix[np.ix_(down, others_in)])
         except np.linalg.LinAlgError:
             raise ExportError("export: a loop without delay depends on itself at once; put a lag into it.") from None
         return LinearTable(
             rows=tuple(self.rows[i] for i in others),
-            columns=tuple(self.columns[i] for i in rest),
-            matrix=self.matrix[np.ix_(others, rest)] + self.matrix[np.ix_(others, along)] @ solved,
+            columns=tuple(self.columns[i] for i in others_in),
+            matrix=self.matrix[np.ix_(others, others_in)] + self.matrix[np.ix_(others, along)] @ solved,
         )
 
     def held(self, sample: tuple[str, int], period_s: float, state: int, past: int) -> "LinearTable":
@@ -100,11 +100,11 @@ def linear_table(program: Program, leaves: Leaves) -> LinearTable:
     """
     rows = {("state", i): rate for i, rate in enumerate(program.rates)}
     rows |= {("past", i): late.signal for i, late in enumerate(program.pasts)}
-    rows |= {("sample", i): taken.value for i, taken in enumerate(program.samples)}
+    rows |= {("sample", i): sample.value for i, sample in enumerate(program.samples)}
     rows |= {("output", i): signal for i, signal in enumerate(program.signals)}
     columns = [label for label in rows if label[0] != "output"]
     columns += [("input", i) for i in range(len(program.inputs))]
     formulas = list(rows.values())
-    slopes = [evaluate(derivatives(formulas, Formula(kind, place=place)), leaves) for kind, place in columns]
+    slopes = [evaluate(derivatives(formulas, Formula(kind, place=index)), leaves) for kind, index in columns]
     matrix = np.array(slopes, dtype=np.float64).reshape(len(columns), len(rows)).T
     return LinearTable(rows=tuple(rows), columns=tuple(columns), matrix=matrix)

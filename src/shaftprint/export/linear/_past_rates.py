@@ -39,11 +39,11 @@ class _Maker:
 
     def pasts(self) -> tuple[Late, ...]:
         """Return all late signals; looking at one may add another."""
-        place = 0
-        while place < len(self._pasts):
-            late = self._pasts[place]
-            self._pasts[place] = replace(late, signal=self.replaced(late.signal), delay=self.replaced(late.delay))
-            place += 1
+        index = 0
+        while index < len(self._pasts):
+            late = self._pasts[index]
+            self._pasts[index] = replace(late, signal=self.replaced(late.signal), delay=self.replaced(late.delay))
+            index += 1
         return tuple(self._pasts)
 
     def _leaf(self, node: Formula) -> Formula | None:
@@ -54,17 +54,17 @@ class _Maker:
             )
         return self._rate(node.place) if node.operation == "past rate" else None
 
-    def _rate(self, place: int) -> Formula:
-        if place not in self._made:
-            late = self._pasts[place]
+    def _rate(self, index: int) -> Formula:
+        if index not in self._made:
+            late = self._pasts[index]
             if late.varies:
                 raise ExportError(
                     f"export of {self._program.name}: the equations need how fast a signal changes behind a delay that "
                     "varies; hold the delay constant."
                 )
-            self._made[place] = Formula("past", name="past", place=len(self._pasts))
+            self._made[index] = Formula("past", name="past", place=len(self._pasts))
             self._pasts.append(Late(signal=self._change(late.signal), drift=Formula("number"), delay=late.delay))
-        return self._made[place]
+        return self._made[index]
 
     def _change(self, formula: Formula) -> Formula:
         """Return how fast a formula changes."""
@@ -74,12 +74,12 @@ class _Maker:
                 f"export of {self._program.name}: the equations need the second change of a late signal; put a lag "
                 "beside it."
             )
-        found = Formula("number")
-        for (kind, place), leaf in leaves.items():
+        change = Formula("number")
+        for (kind, index), leaf in leaves.items():
             if kind == "state":
-                found = found + derivatives([formula], leaf)[0] * self._program.rates[place]
+                change = change + derivatives([formula], leaf)[0] * self._program.rates[index]
             elif kind in ("past", "input"):
-                moved = Formula(f"{kind} rate", name=leaf.name, place=place)
-                found = found + derivatives([formula], leaf)[0] * moved
-        self._kept.append(found)
-        return found
+                moved = Formula(f"{kind} rate", name=leaf.name, place=index)
+                change = change + derivatives([formula], leaf)[0] * moved
+        self._kept.append(change)
+        return change

@@ -101,7 +101,7 @@ class _Writer:
         self._step()
         formulas = [*program.rates, *program.signals]
         formulas += [formula for late in program.pasts for formula in (late.signal, late.delay)]
-        formulas += [taken.period for taken in program.samples]
+        formulas += [sample.period for sample in program.samples]
         self._text = ModelicaText(formulas, lambda node: self._leaves[node.operation, node.place], names)
         self._shared()
         self._states()
@@ -114,9 +114,9 @@ class _Writer:
             self._leaves[kind, i] = self._names(f"{prefix or identifier(meaning)}_{i + 1}")
 
     def _step(self) -> None:
-        formulas = [taken.value for taken in self._program.samples] + [t.period for t in self._program.samples]
+        formulas = [sample.value for sample in self._program.samples] + [t.period for t in self._program.samples]
         asks = any(node.operation == "step" for node in postorder(formulas))
-        if asks or any(taken.period.equals(0.0) for taken in self._program.samples):
+        if asks or any(sample.period.equals(0.0) for sample in self._program.samples):
             name = self._leaves["step", 0] = self._names("computer_step")
             self.parameters.append(
                 f'parameter Real {name}(unit = "s") = {modelica_number(COMPUTER_STEP_S)} '
@@ -140,24 +140,24 @@ class _Writer:
     def _pasts(self) -> None:
         leaves = dict.fromkeys(self._leaves, np.asarray(0.0))
         leaves |= {("parameter", i): np.asarray(value) for i, value in enumerate(self._model.values)}
-        rest = [float(value) for value in evaluate([late.delay for late in self._program.pasts], leaves)]
+        steady_delays_s = [float(value) for value in evaluate([late.delay for late in self._program.pasts], leaves)]
         for i, late in enumerate(self._program.pasts):
             name = self._leaves["past", i]
             now, time = self._names(f"prompt_{i + 1}"), self._names(f"delay_{i + 1}")
             self.variables += [f'Real {name} "what prompt_{i + 1} was some time ago";', f"Real {now};"]
             self.equations.append(f"{now} = {self._text[late.signal]};")
             if late.varies:
-                self._varying(i, name, now, time, self._text[late.delay], rest[i])
+                self._varying(i, name, now, time, self._text[late.delay], steady_delays_s[i])
                 continue
             self.variables.append(f'final parameter Real {time}(unit = "s") = {self._text[late.delay]};')
             delayed = f"delay({now}, {time})"
-            text = f"if {time} > 0.0 then {delayed} else {now}" if rest[i] == 0.0 else delayed
+            text = f"if {time} > 0.0 then {delayed} else {now}" if steady_delays_s[i] == 0.0 else delayed
             self.equations.append(f"{name} = {text};")
 
-    def _varying(self, i: int, name: str, now: str, time: str, delay: str, rest: float) -> None:
+    def _varying(self, i: int, name: str, now: str, time: str, delay: str, steady_delay_s: float) -> None:
         longest = self._names(f"longest_delay_{i + 1}")
         self.parameters.append(
-            f'parameter Real {longest}(unit = "s") = {modelica_number(LONGEST_OVER_REST * rest)} '
+            f'parameter Real {longest}(unit = "s") = {modelica_number(LONGEST_OVER_REST * steady_delay_s)} '
             '"longest delay that is remembered";'
         )
         self.variables.append(f'Real {time}(unit = "s");')
@@ -167,14 +167,14 @@ class _Writer:
     def _samples(self) -> None:
         before = dict(self._leaves)
         before |= {key: f"pre({name})" for key, name in self._leaves.items() if key[0] == "sample"}
-        for i, taken in enumerate(self._program.samples):
+        for i, sample in enumerate(self._program.samples):
             name = self._leaves["sample", i]
-            text = ModelicaText([taken.value], lambda node: before[node.operation, node.place], self._names)
-            period = self._leaves["step", 0] if taken.period.equals(0.0) else self._text[taken.period]
+            text = ModelicaText([sample.value], lambda node: before[node.operation, node.place], self._names)
+            period = self._leaves["step", 0] if sample.period.equals(0.0) else self._text[sample.period]
             self.variables += [f"discrete Real {part}(start = 0.0, fixed = true);" for part, _, _ in text.shared]
             self.variables.append(f'discrete Real {name}(start = 0.0, fixed = true) "value of the computer";')
             inside = [f"  {part} = {of};" for part, of, _ in text.shared]
-            inside.append(f"  {name} = {text[taken.value]};")
+            inside.append(f"  {name} = {text[sample.value]};")
             self.equations += [f"when sample({period}, {period}) then", *inside, "end when;"]
 
     def _outputs(self) -> None:

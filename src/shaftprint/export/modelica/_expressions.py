@@ -104,11 +104,11 @@ class ModelicaText:
 def unbracketed(text: str) -> str:
     """Return an expression without a pair of brackets around the whole of it."""
     depth = 0
-    for place, letter in enumerate(text):
+    for position, letter in enumerate(text):
         depth += (letter == "(") - (letter == ")")
         if depth == 0:
-            whole = text[0] == "(" and place == len(text) - 1 and not text.startswith("(-")
-            return text[1:-1] if whole else text
+            is_enclosed = text[0] == "(" and position == len(text) - 1 and not text.startswith("(-")
+            return text[1:-1] if is_enclosed else text
     return text
 
 

@@ -71,12 +71,12 @@ def write_modelica(
     FileExistsError
         If the file exists and is not to be replaced.
     """
-    place = Path(path)
-    name = package_name(place.stem if package is None else package)
+    modelica_path = Path(path)
+    name = package_name(modelica_path.stem if package is None else package)
     text, equations = modelica_text(model, name)
-    with written_whole(place, overwrite=overwrite) as part:
+    with written_whole(modelica_path, overwrite=overwrite) as part:
         part.write_text(text, encoding="utf-8", newline="\n")
-    return WrittenModelica(path=place, package=name, late_outputs=equations.late)
+    return WrittenModelica(path=modelica_path, package=name, late_outputs=equations.late)
 
 
 def package_name(text: str) -> str:
@@ -135,12 +135,12 @@ def _class(kind: str, name: str, model: ExportedModel, lines: list[str], inner: 
 
 
 def _unit(unit: str) -> str:
-    found = UNITS.get(unit, unit if unit in PLAIN_UNITS else "")
-    return f'(unit = "{found}")' if found else ""
+    modelica_unit = UNITS.get(unit, unit if unit in PLAIN_UNITS else "")
+    return f'(unit = "{modelica_unit}")' if modelica_unit else ""
 
 
-def _connector(signal: FmuSignal, kind: str, x: int, place: int, count: int) -> str:
-    y = round(100 - 200 * (place + 0.5) / count)
+def _connector(signal: FmuSignal, kind: str, x: int, index: int, count: int) -> str:
+    y = round(100 - 200 * (index + 0.5) / count)
     at = f"{{{{{x - 10}, {y - 10}}}, {{{x + 10}, {y + 10}}}}}"
     return (
         f"{kind} {modelica_name(signal.name)}{_unit(signal.unit)} {modelica_string(signal.meaning)} "

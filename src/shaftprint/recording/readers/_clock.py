@@ -109,9 +109,9 @@ def uniform_clock(path: Path, name: str, count: int, read: Callable[[int, int], 
     mean_step = (last - float(jumped[-1]) - first) / (count - 1 + int(missing[-1]))
     for start in range(0, count, _BLOCK):
         stop = min(start + _BLOCK, count)
-        place = np.arange(start, stop)
-        stretch = np.searchsorted(rows, place, side="right") - 1 if holes else np.zeros(place.size, dtype=np.intp)
-        off = np.abs(read(start, stop) - jumped[stretch] - (first + mean_step * (place + missing[stretch])))
+        row = np.arange(start, stop)
+        stretch = np.searchsorted(rows, row, side="right") - 1 if holes else np.zeros(row.size, dtype=np.intp)
+        off = np.abs(read(start, stop) - jumped[stretch] - (first + mean_step * (row + missing[stretch])))
         worst = int(np.argmax(off))
         if off[worst] > _STEP_TOLERANCE * mean_step:
             raise RecordingError(
@@ -144,9 +144,9 @@ def _holes(path: Path, name: str, count: int, read: Callable[[int, int], FloatAr
     holes = []
     for row, jump in zip(rows.tolist(), jumps.tolist(), strict=True):
         places = max(round(jump / exact), 1)
-        rest = jump - places * exact
+        remainder = jump - places * exact
         allowed = _WHOLE * exact + jitter * (2.0 + places / (end - begin))
-        holes.append(Hole(row=row, missing=places - 1, jump_s=0.0 if abs(rest) <= allowed else rest))
+        holes.append(Hole(row=row, missing=places - 1, jump_s=0.0 if abs(remainder) <= allowed else remainder))
     if sum(hole.missing for hole in holes) > count:
         raise _not_uniform(path, name, step, float(jumps[np.argmax(jumps)]), int(rows[np.argmax(jumps)]))
     return tuple(holes)

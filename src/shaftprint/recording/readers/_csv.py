@@ -140,11 +140,11 @@ def _unpack(path: Path, file: TextIO, header: Header, spool: Spool) -> tuple[int
             lines = [line.replace(",", ".") for line in lines]
         rows = [line for line in lines if not line.isspace()]
         if header.dated and rows:
-            rows, found = _without_dates(path, rows, header)
-            began = found[0] if began is None else began
+            rows, dates = _without_dates(path, rows, header)
+            began = dates[0] if began is None else began
         block = _numbers(path, rows, header, count)
         if began is not None and rows:
-            block[:, header.time_column] = seconds_from(began, found)
+            block[:, header.time_column] = seconds_from(began, dates)
         elif header.second not in (None, 1.0):
             block[:, header.time_column] *= header.second
         spool.append(block)

@@ -27,7 +27,7 @@ def dates(path: Path, texts: Sequence[str]) -> "np.ndarray[tuple[int], np.dtype[
     RecordingError
         If a text is no date.
     """
-    found = []
+    iso_texts = []
     for text in texts:
         dotted = _DOTTED.fullmatch(text)
         if dotted is not None:
@@ -37,14 +37,14 @@ def dates(path: Path, texts: Sequence[str]) -> "np.ndarray[tuple[int], np.dtype[
                 f'{path}: expected dates such as 2026-11-21T12:00:00.5 or 21.11.2026 12:00:00, found "{text[:40]}".'
             )
         head = text[:10].replace("/", "-")
-        found.append(head + _ZONE.sub("", text[10:]).replace(",", ".").replace(" ", "T"))
+        iso_texts.append(head + _ZONE.sub("", text[10:]).replace(",", ".").replace(" ", "T"))
     try:
-        return np.array(found, dtype="datetime64[us]")
+        return np.array(iso_texts, dtype="datetime64[us]")
     except ValueError as error:
         raise RecordingError(f"{path}: expected dates that the calendar has, found {str(error)[:80]}.") from None
 
 
-def seconds_from(first: np.datetime64, found: "np.ndarray[tuple[int], np.dtype[np.datetime64]]") -> FloatArray:
+def seconds_from(first: np.datetime64, times: "np.ndarray[tuple[int], np.dtype[np.datetime64]]") -> FloatArray:
     """Return seconds since a first date, shape as the dates."""
-    passed: FloatArray = (found - first) / np.timedelta64(1, "us") * 1e-6
+    passed: FloatArray = (times - first) / np.timedelta64(1, "us") * 1e-6
     return passed

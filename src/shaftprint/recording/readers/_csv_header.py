@@ -85,9 +85,9 @@ def read_header(
         If a name is missing or comes twice, there are no titles or no times, or delimiter or decimal sign could be
         read in two ways.
     """
-    given = [] if columns is None else [title.strip() for title in columns.split(",")]
-    delimiter, first = _layout(path, lines, delimiter, len(given))
-    titles, units = (given, []) if given else _titles(lines, first, delimiter)
+    hinted = [] if columns is None else [title.strip() for title in columns.split(",")]
+    delimiter, first = _layout(path, lines, delimiter, len(hinted))
+    titles, units = (hinted, []) if hinted else _titles(lines, first, delimiter)
     names, units = _named(path, first, titles, units)
     rows = lines[first:]
     where = f"{path}, line {max(first, 1)}"
@@ -129,10 +129,10 @@ def _layout(path: Path, lines: Sequence[str], delimiter: str | None, width: int)
         raise RecordingError(f"{path}: expected a row of {width} columns, as the hint columns says, found none.")
     untitled = [candidate for candidate, first in places.items() if first == 0]
     if untitled:
-        found = len(_fields(lines[0], untitled[0]))
+        width_of_row = len(_fields(lines[0], untitled[0]))
         raise RecordingError(
-            f'{path}, line 1: expected titles such as "time [s];M_s [N m]" above {found} columns of numbers, found '
-            "none; pass columns= (--columns of shaftprint convert), such as time,u,y."
+            f'{path}, line 1: expected titles such as "time [s];M_s [N m]" above {width_of_row} columns of numbers, '
+            "found none; pass columns= (--columns of shaftprint convert), such as time,u,y."
         )
     title = lines[0] if lines else ""
     marks = [mark for mark in _MARKS if mark in title]
@@ -147,13 +147,13 @@ def _layout(path: Path, lines: Sequence[str], delimiter: str | None, width: int)
 
 def _first_row(lines: Sequence[str], delimiter: str, width: int = 0) -> int | None:
     """Return the place of the first row of numbers, ``width`` or else at least two, that has a row like it below."""
-    for place, line in enumerate(lines):
+    for row, line in enumerate(lines):
         fields = _fields(line, delimiter)
         if (len(fields) != width if width else len(fields) < 2) or not _is_row(fields):
             continue
-        below = next((line for line in lines[place + 1 :] if line.strip()), None)
+        below = next((line for line in lines[row + 1 :] if line.strip()), None)
         if below is None or _is_row(_fields(below, delimiter)):
-            return place
+            return row
     return None
 
 
@@ -170,7 +170,7 @@ def _time(
     where: str, rows: Sequence[str], delimiter: str, names: Sequence[str], units: Sequence[str]
 ) -> tuple[int | None, float | None]:
     """Return which column holds the times, and how many seconds its unit has, None for dates."""
-    time = next((place for place, name in enumerate(names) if name.lower() in _TIMES), None)
+    time = next((column for column, name in enumerate(names) if name.lower() in _TIMES), None)
     if time is None:
         return None, None
     first = _fields(rows[0], delimiter) if rows else []
@@ -188,7 +188,7 @@ def _titles(lines: Sequence[str], first: int, delimiter: str) -> tuple[list[str]
     below = _title_fields(lines[first - 1], delimiter, width) if lines else [""]
     if first >= 2:
         above = _title_fields(lines[first - 2], delimiter, width)
-        time = next((place for place, name in enumerate(above) if name.lower() in _TIMES), None)
+        time = next((column for column, name in enumerate(above) if name.lower() in _TIMES), None)
         if time is not None and len(above) == len(below):
             units = [field.strip("[]() ") for field in below]
             if seconds_in(units[time]) is not None or units[time] in ("", "-"):
@@ -209,26 +209,26 @@ def _title_fields(line: str, delimiter: str, width: int) -> list[str]:
 
 def _named(path: Path, first: int, titles: Sequence[str], units: Sequence[str]) -> tuple[list[str], list[str]]:
     """Return names and units, taken apart where a title has both."""
-    names, found = [], []
-    for place, title in enumerate(titles):
+    names, parsed_units = [], []
+    for column, title in enumerate(titles):
         match = None if units else _COLUMN.fullmatch(title)
         name = match["name"].strip() if match else title
         if not name:
             raise RecordingError(f'{path}, line {max(first, 1)}: expected titles like "M_s [V]", found "{title[:80]}".')
         names.append(name.replace("/", "|") if name.lower() not in _TIMES else name)
-        found.append(plain_unit(match["unit"] if match else units[place] if units else ""))
+        parsed_units.append(plain_unit(match["unit"] if match else units[column] if units else ""))
     twice = sorted({name for name in names if names.count(name) > 1})
     if twice:
         raise RecordingError(
             f"{path}, line {max(first, 1)}: expected different names, found {', '.join(twice)[:200]} twice."
         )
-    return names, found
+    return names, parsed_units
 
 
 def _decimal(path: Path, rows: Sequence[str], delimiter: str, dates: int | None) -> str:
     if delimiter == ",":
         return "."
-    fields = [field for row in rows for place, field in enumerate(_fields(row, delimiter)) if place != dates]
+    fields = [field for row in rows for column, field in enumerate(_fields(row, delimiter)) if column != dates]
     commas = any("," in field for field in fields)
     points = any("." in field for field in fields)
     if commas and points:

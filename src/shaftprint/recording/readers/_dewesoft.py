@@ -64,8 +64,8 @@ def _unpack(path: Path, folder: Path) -> Any:
     program = [sys.executable, "-m", "shaftprint.recording.readers._dewesoft_unpack", str(path.resolve()), str(folder)]
     done = subprocess.run(program, capture_output=True, text=True, errors="replace", check=False)  # noqa: S603
     if done.returncode != 0:
-        said = [line.strip() for line in done.stderr.splitlines() if line.strip()]
-        reason = said[-1] if said else f"its library ended with code {done.returncode}"
+        messages = [line.strip() for line in done.stderr.splitlines() if line.strip()]
+        reason = messages[-1] if messages else f"its library ended with code {done.returncode}"
         raise RecordingError(
             f"{path}: expected a whole {NAME} file, found one that Dewesoft's library refuses ({reason[:200]}); open "
             "it in Dewesoft X, or export it there as MATLAB or CSV."

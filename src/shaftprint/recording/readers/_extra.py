@@ -27,7 +27,7 @@ def library(path: Path, package: str, what: str) -> Any:
         If it is not installed, or does not run on this computer.
     """
     try:
-        found = importlib.import_module(package)
+        module = importlib.import_module(package)
     except ImportError:
         raise _absent(path, package, what) from None
     except (OSError, NotImplementedError) as error:
@@ -36,7 +36,7 @@ def library(path: Path, package: str, what: str) -> Any:
     for name in list(logging.root.manager.loggerDict):
         if name.partition(".")[0] == package:
             logging.getLogger(name).setLevel(logging.CRITICAL)
-    return found
+    return module
 
 
 def expect_library(path: Path, package: str, what: str) -> None:

@@ -99,13 +99,13 @@ def unique_names(named: "list[tuple[str, str]]") -> list[str]:
         Group and name of every channel.
     """
     plain = [printable(name.replace("/", "|")) or "unnamed" for _, name in named]
-    found: list[str] = []
+    names_so_far: list[str] = []
     for (group, _), name in zip(named, plain, strict=True):
         candidate = name if plain.count(name) == 1 else f"{printable(group.replace('/', '|'))}.{name}"
         number = 2
         unique = candidate
-        while unique in found:
+        while unique in names_so_far:
             unique = f"{candidate} ({number})"
             number += 1
-        found.append(unique)
-    return found
+        names_so_far.append(unique)
+    return names_so_far

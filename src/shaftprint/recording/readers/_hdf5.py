@@ -75,8 +75,8 @@ def _walk(
                 vectors.append(_vector(path, item, key, name, opened))
             elif item.ndim == 2 and 1 < item.shape[1] <= _MOST_COLUMNS < item.shape[0]:
                 vectors += [
-                    _vector(path, item, f"{key} column {place + 1}", name, opened, place)
-                    for place in range(item.shape[1])
+                    _vector(path, item, f"{key} column {column + 1}", name, opened, column)
+                    for column in range(item.shape[1])
                 ]
 
 

@@ -53,12 +53,12 @@ def open_hdf5(path: Path, what: str, *, is_whole: bool = False) -> Any:
     return file
 
 
-def _expect_nothing_outside(path: Path, found: str) -> None:
+def _expect_nothing_outside(path: Path, reference: str) -> None:
     """Refuse a file that leads to others: these may be any of the user's, and the SHA-256 does not cover them."""
-    if found:
+    if reference:
         raise RecordingError(
-            f"{path}: expected one file that holds all its samples, found that {found}. Other files are not opened, "
-            "since the SHA-256 of the recording does not cover them; copy the data into one file (h5repack -l CONTI, "
+            f"{path}: expected one file that holds all its samples, found that {reference}. Other files are not "
+            "opened, since the SHA-256 of the recording does not cover them; copy the data into one file (h5repack -l CONTI, "
             "for links h5copy -f ext)."
         )
 
@@ -73,8 +73,8 @@ def expect_storage(path: Path, name: str, dataset: Any) -> None:
     RecordingError
         If it does.
     """
-    found = stored_outside(dataset.id)
-    _expect_nothing_outside(path, f"{name} is {found}" if found else "")
+    outside = stored_outside(dataset.id)
+    _expect_nothing_outside(path, f"{name} is {outside}" if outside else "")
     sample_bytes = dataset.dtype.itemsize
     # up to 64 kB may lie in the header, and count as stored in no block
     stored = int(dataset.id.get_storage_size()) + 64

@@ -23,9 +23,9 @@ def outside_of(file: Any, *, watch: Callable[[], None] = lambda: None) -> str:
     watch
         Is called before each object.
     """
-    groups, known = [("", file.id)], set[int]()
+    groups, visited = [("", file.id)], set[int]()
     while groups:
-        place, group = groups.pop()
+        parent, group = groups.pop()
         names: list[bytes] = []
         try:
             group.links.iterate(names.append)
@@ -33,14 +33,14 @@ def outside_of(file: Any, *, watch: Callable[[], None] = lambda: None) -> str:
             continue
         for name in names:
             watch()
-            where = f"{place}/{name.decode('utf-8', 'replace')}"
+            where = f"{parent}/{name.decode('utf-8', 'replace')}"
             try:
-                found, inner = _look_at(group, name, known)
+                reference, inner = _look_at(group, name, visited)
             except (OSError, RuntimeError, KeyError, ValueError):
                 # what cannot be opened here cannot be read either; the reader says so
                 continue
-            if found:
-                return f"{where} is {found}"
+            if reference:
+                return f"{where} is {reference}"
             if inner is not None:
                 groups.append((where, inner))
     return ""
@@ -63,7 +63,7 @@ def stored_outside(dataset: Any) -> str:
     return ""
 
 
-def _look_at(group: Any, name: bytes, known: set[int]) -> tuple[str, Any]:
+def _look_at(group: Any, name: bytes, visited: set[int]) -> tuple[str, Any]:
     """Return what lies outside, and the group to look into where there is one that was not met yet."""
     kind = group.links.get_info(name).type
     if kind == h5py.h5l.TYPE_EXTERNAL:
@@ -77,7 +77,7 @@ def _look_at(group: Any, name: bytes, known: set[int]) -> tuple[str, Any]:
     if isinstance(item, h5py.h5d.DatasetID):
         return stored_outside(item), None
     address = h5py.h5o.get_info(item).addr
-    if not isinstance(item, h5py.h5g.GroupID) or address in known:
+    if not isinstance(item, h5py.h5g.GroupID) or address in visited:
         return "", None
-    known.add(address)
+    visited.add(address)
     return "", item

@@ -9,7 +9,7 @@ from typing import cast
 from shaftprint.errors import RecordingError
 
 
-def expect_hints(path: Path, hints: Mapping[str, object], known: Mapping[str, type | tuple[type, ...]]) -> None:
+def expect_hints(path: Path, hints: Mapping[str, object], accepted: Mapping[str, type | tuple[type, ...]]) -> None:
     """Refuse hints that a reader does not know or that are of the wrong type.
 
     Raises
@@ -18,9 +18,9 @@ def expect_hints(path: Path, hints: Mapping[str, object], known: Mapping[str, ty
         If a hint is unknown or of the wrong type.
     """
     for name, value in hints.items():
-        if name not in known:
-            raise RecordingError(f"{path}: expected {_listed(known)} for this format, found the hint {name}.")
-        if not isinstance(value, known[name]) or isinstance(value, bool):
+        if name not in accepted:
+            raise RecordingError(f"{path}: expected {_listed(accepted)} for this format, found the hint {name}.")
+        if not isinstance(value, accepted[name]) or isinstance(value, bool):
             raise RecordingError(f"{path}: the hint {name} cannot be {value!r}.")
 
 
@@ -43,5 +43,5 @@ def rate_hint(
     return rate
 
 
-def _listed(known: Mapping[str, object]) -> str:
-    return f"only the hints {', '.join(known)}" if known else "no hints"
+def _listed(accepted: Mapping[str, object]) -> str:
+    return f"only the hints {', '.join(accepted)}" if accepted else "no hints"

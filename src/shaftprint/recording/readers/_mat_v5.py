@@ -109,8 +109,8 @@ def _headers(path: Path) -> Iterable[MatHeader]:
     if begin.endswith(_MARKS):
         return headers_of(path)
     # version 4 knows no objects, at which SciPy's list would stop
-    found = scipy.io.whosmat(path)
-    return [MatHeader(name=name, kind=kind, shape=shape, is_object=False) for name, shape, kind in found]
+    variables = scipy.io.whosmat(path)
+    return [MatHeader(name=name, kind=kind, shape=shape, is_object=False) for name, shape, kind in variables]
 
 
 def _keep(name: str, group: str, value: Any, spool: Spool, variables: MatVariables) -> None:

@@ -78,37 +78,37 @@ def _begin_of(file: BinaryIO, is_packed: bool, length: int) -> bytes:
 
 
 def _header(content: bytes, order: str) -> MatHeader:
-    (flags, _), place = struct.unpack_from(f"{order}2I", content, 8), 16
+    (flags, _), offset = struct.unpack_from(f"{order}2I", content, 8), 16
     number, is_logical = flags & 0xFF, bool(flags & _LOGICAL)
     kind = _CLASSES.get(number, "object")
     if number == _OPAQUE:
-        (name, _, kind), _ = _texts(content, place, order, 3)
+        (name, _, kind), _ = _texts(content, offset, order, 3)
         return MatHeader(name=name, kind=kind, shape=(), is_object=True)
-    sizes, place = _element(content, place, order)
+    sizes, offset = _element(content, offset, order)
     shape = struct.unpack(f"{order}{len(sizes) // 4}i", sizes)
     if min(shape, default=0) < 0:
         raise ValueError(f"expected sizes that are not negative, found {shape[:3]}")
-    (name,), place = _texts(content, place, order, 1)
+    (name,), offset = _texts(content, offset, order, 1)
     is_object = kind in ("object", "function")
     if number == 3:
-        (kind,), _ = _texts(content, place, order, 1)
+        (kind,), _ = _texts(content, offset, order, 1)
     return MatHeader(name=name, kind="logical" if is_logical else kind, shape=shape, is_object=is_object)
 
 
-def _texts(content: bytes, place: int, order: str, count: int) -> tuple[list[str], int]:
-    found = []
+def _texts(content: bytes, offset: int, order: str, count: int) -> tuple[list[str], int]:
+    texts = []
     for _ in range(count):
-        data, place = _element(content, place, order)
-        found.append(data.decode("utf-8", "replace"))
-    return found, place
+        data, offset = _element(content, offset, order)
+        texts.append(data.decode("utf-8", "replace"))
+    return texts, offset
 
 
-def _element(content: bytes, place: int, order: str) -> tuple[bytes, int]:
+def _element(content: bytes, offset: int, order: str) -> tuple[bytes, int]:
     """Return the data of one element and where the next begins; up to four bytes stand within the tag."""
-    (first,) = struct.unpack_from(f"{order}I", content, place)
+    (first,) = struct.unpack_from(f"{order}I", content, offset)
     if first >> 16:
-        return content[place + 4 : place + 4 + min(first >> 16, 4)], place + 8
-    (length,) = struct.unpack_from(f"{order}I", content, place + 4)
-    if place + 8 + length > len(content):
+        return content[offset + 4 : offset + 4 + min(first >> 16, 4)], offset + 8
+    (length,) = struct.unpack_from(f"{order}I", content, offset + 4)
+    if offset + 8 + length > len(content):
         raise ValueError(f"expected a header of at most {_HEADER_BYTES} bytes")
-    return content[place + 8 : place + 8 + length], place + 8 + (length + 7) // 8 * 8
+    return content[offset + 8 : offset + 8 + length], offset + 8 + (length + 7) // 8 * 8

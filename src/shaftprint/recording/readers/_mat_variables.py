@@ -34,20 +34,20 @@ def object_reason(name: str, kind: str) -> str:
     kind
         Its class, where the file says it, else ``object``.
     """
-    told = f"expected numbers, found a MATLAB {kind}, which only MATLAB can open"
+    reason = f"expected numbers, found a MATLAB {kind}, which only MATLAB can open"
     match kind:
         case "string":
-            return f"{told}; in MATLAB: {name} = char({name})."
+            return f"{reason}; in MATLAB: {name} = char({name})."
         case "datetime":
-            return f"{told}; in MATLAB: {name} = posixtime({name})."
+            return f"{reason}; in MATLAB: {name} = posixtime({name})."
         case "duration":
-            return f"{told}; in MATLAB: {name} = seconds({name})."
+            return f"{reason}; in MATLAB: {name} = seconds({name})."
         case "timeseries":
-            return f"{told}; in MATLAB: {name} = struct('t', {name}.Time, 'value', {name}.Data)."
+            return f"{reason}; in MATLAB: {name} = struct('t', {name}.Time, 'value', {name}.Data)."
         case "function" | "function_handle" | "inline":
-            return f"{told}."
+            return f"{reason}."
     return (
-        f"{told}; for a timetable, in MATLAB: "
+        f"{reason}; for a timetable, in MATLAB: "
         f"s = struct('t', seconds({name}.Properties.RowTimes - {name}.Properties.RowTimes(1))); "
         f"for v = string({name}.Properties.VariableNames), s.(v) = {name}.(v); end; save('plain.mat', '-struct', 's')."
     )

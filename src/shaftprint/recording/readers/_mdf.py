@@ -67,8 +67,8 @@ def read(path: Path, **hints: object) -> Recording:
         with told_as_damage(path, NAME):
             gathered = _gather(path, file, opened, rate)
             began = file.start_time
-            known = isinstance(began, datetime) and began.year > 1970
-            return gathered.recording(f"{NAME} {file.version}", opened.close, began if known else None)
+            is_dated = isinstance(began, datetime) and began.year > 1970
+            return gathered.recording(f"{NAME} {file.version}", opened.close, began if is_dated else None)
     except BaseException:
         opened.close()
         raise
@@ -105,8 +105,8 @@ def _gather(path: Path, file: Any, opened: Opened, rate_hz: float | None) -> Gat
     gathered = Gathered(path=path)
     places = [
         (group, index)
-        for group, found in enumerate(file.groups)
-        for index, channel in enumerate(found.channels)
+        for group, channel_group in enumerate(file.groups)
+        for index, channel in enumerate(channel_group.channels)
         if file.masters_db.get(group) != index and int(channel.channel_type) not in _MASTERS
     ]
     names = unique_names([(f"group {group}", file.groups[group].channels[index].name) for group, index in places])

@@ -48,11 +48,11 @@ class Records:
         pieces = self._pieces(group, start, stop)
         if pieces is None:
             return self._get(group, index, raw=raw, record_offset=start, record_count=stop - start)
-        found = [self._get(group, index, raw=raw, data=piece) for piece in pieces]
-        if len(found) == 1:
-            return found[0]
-        invalid = None if any(item[1] is None for item in found) else np.concatenate([item[1] for item in found])
-        return np.concatenate([item[0] for item in found]), invalid
+        parts = [self._get(group, index, raw=raw, data=piece) for piece in pieces]
+        if len(parts) == 1:
+            return parts[0]
+        invalid = None if any(item[1] is None for item in parts) else np.concatenate([item[1] for item in parts])
+        return np.concatenate([item[0] for item in parts]), invalid
 
     def _pieces(self, group: int, start: int, stop: int) -> list[Any] | None:
         """Return the records [start, stop) of a group as the library wants them back; None where they are not kept."""
@@ -60,19 +60,19 @@ class Records:
         width = int(described.samples_byte_nr) + int(getattr(described, "invalidation_bytes_nr", 0))
         if str(self._file.version) < "4" or (stop - start) * width > _MOST_BYTES:
             return None
-        place = (group, start, stop)
-        if place not in self._kept:
+        key = (group, start, stop)
+        if key not in self._kept:
             while len(self._kept) >= _MOST_KEPT:
                 del self._kept[next(iter(self._kept))]
             # the library offers no public way to read records without taking a channel out of them
             load = self._file._mdf._load_data
-            found = load(self._file.groups[group], record_offset=start, record_count=stop - start)
-            self._kept[place] = list(found)
-        return self._kept[place] or None
+            loaded = load(self._file.groups[group], record_offset=start, record_count=stop - start)
+            self._kept[key] = list(loaded)
+        return self._kept[key] or None
 
     def _get(self, group: int, index: int, **where: Any) -> tuple[NDArray[Any], Any]:
-        found = self._file.get(group=group, index=index, samples_only=True, ignore_invalidation_bits=True, **where)
-        return np.asarray(found[0]), found[1]
+        samples = self._file.get(group=group, index=index, samples_only=True, ignore_invalidation_bits=True, **where)
+        return np.asarray(samples[0]), samples[1]
 
 
 def expect_in_record(path: Path, name: str, described: Any, channel: Any) -> None:

@@ -42,11 +42,11 @@ def read(path: Path, **hints: object) -> Recording:
         If the file is damaged, of a later version, or lacks an attribute.
     """
     expect_hints(path, hints, {})
-    known = hashed(path)
-    file = open_hdf5(path, NAME, is_whole=known.is_sealed)
+    content = hashed(path)
+    file = open_hdf5(path, NAME, is_whole=content.is_sealed)
     try:
         with told_as_damage(path, NAME):
-            return _recording(path, file, known.sha256)
+            return _recording(path, file, content.sha256)
     except BaseException:
         file.close()
         raise
@@ -79,9 +79,9 @@ def _recording(path: Path, file: Any, sha256: str) -> Recording:
 
 def _facts(attributes: Any) -> dict[str, str | float]:
     """Return the texts and numbers that stand beside the container's own attributes; other tools may add lists."""
-    found = {name: attributes[name] for name in attributes if name not in OWN}
-    texts = {name: value for name, value in found.items() if isinstance(value, str)}
-    numbers = {name: float(value) for name, value in found.items() if isinstance(value, np.number | int | float)}
+    facts = {name: attributes[name] for name in attributes if name not in OWN}
+    texts = {name: value for name, value in facts.items() if isinstance(value, str)}
+    numbers = {name: float(value) for name, value in facts.items() if isinstance(value, np.number | int | float)}
     return texts | numbers
 
 

@@ -32,25 +32,25 @@ def read_outside(path: Path, **hints: object) -> Recording | None:
     """
     for name, function in _functions():
         try:
-            found = function(path, **hints)
+            recording = function(path, **hints)
         except RecordingError:
             raise
         except Exception as error:
             raise RecordingError(f"{path}: the reader {name} of another package failed ({error!r}).") from error
-        if found is not None:
-            return found
+        if recording is not None:
+            return recording
     return None
 
 
 @cache
 def _functions() -> Sequence[tuple[str, ReaderFunction]]:
-    found = []
+    functions = []
     for point in sorted(entry_points(group=GROUP), key=lambda point: point.name):
         try:
-            found.append((point.name, point.load()))
+            functions.append((point.name, point.load()))
         except Exception as error:
             raise RecordingError(
                 f"the reader {point.name} ({point.value}) of another package cannot be loaded ({error!r}); mend or "
                 "uninstall that package."
             ) from error
-    return tuple(found)
+    return tuple(functions)

@@ -62,11 +62,11 @@ def read(path: Path, **hints: object) -> Recording:
 
 def _gather(path: Path, file: Any, opened: Opened, rate_hz: float | None) -> Gathered:
     gathered = Gathered(path=path)
-    found = [channel for group in file.groups() for channel in group.channels()]
-    names = unique_names([(channel.group_name, channel.name) for channel in found])
-    began = _earliest(found)
+    channels = [channel for group in file.groups() for channel in group.channels()]
+    names = unique_names([(channel.group_name, channel.name) for channel in channels])
+    began = _earliest(channels)
     clocks = {group.name: _time_channel(group) for group in file.groups()}
-    for channel, name in zip(found, names, strict=True):
+    for channel, name in zip(channels, names, strict=True):
         if channel is clocks[channel.group_name]:
             continue
 
@@ -90,7 +90,7 @@ def _channel(path: Path, name: str, channel: Any, clock: Clock, opened: Opened) 
                 raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are missing; is the file cut?")
             return np.ascontiguousarray(values, dtype=np.int16 if is_counts else np.float64)
 
-    found = Channel(
+    unclocked = Channel(
         name=name,
         unit=plain_unit(_unit(channel.properties)),
         rate_hz=clock.rate_hz,
@@ -99,7 +99,7 @@ def _channel(path: Path, name: str, channel: Any, clock: Clock, opened: Opened) 
         source=source,
         long_name=str(channel.properties.get("description", "")),
     )
-    return on_clock(found, clock)
+    return on_clock(unclocked, clock)
 
 
 def _expect_samples(path: Path, name: str, channel: Any) -> None:
@@ -117,9 +117,9 @@ def _clock(path: Path, channel: Any, time: Any, rate_hz: float | None, began: np
     increment = channel.properties.get("wf_increment")
     if isinstance(increment, int | float) and np.isfinite(increment) and increment > 0.0:
         start = float(channel.properties.get("wf_start_offset", 0.0))
-        own = channel.properties.get("wf_start_time")
-        if isinstance(own, np.datetime64) and began is not None and own > _NO_DATE:
-            start += float((own - began) / np.timedelta64(1, "us")) * 1e-6
+        start_time = channel.properties.get("wf_start_time")
+        if isinstance(start_time, np.datetime64) and began is not None and start_time > _NO_DATE:
+            start += float((start_time - began) / np.timedelta64(1, "us")) * 1e-6
         return Clock(rate_hz=float(f"{1.0 / increment:.12g}"), start_s=start)
     if time is not None and len(time) == len(channel):
         clock = uniform_clock(path, f"channel {time.name}", len(time), lambda start, stop: _times(time, start, stop))
@@ -169,5 +169,5 @@ def _began(file: Any) -> datetime | None:
     start = _earliest([channel for group in file.groups() for channel in group.channels()])
     if start is None:
         return None
-    found = start.astype("datetime64[us]").item()
-    return found.replace(tzinfo=UTC) if isinstance(found, datetime) else None
+    date = start.astype("datetime64[us]").item()
+    return date.replace(tzinfo=UTC) if isinstance(date, datetime) else None

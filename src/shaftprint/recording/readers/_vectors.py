@@ -78,8 +78,8 @@ def gather_vectors(
     """
     gathered = Gathered(path=path, left_out=dict(left_out or {}))
     axes = {vector.axis for vector in vectors if vector.axis}
-    found = [vector for vector in vectors if not _is_time(vector) and vector.name not in axes]
-    names = unique_names([(vector.group, vector.name) for vector in found])
+    signals = [vector for vector in vectors if not _is_time(vector) and vector.name not in axes]
+    names = unique_names([(vector.group, vector.name) for vector in signals])
     clocks: dict[tuple[str, str], Clock] = {}
 
     def make(vector: Vector, name: str) -> Channel:
@@ -97,7 +97,7 @@ def gather_vectors(
         )
         return on_clock(channel, clock)
 
-    for vector, name in zip(found, names, strict=True):
+    for vector, name in zip(signals, names, strict=True):
         gathered.add(name, partial(make, vector, name))
     return gathered
 
@@ -112,22 +112,22 @@ def _clock(
     vectors: Sequence[Vector],
     scalars: Mapping[str, Scalars],
     hint_hz: float | None,
-    known: dict[tuple[str, str], Clock],
+    clocks: dict[tuple[str, str], Clock],
 ) -> Clock:
     """Take the clock from the nearest place that says one, and refuse places that disagree."""
     rates: dict[str, float] = {}
     starts: list[float] = []
     time = _time_of(path, vector, vectors)
     if time is not None:
-        place = (time.group, time.name)
-        if place not in known:
-            known[place] = _clock_of_times(path, time)
-        rates[time.name], starts = known[place].rate_hz, [known[place].start_s]
-    own = {key.lower(): value for key, value in vector.attributes.items() if isinstance(value, int | float)}
-    for source in (own, scalars.get(vector.group, {}), scalars.get("", {})):
-        said = _said(path, source)
-        if said and (not rates or set(rates) == {getattr(time, "name", "")}):
-            rates |= said
+        clock_key = (time.group, time.name)
+        if clock_key not in clocks:
+            clocks[clock_key] = _clock_of_times(path, time)
+        rates[time.name], starts = clocks[clock_key].rate_hz, [clocks[clock_key].start_s]
+    attributes = {key.lower(): value for key, value in vector.attributes.items() if isinstance(value, int | float)}
+    for source in (attributes, scalars.get(vector.group, {}), scalars.get("", {})):
+        stated = _said(path, source)
+        if stated and (not rates or set(rates) == {getattr(time, "name", "")}):
+            rates |= stated
             starts += [float(source[key]) for key in _STARTS if key in source]
     if hint_hz is not None:
         rates["the hint sample_rate_hz"] = hint_hz
@@ -141,7 +141,7 @@ def _clock(
         listed = ", ".join(f"{name} {value:g} Hz" for name, value in rates.items())
         raise RecordingError(f"{path}: expected one sample rate, found {listed}.")
     starts += [float(group[key]) for group in (scalars.get("", {}),) for key in _STARTS if key in group]
-    holes = () if time is None else known[(time.group, time.name)].holes
+    holes = () if time is None else clocks[(time.group, time.name)].holes
     return Clock(rate_hz=rate, start_s=starts[0] if starts else 0.0, holes=holes)
 
 
@@ -164,11 +164,13 @@ def _time_of(path: Path, vector: Vector, vectors: Sequence[Vector]) -> Vector | 
                 return other
         return None
     for names in ((f"{vector.name}_time".lower(),), TIME_NAMES):
-        found = [other for other in _nearest(vector, vectors, names) if other.count == vector.count]
-        if len(found) > 1:
-            raise RecordingError(f"{path}: expected one of {' or '.join(other.name for other in found)}, found both.")
-        if found:
-            return found[0]
+        candidates = [other for other in _nearest(vector, vectors, names) if other.count == vector.count]
+        if len(candidates) > 1:
+            raise RecordingError(
+                f"{path}: expected one of {' or '.join(other.name for other in candidates)}, found both."
+            )
+        if candidates:
+            return candidates[0]
     return None
 
 
@@ -177,9 +179,9 @@ def _nearest(vector: Vector, vectors: Iterable[Vector], names: Sequence[str]) ->
     named = [other for other in vectors if other.name.lower() in names]
     parts = vector.group.split("/")
     for length in range(len(parts), -1, -1):
-        found = [other for other in named if other.group == "/".join(parts[:length])]
-        if found:
-            return found
+        nearest = [other for other in named if other.group == "/".join(parts[:length])]
+        if nearest:
+            return nearest
     return []
 
 

@@ -34,16 +34,16 @@ def write_mat_v5(path: str | Path, channels: Iterable[Channel], *, overwrite: bo
         written.
     """
     path = Path(path)
-    found = on_one_clock(path, channels)
-    expect_matlab_names(path, (channel.name for channel in found))
-    if 8 * found[0].count >= _LARGEST_BYTES:
+    written = on_one_clock(path, channels)
+    expect_matlab_names(path, (channel.name for channel in written))
+    if 8 * written[0].count >= _LARGEST_BYTES:
         raise RecordingError(
-            f"{path}: expected vectors below 2 GiB for this version, found {found[0].count} samples; use v7.3."
+            f"{path}: expected vectors below 2 GiB for this version, found {written[0].count} samples; use v7.3."
         )
     try:
         with written_whole(path, overwrite=overwrite) as part, part.open("wb") as file:
-            _append(file, {"sample_rate_hz": found[0].rate_hz, "start_s": found[0].start_s})
-            for channel in found:
+            _append(file, {"sample_rate_hz": written[0].rate_hz, "start_s": written[0].start_s})
+            for channel in written:
                 values = channel.values(0, channel.count)
                 _append(file, {channel.name: values, f"{channel.name}_unit": channel.unit})
     except OSError as error:

@@ -41,15 +41,15 @@ def write_mat_v73(path: str | Path, channels: Iterable[Channel], *, overwrite: b
         If the clocks differ, a name is no MATLAB name, or the file cannot be written.
     """
     path = Path(path)
-    found = on_one_clock(path, channels)
-    expect_matlab_names(path, (channel.name for channel in found))
+    written = on_one_clock(path, channels)
+    expect_matlab_names(path, (channel.name for channel in written))
     try:
         with written_whole(path, overwrite=overwrite) as part:
             with contextlib.closing(Hdf5Output(part, userblock_size=_USERBLOCK_BYTES)) as output:
                 with output.calls():
-                    _write_scalar(output.file, "sample_rate_hz", found[0].rate_hz)
-                    _write_scalar(output.file, "start_s", found[0].start_s)
-                for channel in found:
+                    _write_scalar(output.file, "sample_rate_hz", written[0].rate_hz)
+                    _write_scalar(output.file, "start_s", written[0].start_s)
+                for channel in written:
                     _write_vector(output, channel)
                     with output.calls():
                         _write_text(output.file, f"{channel.name}_unit", channel.unit)

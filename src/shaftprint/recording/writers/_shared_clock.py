@@ -15,13 +15,15 @@ def on_one_clock(path: Path, channels: Iterable[Channel]) -> tuple[Channel, ...]
     RecordingError
         If there is no channel or their clocks differ.
     """
-    found = tuple(channels)
-    if not found:
+    shared = tuple(channels)
+    if not shared:
         raise RecordingError(f"{path}: expected at least one channel to write, found none.")
-    clocks = {(channel.rate_hz, channel.start_s, channel.count) for channel in found}
+    clocks = {(channel.rate_hz, channel.start_s, channel.count) for channel in shared}
     if len(clocks) > 1:
-        listed = ", ".join(f"{item.name} ({item.rate_hz:g} Hz from {item.start_s:g} s, {item.count})" for item in found)
+        listed = ", ".join(
+            f"{item.name} ({item.rate_hz:g} Hz from {item.start_s:g} s, {item.count})" for item in shared
+        )
         raise RecordingError(
             f"{path}: expected channels on one clock, found {listed}; write_recording keeps each channel's own."
         )
-    return found
+    return shared

@@ -42,14 +42,14 @@ def write_tdms(path: str | Path, channels: Iterable[Channel], *, overwrite: bool
                 # an empty channel is one segment without samples
                 for start in range(0, max(channel.count, 1), CHUNK_SAMPLES):
                     counts = channel.read(start, min(start + CHUNK_SAMPLES, channel.count))
-                    said = properties if start == 0 else None
-                    writer.write_segment([nptdms.ChannelObject(_GROUP, channel.name, counts, said)])
+                    stated = properties if start == 0 else None
+                    writer.write_segment([nptdms.ChannelObject(_GROUP, channel.name, counts, stated)])
     except OSError as error:
         raise RecordingError(f"{path}: the file cannot be written: {error}") from None
 
 
 def _properties(types: Any, channel: Channel) -> dict[str, object]:
-    found: dict[str, object] = {
+    properties: dict[str, object] = {
         "wf_increment": 1.0 / channel.rate_hz,
         "wf_start_offset": float(channel.start_s),
         "wf_samples": types.Int32(1),
@@ -57,7 +57,7 @@ def _properties(types: Any, channel: Channel) -> dict[str, object]:
         "description": channel.long_name,
     }
     if channel.read(0, 0).dtype == np.int16 and (channel.scale, channel.offset) != (1.0, 0.0):
-        found |= {
+        properties |= {
             "NI_Scaling_Status": "unscaled",
             "NI_Number_Of_Scales": types.Uint32(1),
             "NI_Scale[0]_Scale_Type": "Linear",
@@ -65,4 +65,4 @@ def _properties(types: Any, channel: Channel) -> dict[str, object]:
             "NI_Scale[0]_Linear_Y_Intercept": float(channel.offset),
             "NI_Scale[0]_Linear_Input_Source": types.Uint32(_NO_SCALE_BEFORE),
         }
-    return found
+    return properties
