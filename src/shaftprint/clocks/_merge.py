@@ -156,8 +156,8 @@ def _expect_same(recording: Recording, channel: Channel, first: Channel) -> None
     if channel_format != first_format or abs(channel.rate_hz / first.rate_hz - 1.0) > SAME_RATE:
         raise ClockError(
             f"{recording.path}, channel {channel.name}: expected {first.rate_hz:g} Hz, unit, scale and offset "
-            f"{first_format[:3]} as in the part before it, found {channel.rate_hz:g} Hz and {channel_format[:3]}; these "
-            "parts were not logged alike."
+            f"{first_format[:3]} as in the part before it, found {channel.rate_hz:g} Hz and {channel_format[:3]}; "
+            "these parts were not logged alike."
         )
 
 

@@ -72,9 +72,9 @@ def clock_influences(
 def clock_findings(influences: Sequence[ClockInfluence]) -> tuple[str, ...]:
     """Return a sentence on every clock that is known too badly for the standard deviations of a fit to stand."""
     return tuple(
-        f"The clock of {influence.logger} is known to {MILLI * influence.std_s:.3g} ms only: parameters may be off by up "
-        f"to {influence.shift:.1f} of their standard deviations, which do not include it; merge by a channel that shows "
-        "faster movements, or a longer recording."
+        f"The clock of {influence.logger} is known to {MILLI * influence.std_s:.3g} ms only: parameters may be off by "
+        f"up to {influence.shift:.1f} of their standard deviations, which do not include it; merge by a channel that "
+        "shows faster movements, or a longer recording."
         for influence in influences
         if influence.shift > NOTABLE_SHIFT
     )

@@ -58,8 +58,8 @@ def _expect_nothing_outside(path: Path, reference: str) -> None:
     if reference:
         raise RecordingError(
             f"{path}: expected one file that holds all its samples, found that {reference}. Other files are not "
-            "opened, since the SHA-256 of the recording does not cover them; copy the data into one file (h5repack -l CONTI, "
-            "for links h5copy -f ext)."
+            "opened, since the SHA-256 of the recording does not cover them; copy the data into one file (h5repack "
+            "-l CONTI, for links h5copy -f ext)."
         )
 
 
