@@ -8,6 +8,7 @@ import pytest
 from shaftprint.catalogue import STRUCTURES, structure
 from shaftprint.errors import StructureError
 from shaftprint.models import (
+    AveragingSensor,
     Block,
     Combination,
     Constant,
@@ -21,7 +22,6 @@ from shaftprint.models import (
     SecondOrderLag,
     Sensitivity,
     Shaft,
-    SpeedSensor,
     Structure,
     TorqueBalance,
     feedback,
@@ -268,7 +268,7 @@ def test_loop_through_the_pick_up_loses_phase_to_it():
     """The delay margin of a loop closed through a pick-up is the plain one minus the pick-up's delay."""
     governor = PIGovernor(parameter("K_p"), parameter("K_i")) * Shaft((parameter("tau"),), parameter("k_q"))
     zero = {"T_average": 0.0, "T_hold": 0.0}
-    sensor = SpeedSensor(*(parameter(name, 0.0) for name in ("T_average", "T_hold", "t_pickup")))
+    sensor = AveragingSensor(*(parameter(name, 0.0) for name in ("T_average", "T_hold", "t_pickup")))
     values = {"K_p": 2.0, "K_i": 4.0, "tau": 0.4, "k_q": 2.0}
     plain, late = of(n=feedback(governor)), of(n=feedback(governor, sensor))
     before = margins(plain, plain.vector(values)).delay_margin_s

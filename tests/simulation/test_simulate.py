@@ -6,12 +6,12 @@ import pytest
 from shaftprint.catalogue import limited, structure
 from shaftprint.errors import StructureError
 from shaftprint.models import (
+    AveragingSensor,
     Delay,
     Diagram,
     FirstOrderLag,
     FunctionBlock,
     Parameter,
-    SpeedSensor,
     Structure,
     choose,
     clip,
@@ -55,7 +55,7 @@ def test_pick_up_shows_the_mean_of_its_window():
     average = Parameter("T_average", "s", 0.0, 1.0, 0.4, "window", held=True)
     hold = Parameter("T_hold", "s", 0.0, 1.0, 0.0, "hold", held=True)
     late = Parameter("t_pickup", "s", 0.0, 1.0, 0.5, "delay", held=True)
-    model = Structure(name="pick-up", title="pick-up", input="n", outputs={"n": SpeedSensor(average, hold, late)})
+    model = Structure(name="pick-up", title="pick-up", input="n", outputs={"n": AveragingSensor(average, hold, late)})
     found = simulate(model, model.vector({}), TIME, {"n": 1.0 + TIME**2})
     # mean of t^2 over a window of T about t - d: (t - d)^2 + T^2 / 12; before zero the input stood at 1
     settled = TIME > 1.0

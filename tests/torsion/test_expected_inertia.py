@@ -10,7 +10,7 @@ from shaftprint.identify import priors_from_vessel
 from shaftprint.signals import WorkingPoint
 from shaftprint.torsion import (
     Blades,
-    beside_identified,
+    compare_inertia,
     expected_inertia,
     schwanecke_kg_m2,
     strip_theory_kg_m2,
@@ -170,7 +170,7 @@ def test_rows_that_nobody_judged(tug):
 
 def test_beside_what_a_test_found(expected):
     """The thesis' 0.3897 s is 1.38 deviations above 0.320 s if it is known to 0.04 s; tau_up was told."""
-    rows = beside_identified(
+    rows = compare_inertia(
         expected, {"tau_dn": (0.3897, 0.04), "tau_up": (1.02, 0.02), "K_p": (5.0, 1.0)}, assumed=frozenset({"tau_up"})
     )
     found = {row.expected.name: row for row in rows}

@@ -10,6 +10,7 @@ With ``tau_up = 0`` and no latencies they are those of the thesis.
 
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.models import (
+    AveragingSensor,
     Combination,
     Delay,
     DynamicInflow,
@@ -24,7 +25,6 @@ from shaftprint.models import (
     SecondOrderLag,
     Sensitivity,
     Shaft,
-    SpeedSensor,
     Structure,
     TorqueBalance,
 )
@@ -218,7 +218,7 @@ def _rigid_load() -> Expression:
 
 
 def _speed_sensor() -> Expression:
-    return SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP)
+    return AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP)
 
 
 def _torque_sensor() -> Expression:

@@ -39,6 +39,7 @@ from shaftprint.catalogue._gauge import (
 )
 from shaftprint.errors import StructureError
 from shaftprint.models import (
+    AveragingSensor,
     Delay,
     Diagram,
     FirstOrderLag,
@@ -47,7 +48,6 @@ from shaftprint.models import (
     Gain,
     Number,
     Parameter,
-    SpeedSensor,
     Structure,
     boosted,
     clip,
@@ -114,7 +114,7 @@ def limited(
         title=f"gauge-aware closed loop, quadratic propeller{''.join(f', {limit}' for limit in limits)}",
         input="n_set",
         outputs={
-            "n": demand * ports["n"] * Delay(T_SP) * SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP),
+            "n": demand * ports["n"] * Delay(T_SP) * AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP),
             "M_s": demand * ports["M_s"] * Delay(T_SP) * Delay(T_GAUGE) * FirstOrderLag(T_FILTER),
         },
         combinations=gauge_combinations(),

@@ -29,6 +29,7 @@ from shaftprint.catalogue._gauge import (
 )
 from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
 from shaftprint.models import (
+    AveragingSensor,
     Combination,
     Delay,
     Expression,
@@ -40,7 +41,6 @@ from shaftprint.models import (
     PIGovernor,
     SecondOrderLag,
     Sensitivity,
-    SpeedSensor,
     Structure,
 )
 
@@ -173,7 +173,7 @@ def _set_point() -> Expression:
 
 
 def _speed_sensor() -> Expression:
-    return SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP)
+    return AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP)
 
 
 def _torque_sensor() -> Expression:

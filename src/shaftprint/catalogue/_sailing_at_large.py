@@ -38,6 +38,7 @@ from shaftprint.catalogue._limited import DROOP, LimitedLoop, parameters_of
 from shaftprint.catalogue._sailing import K_Q_HELD, SIGMA, T_LOG, TAU_U, E
 from shaftprint.errors import StructureError
 from shaftprint.models import (
+    AveragingSensor,
     Delay,
     Diagram,
     FirstOrderLag,
@@ -46,7 +47,6 @@ from shaftprint.models import (
     Gain,
     Number,
     Parameter,
-    SpeedSensor,
     Structure,
     as_formula,
     first_order_lag,
@@ -99,7 +99,7 @@ def sailing_at_large(
         title=f"closed loop of a free-sailing ship, {propeller.curve.name}{''.join(f', {limit}' for limit in limits)}",
         input="n_set",
         outputs={
-            "n": demand * ports["n"] * Delay(T_SP) * SpeedSensor(T_AVERAGE, T_HOLD, T_PICKUP),
+            "n": demand * ports["n"] * Delay(T_SP) * AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP),
             "M_s": demand * ports["M_s"] * Delay(T_SP) * Delay(T_GAUGE) * FirstOrderLag(T_FILTER),
             "v_s": demand * ports["v_s"] * Delay(T_SP) * Delay(T_LOG),
         },

@@ -8,7 +8,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.clocks._alignment import Alignment, Stretch
 from shaftprint.clocks._clock_map import ClockMap
 from shaftprint.clocks._coarse import RATE_HZ, coarse_offset
-from shaftprint.clocks._windows import Delay, delays_of
+from shaftprint.clocks._windows import WindowDelay, delays_of
 from shaftprint.errors import ClockError
 from shaftprint.signals import Content
 
@@ -87,14 +87,14 @@ def align(
     )
 
 
-def _stretch(delay: Delay, latency_s: float, *, is_slower: bool) -> Stretch:
+def _stretch(delay: WindowDelay, latency_s: float, *, is_slower: bool) -> Stretch:
     """Return what a delay says on the other clock, which has the slower content or the faster one."""
     if is_slower:
         return Stretch(time_s=delay.time_s, offset_s=delay.delay_s + latency_s, std_s=delay.std_s)
     return Stretch(time_s=delay.time_s + delay.delay_s, offset_s=latency_s - delay.delay_s, std_s=delay.std_s)
 
 
-def _line(delays: Sequence[Delay], drift_std: float, names: str) -> ClockMap:
+def _line(delays: Sequence[WindowDelay], drift_std: float, names: str) -> ClockMap:
     """Return the straight line through the delays that a few wild ones do not move."""
     if not delays:
         raise ClockError(
@@ -119,7 +119,7 @@ def _line(delays: Sequence[Delay], drift_std: float, names: str) -> ClockMap:
     )
 
 
-def _scatter(delays: Sequence[Delay], line: ClockMap) -> float:
+def _scatter(delays: Sequence[WindowDelay], line: ClockMap) -> float:
     """Return the root mean square distance from the line in standard deviations, without the wildest tenth."""
     time_s, delay_s, std_s = _columns(delays)
     away = np.sort(np.abs(delay_s - (line.reference_s(time_s) - time_s)) / std_s)
@@ -139,7 +139,7 @@ def _widened(line: ClockMap, scatter: float) -> ClockMap:
     )
 
 
-def _expect_line(delays: Sequence[Delay], line: ClockMap, names: str) -> None:
+def _expect_line(delays: Sequence[WindowDelay], line: ClockMap, names: str) -> None:
     time_s, delay_s, std_s = _columns(delays)
     away = np.abs(delay_s - (line.reference_s(time_s) - time_s))
     near = away <= np.maximum(NEAR_S, 3.0 * std_s)
@@ -153,7 +153,7 @@ def _expect_line(delays: Sequence[Delay], line: ClockMap, names: str) -> None:
     )
 
 
-def _expect_alike(delays: Sequence[Delay], names: str) -> None:
+def _expect_alike(delays: Sequence[WindowDelay], names: str) -> None:
     """Raise if what moves most is not alike in many stretches: a logger that stopped shows another time there."""
     usual = float(np.median([delay.energy for delay in delays]))
     moving = [delay for delay in delays if delay.energy >= usual]
@@ -167,6 +167,6 @@ def _expect_alike(delays: Sequence[Delay], names: str) -> None:
         )
 
 
-def _columns(delays: Sequence[Delay]) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _columns(delays: Sequence[WindowDelay]) -> tuple[FloatArray, FloatArray, FloatArray]:
     table = np.array([(delay.time_s, delay.delay_s, delay.std_s) for delay in delays])
     return table[:, 0], table[:, 1], table[:, 2]

@@ -29,7 +29,7 @@ MEMORY_S = 5.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Delay:
+class WindowDelay:
     """What one stretch says."""
 
     time_s: float
@@ -49,7 +49,7 @@ class Delay:
         return self.std_s < WORST_STD_S
 
 
-def delays_of(slow: Content, fast: Content, expected: FloatArray, within_s: float) -> list[Delay]:
+def delays_of(slow: Content, fast: Content, expected: FloatArray, within_s: float) -> list[WindowDelay]:
     """Return what every stretch says, in order of time.
 
     Parameters
@@ -74,7 +74,7 @@ def delays_of(slow: Content, fast: Content, expected: FloatArray, within_s: floa
         part = slice(first, first + length)
         left_s, std_s = _left(spline, time_s[part], slow_band[part], within_s)
         delays.append(
-            Delay(
+            WindowDelay(
                 time_s=float(time_s[first] + time_s[first + length - 1]) / 2.0,
                 delay_s=float(expected[first + length // 2]) + left_s,
                 std_s=std_s,

@@ -4,14 +4,14 @@ from typing import TYPE_CHECKING
 
 from shaftprint.catalogue import ShipRole
 from shaftprint.fingerprint._fingerprint import Fingerprint
-from shaftprint.torsion import Beside, ExpectedInertia, beside_identified, expected_inertia
+from shaftprint.torsion import ExpectedInertia, InertiaComparison, compare_inertia, expected_inertia
 from shaftprint.units import rev_s_from_rpm
 
 if TYPE_CHECKING:
     from shaftprint.vessel import Vessel
 
 
-def inertia_beside(fingerprint: Fingerprint, vessel: "Vessel") -> tuple[ExpectedInertia, tuple[Beside, ...]]:
+def inertia_beside(fingerprint: Fingerprint, vessel: "Vessel") -> tuple[ExpectedInertia, tuple[InertiaComparison, ...]]:
     """Return what the inertia table lets expect at the fingerprint's working point, beside what the fingerprint has.
 
     An inertia time of which something was known before the test is not independent of the table, nor is the inertia
@@ -41,4 +41,4 @@ def inertia_beside(fingerprint: Fingerprint, vessel: "Vessel") -> tuple[Expected
                     names[parameter.role].name,
                     *(q.name for q in fingerprint.physical if q.role == parameter.role),
                 }
-    return expected, beside_identified(expected, numbers, assumed=frozenset(assumed))
+    return expected, compare_inertia(expected, numbers, assumed=frozenset(assumed))

@@ -33,7 +33,7 @@ from shaftprint.models._blocks import (
 from shaftprint.models._calculus import derivatives, postorder, rebuilt, replaced
 from shaftprint.models._check import check_structure
 from shaftprint.models._combination import Combination
-from shaftprint.models._delays import Delay, PadeDelay, SpeedSensor, ZeroOrderHold
+from shaftprint.models._delays import AveragingSensor, Delay, PadeDelay, ZeroOrderHold
 from shaftprint.models._diagram import Diagram, Port
 from shaftprint.models._engine_parts import boosted, firing_delay, full_load, quadratic_propeller
 from shaftprint.models._evaluate import Leaves, evaluate
@@ -65,6 +65,7 @@ from shaftprint.models._tie import Tie
 
 __all__ = [
     "Basis",
+    "AveragingSensor",
     "Block",
     "Combination",
     "Computed",
@@ -101,7 +102,6 @@ __all__ = [
     "Sensitivity",
     "Shaft",
     "SmallSignal",
-    "SpeedSensor",
     "Structure",
     "Tabulated",
     "Tie",

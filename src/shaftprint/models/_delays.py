@@ -119,7 +119,7 @@ class ZeroOrderHold(Block):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class SpeedSensor(Block):
+class AveragingSensor(Block):
     """A pulse pick-up: mean over a window, hold until the next pulse, delay of the time stamp.
 
     ``sinhc(s T_average / 2) sinhc(s T_hold / 2) exp(-s t_pickup)`` with ``sinhc(x) = sinh(x) / x``; on the

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
 from shaftprint.models._calculus import depends, derivative, replaced
-from shaftprint.models._delays import Delay, SpeedSensor
+from shaftprint.models._delays import AveragingSensor, Delay
 from shaftprint.models._expression import Constant, Expression, Inverse, Parallel, Sensitivity, Series
 from shaftprint.models._flow import Flow
 from shaftprint.models._formula import Formula, number
@@ -180,9 +180,9 @@ def split_shift(flow: Flow, expression: Expression, signal: Formula) -> tuple[Fo
         end -= 1
     shift = number(0.0)
     undelayed: list[Expression] = []
-    sensors: list[SpeedSensor] = []
+    sensors: list[AveragingSensor] = []
     for part in parts[end:]:
-        if isinstance(part, SpeedSensor):
+        if isinstance(part, AveragingSensor):
             shift = shift + part.lateness(flow)
             sensors.append(part)
         elif isinstance(part, Delay):

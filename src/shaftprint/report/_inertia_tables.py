@@ -9,7 +9,7 @@ from shaftprint.report._symbols import unit_text
 from shaftprint.report._table import Table
 
 if TYPE_CHECKING:
-    from shaftprint.torsion import Beside, ExpectedInertia, ExpectedValue, Modes, TwoMasses
+    from shaftprint.torsion import ExpectedInertia, ExpectedValue, InertiaComparison, Modes, TwoMasses
     from shaftprint.vessel import Vessel
 
 PERCENT = 100.0
@@ -42,7 +42,7 @@ def mass_table(vessel: "Vessel") -> Table:
     )
 
 
-def expected_inertia_table(expected: "ExpectedInertia", beside: "Sequence[Beside]" = ()) -> Table:
+def expected_inertia_table(expected: "ExpectedInertia", beside: "Sequence[InertiaComparison]" = ()) -> Table:
     """Return sums and inertia times by calculation, beside those that a test found where there are such."""
     found = {row.expected.name: row for row in beside}
     header = ("quantity", "calculated ± std", "unit", "meaning")
@@ -132,10 +132,10 @@ def _pair(value: float, std: float) -> str:
     return with_deviation(value, std) if std > 0.0 else rounded(value)
 
 
-def _found(row: "Beside | None") -> tuple[str, str]:
+def _found(row: "InertiaComparison | None") -> tuple[str, str]:
     if row is None:
         return "–", "–"
-    number = with_deviation(row.found, row.found_std)
+    number = with_deviation(row.identified, row.identified_std)
     if not row.independent:
         return number, TOLD
     return number, "–" if math.isnan(row.deviations) else plain(row.deviations, 1)

@@ -8,7 +8,7 @@ each parameter, a block that the compiler can treat as one vector.
 from collections.abc import Iterable, Sequence
 
 from shaftprint.models import Formula, postorder
-from shaftprint.simulation._hoisted import Hoisted, Slopes
+from shaftprint.simulation._hoisted import FormulaSlopes, Hoisted
 from shaftprint.simulation._text import statements
 
 LANES = 8
@@ -156,7 +156,7 @@ class EquationText:
         return f"@INNER\ndef {name}(v):\n{indented(body)}"
 
     def _with_slopes(self, name: str, formulas: Sequence[Formula]) -> str:
-        slopes = Slopes(formulas)
+        slopes = FormulaSlopes(formulas)
         every = [*formulas, *slopes.formulas]
         lines, results = statements(every, LEAVES)
         body = [*self._leaves(every), *lines, *self._results(results[: len(formulas)])]

@@ -91,7 +91,7 @@ def _without_division(roots: Sequence[Formula]) -> list[Formula]:
     return [formulas[id(root)] for root in roots]
 
 
-class Slopes:
+class FormulaSlopes:
     """Derivatives of formulas to the leaves they contain, those that are not zero."""
 
     def __init__(self, formulas: Sequence[Formula]) -> None:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from shaftprint.simulation._equation_text import LANES, LEAVES, EquationText, indented
-from shaftprint.simulation._hoisted import Slopes
+from shaftprint.simulation._hoisted import FormulaSlopes
 from shaftprint.simulation._text import statements
 
 
@@ -43,7 +43,7 @@ class StageText:
         self.starts = equations.starts
         self.counts = equations.counts
         self.rates = equations.groups["rates"]
-        self.slopes = Slopes(self.rates)
+        self.slopes = FormulaSlopes(self.rates)
 
     def functions(self) -> list[str]:
         """Return the functions of numbers that give the rates, without and with their derivatives."""

@@ -26,11 +26,11 @@ from shaftprint.torsion._entrained_water import (
     water_estimates,
 )
 from shaftprint.torsion._expected_inertia import (
-    Beside,
     ExpectedInertia,
     ExpectedValue,
+    InertiaComparison,
     WetLine,
-    beside_identified,
+    compare_inertia,
     expected_inertia,
 )
 from shaftprint.torsion._forced_response import LineResponse, forced_response
@@ -41,10 +41,10 @@ from shaftprint.torsion._two_masses import TwoMasses, two_masses
 from shaftprint.torsion._viscous_damper import best_damper_nm_s_rad
 
 __all__ = [
-    "Beside",
     "Blades",
     "ExpectedInertia",
     "ExpectedValue",
+    "InertiaComparison",
     "LineLink",
     "LineResponse",
     "LineTrace",
@@ -53,8 +53,8 @@ __all__ = [
     "TwoMasses",
     "WaterEstimate",
     "WetLine",
-    "beside_identified",
     "best_damper_nm_s_rad",
+    "compare_inertia",
     "expected_inertia",
     "forced_response",
     "modes",

@@ -76,23 +76,23 @@ class ExpectedInertia:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Beside:
-    """An expected number beside the one that a test found."""
+class InertiaComparison:
+    """An inertia by calculation and the one that a test identified."""
 
     expected: ExpectedValue
     """By calculation."""
-    found: float
+    identified: float
     """By the test."""
-    found_std: float
+    identified_std: float
     """Its standard deviation."""
     independent: bool
-    """Whether the test found it without being told beforehand."""
+    """Whether the test identified it without it as a prior."""
 
     @property
     def deviations(self) -> float:
-        """Difference over its standard deviation, found minus expected; not a number where they are not independent."""
-        together = math.hypot(self.expected.std, self.found_std)
-        return (self.found - self.expected.value) / together if self.independent and together > 0.0 else math.nan
+        """Difference over its standard deviation, identified minus calculated; not a number where they are not independent."""
+        together = math.hypot(self.expected.std, self.identified_std)
+        return (self.identified - self.expected.value) / together if self.independent and together > 0.0 else math.nan
 
 
 def expected_inertia(
@@ -120,21 +120,21 @@ def expected_inertia(
     return ExpectedInertia(sums=_sums(vessel), times=times, wet=_wet(vessel, sides["downstream"], factor, scale))
 
 
-def beside_identified(
+def compare_inertia(
     expected: ExpectedInertia, identified: Mapping[str, tuple[float, float]], *, assumed: frozenset[str] = frozenset()
-) -> tuple[Beside, ...]:
-    """Return expected numbers beside those of a test that have the same name.
+) -> tuple[InertiaComparison, ...]:
+    """Return pairs of a calculated and an identified number of the same name.
 
     Parameters
     ----------
     identified
         Value and standard deviation by name, such as ``tau_dn``.
     assumed
-        Names of numbers that the test was told beforehand.
+        Names of numbers that were priors of the test.
     """
     rows = ((item, identified[item.name]) for item in (*expected.times, *expected.sums) if item.name in identified)
     return tuple(
-        Beside(expected=item, found=value, found_std=std, independent=item.name not in assumed)
+        InertiaComparison(expected=item, identified=value, identified_std=std, independent=item.name not in assumed)
         for item, (value, std) in rows
     )
 

@@ -20,7 +20,15 @@ from shaftprint.report import (
     two_mass_sentence,
     water_table,
 )
-from shaftprint.torsion import Beside, ExpectedInertia, Modes, expected_inertia, modes, torsional_line, two_masses
+from shaftprint.torsion import (
+    ExpectedInertia,
+    InertiaComparison,
+    Modes,
+    expected_inertia,
+    modes,
+    torsional_line,
+    two_masses,
+)
 from shaftprint.vessel import Vessel, load_vessel
 
 SUFFIXES = (".svg", ".png", ".pdf")
@@ -75,7 +83,7 @@ def command(vessel: str, found: Path | None, drawing: Path | None, force: bool) 
         echo(drawing)
 
 
-def _expected(ship: Vessel, found: Path | None) -> tuple[ExpectedInertia, tuple[Beside, ...]]:
+def _expected(ship: Vessel, found: Path | None) -> tuple[ExpectedInertia, tuple[InertiaComparison, ...]]:
     if found is None:
         return expected_inertia(ship), ()
     fingerprint = fingerprint_at(found)
@@ -89,7 +97,9 @@ def _draw(vibrations: Modes, path: Path) -> None:
         save_figure(plot_modes(vibrations), part)
 
 
-def _print(ship: Vessel, expected: ExpectedInertia, beside: tuple[Beside, ...], vibrations: Modes | None) -> None:
+def _print(
+    ship: Vessel, expected: ExpectedInertia, beside: tuple[InertiaComparison, ...], vibrations: Modes | None
+) -> None:
     tables = (
         mass_table(ship),
         expected_inertia_table(expected, beside),

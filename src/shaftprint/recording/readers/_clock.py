@@ -37,7 +37,7 @@ class Hole:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Clock:
+class SampleClock:
     """When the samples of a channel were taken."""
 
     rate_hz: float
@@ -48,7 +48,7 @@ class Clock:
     """Where samples are missing or the clock jumps, in order of time."""
 
 
-def on_clock(channel: Channel, clock: Clock) -> Channel:
+def on_clock(channel: Channel, clock: SampleClock) -> Channel:
     """Return a channel with its rows at their places on the clock: values that are not numbers fill the holes."""
     if not clock.holes:
         return channel
@@ -72,7 +72,7 @@ def on_clock(channel: Channel, clock: Clock) -> Channel:
     return replace(channel, count=count, source=read, scale=1.0, offset=0.0, clock_jumps=jumps)
 
 
-def uniform_clock(path: Path, name: str, count: int, read: Callable[[int, int], FloatArray]) -> Clock:
+def uniform_clock(path: Path, name: str, count: int, read: Callable[[int, int], FloatArray]) -> SampleClock:
     """Return the clock of a column of times, which must be uniform but for a few holes.
 
     The rate is the number of steps over the whole time, rounded to nine digits because printed times are
@@ -118,7 +118,7 @@ def uniform_clock(path: Path, name: str, count: int, read: Callable[[int, int], 
                 f"{path}, {name}: expected a uniform clock, found row {start + worst + 1} off by {off[worst]:g} s; "
                 "the sample rate changes within the file."
             )
-    return Clock(rate_hz=float(f"{1.0 / mean_step:.9g}"), start_s=first, holes=holes)
+    return SampleClock(rate_hz=float(f"{1.0 / mean_step:.9g}"), start_s=first, holes=holes)
 
 
 def _holes(path: Path, name: str, count: int, read: Callable[[int, int], FloatArray], step: float) -> tuple[Hole, ...]:

@@ -17,7 +17,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording._spool import Spool
-from shaftprint.recording.readers._clock import Clock, on_clock, uniform_clock
+from shaftprint.recording.readers._clock import SampleClock, on_clock, uniform_clock
 from shaftprint.recording.readers._csv_dates import dates, seconds_from
 from shaftprint.recording.readers._csv_header import (
     WHITE_SPACE,
@@ -204,10 +204,10 @@ def _exactly(width: int, fields: Sequence[str]) -> list[float]:
     return [float(field) for field in fields]
 
 
-def _clock(path: Path, header: Header, spool: Spool, count: int, rate_hz: float | None) -> Clock:
+def _clock(path: Path, header: Header, spool: Spool, count: int, rate_hz: float | None) -> SampleClock:
     """Return the clock of the times, or that of the rate which the caller knows."""
     if header.time_column is None:
-        return Clock(rate_hz=cast(float, rate_hz), start_s=0.0)
+        return SampleClock(rate_hz=cast(float, rate_hz), start_s=0.0)
     name = f"column {header.names[header.time_column]}"
     clock = uniform_clock(path, name, count, spool.source(header.time_column))
     if rate_hz is not None and abs(clock.rate_hz / rate_hz - 1.0) > _RATE_AGREEMENT:

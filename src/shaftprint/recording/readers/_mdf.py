@@ -14,12 +14,12 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers._clock import Clock, on_clock, uniform_clock
+from shaftprint.recording.readers._clock import SampleClock, on_clock, uniform_clock
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._hints import rate_hint
-from shaftprint.recording.readers._mdf_records import Records, expect_in_record
+from shaftprint.recording.readers._mdf_records import MdfRecords, expect_in_record
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._units import plain_unit
 
@@ -110,8 +110,8 @@ def _gather(path: Path, file: Any, opened: Opened, rate_hz: float | None) -> Gat
         if file.masters_db.get(group) != index and int(channel.channel_type) not in _MASTERS
     ]
     names = unique_names([(f"group {group}", file.groups[group].channels[index].name) for group, index in places])
-    records = Records(file)
-    clocks: dict[int, Clock | RecordingError] = {}
+    records = MdfRecords(file)
+    clocks: dict[int, SampleClock | RecordingError] = {}
     for (group, index), name in zip(places, names, strict=True):
         if group not in clocks:
             try:
@@ -137,14 +137,14 @@ def _count(path: Path, file: Any, group: int) -> int:
     return count
 
 
-def _clock(path: Path, file: Any, group: int, rate_hz: float | None) -> Clock:
+def _clock(path: Path, file: Any, group: int, rate_hz: float | None) -> SampleClock:
     """Take the clock of the group's master, which must count seconds, else the hint."""
     count = _count(path, file, group)
     master = file.masters_db.get(group)
     if master is None:
         if rate_hz is None:
             raise RecordingError(f"{path}: expected a master channel of times, found none; give the sample rate.")
-        return Clock(rate_hz=rate_hz, start_s=0.0)
+        return SampleClock(rate_hz=rate_hz, start_s=0.0)
     channel = file.groups[group].channels[master]
     expect_in_record(path, f"master {channel.name}", file.groups[group].channel_group, channel)
     if int(getattr(channel, "sync_type", _TIME)) != _TIME:
@@ -159,7 +159,7 @@ def _clock(path: Path, file: Any, group: int, rate_hz: float | None) -> Clock:
 
 
 def _channel(
-    path: Path, file: Any, records: Records, opened: Opened, group: int, index: int, name: str, clock: Clock
+    path: Path, file: Any, records: MdfRecords, opened: Opened, group: int, index: int, name: str, clock: SampleClock
 ) -> Channel:
     described = file.groups[group].channels[index]
     count = _count(path, file, group)

@@ -14,7 +14,7 @@ _MOST_BYTES = 1 << 26
 _MOST_KEPT = 3
 
 
-class Records:
+class MdfRecords:
     """Samples of an open file, for one thread at a time; the records that were read last are kept."""
 
     def __init__(self, file: Any) -> None:

@@ -13,7 +13,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers._clock import Clock, on_clock, uniform_clock
+from shaftprint.recording.readers._clock import SampleClock, on_clock, uniform_clock
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
@@ -78,7 +78,7 @@ def _gather(path: Path, file: Any, opened: Opened, rate_hz: float | None) -> Gat
     return gathered
 
 
-def _channel(path: Path, name: str, channel: Any, clock: Clock, opened: Opened) -> Channel:
+def _channel(path: Path, name: str, channel: Any, clock: SampleClock, opened: Opened) -> Channel:
     kind = np.dtype(channel.dtype)
     _expect_samples(path, name, channel)
     is_counts = kind == np.dtype(np.int16)
@@ -112,7 +112,7 @@ def _expect_samples(path: Path, name: str, channel: Any) -> None:
     expect_plausible(path, name, samples=len(channel), sample_bytes=1, stored_bytes=size, is_packed=False)
 
 
-def _clock(path: Path, channel: Any, time: Any, rate_hz: float | None, began: np.datetime64 | None) -> Clock:
+def _clock(path: Path, channel: Any, time: Any, rate_hz: float | None, began: np.datetime64 | None) -> SampleClock:
     """Take the clock of the waveform, else that of the group's channel of times, else the hint."""
     increment = channel.properties.get("wf_increment")
     if isinstance(increment, int | float) and np.isfinite(increment) and increment > 0.0:
@@ -120,13 +120,13 @@ def _clock(path: Path, channel: Any, time: Any, rate_hz: float | None, began: np
         start_time = channel.properties.get("wf_start_time")
         if isinstance(start_time, np.datetime64) and began is not None and start_time > _NO_DATE:
             start += float((start_time - began) / np.timedelta64(1, "us")) * 1e-6
-        return Clock(rate_hz=float(f"{1.0 / increment:.12g}"), start_s=start)
+        return SampleClock(rate_hz=float(f"{1.0 / increment:.12g}"), start_s=start)
     if time is not None and len(time) == len(channel):
         clock = uniform_clock(path, f"channel {time.name}", len(time), lambda start, stop: _times(time, start, stop))
         is_date = np.dtype(time.dtype).kind == "M"
         return replace(clock, start_s=0.0) if is_date else clock
     if rate_hz is not None:
-        return Clock(rate_hz=rate_hz, start_s=0.0)
+        return SampleClock(rate_hz=rate_hz, start_s=0.0)
     raise RecordingError(
         f"{path}: expected wf_increment in the properties or a channel of times in the group, found neither; "
         "give the sample rate."

@@ -10,7 +10,7 @@ import numpy as np
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Source
-from shaftprint.recording.readers._clock import Clock, on_clock, uniform_clock
+from shaftprint.recording.readers._clock import SampleClock, on_clock, uniform_clock
 from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._units import plain_unit, seconds_in
 
@@ -80,7 +80,7 @@ def gather_vectors(
     axes = {vector.axis for vector in vectors if vector.axis}
     signals = [vector for vector in vectors if not _is_time(vector) and vector.name not in axes]
     names = unique_names([(vector.group, vector.name) for vector in signals])
-    clocks: dict[tuple[str, str], Clock] = {}
+    clocks: dict[tuple[str, str], SampleClock] = {}
 
     def make(vector: Vector, name: str) -> Channel:
         clock = _clock(path, vector, vectors, scalars, rate_hz, clocks)
@@ -112,8 +112,8 @@ def _clock(
     vectors: Sequence[Vector],
     scalars: Mapping[str, Scalars],
     hint_hz: float | None,
-    clocks: dict[tuple[str, str], Clock],
-) -> Clock:
+    clocks: dict[tuple[str, str], SampleClock],
+) -> SampleClock:
     """Take the clock from the nearest place that says one, and refuse places that disagree."""
     rates: dict[str, float] = {}
     starts: list[float] = []
@@ -142,7 +142,7 @@ def _clock(
         raise RecordingError(f"{path}: expected one sample rate, found {listed}.")
     starts += [float(group[key]) for group in (scalars.get("", {}),) for key in _STARTS if key in group]
     holes = () if time is None else clocks[(time.group, time.name)].holes
-    return Clock(rate_hz=rate, start_s=starts[0] if starts else 0.0, holes=holes)
+    return SampleClock(rate_hz=rate, start_s=starts[0] if starts else 0.0, holes=holes)
 
 
 def _said(path: Path, source: Mapping[str, object]) -> dict[str, float]:
@@ -185,7 +185,7 @@ def _nearest(vector: Vector, vectors: Iterable[Vector], names: Sequence[str]) ->
     return []
 
 
-def _clock_of_times(path: Path, time: Vector) -> Clock:
+def _clock_of_times(path: Path, time: Vector) -> SampleClock:
     factor = _seconds(time)
     if factor is None:
         unit = _text(time.attributes, _UNITS)
