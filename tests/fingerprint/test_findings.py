@@ -89,7 +89,7 @@ def test_misfit(sharp):
 def test_bound(sharp, put_by_hand):
     stopped = put_by_hand(sharp, values={"omega_n": 60.0})
     assert one(found(stopped), "omega_n stopped") == (
-        "omega_n stopped at its bound 60 rad/s: go by the 95 % intervals, for a standard deviation says little there; "
+        "omega_n stopped at its bound 60 rad/s: use its 95 % interval, a standard deviation means little there; "
         "the test cannot tell it, or the structure does not fit."
     )
     assert none(found(sharp), "bound")
@@ -111,19 +111,19 @@ def test_delays_that_only_their_sum_is_known_of(fit, truth):
     findings = found(vague)
     for name, value in (("t_d", "0.0703"), ("t_sp", "0.0518")):
         text = one(findings, f"{name} = ")
-        assert match(rf"{name} = {value} \+/- 0\.0\d+ s is hardly known from this test; known is ", text)
-        assert search(r"known is .*t_d \+ t_sp = 0\.1221 \+/- 0\.000\d+ s", text)
+        assert match(rf"{name} = {value} \+/- 0\.0\d+ s is poorly determined by this test; better determined: ", text)
+        assert search(r"better determined: .*t_d \+ t_sp = 0\.1221 \+/- 0\.000\d+ s", text)
         assert "K_p / K_i" not in text
 
 
 def test_parameter_without_a_better_known_combination(sharp, put_by_hand):
     vague = one(found(put_by_hand(sharp, std={"zeta": 0.2})), "zeta")
-    assert vague == "zeta = 0.47 +/- 0.2 is hardly known from this test."
+    assert vague == "zeta = 0.47 +/- 0.2 is poorly determined by this test."
 
 
 def test_parameter_of_which_nothing_is_known(sharp, put_by_hand):
     assert one(found(put_by_hand(sharp, std={"zeta": np.inf})), "zeta").endswith(
-        "+/- inf is hardly known from this test."
+        "+/- inf is poorly determined by this test."
     )
 
 
@@ -160,7 +160,7 @@ def test_zero_of_the_gauge_is_told_from_two_standard_deviations_on(sharp, share,
         )
 
 
-def test_numbers_that_rest_on_what_was_known_beforehand(sharp):
+def test_numbers_that_rest_on_priors(sharp):
     """Of the variance of ``K_p`` 60 % is that of the prior of ``g``; of ``zeta`` 40 %."""
     rows = tuple(
         BudgetRow(name=name, unit="-", value=1.0, variances={"noise of n": 1.0 - share, "prior of g": share})
@@ -168,10 +168,10 @@ def test_numbers_that_rest_on_what_was_known_beforehand(sharp):
     )
     text = one(found(sharp, stated=Budget(sources=("noise of n", "prior of g"), rows=rows)), "K_p (prior of g")
     assert text == (
-        "K_p (prior of g 60 %), gain margin (prior of g 51 %): more than half of the variance comes from what was "
-        "known beforehand, the largest part in brackets, not from the noise of this test."
+        "K_p (prior of g 60 %), gain margin (prior of g 51 %): more than half of the variance comes from the "
+        "priors, the largest part in brackets, not from the noise of this test."
     )
-    assert none(found(sharp, stated=Budget(sources=("noise of n", "prior of g"), rows=rows[2:3])), "beforehand")
+    assert none(found(sharp, stated=Budget(sources=("noise of n", "prior of g"), rows=rows[2:3])), "priors")
 
 
 def test_the_working_point_and_the_set_point_are_measured(sharp, gauge_fit):

@@ -34,7 +34,7 @@ def lag():
     [
         (
             lambda: structure({"y": Gain(2.0)}),
-            r"block Gain: expected a Parameter, found 2\.0; a number stands beside a bl",
+            r"block Gain: expected a Parameter, found 2\.0; a number multiplies a bl",
         ),
         (lambda: structure({"y": PIGovernor("K_p", K)}), r"block PIGovernor: expected a Parameter, found 'K_p'"),
         (lambda: FunctionBlock(lambda s, k: k / s, K), r"block of K: expected a tuple of parameters, such as \(K,\)"),

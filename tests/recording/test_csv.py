@@ -135,7 +135,7 @@ def test_a_hint_that_makes_no_sense_is_refused(tmp_path, hints, expected):
 
 
 def test_a_time_alone_is_no_recording(tmp_path):
-    with pytest.raises(RecordingError, match="expected a channel beside the time, found none"):
+    with pytest.raises(RecordingError, match="expected a channel besides the time, found none"):
         read_recording(_file(tmp_path, "time [s]\n0\n1\n"), delimiter=";")
 
 

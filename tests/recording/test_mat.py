@@ -310,7 +310,7 @@ def test_version_7_3_is_known_by_what_follows_its_header(tmp_path):
 
 def test_matrices_are_left_out_with_a_reason(save):
     with read_recording(save({"fs": 1.0, "M_s": TORQUE, "a": np.ones((3, 4))})) as recording:
-        reason = "expected a vector, found an array of {}; save each of its columns as a variable of its own, in MATLAB"
+        reason = "expected a vector, found an array of {}; save each of its columns as a separate variable, in MATLAB"
         shape = "3 x 4" if recording.format == "MATLAB v4 to v7" else "4 x 3"
         assert recording.left_out["a"].startswith(reason.format(shape))
 

@@ -114,7 +114,7 @@ def test_an_outside_reader_that_fails_is_named(native, outside):
 
 def test_arrays_that_are_no_channels_are_refused(native):
     twice = [Samples(name="a", values=[1.0, 2.0], unit="V", rate_hz=1.0)] * 2
-    with pytest.raises(RecordingError, match="channel a: expected a name of its own"):
+    with pytest.raises(RecordingError, match="channel a: expected a unique name"):
         recording_from_arrays(native, twice, format="x")
 
 

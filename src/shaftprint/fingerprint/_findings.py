@@ -10,7 +10,7 @@ from shaftprint.identify.fit import Estimate
 from shaftprint.identify.judgement import doubts_of
 from shaftprint.identify.uncertainty import Budget, Profile
 
-# A combination is worth naming when it is known this much better, relative to its size, than a parameter in it.
+# A combination is named when it is determined this much better, relative to its size, than a parameter in it.
 BETTER_KNOWN = 0.4
 # A misfit that chance alone makes in fewer than this share of the tests is none of chance.
 UNLIKELY = 0.01
@@ -20,7 +20,7 @@ FEW_STARTS = 0.1
 SURPRISING = 3.0
 # So many standard deviations of the gauge's zero from none are.
 OFF_ZERO = 2.0
-# A number rests on what was known beforehand when more than this share of its variance is from there.
+# A number rests on priors when more than this share of its variance is from there.
 MOSTLY = 0.5
 # What the test itself measures: sources whose names begin so.
 MEASURED = ("noise of ", "working-point ", LOAD_WANDER)
@@ -41,15 +41,15 @@ def findings_of(
 ) -> tuple[str, ...]:
     """Return the findings of one identification, most important first.
 
-    What is hardly known is decided by the rule of the verdict, with the same profile likelihood.
+    What is poorly determined is decided by the rule of the verdict, with the same profile likelihood.
     """
     return (
         *_stability(identification),
         *_misfit(identification),
         *_bounds(identification),
         *_search(identification),
-        *_hardly_known(identification, profile),
-        *_known_beforehand(identification, stated),
+        *_poorly_determined(identification, profile),
+        *_resting_on_priors(identification, stated),
         *_gauge_zero(physical),
         *_against_expected(physical),
         *(f"Line {name} is left out: {reason}." for name, reason in left_out.items()),
@@ -85,8 +85,8 @@ def _misfit(identification: Identification) -> list[str]:
 
 def _bounds(identification: Identification) -> list[str]:
     return [
-        f"{e.name} stopped at its bound {e.value:g} {e.unit}: go by the 95 % intervals, for a standard "
-        "deviation says little there; the test cannot tell it, or the structure does not fit."
+        f"{e.name} stopped at its bound {e.value:g} {e.unit}: use its 95 % interval, a standard "
+        "deviation means little there; the test does not determine it, or the structure does not fit."
         for e in identification.parameters
         if e.at_bound
     ]
@@ -99,17 +99,17 @@ def _search(identification: Identification) -> list[str]:
     return [f"Only {reached} of {starts} starts reached the optimum: use more starts."]
 
 
-def _hardly_known(identification: Identification, profile: Profile | None) -> list[str]:
-    """Return the parameters that the verdict does not trust, with the combinations that are known better."""
+def _poorly_determined(identification: Identification, profile: Profile | None) -> list[str]:
+    """Return the parameters that the verdict does not trust, with the combinations that are determined better."""
     doubts = doubts_of(identification, identification.parameters, profile)
     findings = []
     for estimate in identification.parameters:
         if estimate.name not in doubts or estimate.name in identification.settings.priors or estimate.at_bound:
             continue
-        text = f"{estimate.name} = {_written(estimate)} is hardly known from this test"
+        text = f"{estimate.name} = {_written(estimate)} is poorly determined by this test"
         better = [c for c in identification.combinations if _is_better(c, estimate, identification)]
         precise = ", ".join(f"{c.name} = {_written(c)}" for c in better)
-        findings.append(text + (f"; known is {precise}." if better else "."))
+        findings.append(text + (f"; better determined: {precise}." if better else "."))
     return findings
 
 
@@ -127,7 +127,7 @@ def _is_better(combination: Estimate, estimate: Estimate, identification: Identi
     return share < BETTER_KNOWN * estimate.std / max(abs(estimate.value), 1e-300)
 
 
-def _known_beforehand(identification: Identification, stated: Budget) -> list[str]:
+def _resting_on_priors(identification: Identification, stated: Budget) -> list[str]:
     """Return which numbers more or better lines would hardly improve: their variance is not that of this test."""
     assumed = [name for name in stated.sources if not name.startswith(MEASURED) and name not in _common(identification)]
     resting = []
@@ -139,8 +139,8 @@ def _known_beforehand(identification: Identification, stated: Budget) -> list[st
     if not resting:
         return []
     return [
-        f"{', '.join(resting)}: more than half of the variance comes from what was known beforehand, the largest part "
-        "in brackets, not from the noise of this test."
+        f"{', '.join(resting)}: more than half of the variance comes from the priors, the largest part in brackets, "
+        "not from the noise of this test."
     ]
 
 

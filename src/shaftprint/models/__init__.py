@@ -64,8 +64,8 @@ from shaftprint.models._tabulated import Tabulated
 from shaftprint.models._tie import Tie
 
 __all__ = [
-    "Basis",
     "AveragingSensor",
+    "Basis",
     "Block",
     "Combination",
     "Computed",

@@ -72,7 +72,7 @@ def block_parameters(structure: str, blocks: Iterable[Block]) -> dict[str, Param
         if not isinstance(parameter, Parameter):
             raise StructureError(
                 f"structure {structure}, block {type(block).__name__}: expected a Parameter, found {parameter!r}; a "
-                "number stands beside a block, as in 2.0 * block, or is a Parameter with held=True."
+                "number multiplies a block, as in 2.0 * block, or is a Parameter with held=True."
             )
         if parameters.setdefault(parameter.name, parameter) != parameter:
             raise StructureError(

@@ -156,19 +156,19 @@ class Flow:
         return Formula("unknown", name="unknown", place=self.opened)
 
     def close(self, signal: Formula, value: Formula, where: str) -> Formula:
-        """Say what an unknown signal is, solving for it where it depends on itself at once.
+        """Say what an unknown signal is, solving for it in an algebraic loop.
 
         Raises
         ------
         StructureError
-            If it depends on itself at once, and not linearly.
+            If the algebraic loop is not linear.
         """
         value = self._without_closed(value)
         if depends(value, signal):
             slope = derivative(value, signal)
             if depends(slope, signal):
                 raise StructureError(
-                    f"{where}: a loop without delay or state is not linear; put a lag or a delay into it."
+                    f"{where}: an algebraic loop (no delay, no state) is not linear; put a lag or a delay into it."
                 )
             (constant,) = replaced([value], lambda node: number(0.0) if node is signal else None)
             value = constant / (1.0 - slope)

@@ -83,7 +83,7 @@ def program_of(structure: Structure, zeros: Iterable[str] = ()) -> Program:
     Raises
     ------
     StructureError
-        If a block has no equations in time, or a loop depends on itself at once.
+        If a block has no equations in time, or there is an algebraic loop that cannot be solved.
     """
     inputs = {name: Formula("input", name=name, place=i) for i, name in enumerate(structure.inputs)}
     flow = Flow(parameters=_leaves(structure, frozenset(zeros)), inputs=inputs)
@@ -146,7 +146,7 @@ def completed(
     Raises
     ------
     StructureError
-        If a state has no rate, or a loop depends on itself at once.
+        If a state has no rate, or there is an algebraic loop that cannot be solved.
     """
     resolver = _Resolver(flow, name)
     missing = [state.name for state in flow.states if state.place not in flow.rates]
@@ -234,8 +234,8 @@ class _Resolver:
         if leaf.operation in ("input rate", "past rate"):
             raise StructureError(
                 f"structure {self._name}: the equations need the second change of "
-                f"{'an input' if leaf.operation == 'input rate' else 'a late signal'}; put a lag beside it, or leave "
-                "a power of s out of the numerator."
+                f"{'an input' if leaf.operation == 'input rate' else 'a late signal'}; put a lag in series with it, "
+                "or leave a power of s out of the numerator."
             )
         return None
 
@@ -253,8 +253,7 @@ class _Resolver:
             return self._done[key]
         if key in self._open:
             raise StructureError(
-                f"structure {self._name}: a loop depends on itself at once through the change of a signal; put a lag "
-                "or a delay into it."
+                f"structure {self._name}: algebraic loop through the change of a signal; put a lag or a delay into it."
             )
         self._open.add(key)
         formula = make()

@@ -81,8 +81,8 @@ class Structure:
         for tie in self.ties:
             self._expect_names(tie.arguments)
         expect_combinations(self.name, self.combinations, self.named(self.vector({})))
-        known = (*found.values(), *self.parameters)
-        object.__setattr__(self, "roles", {item.name: item.role for item in known if item.role is not None})
+        described = (*parameters.values(), *self.parameters)
+        object.__setattr__(self, "roles", {item.name: item.role for item in described if item.role is not None})
         expect_single_roles(self.name, self.roles)
         object.__setattr__(self, "loop", outermost_loop(self.name, nodes))
 

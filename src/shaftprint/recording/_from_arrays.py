@@ -57,7 +57,7 @@ def recording_from_arrays(
         values = np.asarray(item.values)
         if values.ndim != 1 or values.dtype.kind not in "fiub" or item.name in channels:
             raise RecordingError(
-                f"{path}, channel {item.name}: expected a name of its own and a vector of real numbers, "
+                f"{path}, channel {item.name}: expected a unique name and a vector of real numbers, "
                 f"found {values.dtype} of shape {values.shape}."
             )
         channels[item.name] = Channel(

@@ -90,7 +90,7 @@ class InertiaComparison:
 
     @property
     def deviations(self) -> float:
-        """Difference over its standard deviation, identified minus calculated; not a number where they are not independent."""
+        """Identified minus calculated over its standard deviation; not a number where they are not independent."""
         together = math.hypot(self.expected.std, self.identified_std)
         return (self.identified - self.expected.value) / together if self.independent and together > 0.0 else math.nan
 

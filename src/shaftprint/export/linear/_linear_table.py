@@ -39,7 +39,7 @@ class LinearTable:
         Raises
         ------
         ExportError
-            If they depend on themselves so that nothing follows.
+            If an algebraic loop has no solution.
         """
         down, along = [self.rows.index(label) for label in labels], [self.columns.index(label) for label in labels]
         others = [i for i in range(len(self.rows)) if i not in down]
@@ -48,7 +48,9 @@ class LinearTable:
         try:
             solved = np.linalg.solve(loop, self.matrix[np.ix_(down, others_in)])
         except np.linalg.LinAlgError:
-            raise ExportError("export: a loop without delay depends on itself at once; put a lag into it.") from None
+            raise ExportError(
+                "export: algebraic loop (no delay, no state) without a solution; put a lag into it."
+            ) from None
         return LinearTable(
             rows=tuple(self.rows[i] for i in others),
             columns=tuple(self.columns[i] for i in others_in),

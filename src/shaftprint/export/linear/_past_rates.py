@@ -72,7 +72,7 @@ class _Maker:
         if any(kind == "past rate" for kind, _ in leaves):
             raise ExportError(
                 f"export of {self._program.name}: the equations need the second change of a late signal; put a lag "
-                "beside it."
+                "in series with it."
             )
         change = Formula("number")
         for (kind, index), leaf in leaves.items():

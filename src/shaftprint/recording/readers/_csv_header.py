@@ -98,7 +98,7 @@ def read_header(
             "name it so with columns=, or pass sample_rate_hz= (--columns and --sample-rate of shaftprint convert)."
         )
     if time is not None and len(names) == 1:
-        raise RecordingError(f"{where}: expected a channel beside the time, found none.")
+        raise RecordingError(f"{where}: expected a channel besides the time, found none.")
     decimal = decimal or _decimal(path, rows, delimiter, time if second is None else None)
     if decimal == delimiter:
         raise RecordingError(f'{path}: expected decimal sign and delimiter to differ, found "{decimal}" for both.')

@@ -57,7 +57,7 @@ def matrix_reason(name: str, shape: Sequence[int]) -> str:
     """Return why an array of several columns is not read, and what to do in MATLAB."""
     size = " x ".join(map(str, shape))
     return (
-        f"expected a vector, found an array of {size}; save each of its columns as a variable of its own, in MATLAB: "
+        f"expected a vector, found an array of {size}; save each of its columns as a separate variable, in MATLAB: "
         f"{name}_1 = {name}(:, 1)."
     )
 
