@@ -30,6 +30,7 @@ extensions = [
     "numpydoc",
     "mathml",
     "generated_reference",
+    "glossary_tables",
     "no_requests",
     "short_types",
 ]

@@ -90,7 +90,7 @@ def test_bound(sharp, put_by_hand):
     stopped = put_by_hand(sharp, values={"omega_n": 60.0})
     assert one(found(stopped), "omega_n stopped") == (
         "omega_n stopped at its bound 60 rad/s: use its 95 % interval, a standard deviation means little there; "
-        "the test cannot tell it, or the structure does not fit."
+        "the test does not determine it, or the structure does not fit."
     )
     assert none(found(sharp), "bound")
 

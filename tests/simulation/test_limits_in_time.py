@@ -186,7 +186,7 @@ def test_an_algebraic_loop_that_is_not_linear_is_refused():
         y = flow.unknown()
         return {"y": flow.close(y, u - p.k * y * y, "square")}
 
-    with pytest.raises(StructureError, match="square: a loop without delay or state is not linear"):
+    with pytest.raises(StructureError, match=r"square: an algebraic loop \(no delay, no state\) is not linear"):
         response(equations, np.zeros_like(TIME))
 
 
