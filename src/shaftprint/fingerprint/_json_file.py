@@ -22,12 +22,12 @@ def write_fingerprint(fingerprint: Fingerprint, path: str | Path) -> None:
     FingerprintError
         If the file cannot be written.
     """
-    place = Path(path)
+    json_path = Path(path)
     try:
-        with written_whole(place, overwrite=True) as part:
+        with written_whole(json_path, overwrite=True) as part:
             part.write_bytes(_content(fingerprint))
     except OSError as error:
-        raise FingerprintError(f"{place}: the fingerprint cannot be written: {error}.") from None
+        raise FingerprintError(f"{json_path}: the fingerprint cannot be written: {error}.") from None
 
 
 def fingerprint_sha256(fingerprint: Fingerprint) -> str:
@@ -52,40 +52,42 @@ def read_fingerprint(path: str | Path) -> Fingerprint:
     PublicationError
         If its folder holds new results that cannot be put in place.
     """
-    place = Path(path)
-    complete(place.parent)
-    text = _fingerprint_text(place)
+    json_path = Path(path)
+    complete(json_path.parent)
+    text = _fingerprint_text(json_path)
     try:
         return with_roles(Fingerprint.model_validate_json(text))
     except ValidationError as error:
         wrong = "; ".join(_described(details["loc"], details["msg"]) for details in error.errors())
-        raise FingerprintError(f"{place} is not a fingerprint of schema {SCHEMA_VERSION}: {wrong}.") from None
+        raise FingerprintError(f"{json_path} is not a fingerprint of schema {SCHEMA_VERSION}: {wrong}.") from None
     except ShaftprintError as error:
         # what other rooms ask of their own nouns, such as a prior
-        raise FingerprintError(f"{place} is not a fingerprint of schema {SCHEMA_VERSION}: {error}") from None
+        raise FingerprintError(f"{json_path} is not a fingerprint of schema {SCHEMA_VERSION}: {error}") from None
 
 
-def _described(place: tuple[int | str, ...], message: str) -> str:
+def _described(field: tuple[int | str, ...], message: str) -> str:
     """Return an error of a field; one of the whole record names its fields itself."""
     words = message.removeprefix("Value error, ")
-    return f"{'.'.join(str(part) for part in place)}: {words}" if place else words
+    return f"{'.'.join(str(part) for part in field)}: {words}" if field else words
 
 
-def _fingerprint_text(place: Path) -> str:
+def _fingerprint_text(json_path: Path) -> str:
     """Return the content of a file that claims to be a fingerprint of the schema that is known here."""
     try:
-        text = place.read_text(encoding="utf-8")
+        text = json_path.read_text(encoding="utf-8")
         content = json.loads(text)
     except OSError as error:
-        raise FingerprintError(f"{place}: expected a fingerprint in JSON, but it cannot be read: {error}.") from None
+        raise FingerprintError(
+            f"{json_path}: expected a fingerprint in JSON, but it cannot be read: {error}."
+        ) from None
     except (ValueError, RecursionError) as error:
-        raise FingerprintError(f"{place}: expected a fingerprint in JSON, found something else: {error}.") from None
+        raise FingerprintError(f"{json_path}: expected a fingerprint in JSON, found something else: {error}.") from None
     schema = content.get("schema_version") if isinstance(content, dict) else None
     if schema is None:
-        raise FingerprintError(f"{place}: expected a fingerprint, found JSON without a schema_version.")
+        raise FingerprintError(f"{json_path}: expected a fingerprint, found JSON without a schema_version.")
     if schema != SCHEMA_VERSION:
         raise FingerprintError(
-            f"{place}: expected a fingerprint of schema {SCHEMA_VERSION}, found schema {schema}; read it with the "
+            f"{json_path}: expected a fingerprint of schema {SCHEMA_VERSION}, found schema {schema}; read it with the "
             "version of shaftprint that wrote it, or a newer one."
         )
     return text
