@@ -14,20 +14,25 @@ comma := ,
 space := $(subst ,, )
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint docs bench wheel lock clean
+.PHONY: help demo test test-all lint docs bench wheel lock clean
 
 help: ## Say what can be made
-	@awk -F ':.*## ' '/^[a-z]+:.*## / {printf "  make %-6s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
 
 demo: $(VENV)/run ## Sail the simulated tug and identify it; results in demo/
 	$(BIN)/shaftprint demo -o demo
 
 # each core has a worker of its own
-test: export OPENBLAS_NUM_THREADS ?= 1
-test: $(VENV)/test ## Run all tests, with the coverage of the calculating rooms
-	$(BIN)/python -m pytest -n auto --dist loadfile -m "not wrong_recordings" --cov=shaftprint --cov-branch --cov-report=
+test test-all: export OPENBLAS_NUM_THREADS ?= 1
+test: $(VENV)/test ## Run the tests that a change needs, with the coverage of the calculating rooms
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "not slow and not wrong_recordings" \
+		--cov=shaftprint --cov-branch --cov-report=
 	$(BIN)/python -m coverage report --include '$(subst $(space),$(comma),$(ROOMS:%=src/shaftprint/%/*))' \
 		--skip-covered --fail-under 95
+
+test-all: test ## Run the slow tests and every wrong recording too
+	$(BIN)/python -m pytest -n auto --dist loadfile -m slow
+	$(BIN)/python -m pytest -n auto --dist worksteal -m wrong_recordings tests/wrong_recordings
 
 lint: $(VENV)/lint ## Check style, types and the direction of imports
 	$(BIN)/ruff check .

@@ -3,6 +3,8 @@
 import tomllib
 from pathlib import Path
 
+import pytest
+
 from shaftprint.fingerprint import read_fingerprint
 from shaftprint.recording import read_recording
 from shaftprint.survey import load_trial
@@ -72,6 +74,7 @@ def test_structures_of_the_thesis_are_shown_both_ways(demo):
             assert name in first
 
 
+@pytest.mark.slow
 def test_line_to_do_it_again_works(demo, run, tmp_path, monkeypatch):
     folder, result = demo
     monkeypatch.chdir(folder.parent)

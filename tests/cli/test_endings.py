@@ -67,6 +67,7 @@ def test_unforeseen_error_is_not_hidden(run, monkeypatch, tmp_path):
         run("sail", "stan-tug-1205", "short", "-o", tmp_path / "x.nc")
 
 
+@pytest.mark.slow
 @POSIX
 def test_interrupted_voyage_leaves_nothing_behind(tmp_path):
     folder = tmp_path / "demo"

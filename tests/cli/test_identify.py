@@ -8,6 +8,7 @@ from shaftprint.recording import read_recording, write_csv
 GIVEN = ("--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress")
 
 
+@pytest.mark.slow
 def test_same_seed_same_fingerprint(run, recording, tmp_path):
     for name in ("a", "b"):
         run("identify", recording, *GIVEN, "--structure", "CL4", "--seed", 5, "-o", tmp_path / name)
@@ -15,6 +16,7 @@ def test_same_seed_same_fingerprint(run, recording, tmp_path):
     assert first.model_copy(update={"created": second.created}) == second
 
 
+@pytest.mark.slow
 def test_structures_beside_each_other(run, recording, tmp_path):
     names = ("OL1", "CL4", "ol1")
     options = [word for name in names for word in ("--structure", name)]
@@ -27,6 +29,7 @@ def test_structures_beside_each_other(run, recording, tmp_path):
     assert read_fingerprint(tmp_path / "out" / "fingerprint.json").structure == "OL1"
 
 
+@pytest.mark.slow
 def test_hold_and_prior(run, recording, tmp_path):
     options = ("--hold", "tau_up=1.016", "--prior", "g=-0.1+-0.05", "--prior", "k_q=2+-0.01", "--free", "t_gauge")
     result = run("identify", recording, *GIVEN, *options, "-o", tmp_path / "out")
@@ -40,6 +43,7 @@ def test_hold_and_prior(run, recording, tmp_path):
     }
 
 
+@pytest.mark.slow
 def test_the_way_of_the_thesis(run, recording, tmp_path):
     options = ("--mode", "thesis", "--unweighted", "--structure", "OL1")
     result = run("identify", recording, *GIVEN, *options, "-o", tmp_path / "out")
@@ -52,6 +56,7 @@ def test_the_way_of_the_thesis(run, recording, tmp_path):
     assert 0.37 < found.quantity("tau_n").value < 0.47
 
 
+@pytest.mark.slow
 def test_recording_of_another_format(run, recording, tmp_path):
     path = tmp_path / "short.csv"
     with read_recording(recording) as opened:

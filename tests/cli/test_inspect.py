@@ -168,6 +168,7 @@ def test_verdict_nothing_at_the_crossover():
     assert "at least 2 are needed there" in sentence
 
 
+@pytest.mark.slow
 def test_proposal_for_a_campaign_whose_times_are_wrong(run, recording, tmp_path):
     """The recording was sailed by `short`: what is proposed in place of a wrong campaign must be that."""
     truth = load_campaign("short")

@@ -80,6 +80,7 @@ def test_a_shipped_name_is_no_file(text):
     assert own_file(text) is None
 
 
+@pytest.mark.slow
 def test_an_own_structure_is_fitted_from_the_command_line(run, recording, written, tmp_path):
     written(CORE)
     result = run("identify", recording, *GIVEN, "--structure", "my_ship.py:my_core", "-o", tmp_path / "out")
@@ -102,6 +103,7 @@ def test_an_own_structure_is_fitted_from_the_command_line(run, recording, writte
     assert run("show", tmp_path / "out").exit_code == 0
 
 
+@pytest.mark.slow
 def test_ties_go_through_the_whole_chain_and_lead_to_the_same_optimum(run, recording, written, tmp_path):
     written(LOOP)
     options = ("--structure", "my_ship.py:my_loop", "--structure", "CL4", "--structure", "GAUGE-CORE")
@@ -164,6 +166,7 @@ def test_several_inputs_are_listed(run, written):
     assert run("structures", "my_ship.py:pair").output.startswith("PAIR: p, F_1, F_2 -> x\n")
 
 
+@pytest.mark.slow
 def test_sensitivity_of_an_own_structure(run, written, tmp_path):
     written(LOOP)
     result = run("sensitivity", "my_ship.py:my_loop", "--between", 0.1, 50, "-o", "out", "--format", "png")

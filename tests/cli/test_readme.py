@@ -60,6 +60,7 @@ def test_example_of_ones_own_structure(beside_demo, capsys):
     assert "GAUGE-CORE wins" in printed
 
 
+@pytest.mark.slow
 def test_example_of_ones_own_structure_on_the_command_line(run, beside_demo):
     own = f"{ROOT / 'examples' / 'own_structure.py'}:elastic_core"
     given = ("--vessel", "demo/vessel.toml", "--campaign", "demo/campaign.toml", "--no-progress")
@@ -93,7 +94,7 @@ def test_make_targets_that_pages_name_exist():
     makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
     for page in ("README.md", "CONTRIBUTING.md", ".ci/run"):
         text = (ROOT / page).read_text(encoding="utf-8")
-        for target in re.findall(r"`?\bmake ([a-z]+)`?$|`make ([a-z]+)`|^make ([a-z]+)", text, flags=re.MULTILINE):
+        for target in re.findall(r"`?\bmake ([a-z-]+)`?$|`make ([a-z-]+)`|^make ([a-z-]+)", text, flags=re.MULTILINE):
             assert f"\n{''.join(target)}:" in makefile
 
 

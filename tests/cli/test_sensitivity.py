@@ -3,6 +3,7 @@
 import pytest
 
 
+@pytest.mark.slow
 def test_one_figure_an_output(run, tmp_path):
     folder = tmp_path / "cl1"
     result = run("sensitivity", "cl1", "-o", folder, "--no-progress")
@@ -18,6 +19,7 @@ def test_other_kinds_of_picture(run, tmp_path, suffix, start):
     assert (tmp_path / "out" / f"OL1_n.{suffix}").read_bytes().startswith(start)
 
 
+@pytest.mark.slow
 def test_figures_of_the_thesis(run, tmp_path):
     result = run("sensitivity", "thesis", "-o", tmp_path / "out", "--format", "png")
     assert result.exit_code == 0

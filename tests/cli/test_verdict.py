@@ -1,5 +1,7 @@
 """The verdict comes first on the terminal, and structures beside each other are compared."""
 
+import pytest
+
 
 def test_the_verdict_comes_first(run, demo):
     """The simulated line of the demo: all but delay and priors is found, the governor has little to spare."""
@@ -23,6 +25,7 @@ def test_the_demo_says_which_structure_the_data_want(demo):
     assert "CL4 is rejected" in result.output
 
 
+@pytest.mark.slow
 def test_a_structure_that_does_not_fit_is_not_trustworthy(run, recording, tmp_path):
     given = ("--vessel", "stan-tug-1205", "--campaign", "short", "--no-progress", "--starts", 20)
     structures = ("--structure", "CL4", "--structure", "CL3")

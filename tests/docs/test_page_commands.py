@@ -13,6 +13,8 @@ from pages import berth, commands
 
 from shaftprint.cli import shaftprint
 
+pytestmark = pytest.mark.slow
+
 
 def key(words):
     """Return the name of a command, with the format of an export."""

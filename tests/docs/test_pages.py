@@ -31,7 +31,7 @@ OPENED = {page for page in PAGES if f'"{Path(page).name}"' in OTHER_TEXT}
 WITH_PYTHON = [page for page in PAGES if python_of(page)]
 WITH_COMMANDS = [page for page in PAGES if commands_of(page)]
 # sails the whole campaign
-FULL_SIZE = {"docs/thesis-figures.md"}
+SLOW = {"docs/thesis-figures.md"}
 # Kinds of blocks, each with the file that holds them against something.
 CHECKED = dict.fromkeys(PYTHON, "test_pages.py")
 CHECKED |= dict.fromkeys(SHELL, "test_page_commands.py, test_page_programs.py and test_page_output.py")
@@ -57,7 +57,7 @@ def test_what_is_no_line_for_a_shell_is_there(page):
 @pytest.mark.parametrize(
     "page",
     [
-        pytest.param(page, marks=pytest.mark.full_size) if page in FULL_SIZE else page
+        pytest.param(page, marks=pytest.mark.slow) if page in SLOW else page
         for page in WITH_PYTHON
         if page not in OPENED
     ],

@@ -10,7 +10,7 @@ from shaftprint.recording import read_recording
 from shaftprint.signals import prepare_signals
 from shaftprint.tug import sail
 
-pytestmark = pytest.mark.full_size
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")

@@ -83,6 +83,7 @@ def test_words_say_what_it_does_to_the_result():
     )
 
 
+@pytest.mark.slow
 def test_a_report_of_a_merged_recording_shows_its_maps(tmp_path, survey, recording):
     held = replace(SHAFT, channels=("M_s",))
     merged = replace(recording, attributes=clock_attributes([held]))

@@ -111,6 +111,7 @@ def test_an_excerpt_that_is_not_there_is_refused():
         bode_plot()
 
 
+@pytest.mark.slow
 def test_the_script_is_plotly_and_its_package_is_not_imported():
     code = (
         "import sys; from shaftprint.report.plots import plotly_script; plotly_script();"

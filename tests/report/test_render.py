@@ -96,6 +96,7 @@ def page(report):
     return Page(report.read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 def test_every_picture_is_there_parses_and_has_words(report, page):
     images = page.all("img")
     assert len(images) >= 20
@@ -110,6 +111,7 @@ def test_every_picture_is_there_parses_and_has_words(report, page):
     assert drawn == {image["src"].partition("/")[2] for image in images}
 
 
+@pytest.mark.slow
 def test_the_page_asks_for_nothing_outside(report, page):
     text = report.read_text(encoding="utf-8")
     assert not page.all("link")
@@ -140,12 +142,14 @@ def test_without_interactive_figures_the_page_runs_no_script(tmp_path, survey, m
     assert sorted(file.name for file in report.parent.iterdir()) == ["figures", "index.html"]
 
 
+@pytest.mark.slow
 def test_pictures_refer_to_nothing_outside(report):
     for file in (report.parent / "figures").glob("*.svg"):
         links = re.findall(r'(?:href|src)="([^"]*)"', file.read_text(encoding="utf-8"))
         assert all(link.startswith(("#", "data:")) for link in links)
 
 
+@pytest.mark.slow
 def test_the_policy_allows_exactly_this_style_sheet(report, page):
     import base64
     import hashlib
@@ -160,6 +164,7 @@ def test_the_policy_allows_exactly_this_style_sheet(report, page):
     assert "@media print" in style
 
 
+@pytest.mark.slow
 def test_headings_and_anchors(page):
     levels = [int(tag[1]) for tag, _ in page.tags if re.fullmatch(r"h[1-6]", tag)]
     assert levels[0] == 1
@@ -169,6 +174,7 @@ def test_headings_and_anchors(page):
     assert {a["href"][1:] for a in page.all("a")} <= set(page.ids)
 
 
+@pytest.mark.slow
 def test_summary_comes_first_and_in_words(page, fingerprint):
     summary = page.text[page.text.index("Summary", page.text.index("Sensitivity")) :]
     assert "within their noise" in summary[:1200]
@@ -178,6 +184,7 @@ def test_summary_comes_first_and_in_words(page, fingerprint):
     assert "+/-" not in page.text
 
 
+@pytest.mark.slow
 def test_what_was_known_beforehand_is_not_called_found(page, fingerprint):
     summary = page.text[page.text.index("Summary", page.text.index("Sensitivity")) :]
     known = summary[summary.index("This test knows") : summary.index("Physical values")]
@@ -185,6 +192,7 @@ def test_what_was_known_beforehand_is_not_called_found(page, fingerprint):
     assert ("Known beforehand" in page.text) == bool(fingerprint.priors)
 
 
+@pytest.mark.slow
 def test_truth_stands_beside_the_estimate(page):
     """tau_dn is true at 0.32 and found there; k_q is not 9."""
     row = next(row for row in page.rows if row[0] == "τdn")
@@ -197,6 +205,7 @@ def test_truth_stands_beside_the_estimate(page):
     assert float(row[3]) == pytest.approx(0.12)
 
 
+@pytest.mark.slow
 def test_tables_of_the_thesis_are_there(page):
     for words in ("table 3.1", "table 3.3", "table 3.4", "table 3.5", "table 3.6", "table 3.7", "tables 5.2 and 5.3"):
         assert words in page.text
@@ -204,6 +213,7 @@ def test_tables_of_the_thesis_are_there(page):
     assert "missing pulse" in page.text
 
 
+@pytest.mark.slow
 def test_why_thesis_mode_differs(page):
     """tau of 54.006 kg m2 at 19.53 / 3.82 rev/s and 1725 N m is 1.006 s."""
     assert "a factor" in page.text
@@ -214,6 +224,7 @@ def test_why_thesis_mode_differs(page):
     assert "S15 and S16 lie above 9.87 Hz" in page.text
 
 
+@pytest.mark.slow
 def test_a_report_of_a_bare_survey(tmp_path, survey):
     bare = replace(
         survey,
@@ -277,6 +288,7 @@ def test_a_report_that_fails_leaves_nothing(tmp_path, survey, monkeypatch):
     assert not list(tmp_path.iterdir())
 
 
+@pytest.mark.slow
 def test_a_large_picture_becomes_png(tmp_path, survey, monkeypatch):
     sections = [render_module.fit_section]
     monkeypatch.setattr(page_module, "LARGEST_SVG_BYTES", 10)

@@ -99,6 +99,7 @@ def test_channel_without_numbers(spoiled, vessel, campaign):
     )
 
 
+@pytest.mark.slow
 def test_values_in_float_are_as_good_as_counts(spoiled, vessel, campaign):
     counted = prepare_signals(spoiled(), vessel, campaign)
     names = ("PTM_e", "PTM_1", "PTM_4", "M_s", "U_setpoint")

@@ -58,6 +58,7 @@ def test_is_the_mean_load_of_the_recording_and_not_that_of_a_stretch(speed):
     assert 0.003 < std / 1600.0 < 0.03
 
 
+@pytest.mark.slow
 def test_stated_deviation_holds_the_truth_with_sines_and_staircase(speed):
     """Wander of 2 % and 40 s: of 100 tests 95 are expected within 1.96 deviations, 90 in one of forty runs."""
     rng = np.random.default_rng(8)

@@ -31,6 +31,7 @@ def a_lag(name):
     return Structure(name=name, title="lag", input="u", outputs={"y": expression * float(1 + len(name))})
 
 
+@pytest.mark.slow
 def test_two_processes_may_begin_at_once_in_an_empty_folder(tmp_path):
     environment = {**os.environ, "SHAFTPRINT_CACHE": str(tmp_path / "new")}
     both = [

@@ -40,6 +40,7 @@ def measured(rng, u, lead=200):
     return {"u": u[lead:]}, {"y": (FAST(u) + noise[0])[lead:], "z": (SLOW(u) + noise[1])[lead:]}
 
 
+@pytest.mark.slow
 def test_the_covariance_is_the_scatter_for_noise(expect_honest):
     rng = np.random.default_rng(1)
     found = [response_from_arrays(*measured(rng, rng.standard_normal(3200)), RATE_HZ) for _ in range(150)]
@@ -50,6 +51,7 @@ def test_the_covariance_is_the_scatter_for_noise(expect_honest):
         assert response.frequency_hz[-1] > 8.0
 
 
+@pytest.mark.slow
 def test_the_covariance_is_the_scatter_for_steps_at_random_times(expect_honest):
     rng = np.random.default_rng(2)
     found = []
@@ -59,6 +61,7 @@ def test_the_covariance_is_the_scatter_for_steps_at_random_times(expect_honest):
     expect_honest(found, truth)
 
 
+@pytest.mark.slow
 def test_records_of_different_length_share_the_response(expect_honest):
     rng = np.random.default_rng(3)
     found = []
@@ -113,6 +116,7 @@ def resonance(frequency_hz=2.0, damping=0.02):
     return (lambda x: lfilter([0.0, a.sum()], a, x)), response
 
 
+@pytest.mark.slow
 def test_lines_stand_close_where_the_response_turns_quickly_and_are_not_biased(expect_honest):
     rng = np.random.default_rng(6)
     ring, ring_truth = resonance()

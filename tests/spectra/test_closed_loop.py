@@ -26,6 +26,7 @@ def loop(rng, r, noise=0.5):
     return {"u": u + 0.3 * rng.standard_normal(r.size), "y": y}
 
 
+@pytest.mark.slow
 def test_the_covariance_is_the_scatter_for_a_noisy_loop(expect_honest):
     rng = np.random.default_rng(1)
     found, direct = [], []

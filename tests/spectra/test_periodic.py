@@ -100,6 +100,7 @@ def test_two_inputs_are_told_apart_by_two_records(expect_honest):
     expect_honest(found, both)
 
 
+@pytest.mark.slow
 def test_what_a_nonlinearity_adds_counts_when_records_differ(expect_honest):
     # a cubic term makes, besides a constant gain, a response that changes with the phases of the multisine
     rng = np.random.default_rng(8)

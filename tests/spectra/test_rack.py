@@ -150,6 +150,7 @@ def correlated(coloured, make_signals, make_campaign, *, slope, repeats):
         yield estimate_response(with_channels(signals, X=logged), make_campaign(*sines))
 
 
+@pytest.mark.slow
 def test_covariance_is_the_scatter_over_repeats(coloured, make_signals, make_campaign):
     errors, stated, weighed = [], [], []
     for found in correlated(coloured, make_signals, make_campaign, slope=2, repeats=400):
@@ -181,6 +182,7 @@ def test_steps_of_the_channel_are_in_the_covariance(ship):
         assert (np.abs(error) > 1e-4).all()
 
 
+@pytest.mark.slow
 def test_steps_are_white_noise_where_noise_moves_the_rack(ship):
     """Noise of two steps: as if the channel had no steps but noise of ``q^2 / 12`` more."""
     signals, campaign = ship()

@@ -75,6 +75,7 @@ def test_a_known_response_comes_back(ship):
     assert not found.remarks
 
 
+@pytest.mark.slow
 def test_errors_are_as_large_as_stated(ship):
     weighed, rows = [], []
     for seed in range(60):

@@ -88,6 +88,7 @@ def test_without_noise_the_response_is_the_linear_one(ship, sailed):
     assert np.abs(governor.response[0, 0, 0]) > 50.0
 
 
+@pytest.mark.slow
 def test_with_noise_the_errors_are_as_large_as_stated(ship, sailed):
     # without inflow the propeller load stays what it is in the linear response
     vessel, campaign = ship
@@ -125,6 +126,7 @@ def test_governor_alone_is_the_pi_of_the_truth(ship, sailed):
     assert 0.5 < np.mean(weighed) / 2.0 < 1.3
 
 
+@pytest.mark.slow
 def test_rack_with_noise_errs_as_much_as_stated(ship, sailed):
     vessel, campaign = ship
     tug = Tug.stan_tug_1205()

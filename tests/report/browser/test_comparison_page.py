@@ -8,6 +8,8 @@ import pytest
 from shaftprint.errors import ReportError
 from shaftprint.report import render_comparison
 
+pytestmark = pytest.mark.slow
+
 
 def moved(fingerprint, name, share):
     """The fingerprint of a later test, one physical value of which has moved and all else not."""

@@ -7,6 +7,9 @@ import pytest
 
 from shaftprint.report import render_comparison
 
+pytestmark = pytest.mark.slow
+
+
 # Edges of boxes are rounded to dots.
 JUMP_PX = 2.0
 WHAT_IS_SEEN = """name => {

@@ -12,6 +12,9 @@ from shaftprint.report import _render as render_module
 from shaftprint.report import render_report
 from shaftprint.validation import ValidationSettings, validate
 
+pytestmark = pytest.mark.slow
+
+
 SECTIONS = ("fit", "stability", "validation", "quality", "uncertainty", "time")
 PLOTS = (
     "fit",
