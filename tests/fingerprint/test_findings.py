@@ -128,21 +128,21 @@ def test_parameter_of_which_nothing_is_known(sharp, put_by_hand):
 
 
 def test_known_to_a_tenth_is_known(sharp, put_by_hand):
-    assert none(found(put_by_hand(sharp, std={"zeta": 0.0469})), "hardly")
-    assert not none(found(put_by_hand(sharp, std={"zeta": 0.0471})), "hardly")
+    assert none(found(put_by_hand(sharp, std={"zeta": 0.0469})), "poorly determined")
+    assert not none(found(put_by_hand(sharp, std={"zeta": 0.0471})), "poorly determined")
 
 
-def test_what_was_known_beforehand_is_not_complained_of(sharp, put_by_hand):
-    assert none(found(put_by_hand(sharp, std={"g": 1.0})), "hardly")
+def test_a_prior_is_not_complained_of(sharp, put_by_hand):
+    assert none(found(put_by_hand(sharp, std={"g": 1.0})), "poorly determined")
     without = replace(sharp, settings=Settings(starts=20, priors={"tau_up": Prior(1.016, 0.1)}))
-    assert not none(found(put_by_hand(without, std={"g": 1.0})), "hardly")
+    assert not none(found(put_by_hand(without, std={"g": 1.0})), "poorly determined")
 
 
 def test_parameter_of_either_sign_is_compared_with_its_range(sharp, put_by_hand):
     """g is 0 +/- 0.1 in a range from -3 to 0.9: known well, although every deviation is large beside 0."""
     without = replace(sharp, settings=Settings(starts=20))
-    assert none(found(put_by_hand(without, std={"g": 0.1})), "hardly")
-    assert not none(found(put_by_hand(without, std={"g": 0.4})), "hardly")
+    assert none(found(put_by_hand(without, std={"g": 0.1})), "poorly determined")
+    assert not none(found(put_by_hand(without, std={"g": 0.4})), "poorly determined")
 
 
 @pytest.mark.parametrize(
@@ -180,12 +180,12 @@ def test_the_working_point_and_the_set_point_are_measured(sharp, gauge_fit):
     common = {"set-point calibration": np.zeros(gauge_fit.response.response.shape)}
     part = replace(gauge_fit.experiments[0], response=replace(gauge_fit.response, common=common))
     told = replace(sharp, parts=(part,))
-    assert none(found(told, stated=Budget(sources=tuple(variances), rows=rows)), "beforehand")
+    assert none(found(told, stated=Budget(sources=tuple(variances), rows=rows)), "priors")
 
 
 def test_a_fit_without_priors_rests_on_nothing(fit, truth):
     free = fit("GAUGE-CLOSED", truth)
-    assert none(found(free, stated=budget(free)), "beforehand")
+    assert none(found(free, stated=budget(free)), "priors")
 
 
 def test_inertia_off_the_torsional_vibration_calculation(sharp, put_by_hand, judged):
