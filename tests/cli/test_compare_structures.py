@@ -27,7 +27,7 @@ def test_the_gauge_aware_loop_beats_those_of_the_thesis_and_the_output_says_why(
     assert any(line.startswith("  * GAUGE-CLOSED explains the data (chi-square") for line in lines)
     assert any(line.startswith("  * CL3 is rejected (chi-square") and "p < 1e-12" in line for line in lines)
     assert any(line.startswith("  * GAUGE-CLOSED holds CL4 as a special case") for line in lines)
-    assert any(line.startswith("  * Lines left out of the fit are foretold") for line in lines)
+    assert any(line.startswith("  * Lines left out of the fit are predicted") for line in lines)
     assert "Structures fitted to the same 40 data" in result.output
     assert "Structures within larger ones" in result.output
     table = result.output[result.output.index("Structures fitted") :]

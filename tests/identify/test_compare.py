@@ -8,7 +8,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Prior, Settings, Unweighted, compare_structures, identify
-from shaftprint.identify.comparison import Foretold, compare_fits, comparison_words
+from shaftprint.identify.comparison import HoldOut, compare_fits, comparison_words
 from shaftprint.models import Gain, Parameter, PIGovernor, Structure
 
 CL3 = {"tau_n": 0.35, "K_p": 1.6, "K_i": 4.4, "omega_n": 9.8, "zeta": 0.5}
@@ -36,8 +36,8 @@ def test_the_true_structure_wins_and_the_report_says_why(make_response):
     assert "the misfit is largest" in rejected
     needed = next(s for s in text if s.startswith("CL4 holds CL3 as a special case: one more parameter lowers"))
     assert needed.endswith("is needed (p < 1e-12).")
-    foretold = next(s for s in text if s.startswith("Lines left out"))
-    assert foretold.index("by CL4") < foretold.index("by CL3") < foretold.index("by CL1")
+    hold_out = next(s for s in text if s.startswith("Lines left out"))
+    assert hold_out.index("by CL4") < hold_out.index("by CL3") < hold_out.index("by CL1")
     assert sum(found.weights.values()) == pytest.approx(1.0)
     assert found.weights["CL4"] > 1.0 - 1e-9
 
@@ -123,11 +123,11 @@ def test_settings_may_differ_by_name_and_hold_priors_of_others(make_response):
 def test_leaving_lines_out_may_speak_against_bic(make_response):
     response = make_response("OL5", noise=0.02, rng=np.random.default_rng(5))
     first, second = compared(response, "OL4", "OL5", folds=0).candidates
-    first = replace(first, foretold=Foretold(square=1.3, expected=1.1, folds=5))
-    second = replace(second, foretold=Foretold(square=1.2, expected=1.1, folds=5))
+    first = replace(first, hold_out=HoldOut(square=1.3, expected=1.1, folds=5))
+    second = replace(second, hold_out=HoldOut(square=1.2, expected=1.1, folds=5))
     *_, told, against = comparison_words([first, second], {}, [])
     assert told.endswith(f"of 1.2 by {second.name} (1.1 expected), 1.3 by {first.name} (1.1 expected).")
-    assert against.startswith(f"{second.name} foretells left-out lines better than {first.name}, which BIC prefers")
+    assert against.startswith(f"{second.name} predicts left-out lines better than {first.name}, which BIC prefers")
 
 
 @pytest.mark.parametrize(
@@ -151,11 +151,11 @@ def test_a_test_without_a_law_says_where_its_probability_comes_from(make_respons
     assert any(because in s for s in found.sentences)
 
 
-def test_a_structure_that_a_part_of_the_lines_cannot_fit_foretells_nothing(make_response):
+def test_a_structure_that_a_part_of_the_lines_cannot_fit_predicts_nothing(make_response):
     response = make_response("OL5", noise=0.02, rng=np.random.default_rng(5))
     found = compared(response, "OL2", "OL5", lines=["S9", "S10", "S12"], folds=3)
-    assert found.candidate("OL5").foretold is None
-    assert found.candidate("OL2").foretold.folds == 3
+    assert found.candidate("OL5").hold_out is None
+    assert found.candidate("OL2").hold_out.folds == 3
     assert not any(s.startswith("Lines left out") for s in found.sentences)
 
 
@@ -197,4 +197,4 @@ def test_fits_at_hand_are_compared_without_a_new_search(make_response):
     found = compare_fits(fits, rng=np.random.default_rng(1), folds=0)
     assert {id(candidate.identification) for candidate in found.candidates} == {id(fit) for fit in fits}
     assert [(ratio.small, ratio.large) for ratio in found.ratios] == [("OL5 held", "OL5")]
-    assert found.best.foretold is None
+    assert found.best.hold_out is None

@@ -26,7 +26,7 @@ GAUGE = "Is the torque gauge in order?"
 HUNTING = "Does the engine hold its speed without hunting?"
 PROPELLER = "Does the propeller take the torque that it should?"
 USABLE = "Can the result be used?"
-FORETELLS = "Does the model foretell what it has not seen?"
+PREDICTS = "Does the model predict what it has not seen?"
 
 
 @pytest.mark.parametrize(
@@ -67,8 +67,8 @@ def test_a_fit_that_is_not_trustworthy_answers_nothing_else(fingerprint):
     assert {told[question].state for question in (HUNTING, INERTIA, GAUGE)} == {"open"}
 
 
-def test_without_records_nothing_is_foretold(fingerprint):
-    assert answers(fingerprint)[FORETELLS].state == "open"
+def test_without_records_nothing_is_predicted(fingerprint):
+    assert answers(fingerprint)[PREDICTS].state == "open"
 
 
 def test_many_lines_left_out_are_worth_a_look(fingerprint):

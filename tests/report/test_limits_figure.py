@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import AHEAD_S
-from shaftprint.limits import Kind, LimitNumber
+from shaftprint.limits import Kind, LimitEstimate
 from shaftprint.report import plot_limits
 
 RATE_HZ = 12.5
@@ -21,7 +21,7 @@ def limits(*, level):
         time_s=time, rate_hz=RATE_HZ, used=time > 5.0, inputs={"n": speed, "c": 0.0 * time},
         outputs={"y": predicted + 0.01 * np.cos(40.0 * time)},
     )  # fmt: skip
-    number = LimitNumber(
+    number = LimitEstimate(
         kind=Kind.TORQUE, name="m_max", unit="-", value=1.9, std=0.05, lower=1.8, upper=2.0, meaning="level"
     )
     part = SimpleNamespace(record=record, predicted=predicted)

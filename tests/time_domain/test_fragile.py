@@ -15,7 +15,7 @@ from shaftprint.time_domain import (
     record_from_arrays,
     simulated_on,
 )
-from shaftprint.time_domain.nonlinear import Fragile, fragile_stretches, without_fragile
+from shaftprint.time_domain.nonlinear import JumpStretch, jump_stretches, without_jumps
 
 RATE = 20.0
 NOISE = 0.01
@@ -54,7 +54,7 @@ def term_of(line, record):
 def test_what_lies_beyond_a_jump_is_left_out_and_the_rest_stays(line):
     record = chirp(line, 0.17)
     term = term_of(line, record)
-    steady = without_fragile(term, line.vector(TRUE), np.random.default_rng(1))
+    steady = without_jumps(term, line.vector(TRUE), np.random.default_rng(1))
     left_out = record.used & ~steady.record.used
     # one stretch, to the end
     assert left_out[-1]
@@ -77,10 +77,13 @@ def test_what_lies_beyond_a_jump_is_left_out_and_the_rest_stays(line):
 
 def test_where_no_limit_acts_nothing_is_left_out(line):
     term = term_of(line, chirp(line, 0.02))
-    assert without_fragile(term, line.vector(TRUE), np.random.default_rng(1)) is term
+    assert without_jumps(term, line.vector(TRUE), np.random.default_rng(1)) is term
 
 
 def test_stretches_are_named_in_time():
     left_out = np.array([False, True, True, False, True])
-    found = fragile_stretches("C1", 10.0 + np.arange(5.0), left_out)
-    assert found == (Fragile(record="C1", begin_s=11.0, end_s=12.0), Fragile(record="C1", begin_s=14.0, end_s=14.0))
+    found = jump_stretches("C1", 10.0 + np.arange(5.0), left_out)
+    assert found == (
+        JumpStretch(record="C1", begin_s=11.0, end_s=12.0),
+        JumpStretch(record="C1", begin_s=14.0, end_s=14.0),
+    )

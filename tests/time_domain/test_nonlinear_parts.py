@@ -12,7 +12,7 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Estimate
 from shaftprint.signals import SetPointCalibration, Signals, WorkingPoint
 from shaftprint.time_domain import NonlinearSettings, limit_numbers, record_from_arrays, structure_for, without_orders
-from shaftprint.time_domain.nonlinear import Given, SomeDrawn, sharpened, touched
+from shaftprint.time_domain.nonlinear import Given, SomeDrawn, limited_sines, sharpened
 from shaftprint.vessel import load_vessel
 
 POINT = WorkingPoint(
@@ -210,10 +210,10 @@ def test_a_sine_is_touched_where_its_rack_moves_too_fast():
         )
         for name, size in (("S1", 0.02), ("S2", 0.2))
     ]
-    assert touched(rate, {**loop, "r_x": 0.5}, records) == ("S2",)
-    assert touched(rate, {**loop, "r_x": 50.0}, records) == ()
+    assert limited_sines(rate, {**loop, "r_x": 0.5}, records) == ("S2",)
+    assert limited_sines(rate, {**loop, "r_x": 50.0}, records) == ()
     # a line that is not stable says nothing about small signals
-    assert touched(rate, {**loop, "K_p": 20.0, "t_d": 0.4, "r_x": 50.0}, records[:1]) == ("S1",)
+    assert limited_sines(rate, {**loop, "K_p": 20.0, "t_d": 0.4, "r_x": 50.0}, records[:1]) == ("S1",)
 
 
 def test_settings_are_positive():

@@ -2,17 +2,17 @@
 
 from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo
-from shaftprint.identify.comparison import Candidate, Comparison, LikelihoodRatio
+from shaftprint.identify.comparison import Candidate, LikelihoodRatio, StructureComparison
 
 
-def print_comparison(comparison: Comparison) -> None:
+def print_comparison(comparison: StructureComparison) -> None:
     """Print why a structure wins, and the criteria and tests of all."""
     echo(f"Which structure: {comparison.best.name}")
     for sentence in comparison.sentences:
         echo(f"  * {sentence}")
     echo()
     columns = ("structure", "parameters", "chi-square", "freedom", "p-value", "AIC", "AICc", "BIC", "belief", "FPE")
-    told = any(candidate.foretold is not None for candidate in comparison.candidates)
+    told = any(candidate.hold_out is not None for candidate in comparison.candidates)
     rows = [_row(candidate, comparison.weights[candidate.name], told) for candidate in comparison.candidates]
     data = comparison.best.criteria.data
     print_table(
@@ -45,9 +45,9 @@ def _row(candidate: Candidate, weight: float, told: bool) -> tuple[str, ...]:
     )
     if not told:
         return cells
-    if candidate.foretold is None:
+    if candidate.hold_out is None:
         return (*cells, "", "")
-    return (*cells, f"{candidate.foretold.square:.3g}", f"{candidate.foretold.expected:.3g}")
+    return (*cells, f"{candidate.hold_out.square:.3g}", f"{candidate.hold_out.expected:.3g}")
 
 
 def _ratio_row(ratio: LikelihoodRatio) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ from pathlib import Path
 from shaftprint.cli._progress import Steps
 from shaftprint.escape import plain_name
 from shaftprint.report import plot_validation, plot_validation_summary, save_figure
-from shaftprint.validation import Comparison, Validation
+from shaftprint.validation import ExcerptComparison, Validation
 
 # As the thesis shares its sets between the parts (a) and (b) of figures 5.7 to 5.9.
 GROUPS = {"a": ("CL4", "OL1+OL5", "benchmark"), "b": ("CL3", "OL1+OL4", "benchmark")}
@@ -43,15 +43,15 @@ def write_validations(folder: Path, validations: Sequence[Validation], *, steps:
             save_figure(figure, folder / f"{plain_name(f'{excerpt.record} {_title(comparison)}{suffix}')}.svg")
 
 
-def _title(comparison: Comparison) -> str:
+def _title(comparison: ExcerptComparison) -> str:
     """Return the title as it stands in a file name."""
     at = comparison.excerpt.step_s
     return comparison.excerpt.title if at is None else f"step at {at:.0f} s"
 
 
-def _shown(validation: Validation) -> list[Comparison]:
+def _shown(validation: Validation) -> list[ExcerptComparison]:
     """Return all excerpts, of the steps only the largest of each staircase."""
-    largest: dict[str, Comparison] = {}
+    largest: dict[str, ExcerptComparison] = {}
     for comparison in validation.comparisons:
         if comparison.excerpt.kind == "step":
             before = largest.setdefault(comparison.excerpt.record, comparison)
@@ -60,7 +60,7 @@ def _shown(validation: Validation) -> list[Comparison]:
     return [c for c in validation.comparisons if c.excerpt.kind != "step" or c in largest.values()]
 
 
-def _height(comparison: Comparison) -> float:
+def _height(comparison: ExcerptComparison) -> float:
     set_point = comparison.traces.set_point
     return abs(float(set_point[-1] - set_point[0]))
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from shaftprint.cli._fingerprint_tables import print_findings
 from shaftprint.cli._tables import print_table
-from shaftprint.validation import Comparison, Misfit, RemainingDelay, StepNumber, Validation
+from shaftprint.validation import ExcerptComparison, Misfit, RemainingDelay, StepNumber, Validation
 
 PERCENT = 100.0
 MS_PER_S = 1000.0
@@ -69,7 +69,7 @@ def _print_excerpts(validation: Validation) -> None:
     print_table(f"{validation.model.name} against records it has not seen", columns, rows, numbers=(3, 4, 6))
 
 
-def _print_steps(steps: Sequence[Comparison]) -> None:
+def _print_steps(steps: Sequence[ExcerptComparison]) -> None:
     rows = []
     for comparison in steps:
         for number in comparison.step_numbers:
@@ -89,7 +89,7 @@ def _print_steps(steps: Sequence[Comparison]) -> None:
     print_table("Numbers of the steps", columns, rows)
 
 
-def _where(comparison: Comparison) -> str:
+def _where(comparison: ExcerptComparison) -> str:
     return f"{comparison.excerpt.record}, {comparison.excerpt.title}"
 
 

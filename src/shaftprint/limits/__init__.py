@@ -18,9 +18,9 @@ torque ``M_b``      -         of the engine, deviation over ``M_b0 = M_s0 / (i e
 =================== ========= ==========================================================================
 """
 
+from shaftprint.limits._candidates import Kind
 from shaftprint.limits._identify_limits import identify_limits
-from shaftprint.limits._limit_fit import LimitFit, LimitNumber
+from shaftprint.limits._limit_fit import LimitEstimate, LimitFit
 from shaftprint.limits._limit_hints import limit_hints
-from shaftprint.limits._suspects import Kind
 
-__all__ = ["Kind", "LimitFit", "LimitNumber", "identify_limits", "limit_hints"]
+__all__ = ["Kind", "LimitEstimate", "LimitFit", "identify_limits", "limit_hints"]

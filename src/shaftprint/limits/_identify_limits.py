@@ -8,6 +8,7 @@ import numpy as np
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import limited_governor
 from shaftprint.identify import Prior
+from shaftprint.limits._candidates import CANDIDATES, Kind
 from shaftprint.limits._limit_fit import LimitFit
 from shaftprint.limits._numbers import (
     Units,
@@ -19,7 +20,6 @@ from shaftprint.limits._numbers import (
 )
 from shaftprint.limits._search import GOVERNOR, Fitted, Scanned, Search, fitted, schwarz, with_messages
 from shaftprint.limits._set_point_quantum import quantum_of
-from shaftprint.limits._suspects import SUSPECTS, Kind
 from shaftprint.limits._uncertainty import spread_of
 from shaftprint.limits.prediction import Messages, governor_test
 from shaftprint.models import Structure
@@ -125,17 +125,17 @@ def _gains(search: Search, here: Fitted) -> Mapping[Kind, float]:
 def _not_seen(here: Fitted, rest: Sequence[Scanned], messages: Messages | None, units: Units) -> Mapping[Kind, str]:
     """Return up to which level each limit that does not act is excluded."""
     found = {}
-    for suspect in SUSPECTS:
-        tried = [one for one in rest if one.suspect.kind is suspect.kind]
-        if suspect.kind in here.kinds or not tried:
+    for candidate in CANDIDATES:
+        tried = [one for one in rest if one.candidate.kind is candidate.kind]
+        if candidate.kind in here.kinds or not tried:
             continue
         level = None
         # the strongest limit comes first; of several starts of one level the one that costs least counts
-        for value in dict.fromkeys(one.start[suspect.level] for one in tried):
-            if max(one.gain for one in tried if one.start[suspect.level] == value) > -EXCLUDED:
+        for value in dict.fromkeys(one.start[candidate.level] for one in tried):
+            if max(one.gain for one in tried if one.start[candidate.level] == value) > -EXCLUDED:
                 break
             level = value
-        found[suspect.kind] = exclusion(suspect, level, units)
+        found[candidate.kind] = exclusion(candidate, level, units)
     if Kind.HELD not in here.kinds:
         found[Kind.HELD] = messages_exclusion(None if messages is None else messages.excluded_beyond(EXCLUDED))
     return found

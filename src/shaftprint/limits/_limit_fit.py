@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 from shaftprint.identify import Identification
 from shaftprint.identify.fit import Estimate
-from shaftprint.limits._suspects import STRUCTURE_LIMITS, Kind, parameters_of
+from shaftprint.limits._candidates import STRUCTURE_LIMITS, Kind, parameters_of
 from shaftprint.limits.prediction import PredictedTorque
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class LimitNumber:
+class LimitEstimate:
     """One number of a limit, with its 95 % interval."""
 
     kind: Kind
@@ -46,7 +46,7 @@ class LimitFit:
 
     kinds: tuple[Kind, ...]
     """The limits that act, the strongest evidence first."""
-    numbers: tuple[LimitNumber, ...]
+    numbers: tuple[LimitEstimate, ...]
     """Their levels, rates and widths; the first of each limit is the one by which it is known."""
     gains: Mapping[Kind, float]
     """Fall of minus twice the log-likelihood that each limit brings to the others."""
@@ -58,7 +58,7 @@ class LimitFit:
     """The fit."""
 
     @property
-    def trusted(self) -> tuple[LimitNumber, ...]:
+    def trusted(self) -> tuple[LimitEstimate, ...]:
         """The numbers that may be used."""
         return tuple(number for number in self.numbers if number.trusted)
 

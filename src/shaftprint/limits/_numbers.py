@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.distributions import NORMAL_95
-from shaftprint.limits._limit_fit import LimitNumber
+from shaftprint.limits._candidates import CANDIDATES, Kind, LimitCandidate
+from shaftprint.limits._limit_fit import LimitEstimate
 from shaftprint.limits._search import Fitted
 from shaftprint.limits._set_point_quantum import Quantum
-from shaftprint.limits._suspects import SUSPECTS, Kind, Suspect
-from shaftprint.limits._uncertainty import LevelInterval, Spread, profile_interval
+from shaftprint.limits._uncertainty import LevelInterval, LevelScatter, profile_interval
 from shaftprint.limits.prediction import Messages
 from shaftprint.signals import Signals
 from shaftprint.units import rpm_from_rev_s
@@ -137,11 +137,11 @@ class Units:
                 return (Scale(name="T_aw", unit="s", meaning="time in which the integrator is led back at a limit"),)
 
 
-def numbers_of(found: Fitted, spread: Spread, units: Units) -> tuple[LimitNumber, ...]:
+def numbers_of(found: Fitted, spread: LevelScatter, units: Units) -> tuple[LimitEstimate, ...]:
     """Return the numbers of all limits, with profile intervals."""
-    by_kind = {suspect.kind: suspect for suspect in SUSPECTS}
+    by_kind = {candidate.kind: candidate for candidate in CANDIDATES}
     done = set[str]()
-    rows: list[LimitNumber] = []
+    rows: list[LimitEstimate] = []
     for kind in found.kinds:
         if kind is Kind.HELD and found.messages is not None:
             rows.append(_cycle(found.messages))
@@ -153,7 +153,7 @@ def numbers_of(found: Fitted, spread: Spread, units: Units) -> tuple[LimitNumber
     return tuple(rows)
 
 
-def _printed(found: Fitted, spread: Spread, units: Units, kind: Kind, name: str) -> Iterator[LimitNumber]:
+def _printed(found: Fitted, spread: LevelScatter, units: Units, kind: Kind, name: str) -> Iterator[LimitEstimate]:
     parameter = next(p for p in found.term.structure.free if p.name == name)
     value = found.values[name]
     at_bound = value in (parameter.lower, parameter.upper)
@@ -168,7 +168,7 @@ def _printed(found: Fitted, spread: Spread, units: Units, kind: Kind, name: str)
     for scale in units.scales(name):
         more = NORMAL_95 * scale.share_std * abs(value)
         lower, upper = (_widened(value, end, more) for end in (interval.lower, interval.upper))
-        yield LimitNumber(
+        yield LimitEstimate(
             kind=kind,
             name=scale.name,
             unit=scale.unit,
@@ -182,11 +182,11 @@ def _printed(found: Fitted, spread: Spread, units: Units, kind: Kind, name: str)
         )
 
 
-def _cycle(messages: Messages) -> LimitNumber:
+def _cycle(messages: Messages) -> LimitEstimate:
     """Return the cycle of the messages between which the set point is held."""
     lower, value, upper = (messages.quantile(share) for share in (0.025, 0.5, 0.975))
     interval = LevelInterval(lower=lower, upper=upper, lower_open=False, upper_open=False)
-    return LimitNumber(
+    return LimitEstimate(
         kind=Kind.HELD,
         name="T_set",
         unit="s",
@@ -199,7 +199,7 @@ def _cycle(messages: Messages) -> LimitNumber:
     )
 
 
-def quantum_number(quantum: Quantum, units: Units) -> LimitNumber:
+def quantum_number(quantum: Quantum, units: Units) -> LimitEstimate:
     """Return the step of a quantised set point."""
     value, std = units.speed_rpm * quantum.step, units.speed_rpm * quantum.std
     lower, upper = value - NORMAL_95 * std, value + NORMAL_95 * std
@@ -207,7 +207,7 @@ def quantum_number(quantum: Quantum, units: Units) -> LimitNumber:
     doubt = _doubt(value, interval, at_bound=False)
     if not quantum.is_only_one:
         doubt = doubt or "another step explains the test nearly as well"
-    return LimitNumber(
+    return LimitEstimate(
         kind=Kind.QUANTUM,
         name="q_rpm",
         unit="rpm",
@@ -237,11 +237,11 @@ def _doubt(value: float, interval: LevelInterval, *, at_bound: bool) -> str:
     return ""
 
 
-def exclusion(suspect: Suspect, level: float | None, units: Units) -> str:
+def exclusion(candidate: LimitCandidate, level: float | None, units: Units) -> str:
     """Return up to which level the data exclude a limit, in words."""
     if level is None:
-        return f"{suspect.kind.value}: not seen, and no level of it is excluded"
-    scale = units.scales(suspect.level)[0]
+        return f"{candidate.kind.value}: not seen, and no level of it is excluded"
+    scale = units.scales(candidate.level)[0]
     side = {
         Kind.TORQUE: "none below",
         Kind.MOTORING: "none above",
@@ -249,9 +249,9 @@ def exclusion(suspect: Suspect, level: float | None, units: Units) -> str:
         Kind.RAMP: "none slower than",
         Kind.DEADBAND: "none wider than",
         Kind.SMOKE: "none below",
-    }[suspect.kind]
+    }[candidate.kind]
     unit = "" if scale.unit == "-" else f" {scale.unit}"
-    return f"{suspect.kind.value}: not seen, {side} {scale.name} = {scale.factor * level:.3g}{unit}"
+    return f"{candidate.kind.value}: not seen, {side} {scale.name} = {scale.factor * level:.3g}{unit}"
 
 
 def messages_exclusion(cycle_s: float | None) -> str:

@@ -10,7 +10,7 @@ from shaftprint.campaign import Campaign
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, Prior, Settings, identify_jointly
 from shaftprint.identify.search import Draw
-from shaftprint.limits._suspects import IDLE, SUSPECTS, Kind, Suspect, parameters_of, starts_of
+from shaftprint.limits._candidates import CANDIDATES, IDLE, Kind, LimitCandidate, parameters_of, starts_of
 from shaftprint.limits.prediction import OUTPUT, GovernorRecord, GovernorTest, Messages, PredictionError, messages_of
 from shaftprint.models import Structure
 
@@ -101,10 +101,10 @@ class Fitted:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Scanned:
-    """One level of a suspect, the governor following to first order."""
+    """One level of a candidate, the governor following to first order."""
 
-    suspect: Suspect
-    """The suspect."""
+    candidate: LimitCandidate
+    """The candidate."""
     start: Mapping[str, float]
     """Every parameter, with its level."""
     gain: float
@@ -255,17 +255,17 @@ class Search:
         speed = term.record.decimator.thinned(term.record.drive["n"][:, None])[:, 0]
         load = np.maximum(1.0 + speed, LEAST_SPEED) ** 2
         found = []
-        for suspect in SUSPECTS:
-            if suspect.kind in here.kinds or (suspect.kind is Kind.TORQUE and Kind.SMOKE in here.kinds):
+        for candidate in CANDIDATES:
+            if candidate.kind in here.kinds or (candidate.kind is Kind.TORQUE and Kind.SMOKE in here.kinds):
                 continue
-            for start in starts_of(suspect, base, (1.0 + simulated) * load, self.full):
+            for start in starts_of(candidate, base, (1.0 + simulated) * load, self.full):
                 values = {**base, **start}
                 there = term.predicted(np.array([values[name] for name in self.whole.names]))
                 moved = now.values + now.filtered((simulated - there)[None])[0]
                 moved = moved - basis @ (basis.T @ moved)
                 squares = max(float(moved @ moved), SMALLEST)
                 gain = best.count * float(np.log(best.squares / squares)) if np.isfinite(squares) else -np.inf
-                found.append(Scanned(suspect=suspect, start={**base, **start}, gain=gain))
+                found.append(Scanned(candidate=candidate, start={**base, **start}, gain=gain))
         return found
 
     def _joined(self, here: Fitted, scanned: Sequence[Scanned]) -> Fitted | None:
@@ -274,7 +274,7 @@ class Search:
         if not here.kinds:
             calm = {**here.values, **self.calm}
             starts += _strongest(self._scan_from(here, calm), POLISHED_CALM)
-        tries = [self._tried(one.start, (*here.kinds, one.suspect.kind), here.messages) for one in starts]
+        tries = [self._tried(one.start, (*here.kinds, one.candidate.kind), here.messages) for one in starts]
         best = min((one for one in tries if one is not None), key=schwarz, default=None)
         if best is None:
             return None
@@ -287,7 +287,7 @@ class Search:
 
         Of a line that rests near its torque limit the wrong one of two optima is worse than any smoke limit.
         """
-        starts = _strongest([one for one in scanned if one.suspect.kind is Kind.TORQUE], 1)
+        starts = _strongest([one for one in scanned if one.candidate.kind is Kind.TORQUE], 1)
         kinds = tuple(Kind.TORQUE if kind is Kind.SMOKE else kind for kind in smoke.kinds)
         tries = [self._tried(one.start, kinds, smoke.messages) for one in starts]
         torque = next((self._pushed(one, self._rest_moves(one)) for one in tries if one is not None), smoke)
@@ -380,5 +380,5 @@ def schwarz(one: Fitted) -> float:
 
 def _strongest(scanned: Sequence[Scanned], count: int) -> list[Scanned]:
     """Return the best level of each limit, of the limits that gain most."""
-    best = {one.suspect.kind: one for one in sorted(scanned, key=lambda one: one.gain)}
+    best = {one.candidate.kind: one for one in sorted(scanned, key=lambda one: one.gain)}
     return sorted(best.values(), key=lambda one: one.gain, reverse=True)[:count]

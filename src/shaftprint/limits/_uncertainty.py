@@ -31,7 +31,7 @@ PROFILE_ITERATIONS = 4
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Spread:
+class LevelScatter:
     """Standard deviations of the free parameters of a governor."""
 
     names: tuple[str, ...]
@@ -49,7 +49,7 @@ class Spread:
         return float(np.hypot(self.noise[place], self.systematic[place]))
 
 
-def spread_of(found: Fitted, test: GovernorTest, signals: Signals, vessel: Vessel) -> Spread:
+def spread_of(found: Fitted, test: GovernorTest, signals: Signals, vessel: Vessel) -> LevelScatter:
     """Return the standard deviations of a governor's parameters."""
     term, own = found.term, found.own
     rows = term.rows(own)
@@ -67,7 +67,7 @@ def spread_of(found: Fitted, test: GovernorTest, signals: Signals, vessel: Vesse
     scatter = np.sqrt(np.maximum(np.diag(inverse @ (sums @ sums.T + np.diag(known**2)) @ inverse), 0.0))
     model = np.sqrt(np.maximum(np.diag(inverse), 0.0))
     follows = np.array([inverse @ (slopes @ change) for change in _taken_for_granted(found, test, signals, vessel)])
-    return Spread(
+    return LevelScatter(
         names=names,
         noise=np.where(nothing, np.inf, np.maximum(scatter, model)),
         model=np.where(nothing, np.inf, model),
@@ -114,7 +114,7 @@ class LevelInterval:
     """Whether the data set no upper end."""
 
 
-def profile_interval(found: Fitted, spread: Spread, name: str) -> LevelInterval:
+def profile_interval(found: Fitted, spread: LevelScatter, name: str) -> LevelInterval:
     """Return the profile-likelihood interval of one parameter, widened by scatter and by what was taken for granted."""
     place = spread.names.index(name)
     parameter = next(p for p in found.term.structure.free if p.name == name)

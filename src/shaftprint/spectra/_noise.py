@@ -136,7 +136,7 @@ def line_noise(
 def _own_torque(values: ComplexArray, relation: ShaftRelation, neighbours: Neighbours) -> tuple[ComplexArray, complex]:
     """Return what the torque has of its own at the bins, and the share of the speed that it has at the line.
 
-    The change from bin to bin that the ratio at the line foretells is taken out as far as it is there: not at all where
+    The change from bin to bin that the ratio at the line predicts is taken out as far as it is there: not at all where
     the noise comes from the load.
     """
     torque, speed = values[relation.torque], values[relation.speed]

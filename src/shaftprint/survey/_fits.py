@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from shaftprint.identify import Identification, Prior, Settings, identify, priors_from_vessel
-from shaftprint.identify.comparison import Comparison, compare_fits
+from shaftprint.identify.comparison import StructureComparison, compare_fits
 from shaftprint.models import Structure
 from shaftprint.signals import Signals
 from shaftprint.survey._measurement import Measurement, response_of
@@ -60,7 +60,7 @@ def fit(
 
 def comparisons_of(
     fits: Sequence[Identification], *, rng: np.random.Generator, progress: Progress = SILENT
-) -> tuple[Comparison, ...]:
+) -> tuple[StructureComparison, ...]:
     """Return a comparison for every group of two or more fits of the same channels, in the order of the fits.
 
     Parameters

@@ -13,7 +13,7 @@ from shaftprint.campaign import Campaign
 from shaftprint.catalogue import shipped_structure
 from shaftprint.fingerprint import Fingerprint, SourceFile, take_fingerprint
 from shaftprint.identify import Identification, Settings
-from shaftprint.identify.comparison import Comparison
+from shaftprint.identify.comparison import StructureComparison
 from shaftprint.limits import limit_hints
 from shaftprint.models import Structure
 from shaftprint.signals import Mode, Signals
@@ -42,7 +42,7 @@ class Survey:
     """The structures that were fitted; the fingerprint is of the first."""
     fingerprint: Fingerprint
     """What is kept."""
-    comparisons: tuple[Comparison, ...] = ()
+    comparisons: tuple[StructureComparison, ...] = ()
     """Which of several structures the data want."""
     validations: tuple[Validation, ...] = ()
     """The first structure held against records that it has not seen."""

@@ -28,8 +28,8 @@ from shaftprint.time_domain._spectrum_term import FittedSpectrum, SpectrumRepeat
 from shaftprint.time_domain._whiteness import whiteness_p_value
 from shaftprint.time_domain._whitening import Whitening
 from shaftprint.time_domain.nonlinear import (
-    Fragile,
     Jump,
+    JumpStretch,
     LimitedModel,
     LimitNumber,
     NonlinearFit,
@@ -47,8 +47,8 @@ __all__ = [
     "Decimator",
     "ExactDelays",
     "FittedSpectrum",
-    "Fragile",
     "Jump",
+    "JumpStretch",
     "KnownStart",
     "LimitNumber",
     "LimitedModel",

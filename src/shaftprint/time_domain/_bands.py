@@ -26,7 +26,7 @@ ROUNDING = 1e-10
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Bands:
+class LineBands:
     """What bands of lines tell by themselves."""
 
     places: IntArray
@@ -51,9 +51,9 @@ class Bands:
         """Factor that makes an estimated covariance right as a weight, shape (bands,); see ``spectra``."""
         return np.asarray(self.samples / (self.samples - self.noise.shape[-1]))
 
-    def chosen(self, rows: IntArray) -> "Bands":
+    def chosen(self, rows: IntArray) -> "LineBands":
         """Return some of the bands."""
-        return Bands(**{part.name: getattr(self, part.name)[rows] for part in fields(self)})
+        return LineBands(**{part.name: getattr(self, part.name)[rows] for part in fields(self)})
 
     def at_lines(self, count: int) -> ComplexArray:
         """Return the noise at every line, right as a weight, shape (lines, outputs, outputs)."""
@@ -69,7 +69,7 @@ class Bands:
         return found
 
 
-def bands_of(source: ComplexArray, outputs: ComplexArray) -> Bands:
+def bands_of(source: ComplexArray, outputs: ComplexArray) -> LineBands:
     """Cut lines into bands and fit each by itself.
 
     Parameters
@@ -97,7 +97,7 @@ def bands_of(source: ComplexArray, outputs: ComplexArray) -> Bands:
     samples = (there.sum(axis=1) - 2 * ORDERS).astype(np.float64)
     near = np.abs(np.subtract.outer(np.arange(len(places)), np.arange(len(places)))) <= REACH
     together = near @ samples
-    return Bands(
+    return LineBands(
         places=places,
         there=there,
         middle=middle,

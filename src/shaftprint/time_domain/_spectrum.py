@@ -8,7 +8,7 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_complex, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.spectra import FrequencyResponse
-from shaftprint.time_domain._bands import NARROWEST, Bands, bands_of
+from shaftprint.time_domain._bands import NARROWEST, LineBands, bands_of
 from shaftprint.time_domain._record import Record
 
 # Of the largest power in a share of the frequency, what makes a line excited.
@@ -39,7 +39,7 @@ class Spectrum:
     """Names of the outputs."""
     noise: ComplexArray
     """Covariance of the noise ``E[V V^H]`` at each line, right as a weight, shape (lines, outputs, outputs)."""
-    bands: Bands
+    bands: LineBands
     """The lines in bands."""
     outside: FloatArray
     """Square sum of each output at all other lines but zero: noise, and what no line of the input explains; shape

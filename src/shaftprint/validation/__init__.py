@@ -18,20 +18,20 @@ from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber
 from shaftprint.validation._thesis_models import thesis_models
 from shaftprint.validation._validate import validate
-from shaftprint.validation._validation import Comparison, Traces, Validation
+from shaftprint.validation._validation import ExcerptComparison, ExcerptTraces, Validation
 from shaftprint.validation._validation_records import Excerpt
 from shaftprint.validation.measures import Misfit, Outcome, RemainingDelay
 
 __all__ = [
-    "Comparison",
     "Excerpt",
+    "ExcerptComparison",
+    "ExcerptTraces",
     "Misfit",
     "Model",
     "Outcome",
     "Predict",
     "RemainingDelay",
     "StepNumber",
-    "Traces",
     "Validation",
     "ValidationSettings",
     "identified_model",

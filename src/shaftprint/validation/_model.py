@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.identify import Identification
-from shaftprint.identify.likelihood import Part
+from shaftprint.identify.likelihood import FittedResponse
 from shaftprint.models import Structure
 
 
@@ -88,7 +88,7 @@ def identified_model(identification: Identification, *, used: Collection[str] = 
 def _seen(identification: Identification) -> Iterator[str]:
     """Yield the names of the lines and records of a fit."""
     for part in identification.parts:
-        if isinstance(part, Part):
+        if isinstance(part, FittedResponse):
             yield from (name for name, fitted in zip(part.response.lines, part.fitted, strict=True) if fitted)
         else:
             yield part.name

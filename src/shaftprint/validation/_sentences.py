@@ -7,7 +7,7 @@ import numpy as np
 from shaftprint.validation._model import Model
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber
-from shaftprint.validation._validation import Comparison
+from shaftprint.validation._validation import ExcerptComparison
 from shaftprint.validation.measures import Misfit, QuietNoise
 
 PERCENT = 100.0
@@ -18,7 +18,7 @@ _TOLD = ("overshoot", "rise time")
 
 
 def outcome_sentences(
-    model: Model, comparisons: Sequence[Comparison], settings: ValidationSettings, *, linear: bool
+    model: Model, comparisons: Sequence[ExcerptComparison], settings: ValidationSettings, *, linear: bool
 ) -> tuple[str, ...]:
     """Return the verdict, the worst excerpts, and what the steps have in common."""
     judged = [c for c in comparisons if not c.excerpt.in_sample]
@@ -56,7 +56,7 @@ def _listed(names: Sequence[str]) -> str:
     return once[0] if len(once) == 1 else f"{', '.join(once[:-1])} and {once[-1]}"
 
 
-def _place(comparison: Comparison) -> str:
+def _place(comparison: ExcerptComparison) -> str:
     return f"{comparison.excerpt.record} ({comparison.excerpt.title})"
 
 
@@ -65,7 +65,7 @@ def _error(misfit: Misfit) -> str:
     return f"{PERCENT * misfit.error:.0f} % ({low:.0f} to {high:.0f} %) of its {WORDS[misfit.output]}"
 
 
-def _described(comparison: Comparison) -> str:
+def _described(comparison: ExcerptComparison) -> str:
     """Return what fails in one excerpt, and the numbers of a step that disagree."""
     parts = _listed([_error(m) for m in comparison.misfits if m.outcome == "fails"])
     apart = [_apart(number) for number in comparison.step_numbers if number.agrees is False and number.name in _TOLD]
@@ -82,7 +82,7 @@ def _apart(number: StepNumber) -> str:
     )
 
 
-def _common_to_steps(failed: Sequence[Comparison]) -> list[str]:
+def _common_to_steps(failed: Sequence[ExcerptComparison]) -> list[str]:
     """Return what a limit does to steps, where the failed ones show it: slower and lower than the model."""
     steps = [c for c in failed if c.step_numbers]
     slower = [c for c in steps if _differs(c, "rise time") > 0.0]
@@ -95,7 +95,7 @@ def _common_to_steps(failed: Sequence[Comparison]) -> list[str]:
     ]
 
 
-def _differs(comparison: Comparison, name: str) -> float:
+def _differs(comparison: ExcerptComparison, name: str) -> float:
     """Return by how much a number of the speed differs from the model's; 0 where both agree."""
     for number in comparison.step_numbers:
         if number.output == "n" and number.name == name and number.agrees is False:
@@ -103,21 +103,26 @@ def _differs(comparison: Comparison, name: str) -> float:
     return 0.0
 
 
-def _what_holds(judged: Sequence[Comparison]) -> list[str]:
+def _what_holds(judged: Sequence[ExcerptComparison]) -> list[str]:
     held = [c for c in judged if c.outcome == "passes"]
     if not held:
         return []
     return [f"It holds in {len(held)} excerpts: {_listed([_place(c) for c in held])}."]
 
 
-def _worst_of_all(judged: Sequence[Comparison]) -> str:
+def _worst_of_all(judged: Sequence[ExcerptComparison]) -> str:
     worst = max(judged, key=lambda c: max(m.error for m in c.misfits))
     misfit = worst.misfits[int(np.argmax([m.error for m in worst.misfits]))]
     return f"{_error(misfit)} in {_place(worst)}"
 
 
 def findings_of(
-    model: Model, comparisons: Sequence[Comparison], noise: QuietNoise, *, quadratic_propeller: bool, linear: bool
+    model: Model,
+    comparisons: Sequence[ExcerptComparison],
+    noise: QuietNoise,
+    *,
+    quadratic_propeller: bool,
+    linear: bool,
 ) -> tuple[str, ...]:
     """Return what the reader should know of how a validation was made."""
     total = sum(stretch.shape[1] for stretch in noise.stretches) / noise.rate_hz

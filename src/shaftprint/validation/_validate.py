@@ -19,7 +19,7 @@ from shaftprint.validation._run import Data, Run, run_model
 from shaftprint.validation._sentences import findings_of, outcome_sentences
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber, compare_steps
-from shaftprint.validation._validation import Comparison, Traces, Validation
+from shaftprint.validation._validation import ExcerptComparison, ExcerptTraces, Validation
 from shaftprint.validation._validation_records import Excerpt, default_records, excerpts_of, whole_excerpts
 from shaftprint.validation.measures import LONGEST_S, Compared, Outcome, RemainingDelay, misfit_of, remaining_delay
 
@@ -77,7 +77,7 @@ def validate(
     excerpts, lost = whole_excerpts(planned, signals.coverage, settings)
     linear = predict is linear_prediction
     data = Data.of(signals, campaign, settings)
-    comparisons: list[Comparison] = []
+    comparisons: list[ExcerptComparison] = []
     for name in names:
         own = [excerpt for excerpt in excerpts if excerpt.record == name]
         if not own:
@@ -121,10 +121,10 @@ def _with_sensor(model: Model, signals: Signals) -> Model:
 
 def _compared(
     excerpt: Excerpt, run: Run, model: Model, settings: ValidationSettings, rng: np.random.Generator
-) -> Comparison:
+) -> ExcerptComparison:
     """Return model and data in one excerpt."""
     pairs = run.compared(excerpt)
-    return Comparison(
+    return ExcerptComparison(
         excerpt=excerpt,
         misfits=tuple(
             misfit_of(
@@ -187,11 +187,11 @@ def _time(excerpt: Excerpt, run: Run) -> "np.ndarray[tuple[int], np.dtype[np.flo
     return run.data.start_s + np.arange(there.start, there.stop) / run.data.rate_hz
 
 
-def _traces(excerpt: Excerpt, run: Run, model: Model) -> Traces:
+def _traces(excerpt: Excerpt, run: Run, model: Model) -> ExcerptTraces:
     own, there = run.excerpt(excerpt), run.data.places(excerpt.start_s, excerpt.stop_s)
     slopes = run.slopes[:, :, own]
     variance = np.einsum("iot,ij,jot->ot", slopes, model.covariance, slopes, optimize=True)
-    return Traces(
+    return ExcerptTraces(
         time_s=frozen_float(_time(excerpt, run)),
         set_point=frozen_float(run.data.set_point[there]),
         measured=frozen_float(run.data.smooth[:, there]),
@@ -200,6 +200,6 @@ def _traces(excerpt: Excerpt, run: Run, model: Model) -> Traces:
     )
 
 
-def _outcome(comparisons: Sequence[Comparison]) -> Outcome:
+def _outcome(comparisons: Sequence[ExcerptComparison]) -> Outcome:
     found = {comparison.outcome for comparison in comparisons if not comparison.excerpt.in_sample}
     return "fails" if "fails" in found else "passes" if found == {"passes"} else "undecided"

@@ -11,7 +11,7 @@ from shaftprint.validation.measures import Misfit, Outcome, RemainingDelay
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Traces:
+class ExcerptTraces:
     """Data and model of one excerpt through the low-pass, for figures; deviations from the working point."""
 
     time_s: FloatArray
@@ -27,7 +27,7 @@ class Traces:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Comparison:
+class ExcerptComparison:
     """Model and data in one excerpt."""
 
     excerpt: Excerpt
@@ -38,7 +38,7 @@ class Comparison:
     """Delay left over in speed and torque."""
     step_numbers: tuple[StepNumber, ...]
     """Overshoot, rise, settling and peak beside each other; empty where the excerpt is no single step."""
-    traces: Traces
+    traces: ExcerptTraces
     """What the numbers are made from."""
 
     @property
@@ -56,7 +56,7 @@ class Validation:
     """What was validated."""
     settings: ValidationSettings
     """How."""
-    comparisons: tuple[Comparison, ...]
+    comparisons: tuple[ExcerptComparison, ...]
     """Every excerpt, record by record."""
     outcome: Outcome
     """Fails if an excerpt that the model was not identified from fails; passes if all of them pass."""
@@ -66,11 +66,11 @@ class Validation:
     """What the reader should know of how this was found."""
 
     @property
-    def failed(self) -> tuple[Comparison, ...]:
+    def failed(self) -> tuple[ExcerptComparison, ...]:
         """Excerpts that fail, without those that the model was identified from."""
         return tuple(c for c in self.comparisons if c.outcome == "fails" and not c.excerpt.in_sample)
 
-    def of(self, record: str, title: str) -> Comparison:
+    def of(self, record: str, title: str) -> ExcerptComparison:
         """Return one excerpt by its record and the beginning of its title.
 
         Raises

@@ -32,7 +32,7 @@ from shaftprint.survey import load_trial, measure, response_of
     type=click.IntRange(min=0),
     default=5,
     show_default=True,
-    help="Parts into which the lines are dealt, each to be foretold from the others; 0 for none.",
+    help="Parts into which the lines are dealt, each to be predicted from the others; 0 for none.",
 )
 @fit_options
 @no_progress_option
@@ -48,7 +48,7 @@ def command(
     """Say which of several structures a recording wants, and why.
 
     Each structure is fitted to the same lines. It wins that explains them with the fewest parameters (BIC);
-    beside it stand a test of each fit, of each structure within a larger one, and how well each foretells
+    beside it stand a test of each fit, of each structure within a larger one, and how well each predicts
     lines that were left out. --structure, --prior, --free and --hold may be repeated.
     """
     structures = structures_of(names, options)

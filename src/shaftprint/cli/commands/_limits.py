@@ -9,7 +9,7 @@ from shaftprint.cli._inputs import campaign_option, vessel_option
 from shaftprint.cli._numbers import with_uncertainty
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._tables import print_table
-from shaftprint.limits import LimitFit, LimitNumber, identify_limits
+from shaftprint.limits import LimitEstimate, LimitFit, identify_limits
 from shaftprint.survey import load_trial, measure
 
 
@@ -55,12 +55,12 @@ def print_limits(found: LimitFit) -> None:
     print_findings("Verdict", [f"Numbers that can be trusted: {trusted}.", *doubted])
 
 
-def _first_numbers(found: LimitFit) -> list[LimitNumber]:
+def _first_numbers(found: LimitFit) -> list[LimitEstimate]:
     """Return the number by which each limit is known."""
     return [next(number for number in found.numbers if number.kind is kind) for kind in found.kinds]
 
 
-def _answer(found: LimitFit, number: LimitNumber) -> str:
+def _answer(found: LimitFit, number: LimitEstimate) -> str:
     unit = "" if number.unit == "-" else f" {number.unit}"
     trust = "trusted" if number.trusted else f"not trusted, {number.doubt}"
     return (
@@ -69,11 +69,11 @@ def _answer(found: LimitFit, number: LimitNumber) -> str:
     )
 
 
-def _interval(number: LimitNumber) -> str:
+def _interval(number: LimitEstimate) -> str:
     return f"{number.lower:.4g} to {number.upper:.4g}"
 
 
-def _row(number: LimitNumber) -> tuple[str, ...]:
+def _row(number: LimitEstimate) -> tuple[str, ...]:
     value = with_uncertainty(number.value, number.std)
     trusted = "yes" if number.trusted else number.doubt
     return number.name, value, _interval(number), number.unit, trusted, number.meaning

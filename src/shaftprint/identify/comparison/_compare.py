@@ -7,9 +7,9 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.comparison._comparison import Candidate, Comparison
+from shaftprint.identify.comparison._comparison import Candidate, StructureComparison
 from shaftprint.identify.comparison._criteria import criteria_of
-from shaftprint.identify.comparison._hold_out import Foretold, foretold
+from shaftprint.identify.comparison._hold_out import HoldOut, hold_out
 from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio, likelihood_ratio
 from shaftprint.identify.comparison._nesting import nesting
 from shaftprint.identify.comparison._sentences import comparison_words
@@ -32,7 +32,7 @@ def compare_structures(
     lines: Sequence[str] | None = None,
     folds: int = FOLDS,
     draws: int = DRAWS,
-) -> Comparison:
+) -> StructureComparison:
     """Fit several structures to the same data and say which one wins, and why.
 
     Parameters
@@ -78,7 +78,7 @@ def compare_fits(
     folds: int = FOLDS,
     draws: int = DRAWS,
     failed: Mapping[str, str] | None = None,
-) -> Comparison:
+) -> StructureComparison:
     """Weigh fits of different structures to the same data against each other.
 
     Parameters
@@ -102,14 +102,14 @@ def compare_fits(
         Candidate(
             identification=fit,
             criteria=criteria_of(fit),
-            foretold=_foretold(fit, folds, own) if folds else None,
+            hold_out=_hold_out(fit, folds, own) if folds else None,
         )
         for fit, own in zip(fits, left_out, strict=True)
     ]
     candidates.sort(key=lambda candidate: candidate.criteria.bic)
     reasons = dict(failed or {})
     ratios = _ratios([candidate.identification for candidate in candidates], rng, draws)
-    return Comparison(
+    return StructureComparison(
         candidates=tuple(candidates),
         failed=reasons,
         ratios=ratios,
@@ -182,11 +182,11 @@ def _settings_of(structure: Structure, settings: Settings | Mapping[str, Setting
     )
 
 
-def _foretold(fit: Identification, folds: int, rng: np.random.Generator) -> Foretold | None:
+def _hold_out(fit: Identification, folds: int, rng: np.random.Generator) -> HoldOut | None:
     try:
-        return foretold(fit, folds=folds, rng=rng)
+        return hold_out(fit, folds=folds, rng=rng)
     except IdentificationError:
-        # too few lines without a part of them, or none of the starts stable: then nothing is foretold
+        # too few lines without a part of them, or none of the starts stable: then nothing is predicted
         return None
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.identify.comparison._criteria import Criteria
-from shaftprint.identify.comparison._hold_out import Foretold
+from shaftprint.identify.comparison._hold_out import HoldOut
 from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio
 from shaftprint.identify.fit import Identification
 
@@ -19,8 +19,8 @@ class Candidate:
     """The fit."""
     criteria: Criteria
     """What it explains for how many parameters."""
-    foretold: Foretold | None
-    """How well it foretells lines that were left out; None where none were, or it could not be fitted without them."""
+    hold_out: HoldOut | None
+    """How well it predicts lines that were left out; None where none were, or it could not be fitted without them."""
 
     @property
     def name(self) -> str:
@@ -29,7 +29,7 @@ class Candidate:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Comparison:
+class StructureComparison:
     """Several structures fitted to the same data, the best first."""
 
     candidates: tuple[Candidate, ...]

@@ -1,4 +1,4 @@
-"""How well a fit foretells lines that were left out of it.
+"""How well a fit predicts lines that were left out of it.
 
 The lines are dealt out in turn into folds, so that each fold spreads over the whole band. The structure is searched
 anew without each fold, and the fold's lines are compared with what it says there, in units of their noise:
@@ -17,19 +17,19 @@ from shaftprint.identify.likelihood import channels_of, load_factors
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Foretold:
-    """How well left-out lines were foretold."""
+class HoldOut:
+    """How well left-out lines were predicted."""
 
     square: float
     """Mean squared error of a left-out datum, in units of its noise."""
     expected: float
-    """What that would be on average if the structure holds; infinite where the other lines cannot foretell one."""
+    """What that would be on average if the structure holds; infinite where the other lines cannot predict one."""
     folds: int
     """How many times a part of the lines was left out."""
 
 
-def foretold(identification: Identification, *, folds: int, rng: np.random.Generator) -> Foretold:
-    """Return how well the structure foretells each part of the lines from the others.
+def hold_out(identification: Identification, *, folds: int, rng: np.random.Generator) -> HoldOut:
+    """Return how well the structure predicts each part of the lines from the others.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def foretold(identification: Identification, *, folds: int, rng: np.random.Gener
         error, spread = _of_fold(identification, rest, left, rng)
         square, expected = square + error, expected + spread
     data = identification.data_count
-    return Foretold(square=square / data, expected=1.0 + expected / data, folds=count)
+    return HoldOut(square=square / data, expected=1.0 + expected / data, folds=count)
 
 
 def _of_fold(

@@ -22,7 +22,7 @@ def comparison_words(
         *([] if any(explained(c.identification) for c in candidates) else [_none_explains(best)]),
         *(_explanation(candidate) for candidate in candidates),
         *(_ratio(ratio) for ratio in ratios if best.name in (ratio.small, ratio.large)),
-        *_foretelling(candidates),
+        *_predicting(candidates),
         *(f"{name} could not be fitted: {reason}" for name, reason in failed.items()),
     )
 
@@ -77,19 +77,19 @@ def _ratio(ratio: LikelihoodRatio) -> str:
     return f"{ratio.large} holds {ratio.small} as a special case: {worth} ({probability(ratio.p_value)}{drawn})."
 
 
-def _foretelling(candidates: Sequence[Candidate]) -> list[str]:
-    """Return who foretells left-out lines best, in units of the noise variance."""
-    told = [(c, c.foretold) for c in candidates if c.foretold is not None]
+def _predicting(candidates: Sequence[Candidate]) -> list[str]:
+    """Return who predicts left-out lines best, in units of the noise variance."""
+    told = [(c, c.hold_out) for c in candidates if c.hold_out is not None]
     if len(told) < 2:
         return []
     ordered = sorted(told, key=lambda pair: pair[1].square)
     words = ", ".join(f"{f.square:.3g} by {c.name} ({f.expected:.3g} expected)" for c, f in ordered)
     found = [
-        f"Lines left out of the fit are foretold with a mean squared error, over their noise variance, of {words}."
+        f"Lines left out of the fit are predicted with a mean squared error, over their noise variance, of {words}."
     ]
     if ordered[0][0] is not candidates[0]:
         found.append(
-            f"{ordered[0][0].name} foretells left-out lines better than {candidates[0].name}, which BIC prefers: "
+            f"{ordered[0][0].name} predicts left-out lines better than {candidates[0].name}, which BIC prefers: "
             "the data do not decide between them."
         )
     return found

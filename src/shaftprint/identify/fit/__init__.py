@@ -9,7 +9,7 @@ from shaftprint.identify.fit._optima import SAME_COST, SAME_PLACE, WITHIN, Optim
 from shaftprint.identify.fit._pseudo_inverse import LOST_SHARE, PseudoInverse
 from shaftprint.identify.fit._refit import Refits, refit, refit_redrawn
 from shaftprint.identify.fit._scan import Minimum, Scan, scan, scan_response
-from shaftprint.identify.fit._sensor import PickedUp, pick_up_values, with_sensor
+from shaftprint.identify.fit._sensor import PickUpReading, pick_up_values, with_sensor
 
 __all__ = [
     "LOST_SHARE",
@@ -22,7 +22,7 @@ __all__ = [
     "Identification",
     "Minimum",
     "Optimum",
-    "PickedUp",
+    "PickUpReading",
     "PseudoInverse",
     "Refits",
     "Scan",

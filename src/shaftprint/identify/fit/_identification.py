@@ -10,7 +10,7 @@ from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit._covariance import variance_along
 from shaftprint.identify.fit._fit_test import FitTest
-from shaftprint.identify.likelihood import FittedTerm, LineTest, Objective, Part
+from shaftprint.identify.likelihood import FittedResponse, FittedTerm, LineTest, Objective
 from shaftprint.identify.search import Settings
 from shaftprint.models import Margins, Role, Structure, margins
 from shaftprint.spectra import FrequencyResponse
@@ -75,9 +75,9 @@ class Identification:
     """Optima of the search, lowest cost first; those that won or would have won are checked for stability."""
 
     @property
-    def experiments(self) -> tuple[Part, ...]:
+    def experiments(self) -> tuple[FittedResponse, ...]:
         """The parts that are frequency responses."""
-        return tuple(part for part in self.parts if isinstance(part, Part))
+        return tuple(part for part in self.parts if isinstance(part, FittedResponse))
 
     @property
     def structure(self) -> Structure:
@@ -117,7 +117,7 @@ class Identification:
 
     @property
     def whitened(self) -> FloatArray:
-        """Residuals of the fitted lines over their covariance, shape (lines, 2 channels), see ``Part``."""
+        """Residuals of the fitted lines over their covariance, shape (lines, 2 channels), see ``FittedResponse``."""
         return self._first_response.whitened
 
     @property
@@ -237,7 +237,7 @@ class Identification:
         return self.objective.terms[experiment].own(self.values)
 
     @property
-    def _first_response(self) -> Part:
+    def _first_response(self) -> FittedResponse:
         if not self.experiments:
             names = ", ".join(part.name for part in self.parts)
             raise IdentificationError(f"structure {self.objective.name}: fitted to {names}, to no frequency response.")

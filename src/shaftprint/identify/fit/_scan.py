@@ -190,11 +190,11 @@ def _refined(conditional: Conditional, known: FloatArray, starts: int) -> tuple[
         if left.size == 0:
             break
         slope, width = conditional.slope(theta), np.diff(at)[left]
-        foretold = 0.5 * (cost[left] + cost[left + 1]) + width * (slope[left] - slope[left + 1]) / 8.0
+        predicted = 0.5 * (cost[left] + cost[left + 1]) + width * (slope[left] - slope[left + 1]) / 8.0
         middle = 0.5 * (at[left] + at[left + 1])
         between, lowest = conditional.between(middle, theta[left], theta[left + 1])
         height = float(np.ptp(np.concatenate([cost, lowest])))
-        rough = np.abs(lowest - foretold) > RESOLVED * height
+        rough = np.abs(lowest - predicted) > RESOLVED * height
         open_ends = np.repeat(False, at.size - 1)
         open_ends[left] = rough
         open_ends = np.insert(open_ends, left + 1, rough)

@@ -6,7 +6,7 @@ from shaftprint.catalogue import ShipRole
 from shaftprint.models import Structure
 
 
-class PickedUp(Protocol):
+class PickUpReading(Protocol):
     """Data whose speed comes from a pick-up: a frequency response, or a record."""
 
     @property
@@ -22,7 +22,7 @@ class PickedUp(Protocol):
         """Delay of a value behind the true speed [s]."""
 
 
-def with_sensor(structure: Structure, data: PickedUp) -> Structure:
+def with_sensor(structure: Structure, data: PickUpReading) -> Structure:
     """Return the structure with the pick-up's held parameters at the values of the data."""
     values = pick_up_values(structure, averaging_s=data.averaging_s, hold_s=data.hold_s, delay_s=data.pick_up_delay_s)
     return structure.held_at(**values) if values else structure

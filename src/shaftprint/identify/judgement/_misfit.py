@@ -5,7 +5,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.identify.fit import Identification
 from shaftprint.identify.judgement._phrases import spans
-from shaftprint.identify.likelihood import Part, channel_names, channels_of, load_factors
+from shaftprint.identify.likelihood import FittedResponse, channel_names, channels_of, load_factors
 
 # Below this probability a fit is rejected, and a line where it is that of the worst of all lines (Bonferroni).
 REJECTED = 0.01
@@ -50,7 +50,7 @@ def misfit_words(identification: Identification) -> str:
     worst = worst_lines(identification)
     if not worst:
         return "the misfit is spread over all lines"
-    if not isinstance(identification.parts[0], Part):
+    if not isinstance(identification.parts[0], FittedResponse):
         return f"the misfit is largest in {', '.join(worst)}"
     response = identification.response
     places = [response.lines.index(name) for name in worst]

@@ -3,7 +3,7 @@
 from shaftprint.identify.likelihood._build_objective import Source, build_joint_objective, build_objective
 from shaftprint.identify.likelihood._experiment import Experiment, ResponseRepeats
 from shaftprint.identify.likelihood._fit_percent import fit_ceiling, fit_percent
-from shaftprint.identify.likelihood._fitted_response import Part, channel_names, channels_of
+from shaftprint.identify.likelihood._fitted_response import FittedResponse, channel_names, channels_of
 from shaftprint.identify.likelihood._known import PRIOR_OF_G, inertia_from_vessel, priors_from_vessel
 from shaftprint.identify.likelihood._line_test import LineTest
 from shaftprint.identify.likelihood._load_factors import load_factors, with_load
@@ -19,11 +19,11 @@ __all__ = [
     "PRIOR_OF_G",
     "CheckKind",
     "Experiment",
+    "FittedResponse",
     "FittedTerm",
     "LineTest",
     "MaximumLikelihood",
     "Objective",
-    "Part",
     "Prior",
     "Redrawn",
     "Repeats",

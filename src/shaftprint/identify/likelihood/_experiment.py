@@ -13,7 +13,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray, frozen_bool, frozen_float
 from shaftprint.identify.likelihood._fit_percent import fit_ceiling, fit_percent
-from shaftprint.identify.likelihood._fitted_response import Part, channel_names, channels_of
+from shaftprint.identify.likelihood._fitted_response import FittedResponse, channel_names, channels_of
 from shaftprint.identify.likelihood._tails import Tails, excess_freedom
 from shaftprint.identify.likelihood._term import Repeats, Term, TermTest
 from shaftprint.identify.likelihood._tested_lines import tested_lines
@@ -170,7 +170,7 @@ class Experiment(Term):
         weights = self.weighting.matrices(self.response, covariance)
         return replace(self, covariance=covariance, weights=weights, elements=elements_of(weights))
 
-    def judged(self, values: FloatArray, number: int) -> tuple[Part, TermTest]:
+    def judged(self, values: FloatArray, number: int) -> tuple[FittedResponse, TermTest]:
         """Return FitPercent, whitened residuals, and the squared distance of each line."""
         model = self.model(values)
         gap = self.data - np.concatenate([model.real, model.imag]).T
@@ -178,7 +178,7 @@ class Experiment(Term):
         count = len(self.structure.channels)
         variance = np.diagonal(self.noise_covariance, axis1=1, axis2=2).T
         names = channel_names(self.response)
-        part = Part(
+        part = FittedResponse(
             structure=self.structure,
             response=self.response,
             fitted=frozen_bool(self.fitted),

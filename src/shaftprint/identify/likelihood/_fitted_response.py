@@ -11,7 +11,7 @@ from shaftprint.spectra import FrequencyResponse
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Part(FittedTerm):
+class FittedResponse(FittedTerm):
     """One response of a fit, with its structure."""
 
     structure: Structure

@@ -14,7 +14,16 @@ from itertools import combinations, product
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify.prediction._formulas import Formula, Term, Value, number, product_of, single, sum_of, unit_of
+from shaftprint.identify.prediction._formulas import (
+    FormulaTerm,
+    ParameterFormula,
+    Value,
+    number,
+    product_of,
+    single,
+    sum_of,
+    unit_of,
+)
 from shaftprint.identify.prediction._null_space import NullSpace
 from shaftprint.models import Combination
 
@@ -29,7 +38,7 @@ MOST_FOR_SUMS_OF_PRODUCTS = 9
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Slopes:
+class CombinationSlopes:
     """Gradients of logarithms at the points of a null space, and their projections on it."""
 
     null: NullSpace
@@ -39,7 +48,7 @@ class Slopes:
     """Distance between ahead and behind in scaled coordinates, shape (points, free)."""
 
     @classmethod
-    def of(cls, null: NullSpace) -> "Slopes":
+    def of(cls, null: NullSpace) -> "CombinationSlopes":
         """Return the slopes of a null space."""
         structure = null.structure
         free = [structure.names.index(p.name) for p in structure.free]
@@ -79,7 +88,7 @@ class Slopes:
 class _Chosen:
     """Combinations taken so far, and whether one more adds anything to them."""
 
-    def __init__(self, slopes: Slopes, singles: Sequence[str]) -> None:
+    def __init__(self, slopes: CombinationSlopes, singles: Sequence[str]) -> None:
         self.slopes = slopes
         self.taken: list[Combination] = []
         self.base = np.empty((slopes.width.shape[1], 0))
@@ -114,7 +123,7 @@ def found_combinations(null: NullSpace) -> tuple[tuple[Combination, ...], tuple[
     The structure's own combinations are taken where they are enough; else quotients by one common parameter where these
     are, as the coefficients of a transfer function; else whatever is short.
     """
-    slopes = Slopes.of(null)
+    slopes = CombinationSlopes.of(null)
     lost = null.of_lost()
     singles = [p.name for p, is_lost in zip(null.structure.free, lost, strict=True) if not is_lost]
     own = [c for c in null.structure.combinations if slopes.is_found(c.of) and not _is_of_singles(slopes, c, singles)]
@@ -138,35 +147,35 @@ def found_combinations(null: NullSpace) -> tuple[tuple[Combination, ...], tuple[
     return tuple(chosen.taken), tuple(others.values())
 
 
-def _greedy(slopes: Slopes, singles: Sequence[str], offered: Sequence[Combination]) -> _Chosen:
+def _greedy(slopes: CombinationSlopes, singles: Sequence[str], offered: Sequence[Combination]) -> _Chosen:
     chosen = _Chosen(slopes, singles)
     for combination in offered:
         chosen.offer(combination)
     return chosen
 
 
-def _is_of_singles(slopes: Slopes, combination: Combination, singles: Sequence[str]) -> bool:
+def _is_of_singles(slopes: CombinationSlopes, combination: Combination, singles: Sequence[str]) -> bool:
     """Return whether a combination is made of parameters only that are found on their own."""
     slope = np.abs(slopes.gradient(combination.of)).max(axis=0)
     names = [p.name for p in slopes.null.structure.free]
     return all(name in singles for name, part in zip(names, slope, strict=True) if part > TOLERANCE * slope.max())
 
 
-def _combination(formula: Formula) -> Combination:
+def _combination(formula: ParameterFormula) -> Combination:
     return Combination(name=formula.name, unit=formula.unit, of=formula.of, meaning=MEANING)
 
 
-def _over(formula: Formula, divisor: str) -> Formula | None:
+def _over(formula: ParameterFormula, divisor: str) -> ParameterFormula | None:
     """Return the formula turned so that the divisor alone stands below the line; sums alone are let through."""
     if len(formula.factors) == 1:
         return formula
-    for turned in (formula, Formula(factors=tuple((term, -power) for term, power in formula.factors))):
+    for turned in (formula, ParameterFormula(factors=tuple((term, -power) for term, power in formula.factors))):
         if [(term.name, power) for term, power in turned.factors if power < 0] == [(divisor, -1)]:
             return turned
     return None
 
 
-def lost_terms(null: NullSpace) -> list[Term]:
+def lost_terms(null: NullSpace) -> list[FormulaTerm]:
     """Return the terms that formulas are made of: lost parameters, and sums and differences with a lost one."""
     structure = null.structure
     lost = [p for p, is_lost in zip(structure.free, null.of_lost(), strict=True) if is_lost]
@@ -174,7 +183,7 @@ def lost_terms(null: NullSpace) -> list[Term]:
     found = [terms[p.name] for p in lost]
     start = {p.name: np.asarray(p.value) for p in structure.parameters}
 
-    def add(first: Term, second: Term) -> None:
+    def add(first: FormulaTerm, second: FormulaTerm) -> None:
         for sign in (1, -1):
             term = sum_of(first, second, sign, order=len(structure.free) + len(found))
             if sign < 0 and float(term.of(start)) < 0.0:
@@ -191,7 +200,7 @@ def lost_terms(null: NullSpace) -> list[Term]:
     return found
 
 
-def _short_formulas(slopes: Slopes) -> list[Formula]:
+def _short_formulas(slopes: CombinationSlopes) -> list[ParameterFormula]:
     """Return all products of up to three terms that can be found and whose parts cannot, the shortest first."""
     terms = lost_terms(slopes.null)
     gradients = [slopes.gradient(term.of) for term in terms]
@@ -199,7 +208,7 @@ def _short_formulas(slopes: Slopes) -> list[Formula]:
     usable = [i for i, (u, size) in enumerate(at) if np.isfinite(size) and size > 0.0 and np.isfinite(u).all()]
     known = [i for i in usable if np.linalg.norm(at[i][0]) < TOLERANCE * at[i][1]]
     rest = [i for i in usable if i not in known]
-    found = [Formula(factors=((terms[i], 1),)) for i in known]
+    found = [ParameterFormula(factors=((terms[i], 1),)) for i in known]
     if rest:
         kept = [terms[i] for i in rest]
         table, size = np.stack([at[i][0] for i in rest]), np.array([at[i][1] for i in rest])
@@ -207,13 +216,13 @@ def _short_formulas(slopes: Slopes) -> list[Formula]:
     return sorted(found, key=lambda formula: formula.cost)
 
 
-def _pairs(terms: Sequence[Term], table: FloatArray, size: FloatArray) -> Iterator[Formula]:
+def _pairs(terms: Sequence[FormulaTerm], table: FloatArray, size: FloatArray) -> Iterator[ParameterFormula]:
     for (i, j), (a, b) in product(combinations(range(len(terms)), 2), POWERS):
         if np.linalg.norm(a * table[i] + b * table[j]) < TOLERANCE * (size[i] + size[j]):
-            yield Formula(factors=((terms[i], a), (terms[j], b)))
+            yield ParameterFormula(factors=((terms[i], a), (terms[j], b)))
 
 
-def _triples(terms: Sequence[Term], table: FloatArray, size: FloatArray) -> Iterator[Formula]:
+def _triples(terms: Sequence[FormulaTerm], table: FloatArray, size: FloatArray) -> Iterator[ParameterFormula]:
     """Yield products of two single parameters and a third term that can be found and of which no pair can."""
     singles = [i for i, term in enumerate(terms) if term.parts == 1]
     for (j, k), (b, c) in product(combinations(singles, 2), ((1, 1), (1, -1), (-1, 1), (-1, -1))):
@@ -225,10 +234,10 @@ def _triples(terms: Sequence[Term], table: FloatArray, size: FloatArray) -> Iter
             if i > k or (terms[i].parts > 1 and i not in (j, k)):
                 factors = ((terms[j], b), (terms[k], c), (terms[i], 1))
                 flipped = sum(power for _, power in factors) < 0
-                yield Formula(factors=tuple((term, -power if flipped else power) for term, power in factors))
+                yield ParameterFormula(factors=tuple((term, -power if flipped else power) for term, power in factors))
 
 
-def _sums_of_products(slopes: Slopes) -> list[Formula]:
+def _sums_of_products(slopes: CombinationSlopes) -> list[ParameterFormula]:
     """Return sums of two products of lost parameters, times up to two powers of others, that can be found."""
     singles = [term for term in lost_terms(slopes.null) if term.parts == 1]
     if len(singles) > MOST_FOR_SUMS_OF_PRODUCTS:
@@ -245,5 +254,5 @@ def _sums_of_products(slopes: Slopes) -> list[Formula]:
         term = sum_of(first, second, sign, order=first.order)
         slope = slopes.gradient(term.of)
         near = np.linalg.norm(table + slopes.projected(slope), axis=1) < TOLERANCE * np.linalg.norm(slope)
-        found += [Formula(factors=((term, 1), *rests[place])) for place in np.flatnonzero(near)]
+        found += [ParameterFormula(factors=((term, 1), *rests[place])) for place in np.flatnonzero(near)]
     return sorted(found, key=lambda formula: formula.cost)

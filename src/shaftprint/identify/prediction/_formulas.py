@@ -11,7 +11,7 @@ Value = Callable[[Mapping[str, FloatArray]], FloatArray]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Term:
+class FormulaTerm:
     """A factor of a formula: a parameter, a sum or difference of two, or a number minus or plus a parameter."""
 
     name: str
@@ -27,10 +27,10 @@ class Term:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Formula:
+class ParameterFormula:
     """A product of powers of terms."""
 
-    factors: tuple[tuple[Term, int], ...]
+    factors: tuple[tuple[FormulaTerm, int], ...]
     """Terms with their powers, 1 or 2, negative below the line."""
 
     @property
@@ -67,14 +67,14 @@ class Formula:
         return product
 
 
-def single(name: str, unit: str, *, order: int) -> Term:
+def single(name: str, unit: str, *, order: int) -> FormulaTerm:
     """Return the term of one parameter."""
-    return Term(name=name, unit=unit, of=lambda values: values[name], parts=1, order=order)
+    return FormulaTerm(name=name, unit=unit, of=lambda values: values[name], parts=1, order=order)
 
 
-def sum_of(first: Term, second: Term, sign: int, *, order: int) -> Term:
+def sum_of(first: FormulaTerm, second: FormulaTerm, sign: int, *, order: int) -> FormulaTerm:
     """Return the sum or, for the sign -1, the difference of two terms."""
-    return Term(
+    return FormulaTerm(
         name=f"{first.name} {'+' if sign > 0 else '-'} {second.name}",
         unit=first.unit,
         of=lambda values: first.of(values) + sign * second.of(values),
@@ -83,15 +83,15 @@ def sum_of(first: Term, second: Term, sign: int, *, order: int) -> Term:
     )
 
 
-def number(value: float, unit: str) -> Term:
+def number(value: float, unit: str) -> FormulaTerm:
     """Return the term of a known number; it prints as the number."""
-    return Term(name=f"{value:g}", unit=unit, of=lambda values: value, parts=1, order=-1)  # type: ignore[arg-type,return-value]
+    return FormulaTerm(name=f"{value:g}", unit=unit, of=lambda values: value, parts=1, order=-1)  # type: ignore[arg-type,return-value]
 
 
-def product_of(first: Term, second: Term) -> Term:
+def product_of(first: FormulaTerm, second: FormulaTerm) -> FormulaTerm:
     """Return the product of two terms as a term of its own, to be added to another."""
     square = first is second
-    return Term(
+    return FormulaTerm(
         name=f"{first.name}^2" if square else _product([(first, 1), (second, 1)]),
         unit=unit_of((first.unit, 1), (second.unit, 1)),
         of=lambda values: first.of(values) * second.of(values),
@@ -100,13 +100,13 @@ def product_of(first: Term, second: Term) -> Term:
     )
 
 
-def _product(factors: Sequence[tuple[Term, int]], *, bracket: bool = True) -> str:
+def _product(factors: Sequence[tuple[FormulaTerm, int]], *, bracket: bool = True) -> str:
     # Gains such as v stand before what they multiply, as in v K_p: small letters before capitals.
     ordered = sorted(factors, key=lambda factor: (factor[0].name[:1].isupper(), factor[0].order))
     return " ".join(_power(term, power, bracket=bracket) for term, power in ordered)
 
 
-def _power(term: Term, power: int, *, bracket: bool) -> str:
+def _power(term: FormulaTerm, power: int, *, bracket: bool) -> str:
     name = f"({term.name})" if term.parts > 1 and (bracket or power > 1) else term.name
     return f"{name}^{power}" if power > 1 else name
 

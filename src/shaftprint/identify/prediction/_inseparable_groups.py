@@ -9,7 +9,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.identify.fit import Estimate
 from shaftprint.identify.likelihood import Objective
-from shaftprint.identify.prediction._formulas import Formula, Term, single, sum_of
+from shaftprint.identify.prediction._formulas import FormulaTerm, ParameterFormula, single, sum_of
 from shaftprint.models import Combination, Delay, Parameter, SecondOrderLag
 
 # Two parameters cannot be separated when they correlate more than this ...
@@ -133,12 +133,12 @@ def _together(objective: Objective, first: str, second: str, named: Sequence[Com
     values = objective.named(objective.held)
     own = [c for c in named if not any(c.is_defined_by(_without(values, name)) for name in (first, second))]
     one, other = (_term(objective, name, order) for order, name in enumerate((first, second)))
-    formulas = [Formula(factors=((one, 1), (other, power))) for power in (1, -1)]
+    formulas = [ParameterFormula(factors=((one, 1), (other, power))) for power in (1, -1)]
     if one.unit == other.unit:
-        formulas += [Formula(factors=((sum_of(one, other, sign, order=2), 1),)) for sign in (1, -1)]
+        formulas += [ParameterFormula(factors=((sum_of(one, other, sign, order=2), 1),)) for sign in (1, -1)]
     for mine, others in combinations(_lateness(objective), 2):
         if {first, second} <= {*mine[1], *others[1]}:
-            formulas.append(Formula(factors=((sum_of(mine[0], others[0], 1, order=2), 1),)))
+            formulas.append(ParameterFormula(factors=((sum_of(mine[0], others[0], 1, order=2), 1),)))
     return [*own, *(Combination(name=f.name, unit=f.unit, of=f.of, meaning=MEANING) for f in formulas)]
 
 
@@ -146,16 +146,16 @@ def _without(values: dict[str, FloatArray], name: str) -> dict[str, FloatArray]:
     return {key: value for key, value in values.items() if key != name}
 
 
-def _term(objective: Objective, name: str, order: int) -> Term:
+def _term(objective: Objective, name: str, order: int) -> FormulaTerm:
     return single(name, objective.parameters[objective.names.index(name)].unit, order=order)
 
 
-def _lateness(objective: Objective) -> list[tuple[Term, tuple[str, ...]]]:
+def _lateness(objective: Objective) -> list[tuple[FormulaTerm, tuple[str, ...]]]:
     """Return what each late block does to slow lines, as a delay, with the parameters that are in it.
 
     A lag ``omega_n^2 / (s^2 + 2 zeta omega_n s + omega_n^2)`` is ``1 - 2 zeta / omega_n s`` for small ``s``.
     """
-    found: dict[str, tuple[Term, tuple[str, ...]]] = {}
+    found: dict[str, tuple[FormulaTerm, tuple[str, ...]]] = {}
     for block in (block for term in objective.terms for block in term.structure.blocks):
         if isinstance(block, Delay):
             found.setdefault(block.time.name, (_time(block.time), (block.time.name,)))
@@ -165,12 +165,12 @@ def _lateness(objective: Objective) -> list[tuple[Term, tuple[str, ...]]]:
     return list(found.values())
 
 
-def _time(parameter: Parameter) -> Term:
+def _time(parameter: Parameter) -> FormulaTerm:
     return single(parameter.name, parameter.unit, order=0)
 
 
-def _lag_time(omega_n: str, zeta: str) -> Term:
-    return Term(
+def _lag_time(omega_n: str, zeta: str) -> FormulaTerm:
+    return FormulaTerm(
         name=f"2 {zeta} / {omega_n}",
         unit="s",
         of=lambda values: 2.0 * values[zeta] / values[omega_n],

@@ -7,8 +7,8 @@ from itertools import combinations
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify.prediction._combinations import Slopes, lost_terms
-from shaftprint.identify.prediction._formulas import Term
+from shaftprint.identify.prediction._combinations import CombinationSlopes, lost_terms
+from shaftprint.identify.prediction._formulas import FormulaTerm
 from shaftprint.identify.prediction._null_space import NullSpace, null_directions
 
 # A component below this share of the largest is none.
@@ -31,7 +31,7 @@ def directions_of(null: NullSpace, outputs: Sequence[str]) -> tuple[Direction, .
     """Return a basis of the lost directions, each of as few parameters as can be."""
     names = [p.name for p in null.structure.free]
     defaults = null_directions(null.structure, outputs, null.structure.vector({}))
-    slopes = Slopes.of(null)
+    slopes = CombinationSlopes.of(null)
     terms = lost_terms(null)
     found = []
     for support in _supports(null):
@@ -83,7 +83,11 @@ def _along(basis: FloatArray, scale: FloatArray, support: tuple[int, ...]) -> Fl
 
 
 def _sentence(
-    slopes: Slopes, terms: Sequence[Term], moving: Sequence[str], along: FloatArray, outputs: Sequence[str]
+    slopes: CombinationSlopes,
+    terms: Sequence[FormulaTerm],
+    moving: Sequence[str],
+    along: FloatArray,
+    outputs: Sequence[str],
 ) -> str:
     structure = slopes.null.structure
     if len(moving) == 1:
@@ -104,7 +108,7 @@ def _sentence(
 
 
 def _as_factors(
-    slopes: Slopes, terms: Sequence[Term], moving: Sequence[str], along: FloatArray
+    slopes: CombinationSlopes, terms: Sequence[FormulaTerm], moving: Sequence[str], along: FloatArray
 ) -> tuple[dict[str, float], list[str]] | None:
     """Return what grows by one factor (1) or shrinks by it (-1), and what is kept; None where it is no such thing."""
     scaled = along / slopes.null.scale
@@ -127,7 +131,7 @@ def _as_factors(
 
 
 def _steady_term(
-    terms: Sequence[Term], changes: Mapping[str, FloatArray], name: str, reference: FloatArray
+    terms: Sequence[FormulaTerm], changes: Mapping[str, FloatArray], name: str, reference: FloatArray
 ) -> tuple[str, float] | None:
     """Return the simplest term with a parameter in it that moves by the reference's factor, its inverse, or not."""
     for term in terms:

@@ -6,8 +6,8 @@ box, the parameters that leave are put on their bound and the others are solved 
 then points back inside is let go. Clipping the step instead stops early, and so does a set that can only grow. The
 damping follows Nielsen (Damping parameter in Marquardt's method, 1999).
 
-Where a step gains much more than ``A`` foretells, the cost is flatter than ``A`` says: the next step is stretched, each
-time four times as far, until one gains less than foretold. Without it a model that cannot follow the data creeps, such
+Where a step gains much more than ``A`` predicts, the cost is flatter than ``A`` says: the next step is stretched, each
+time four times as far, until one gains less than predicted. Without it a model that cannot follow the data creeps, such
 as a pure delay between two wraps of the fast lines' phase.
 
 All starts go through the same array operations; those that have converged are left out of the next step. A step to
@@ -171,8 +171,8 @@ class _Position:
             lower = good.copy()
             good[lower] = allowed(trial[lower])
             self.refused = self.refused | (lower & ~good)
-        foretold = np.maximum(predicted * self.stretch, LEAST_SHARE * self.cost + TINY)
-        gain = np.where(good, (self.cost - cost) / foretold, 0.0)
+        least_gain = np.maximum(predicted * self.stretch, LEAST_SHARE * self.cost + TINY)
+        gain = np.where(good, (self.cost - cost) / least_gain, 0.0)
         # A stretched step that fails says nothing against the step itself.
         failed = ~good & (self.stretch == 1.0)
         surplus = 2.0 * gain - 1.0

@@ -19,7 +19,7 @@ from shaftprint.arrays import ComplexArray, FloatArray, frozen_float
 from shaftprint.distributions import deviations
 from shaftprint.identify.fit import Identification
 from shaftprint.identify.uncertainty._bootstrap import Bootstrap
-from shaftprint.identify.uncertainty._parameter_spread import Spread, spread_of
+from shaftprint.identify.uncertainty._parameter_spread import ParameterSpread, spread_of
 from shaftprint.models import Structure, step_response
 from shaftprint.units import decibel
 
@@ -124,7 +124,7 @@ def model_band(
     frequency_hz, coverage
         As for ``response_band``.
     """
-    return _first_order(Spread.of_covariance(structure, values, covariance), frequency_hz, coverage)
+    return _first_order(ParameterSpread.of_covariance(structure, values, covariance), frequency_hz, coverage)
 
 
 def step_band(
@@ -168,7 +168,7 @@ def step_band(
     )
 
 
-def _first_order(spread: Spread, frequency_hz: ArrayLike, coverage: float) -> ResponseBand:
+def _first_order(spread: ParameterSpread, frequency_hz: ArrayLike, coverage: float) -> ResponseBand:
     frequency = np.atleast_1d(np.asarray(frequency_hz, dtype=np.float64))
     response, slopes = spread.structure.gradient(spread.values, 2j * np.pi * frequency)
     relative = slopes / response

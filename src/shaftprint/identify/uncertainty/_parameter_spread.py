@@ -11,7 +11,7 @@ from shaftprint.models import Structure
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Spread:
+class ParameterSpread:
     """Values of a structure's parameters, and how its free ones scatter."""
 
     structure: Structure
@@ -26,7 +26,7 @@ class Spread:
     """Root of the information of each parameter alone, shape (free,)."""
 
     @classmethod
-    def of_covariance(cls, structure: Structure, values: FloatArray, covariance: FloatArray) -> "Spread":
+    def of_covariance(cls, structure: Structure, values: FloatArray, covariance: FloatArray) -> "ParameterSpread":
         """Return the spread that a covariance describes; nothing is known of a parameter of infinite variance."""
         lost = ~np.isfinite(np.diag(covariance))
         inner = np.where(lost[:, None] | lost[None, :], 0.0, covariance)
@@ -45,7 +45,7 @@ class Spread:
         return np.sqrt(np.where(known, np.maximum(variance, 0.0), np.nan))
 
 
-def spread_of(identification: Identification, experiment: int = 0) -> Spread:
+def spread_of(identification: Identification, experiment: int = 0) -> ParameterSpread:
     """Return the spread of the parameters of one experiment's structure.
 
     Raises
@@ -59,7 +59,7 @@ def spread_of(identification: Identification, experiment: int = 0) -> Spread:
     one = objective.terms[experiment]
     covariance, information = known_covariance(objective, identification.values[list(objective.free)])
     own = list(one.columns)
-    return Spread(
+    return ParameterSpread(
         structure=one.structure,
         values=one.own(identification.values),
         covariance=covariance[np.ix_(own, own)],

@@ -7,7 +7,7 @@ of the sines, known to ``s``, and ``m`` what jumps and sines may differ by in al
 
     p(d | T, m) = (Phi((d - m + T / 2) / s) - Phi((d - m - T / 2) / s)) / T
 
-The phase of the messages at a jump counts as drawn by chance, since no clock of a bus is stable enough to foretell it
+The phase of the messages at a jump counts as drawn by chance, since no clock of a bus is stable enough to predict it
 after a minute. ``T`` is uniform in its logarithm, the invariant prior of a width, and ``m`` normal about zero.
 """
 

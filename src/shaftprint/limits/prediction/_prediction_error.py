@@ -9,7 +9,7 @@ from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import fit_percent
 from shaftprint.identify.likelihood import FittedTerm, LineTest, Repeats, Term, TermCheck, TermTest
-from shaftprint.limits._suspects import IDLE
+from shaftprint.limits._candidates import IDLE
 from shaftprint.limits.prediction._noise_colour import Innovations, innovations
 from shaftprint.limits.prediction._set_point import GovernorRecord
 from shaftprint.models import Structure

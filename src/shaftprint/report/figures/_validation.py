@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from shaftprint.validation import Comparison, Validation
+    from shaftprint.validation import ExcerptComparison, Validation
 
 MEASURED = "#b9b9b9"
 BAND_ALPHA = 0.28
@@ -87,7 +87,7 @@ def plot_validation(
         return figure
 
 
-def _found(validation: "Validation", record: str, titles: Sequence[str]) -> "list[Comparison]":
+def _found(validation: "Validation", record: str, titles: Sequence[str]) -> "list[ExcerptComparison]":
     try:
         return [validation.of(record, title) for title in titles]
     except KeyError as missing:
@@ -95,7 +95,7 @@ def _found(validation: "Validation", record: str, titles: Sequence[str]) -> "lis
 
 
 def _draw_data(
-    axes: "Axes", validation: "Validation", parts: "list[Comparison]", place: int, *, set_point: bool
+    axes: "Axes", validation: "Validation", parts: "list[ExcerptComparison]", place: int, *, set_point: bool
 ) -> None:
     for part in parts:
         traces = part.traces
@@ -117,7 +117,9 @@ def _draw_data(
             )
 
 
-def _draw_model(axes: "Axes", validation: "Validation", parts: "list[Comparison]", place: int, number: int) -> None:
+def _draw_model(
+    axes: "Axes", validation: "Validation", parts: "list[ExcerptComparison]", place: int, number: int
+) -> None:
     style = look(number)
     wide = deviations(validation.settings.coverage)
     for part in parts:

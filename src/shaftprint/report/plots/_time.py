@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from shaftprint.campaign import Excitation
     from shaftprint.identify import Identification
     from shaftprint.signals import Signals
-    from shaftprint.validation import Comparison, Validation
+    from shaftprint.validation import ExcerptComparison, Validation
 
 PERCENT = 100.0
 STRETCHES = 1600
@@ -65,7 +65,7 @@ def validation_plot(validations: Sequence["Validation"], record: str, title: str
 
 
 def _model(
-    validation: "Validation", comparison: "Comparison", few: slice, number: int, row: int, axes: Json
+    validation: "Validation", comparison: "ExcerptComparison", few: slice, number: int, row: int, axes: Json
 ) -> list[Json]:
     traces = comparison.traces
     name = label_text(validation.model.name)

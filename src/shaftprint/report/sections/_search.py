@@ -15,7 +15,7 @@ from shaftprint.report.sections._sections import Inputs, Picture, Section
 
 if TYPE_CHECKING:
     from shaftprint.identify import Identification
-    from shaftprint.identify.comparison import Candidate, Comparison, LikelihoodRatio
+    from shaftprint.identify.comparison import Candidate, LikelihoodRatio, StructureComparison
     from shaftprint.identify.fit import Optimum
 
 MOST_OPTIMA = 8
@@ -97,7 +97,7 @@ def comparison_section(inputs: Inputs) -> list[Section]:
     ]
 
 
-def _comparison_tables(comparison: "Comparison") -> list[Table]:
+def _comparison_tables(comparison: "StructureComparison") -> list[Table]:
     structure = comparison.best.identification.structure
     channels = f"{', '.join(structure.outputs)} from {', '.join(structure.inputs)}"
     tables = [
@@ -127,8 +127,8 @@ def _comparison_tables(comparison: "Comparison") -> list[Table]:
     return tables
 
 
-def _row(candidate: "Candidate", comparison: "Comparison") -> tuple[Cell, ...]:
-    fit, criteria, told = candidate.identification, candidate.criteria, candidate.foretold
+def _row(candidate: "Candidate", comparison: "StructureComparison") -> tuple[Cell, ...]:
+    fit, criteria, told = candidate.identification, candidate.criteria, candidate.hold_out
     return (
         candidate.name,
         plain(criteria.parameters, 1),

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from shaftprint.clocks import LoggerClock
     from shaftprint.fingerprint import Fingerprint
     from shaftprint.identify import Identification
-    from shaftprint.identify.comparison import Comparison
+    from shaftprint.identify.comparison import StructureComparison
     from shaftprint.models import Structure
     from shaftprint.recording import Recording
     from shaftprint.report.plots import Plot
@@ -40,7 +40,7 @@ class Inputs:
     thesis: "ThesisMode | None"
     truth: Mapping[str, float]
     line_selection: Mapping[str, "FrequencyResponse"]
-    comparisons: Sequence["Comparison"]
+    comparisons: Sequence["StructureComparison"]
     sensitivity: Sequence["Structure"]
     validations: Sequence["Validation"] = ()
     clocks: Sequence["LoggerClock"] = ()

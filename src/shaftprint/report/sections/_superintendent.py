@@ -50,7 +50,7 @@ def cover_of(fingerprint: "Fingerprint", validations: "Sequence[Validation]" = (
         *_inertia(fingerprint),
         *_propeller(fingerprint),
         *_gauge(fingerprint),
-        _foretells(validations),
+        _predicts(validations),
         _measured(fingerprint),
     ]
     state, headline = overall(cards, usable=fingerprint.verdict.trustworthy)
@@ -194,8 +194,8 @@ def _gauge(fingerprint: "Fingerprint") -> list[Card]:
     return [Card(question=question, state=state, sentence=words)]
 
 
-def _foretells(validations: "Sequence[Validation]") -> Card:
-    question = "Does the model foretell what it has not seen?"
+def _predicts(validations: "Sequence[Validation]") -> Card:
+    question = "Does the model predict what it has not seen?"
     if not validations:
         return Card(
             question=question, state="open", sentence="No chirp or staircase of this test was held against the model."

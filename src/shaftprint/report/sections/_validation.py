@@ -11,7 +11,7 @@ from shaftprint.report.plots import validation_plot
 from shaftprint.report.sections._sections import Inputs, Picture, Section, picture_name
 
 if TYPE_CHECKING:
-    from shaftprint.validation import Comparison, Validation
+    from shaftprint.validation import ExcerptComparison, Validation
 
 PERCENT = 100.0
 MOST_BANDS = 2
@@ -21,7 +21,7 @@ HIGHER = 1.05
 
 
 def validation_section(inputs: Inputs) -> list[Section]:
-    """Return how well the model foretells chirps and steps; nothing where it was not tried."""
+    """Return how well the model predicts chirps and steps; nothing where it was not tried."""
     if not inputs.validations:
         return []
     first = inputs.validations[0]
@@ -46,7 +46,7 @@ def validation_section(inputs: Inputs) -> list[Section]:
     ]
 
 
-def _picture(validations: "Sequence[Validation]", comparison: "Comparison") -> Picture:
+def _picture(validations: "Sequence[Validation]", comparison: "ExcerptComparison") -> Picture:
     excerpt = comparison.excerpt
     is_step = excerpt.step_s is not None
     return Picture(
@@ -68,10 +68,10 @@ def _picture(validations: "Sequence[Validation]", comparison: "Comparison") -> P
     )
 
 
-def shown_excerpts(validation: "Validation") -> "list[Comparison]":
+def shown_excerpts(validation: "Validation") -> "list[ExcerptComparison]":
     """Return the excerpts that are worth a figure: staircases, the largest step of each, the two worst chirp bands."""
-    largest: dict[str, Comparison] = {}
-    bands: list[Comparison] = []
+    largest: dict[str, ExcerptComparison] = {}
+    bands: list[ExcerptComparison] = []
     for comparison in validation.comparisons:
         if comparison.excerpt.kind == "step":
             before = largest.setdefault(comparison.excerpt.record, comparison)
@@ -84,7 +84,7 @@ def shown_excerpts(validation: "Validation") -> "list[Comparison]":
     return [c for c in validation.comparisons if c.excerpt.kind == "staircase" or c in chosen]
 
 
-def _height(comparison: "Comparison") -> float:
+def _height(comparison: "ExcerptComparison") -> float:
     set_point = comparison.traces.set_point
     return abs(float(set_point[-1] - set_point[0]))
 

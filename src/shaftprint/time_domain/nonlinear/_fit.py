@@ -23,8 +23,8 @@ from shaftprint.time_domain._signal_records import records_of
 from shaftprint.time_domain._simulator import ExactDelays
 from shaftprint.time_domain.nonlinear._covariance import with_scatter_of_blocks
 from shaftprint.time_domain.nonlinear._drive import sharpened
-from shaftprint.time_domain.nonlinear._jump_resonance import Fragile, fragile_stretches, without_fragile
-from shaftprint.time_domain.nonlinear._limited_sines import touched
+from shaftprint.time_domain.nonlinear._jump_resonance import JumpStretch, jump_stretches, without_jumps
+from shaftprint.time_domain.nonlinear._limited_sines import limited_sines
 from shaftprint.time_domain.nonlinear._numbers import LimitNumber, limit_numbers
 from shaftprint.time_domain.nonlinear._orders import without_orders
 from shaftprint.time_domain.nonlinear._search import Part, best_ends, first_pass, free_values, from_these
@@ -53,7 +53,7 @@ class NonlinearFit:
     """Number of starts."""
     reached: tuple[int, int]
     """How many of those that went on reached the optimum that led to the one that won, and how many went on."""
-    fragile: tuple[Fragile, ...] = ()
+    jump_stretches: tuple[JumpStretch, ...] = ()
     """Stretches of records that were not fitted, because noise decides in them what the line does."""
 
 
@@ -108,11 +108,11 @@ def identify_nonlinear(
     first = linear or _linear(_small(model.structure), response, known, rng)
     start = {p.name: p.value for p in first.parameters} | dict(model.start)
     task = _Task(quiet, campaign, model.structure, response, known, how, names, rng)
-    sines = task.touched(start)
+    sines = task.limited_sines(start)
     for _ in range(2):
         found, reached = task.solved(start, sines, model.names)
         start = {p.name: p.value for p in found.parameters}
-        before, sines = sines, task.touched(start)
+        before, sines = sines, task.limited_sines(start)
         if set(sines) == set(before):
             break
     found = with_scatter_of_blocks(found)
@@ -124,7 +124,7 @@ def identify_nonlinear(
         records=(*before, *names),
         starts=how.starts,
         reached=reached,
-        fragile=task.fragile(found),
+        jump_stretches=task.jump_stretches(found),
     )
 
 
@@ -141,10 +141,10 @@ class _Task:
     names: Sequence[str]
     rng: np.random.Generator
 
-    def touched(self, values: Mapping[str, float]) -> tuple[str, ...]:
+    def limited_sines(self, values: Mapping[str, float]) -> tuple[str, ...]:
         """Return the names of the sines that limits reach at some values."""
         names = _lines(self.response)
-        return touched(self.structure, values, self._records(names, self.how.rate_hz, self.how.drive_hz))
+        return limited_sines(self.structure, values, self._records(names, self.how.rate_hz, self.how.drive_hz))
 
     def solved(
         self, start: Mapping[str, float], sines: Sequence[str], drawn: Sequence[str]
@@ -166,7 +166,7 @@ class _Task:
             ends[0] = np.array(list(free_values(parts, best).values()))
         return few, (many.reached, many.settings.starts)
 
-    def fragile(self, found: Identification) -> tuple[Fragile, ...]:
+    def jump_stretches(self, found: Identification) -> tuple[JumpStretch, ...]:
         """Return the stretches of staircases and chirps that a fit did not use though they were measured."""
         whole = {record.name: record for record in self._records(self.names, self.how.rate_hz, self.how.drive_hz)}
         fitted = [term.record for term in found.objective.terms if isinstance(term, OutputError)]
@@ -174,7 +174,7 @@ class _Task:
             stretch
             for record in fitted
             if record.name in whole
-            for stretch in fragile_stretches(record.name, record.time_s, whole[record.name].used & ~record.used)
+            for stretch in jump_stretches(record.name, record.time_s, whole[record.name].used & ~record.used)
         )
 
     def _parts(self, sines: Sequence[str], rate_hz: float, drive_hz: float, step_s: float) -> list[Part]:
@@ -199,7 +199,7 @@ class _Task:
             if isinstance(part, OutputError):
                 own = part.structure.vector({p.name: values.get(p.name, p.value) for p in part.structure.free})
                 known = with_noise_at(part, own)
-                steady = without_fragile(known, own, self.rng.spawn(1)[0])
+                steady = without_jumps(known, own, self.rng.spawn(1)[0])
                 found.append(known if steady is known else with_noise_at(steady, own))
             else:
                 found.append(part)

@@ -34,7 +34,7 @@ BEGINNING = 10
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Fragile:
+class JumpStretch:
     """A stretch that says nothing, because noise decides in it what the line does."""
 
     record: str
@@ -45,7 +45,7 @@ class Fragile:
     """Last sample of the stretch, in seconds of the recording."""
 
 
-def without_fragile(term: OutputError, values: FloatArray, rng: np.random.Generator) -> OutputError:
+def without_jumps(term: OutputError, values: FloatArray, rng: np.random.Generator) -> OutputError:
     """Return a term that does not use the stretches in which noise decides what its model does.
 
     Parameters
@@ -72,11 +72,11 @@ def without_fragile(term: OutputError, values: FloatArray, rng: np.random.Genera
     return replace(term, record=replace(record, used=frozen_bool(used)))
 
 
-def fragile_stretches(name: str, time_s: FloatArray, left_out: BoolArray) -> tuple[Fragile, ...]:
+def jump_stretches(name: str, time_s: FloatArray, left_out: BoolArray) -> tuple[JumpStretch, ...]:
     """Return the stretches of a record that were left out, in order of time."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], left_out, [False]])))
     return tuple(
-        Fragile(record=name, begin_s=float(time_s[begin]), end_s=float(time_s[end - 1]))
+        JumpStretch(record=name, begin_s=float(time_s[begin]), end_s=float(time_s[end - 1]))
         for begin, end in zip(edges[::2], edges[1::2], strict=True)
     )
 

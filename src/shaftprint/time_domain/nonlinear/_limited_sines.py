@@ -15,7 +15,7 @@ IDLE: Mapping[str, float] = {"m_max": 6.0, "m_min": -2.0, "r_x": 100.0, "d_e": 0
 TOUCHED = 2e-3
 
 
-def touched(structure: Structure, values: Mapping[str, float], records: Sequence[Record]) -> tuple[str, ...]:
+def limited_sines(structure: Structure, values: Mapping[str, float], records: Sequence[Record]) -> tuple[str, ...]:
     """Return the names of the records whose simulation the limits of a structure change.
 
     Parameters

@@ -1,6 +1,6 @@
 """Torque without the orders of engine and shaft, which sweep through the band of the model when the speed jumps.
 
-At constant speed a whitening filter foretells an order from its last periods; while the speed changes it cannot, and
+At constant speed a whitening filter predicts an order from its last periods; while the speed changes it cannot, and
 what is left is twice as strong there: just where limits act, so that intervals would be too narrow. An order is a sine
 of the angle that the shaft has turned, as strong as the load, and angle and load are measured::
 

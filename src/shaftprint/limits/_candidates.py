@@ -45,7 +45,7 @@ IDLE: Mapping[str, float] = {
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Suspect:
+class LimitCandidate:
     """One limit that may act."""
 
     kind: Kind
@@ -60,13 +60,17 @@ class Suspect:
     """The same as values of the parameter."""
 
 
-SUSPECTS: tuple[Suspect, ...] = (
-    Suspect(kind=Kind.TORQUE, level="m_max", companions=("T_aw",), shares=(0.4, 0.5, 0.6, 0.7, 0.8, 0.87, 0.93, 0.97)),
-    Suspect(kind=Kind.MOTORING, level="m_min", companions=("T_aw",), shares=(0.05, 0.3, 0.6, 0.85)),
-    Suspect(kind=Kind.RATE, level="r_x", levels=tuple(np.geomspace(0.5, 30.0, 9).tolist())),
-    Suspect(kind=Kind.RAMP, level="r_s", levels=tuple(np.geomspace(0.01, 4.0, 12).tolist())),
-    Suspect(kind=Kind.DEADBAND, level="d_e", levels=(0.016, 0.011, 0.0075, 0.005, 0.0033, 0.0022, 0.0015)),
-    Suspect(kind=Kind.SMOKE, level="a_0", companions=("tau_tc", "T_aw"), levels=(0.3, 0.42, 0.55, 0.7, 0.85, 0.95)),
+CANDIDATES: tuple[LimitCandidate, ...] = (
+    LimitCandidate(
+        kind=Kind.TORQUE, level="m_max", companions=("T_aw",), shares=(0.4, 0.5, 0.6, 0.7, 0.8, 0.87, 0.93, 0.97)
+    ),
+    LimitCandidate(kind=Kind.MOTORING, level="m_min", companions=("T_aw",), shares=(0.05, 0.3, 0.6, 0.85)),
+    LimitCandidate(kind=Kind.RATE, level="r_x", levels=tuple(np.geomspace(0.5, 30.0, 9).tolist())),
+    LimitCandidate(kind=Kind.RAMP, level="r_s", levels=tuple(np.geomspace(0.01, 4.0, 12).tolist())),
+    LimitCandidate(kind=Kind.DEADBAND, level="d_e", levels=(0.016, 0.011, 0.0075, 0.005, 0.0033, 0.0022, 0.0015)),
+    LimitCandidate(
+        kind=Kind.SMOKE, level="a_0", companions=("tau_tc", "T_aw"), levels=(0.3, 0.42, 0.55, 0.7, 0.85, 0.95)
+    ),
 )
 """In the order in which they are tried."""
 
@@ -74,7 +78,9 @@ LAGS_S = (0.6, 1.6)
 """Lags of the turbocharger that are tried with each torque without boost [s]."""
 
 
-def starts_of(suspect: Suspect, values: Mapping[str, float], torque: FloatArray, full: float) -> list[dict[str, float]]:
+def starts_of(
+    candidate: LimitCandidate, values: Mapping[str, float], torque: FloatArray, full: float
+) -> list[dict[str, float]]:
     """Return the values of its parameters to try, the strongest limit first.
 
     Parameters
@@ -86,23 +92,23 @@ def starts_of(suspect: Suspect, values: Mapping[str, float], torque: FloatArray,
     full
         Full-load torque of the vessel file over the brake torque of the working point.
     """
-    match suspect.kind:
+    match candidate.kind:
         case Kind.TORQUE:
             # below the torque of steady running there is no line that could be tested
             highest = float(np.max(torque))
-            tried = [max(share * highest, 1.02) for share in suspect.shares]
+            tried = [max(share * highest, 1.02) for share in candidate.shares]
             return [{"m_max": level} for level in dict.fromkeys(tried)]
         case Kind.MOTORING:
             lowest = float(np.min(torque))
-            return [{"m_min": share * lowest} for share in suspect.shares] if lowest < -0.05 else []
+            return [{"m_min": share * lowest} for share in candidate.shares] if lowest < -0.05 else []
         case Kind.SMOKE:
             limit = values["m_max"] if values["m_max"] < IDLE["m_max"] else full
-            return [{"a_0": a, "tau_tc": lag, "m_max": limit} for a in suspect.levels for lag in LAGS_S]
+            return [{"a_0": a, "tau_tc": lag, "m_max": limit} for a in candidate.levels for lag in LAGS_S]
         case _:
-            return [{suspect.level: level} for level in suspect.levels]
+            return [{candidate.level: level} for level in candidate.levels]
 
 
 def parameters_of(kinds: Sequence[Kind]) -> tuple[str, ...]:
     """Return the free parameters of some limits."""
-    present = [suspect for suspect in SUSPECTS if suspect.kind in kinds]
+    present = [candidate for candidate in CANDIDATES if candidate.kind in kinds]
     return tuple(dict.fromkeys(name for one in present for name in (one.level, *one.companions)))
