@@ -31,7 +31,10 @@ def make_window():
         count = int(np.ceil((window.duration_s - first_s) * rate_hz - 1e-6))
         time_s = first_s + np.arange(count) / rate_hz
         values = np.stack([np.broadcast_to(channel(time_s), time_s.shape) for channel in channels])
-        return WindowSamples(window=window, rate_hz=rate_hz, time_s=time_s, values=np.ascontiguousarray(values))
+        names = ("n_set", *(f"n_{place}" for place in range(1, len(channels) - 1)), "M_s")[-len(channels) :]
+        return WindowSamples(
+            window=window, rate_hz=rate_hz, time_s=time_s, channels=names, values=np.ascontiguousarray(values)
+        )
 
     return make
 

@@ -34,7 +34,7 @@ def repeated(make_window, coloured, *, periods, slope, repeats=REPEATS, noise_of
             periods=periods,
             rate_hz=rate,
         )
-        line = measure_line(window, WholePeriodSine())
+        line = measure_line(window, WholePeriodSine(), excitation="n_set", speed="n_1")
         amplitude.append(line.amplitude)
         covariance.append(line.noise.covariance)
         samples = line.noise.complex_samples
@@ -84,7 +84,7 @@ def test_noise_that_comes_through_the_shaft_is_not_noise_of_the_torque(make_wind
             periods=periods,
             rate_hz=rate,
         )
-        line = measure_line(window, WholePeriodSine())
+        line = measure_line(window, WholePeriodSine(), excitation="n_set", speed="n_1")
         taken = np.array([0.0, -(2.0 + 2.4j), 1.0])
         error.append(taken @ line.amplitude)
         stated.append((taken @ line.noise.covariance @ taken.conj()).real)

@@ -131,9 +131,9 @@ def test_a_straight_line_is_the_drift_of_three_periods(make_window):
 def test_a_window_is_cut_by_time(make_campaign):
     window = plan_windows(make_campaign(("S1", 0.3, 10.03, 20.5)))[0]
     values = np.arange(400.0)
-    cut = cut_window(window, (values,), rate_hz=10.0, start_s=5.0)
+    cut = cut_window(window, {"n": values}, rate_hz=10.0, start_s=5.0)
     # 10.03 to 20.03 s: the first sample at 10.1 s is number 51, the last at 20.0 s number 150
     assert cut.values[0, [0, -1]].tolist() == [51.0, 150.0]
     assert cut.time_s[[0, -1]] == pytest.approx([0.07, 9.97])
-    assert cut_window(window, (values,), rate_hz=10.0, start_s=10.15) is None
-    assert cut_window(window, (values[:150],), rate_hz=10.0, start_s=5.0) is None
+    assert cut_window(window, {"n": values}, rate_hz=10.0, start_s=10.15) is None
+    assert cut_window(window, {"n": values[:150]}, rate_hz=10.0, start_s=5.0) is None

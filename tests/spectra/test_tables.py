@@ -29,7 +29,7 @@ def together(*parts):
 def measured(make_window):
     def measure(*channels, periods=30, method=None):
         window = make_window(*channels, frequency_hz=periods / 100.0, periods=periods, rate_hz=10.0)
-        return measure_line(window, method or WholePeriodSine())
+        return measure_line(window, method or WholePeriodSine(), excitation="n_set", speed="n_1")
 
     return measure
 
@@ -75,7 +75,7 @@ def test_harmonics_of_a_quadratic_propeller(measured):
     a = 0.12
     speed = together(lambda t: 1.0, tone(a, 30))
     line = measured(tone(a, 30), speed, lambda t: speed(t) ** 2)
-    table = collect_harmonics([line], speed=1, torque=2)
+    table = collect_harmonics([line], speed="n_1")
     assert table.orders == (2, 3)
     assert table.fundamental[0] == pytest.approx([a, 2.0 * a])
     assert table.amplitude[0] == pytest.approx(np.array([[0.0, 0.0], [a**2 / 2.0, 0.0]]), abs=1e-12)
@@ -91,9 +91,9 @@ def test_deviation_of_a_harmonic_is_its_scatter(make_window):
             tone(1.0, 30), tone(1.0, 30), lambda t, n=noise: tone(1.0, 30)(t) + n,
             frequency_hz=0.3, periods=30, rate_hz=10.0,
         )  # fmt: skip
-        line = measure_line(window, WholePeriodSine())
+        line = measure_line(window, WholePeriodSine(), excitation="n_set", speed="n_1")
         found.append(line.harmonic[0, 2].real)
-        stated.append(collect_harmonics([line], speed=1, torque=2).standard_deviation[0, 1, 0] ** 2)
+        stated.append(collect_harmonics([line], speed="n_1").standard_deviation[0, 1, 0] ** 2)
     # white noise of unit variance: amplitude parts have variance 2 / N
     assert np.mean(stated) == pytest.approx(2.0 / 1000.0, rel=0.1)
     assert np.var(found) == pytest.approx(2.0 / 1000.0, rel=0.2)
@@ -101,7 +101,7 @@ def test_deviation_of_a_harmonic_is_its_scatter(make_window):
 
 def test_bin_picking_has_no_harmonics(measured):
     line = measured(tone(1.0, 30), tone(1.0, 30), tone(1.0, 30), method=ExactBin())
-    table = collect_harmonics([line], speed=1, torque=2)
+    table = collect_harmonics([line], speed="n_1")
     assert np.isnan(table.amplitude).all()
     assert np.isnan(table.standard_deviation).all()
 
@@ -112,10 +112,10 @@ def test_load_of_a_window_without_the_mean_shift_of_the_sine(measured):
         speed = together(lambda t: 0.98, tone(0.15, 30))
         return measured(tone(0.15, 30), speed, lambda t: (1.0 + load) * speed(t) ** 2)
 
-    drift = load_drift([propeller(0.03), propeller(-0.01)], speed=1, torque=2)
+    drift = load_drift([propeller(0.03), propeller(-0.01)], speed="n_1")
     assert drift.delta == pytest.approx([0.03, -0.01], abs=1e-9)
     assert drift.standard_deviation == pytest.approx(0.04 / np.sqrt(2.0))
-    assert load_drift([propeller(0.03)], speed=1, torque=2).standard_deviation == 0.0
+    assert load_drift([propeller(0.03)], speed="n_1").standard_deviation == 0.0
 
 
 def test_sidebands_of_a_drifting_load_are_not_noise(make_window):

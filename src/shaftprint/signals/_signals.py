@@ -139,6 +139,11 @@ class ChannelSignal:
     """Length of the straight lines from one value to the next [s]; 0 where values are held."""
 
     @property
+    def is_side(self) -> bool:
+        """Whether it comes seldom, so that it may be missing at a line."""
+        return self.role is Role.SIDE
+
+    @property
     def nyquist_hz(self) -> float:
         """Highest frequency that the sensor shows without aliasing [Hz]."""
         return 0.5 / self.cycle_s if self.cycle_s else math.inf
@@ -171,10 +176,19 @@ class ExcitationSignal(ChannelSignal):
     """Change of the quantity for one volt of the campaign, in its unit per V."""
     scale_std: float = 0.0
     """Standard deviation of the scale, as a fraction."""
+    scale_error: str = "set-point calibration"
+    """Name of the error of the scale among the common errors of a response."""
+    from_engine: bool = True
+    """Whether it acts through the engine, so that behind it torque and speed show load and inertia at the gauge."""
     shown_unit: str = ""
     """Unit in which amplitudes are told to the reader."""
     shown_reference: float = 1.0
     """The working point in that unit."""
+
+    @property
+    def words(self) -> str:
+        """What it is, in words."""
+        return self.input.replace("_", " ")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -289,6 +303,11 @@ class Signals:
     def excitations(self) -> Mapping[str, ExcitationSignal]:
         """Every channel that a test may move, by its symbol; the set point of the speed is the first."""
         return {name: one for name, one in self.channels.items() if isinstance(one, ExcitationSignal)}
+
+    @property
+    def messages(self) -> Mapping[str, MessageSignal]:
+        """Every channel on a clock of its own, by its symbol."""
+        return {name: one for name, one in self.channels.items() if isinstance(one, MessageSignal)}
 
     @property
     def speeds(self) -> Mapping[str, SpeedSignal]:

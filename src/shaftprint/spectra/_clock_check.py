@@ -33,7 +33,7 @@ _PERCENT = 100.0
 
 
 def clock_reasons(
-    cuts: "Sequence[WindowSamples]", lines: "Sequence[LineMeasurement]", *, channels: Mapping[str, int]
+    cuts: "Sequence[WindowSamples]", lines: "Sequence[LineMeasurement]", *, channels: Mapping[str, str]
 ) -> tuple[Reason, ...]:
     """Return a reason for each clock that the frequencies of the sines contradict.
 
@@ -42,14 +42,14 @@ def clock_reasons(
     cuts, lines
         Samples and measurement of every line; those with few periods are passed over.
     channels
-        Place of each channel, by what a reader calls it; the first is the set point.
+        Name of each channel, by what a reader calls it; the first is what was excited.
     """
     samples = {cut.window.line: cut for cut in cuts}
     told = [line for line in lines if line.window.periods >= _FEWEST_PERIODS]
     if len(told) < _FEWEST_LINES:
         return ()
-    places = list(channels.values())
-    found = np.array([_frequencies(samples[line.window.line], line, places) for line in told])
+    names = list(channels.values())
+    found = np.array([_frequencies(samples[line.window.line], line, names) for line in told])
     ratio, std = found[:, 0], found[:, 1]
     planned = np.array([line.window.frequency_hz for line in told])
     whole = _common_ratio(ratio[:, 0] / planned)
@@ -111,13 +111,13 @@ def _weighted(offset: FloatArray, std: FloatArray) -> float | None:
     return mean if abs(mean) > _DEVIATIONS * weight.sum() ** -0.5 and agree.mean() >= _AGREE else None
 
 
-def _frequencies(cut: "WindowSamples", line: "LineMeasurement", places: Sequence[int]) -> FloatArray:
+def _frequencies(cut: "WindowSamples", line: "LineMeasurement", names: Sequence[str]) -> FloatArray:
     """Return frequency [Hz] and its relative deviation of a line in some channels, shape (2, channels)."""
-    found = np.empty((2, len(places)))
+    found = np.empty((2, len(names)))
     noise = line.noise.covariance.diagonal().real
-    for row, place in enumerate(places):
-        found[0, row] = sine_frequency_hz(cut.values[place], cut.rate_hz, cut.window.frequency_hz)
-        share = np.sqrt(noise[place]) / max(abs(line.amplitude[place]), np.finfo(np.float64).tiny)
+    for row, name in enumerate(names):
+        found[0, row] = sine_frequency_hz(cut.of(name), cut.rate_hz, cut.window.frequency_hz)
+        share = np.sqrt(line.of(noise, name)) / max(abs(line.of(line.amplitude, name)), np.finfo(np.float64).tiny)
         found[1, row] = np.hypot(_BINS * share, _LEAST_BINS) / cut.window.periods
     return found
 

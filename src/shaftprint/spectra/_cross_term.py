@@ -6,7 +6,14 @@ from shaftprint.arrays import ComplexArray
 
 
 def without_cross_term(
-    amplitude: ComplexArray, noise: ComplexArray, *, harmonic: complex, variance: float, load: float
+    amplitude: ComplexArray,
+    noise: ComplexArray,
+    *,
+    harmonic: complex,
+    variance: float,
+    load: float,
+    speed: int,
+    torque: int,
 ) -> tuple[ComplexArray, ComplexArray]:
     """Take out of the torque's line what a quadratic propeller makes of the line and its second harmonic.
 
@@ -17,7 +24,7 @@ def without_cross_term(
     Parameters
     ----------
     amplitude
-        Amplitudes of set point, speed and torque over the working point, and further ones, shape (channels,).
+        Amplitudes over the working point, those of speed and torque among them, shape (channels,).
     noise
         Covariance ``E[a a^H]`` of their noise, shape (channels, channels).
     harmonic
@@ -26,6 +33,8 @@ def without_cross_term(
         Noise variance ``E|b|^2`` of the harmonic.
     load
         Propeller load of the window over that at the working point.
+    speed, torque
+        Places of the two among the channels.
 
     Returns
     -------
@@ -34,6 +43,6 @@ def without_cross_term(
     if not np.isfinite(harmonic):
         return amplitude, noise
     cleaned, spread = amplitude.copy(), noise.copy()
-    cleaned[2] -= load * np.conj(amplitude[1]) * harmonic
-    spread[2, 2] += (load * np.abs(amplitude[1])) ** 2 * variance
+    cleaned[torque] -= load * np.conj(amplitude[speed]) * harmonic
+    spread[torque, torque] += (load * np.abs(amplitude[speed])) ** 2 * variance
     return cleaned, spread

@@ -43,26 +43,24 @@ class Harmonics:
             object.__setattr__(self, name, frozen_float(getattr(self, name)))
 
 
-def collect_harmonics(measurements: Sequence["LineMeasurement"], *, speed: int, torque: int) -> Harmonics:
+def collect_harmonics(measurements: Sequence["LineMeasurement"], *, speed: str, torque: str = "M_s") -> Harmonics:
     """Collect the harmonics of one speed channel and the torque.
 
     Parameters
     ----------
     measurements
         One entry a line.
-    speed
-        Place of the speed channel.
-    torque
-        Place of the torque channel.
+    speed, torque
+        Names of the two channels.
 
     Returns
     -------
     The harmonics of all lines.
     """
-    chosen = [speed, torque]
-    amplitude = np.stack([np.abs(line.harmonic[:, chosen]).T for line in measurements])
-    variance = np.stack([line.harmonic_variance[:, chosen].T for line in measurements])
-    fundamental = np.stack([np.abs(line.amplitude[chosen]) for line in measurements])
+    chosen = [(line, line.places(speed, torque)) for line in measurements]
+    amplitude = np.stack([np.abs(line.harmonic[:, places]).T for line, places in chosen])
+    variance = np.stack([line.harmonic_variance[:, places].T for line, places in chosen])
+    fundamental = np.stack([np.abs(line.amplitude[places]) for line, places in chosen])
     return Harmonics(
         lines=tuple(line.window.line for line in measurements),
         outputs=("n", "M_s"),

@@ -1,6 +1,7 @@
 """What any way of measuring a sine in a window gives, and the contract of such a way."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -25,8 +26,15 @@ class WindowSamples:
     """Sample rate [Hz]."""
     time_s: FloatArray
     """Time of each sample since the start of the window [s], shape (samples,)."""
+    channels: tuple[str, ...]
+    """Names of the channels."""
     values: FloatArray
     """Values, shape (channels, samples)."""
+
+    def of(self, channel: str) -> FloatArray:
+        """Return the values of one channel, shape (samples,)."""
+        values: FloatArray = self.values[self.channels.index(channel)]
+        return values
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -66,7 +74,7 @@ class SineMethod(ABC):
 
 
 def cut_window(
-    window: "Window", values: tuple[FloatArray, ...], *, rate_hz: float, start_s: float
+    window: "Window", values: Mapping[str, FloatArray], *, rate_hz: float, start_s: float
 ) -> WindowSamples | None:
     """Cut the samples of a window out of whole channels.
 
@@ -75,7 +83,7 @@ def cut_window(
     window
         The window.
     values
-        Channels on one grid, each of shape (samples,).
+        Channels on one grid by name, each of shape (samples,).
     rate_hz
         Sample rate of the grid [Hz].
     start_s
@@ -87,12 +95,13 @@ def cut_window(
     """
     first = int(np.ceil((window.start_s - start_s) * rate_hz - _EDGE_SAMPLES))
     last = int(np.ceil((window.stop_s - start_s) * rate_hz - _EDGE_SAMPLES))
-    if first < 0 or last > values[0].size:
+    if first < 0 or last > min(channel.size for channel in values.values()):
         return None
     time_s = start_s - window.start_s + np.arange(first, last) / rate_hz
     return WindowSamples(
         window=window,
         rate_hz=rate_hz,
         time_s=time_s,
-        values=np.stack([channel[first:last] for channel in values]),
+        channels=tuple(values),
+        values=np.stack([channel[first:last] for channel in values.values()]),
     )

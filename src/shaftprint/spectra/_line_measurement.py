@@ -1,20 +1,25 @@
 """Everything that one window tells, in values normalised with the working point."""
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.spectra._message_line import MessageLine, MessageWindow, measure_messages
 from shaftprint.spectra._modulation import without_modulation
 from shaftprint.spectra._noise import LineNoise, ShaftRelation, line_noise, residual_spectrum
-from shaftprint.spectra._rack_line import RackLine, RackWindow, measure_rack
 from shaftprint.spectra._signal_to_noise import LineVariances, line_variances
 from shaftprint.spectra._stretches import stretch_amplitudes
 
 if TYPE_CHECKING:
-    from shaftprint.spectra._line_fit import SineMethod, WindowSamples
+    from shaftprint.spectra._line_fit import LineFit, SineMethod, WindowSamples
     from shaftprint.spectra._windows import Window
+
+ScalarT = TypeVar("ScalarT", bound=np.generic)
 
 HARMONIC_ORDERS = (2, 3)
 """Harmonics that are reported."""
@@ -24,10 +29,14 @@ _DOMINANT_SHARE = 1.0 / 3.0
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class LineMeasurement:
-    """What one window tells; channels are ``n_set``, every speed, ``M_s``, each over its working point."""
+    """What one window tells, by channel, each over its working point."""
 
     window: "Window"
     """The window."""
+    channels: tuple[str, ...]
+    """Names of the channels on the grid."""
+    excitation: str
+    """Name of the channel that was moved."""
     amplitude: ComplexArray
     """Complex amplitude of the line, shape (channels,)."""
     harmonic: ComplexArray
@@ -42,39 +51,70 @@ class LineMeasurement:
     """Variances for the signal-to-noise ratios."""
     stretches: ComplexArray
     """Amplitude in each stretch of whole periods, shape (channels, stretches)."""
-    set_point_frequency_hz: float
-    """Frequency of the sine that dominates the set point [Hz]: exactly the window's own where that one does, not a
+    excitation_frequency_hz: float
+    """Frequency of the sine that dominates the excitation [Hz]: exactly the window's own where that one does, not a
     number where none does."""
-    rack: RackLine | None = None
-    """The line in the fuel rack; nothing where it was not logged or cannot be measured."""
-    rack_remark: str = ""
-    """Why a rack that was logged cannot be measured at this line; empty where it can."""
+    messages: Mapping[str, MessageLine] = field(default_factory=dict)
+    """The line in channels on clocks of their own, as far as it can be measured there."""
+    message_remarks: Mapping[str, str] = field(default_factory=dict)
+    """Why such a channel that was logged cannot be measured at this line."""
+
+    def places(self, *names: str) -> list[int]:
+        """Return where channels stand."""
+        return [self.channels.index(name) for name in names]
+
+    def of(self, values: NDArray[ScalarT], name: str) -> Any:
+        """Return what an array with the channels last holds of one of them."""
+        return values[..., self.channels.index(name)]
 
     @property
-    def variances_with_rack(self) -> LineVariances:
-        """Variances of all channels and, last, of the rack; not numbers where that was not measured."""
+    def excited(self) -> float:
+        """Amplitude of the excitation."""
+        return float(np.abs(self.of(self.amplitude, self.excitation)))
+
+    @property
+    def excited_stretches(self) -> ComplexArray:
+        """Amplitude of the excitation in each stretch, shape (stretches,)."""
+        stretches: ComplexArray = self.stretches[self.channels.index(self.excitation)]
+        return stretches
+
+    def variances_with(self, *names: str) -> LineVariances:
+        """Return variances of all channels and of some on clocks of their own; not numbers where not measured."""
         nothing = np.array([np.nan])
-        rack = (
-            LineVariances(signal=nothing, local=nothing, overall=nothing) if self.rack is None else self.rack.variances
-        )
+        unknown = LineVariances(signal=nothing, local=nothing, overall=nothing)
+        parts = [self.messages[name].variances if name in self.messages else unknown for name in names]
         return LineVariances(
-            signal=np.append(self.variances.signal, rack.signal),
-            local=np.append(self.variances.local, rack.local),
-            overall=np.append(self.variances.overall, rack.overall),
+            signal=np.concatenate([self.variances.signal, *(part.signal for part in parts)]),
+            local=np.concatenate([self.variances.local, *(part.local for part in parts)]),
+            overall=np.concatenate([self.variances.overall, *(part.overall for part in parts)]),
         )
 
 
-def measure_line(samples: "WindowSamples", method: "SineMethod", rack: RackWindow | None = None) -> LineMeasurement:
+def measure_line(
+    samples: "WindowSamples",
+    method: "SineMethod",
+    *,
+    excitation: str,
+    speed: str,
+    from_engine: bool = True,
+    messages: Mapping[str, MessageWindow] = MappingProxyType({}),
+) -> LineMeasurement:
     """Measure one line in all channels.
 
     Parameters
     ----------
     samples
-        Channels of the window, normalised; the first is the set point.
+        Channels of the window, normalised.
     method
         The way to measure the sine.
-    rack
-        The fuel rack inside the window, where it was logged.
+    excitation
+        Name of the channel that is moved.
+    speed
+        Name of a speed, with which the torque ``M_s`` goes.
+    from_engine
+        Whether the line is moved from the engine's side, so that the ratio of both is that of load and inertia.
+    messages
+        Channels on clocks of their own inside the window, by name.
 
     Returns
     -------
@@ -83,20 +123,21 @@ def measure_line(samples: "WindowSamples", method: "SineMethod", rack: RackWindo
     window = samples.window
     fit = method.fit(samples)
     spectrum = residual_spectrum(fit)
-    relation = _shaft_relation(fit.amplitude[0])
+    relation = _shaft_relation(samples.channels, fit.amplitude[0], speed, from_engine=from_engine)
     variances = line_variances(fit.amplitude[0], samples.values, spectrum, periods=window.periods)
-    channels = len(samples.values)
-    harmonic = np.full((len(HARMONIC_ORDERS), channels), np.nan + 0j)
-    harmonic_variance = np.full((len(HARMONIC_ORDERS), channels), np.nan)
-    for row, order in enumerate(HARMONIC_ORDERS):
-        if order <= len(fit.amplitude):
-            noise = line_noise(spectrum, periods=window.periods, order=order)
-            harmonic[row] = fit.amplitude[order - 1]
-            harmonic_variance[row] = noise.covariance.diagonal().real
-    cleaned = without_modulation(spectrum, samples.values[-1], relation, periods=window.periods)
-    dominant = variances.signal[0] > 0.5 * variances.overall[0]
+    harmonic, harmonic_variance = _harmonics(fit, spectrum, window.periods)
+    cleaned = without_modulation(spectrum, samples.of("M_s"), relation, periods=window.periods)
+    place = samples.channels.index(excitation)
+    dominant = variances.signal[place] > 0.5 * variances.overall[place]
+    measured = {
+        name: line
+        for name, part in messages.items()
+        if (line := measure_messages(part, samples, method, spectrum, relation)) is not None
+    }
     return LineMeasurement(
         window=window,
+        channels=samples.channels,
+        excitation=excitation,
         amplitude=fit.amplitude[0],
         harmonic=harmonic,
         harmonic_variance=harmonic_variance,
@@ -104,20 +145,34 @@ def measure_line(samples: "WindowSamples", method: "SineMethod", rack: RackWindo
         noise=line_noise(cleaned, periods=window.periods, relation=relation),
         variances=variances,
         stretches=fit.amplitude[0][:, np.newaxis] + stretch_amplitudes(fit),
-        set_point_frequency_hz=(
-            window.frequency_hz if dominant else strongest_frequency_hz(samples.values[0], samples.rate_hz)
+        excitation_frequency_hz=(
+            window.frequency_hz if dominant else strongest_frequency_hz(samples.of(excitation), samples.rate_hz)
         ),
-        rack=None if rack is None else measure_rack(rack, samples, method, spectrum, relation),
-        rack_remark="" if rack is None else rack.remark,
+        messages=measured,
+        message_remarks={name: part.remark for name, part in messages.items() if part.remark},
     )
 
 
-def _shaft_relation(amplitude: ComplexArray) -> ShaftRelation:
-    """Return how the last channel, the torque, goes with the first speed."""
-    still = amplitude[1] == 0.0
-    return ShaftRelation(
-        speed=1, torque=len(amplitude) - 1, ratio=0.0 if still else complex(amplitude[-1] / amplitude[1])
-    )
+def _harmonics(fit: "LineFit", spectrum: ComplexArray, periods: int) -> tuple[ComplexArray, FloatArray]:
+    """Return amplitude and noise variance of harmonics 2 and 3, each of shape (2, channels)."""
+    harmonic = np.full((len(HARMONIC_ORDERS), len(spectrum)), np.nan + 0j)
+    variance = np.full((len(HARMONIC_ORDERS), len(spectrum)), np.nan)
+    for row, order in enumerate(HARMONIC_ORDERS):
+        if order <= len(fit.amplitude):
+            noise = line_noise(spectrum, periods=periods, order=order)
+            harmonic[row] = fit.amplitude[order - 1]
+            variance[row] = noise.covariance.diagonal().real
+    return harmonic, variance
+
+
+def _shaft_relation(
+    channels: tuple[str, ...], amplitude: ComplexArray, speed: str, *, from_engine: bool
+) -> ShaftRelation:
+    """Return how the torque goes with a speed; taken as unrelated where the line is moved from the propeller's side."""
+    first, second = channels.index(speed), channels.index("M_s")
+    known = from_engine and amplitude[first] != 0.0
+    ratio = complex(amplitude[second] / amplitude[first]) if known else 0.0
+    return ShaftRelation(speed=first, torque=second, ratio=ratio)
 
 
 def strongest_frequency_hz(values: FloatArray, rate_hz: float) -> float:

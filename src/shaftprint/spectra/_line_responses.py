@@ -12,14 +12,11 @@ from shaftprint.spectra._line_measurement import LineMeasurement
 from shaftprint.spectra._response_covariance import response_of_line, weight_factor, with_common_error
 
 if TYPE_CHECKING:
-    from shaftprint.signals import Signals, SpeedSignal
+    from shaftprint.signals import ChannelSignal, ExcitationSignal, Signals, SpeedSignal
 
 NOT_MEASURED_STD = 100.0
 """Standard deviation of real and imaginary part of a response that was not measured [-]: a line that is governed stays
 below a tenth of it, so that it has no weight for that output. Its correlation with the others is 0."""
-
-SET_POINT_CALIBRATION = "set-point calibration"
-"""Name of the error of the set-point scale among the common errors of a response."""
 
 _SPEED_AND_TORQUE = 2
 _ROUNDING = 1e-15
@@ -45,15 +42,29 @@ def measured(response: FrequencyResponse) -> BoolArray:
     return known
 
 
+def outputs_of(signals: "Signals", channels: Sequence[str]) -> tuple[str, ...]:
+    """Return the outputs of a response: speed and torque, then what came seldom, on the grid or on its own clock.
+
+    Parameters
+    ----------
+    signals
+        The prepared recording.
+    channels
+        Names of the channels on the grid that were measured.
+    """
+    side = [name for name in channels if signals.channels[name].is_side]
+    return ("n", "M_s", *side, *signals.messages)
+
+
 def response_of_lines(
     signals: "Signals",
     measurements: Sequence[LineMeasurement],
     *,
-    channels: list[int],
+    excitation: "ExcitationSignal",
     sensor: "SpeedSignal",
     load: FloatArray,
 ) -> FrequencyResponse:
-    """Return the response from set point to speed, torque and, where they were logged, ship and fuel rack.
+    """Return the response from what was moved to speed, torque and the other channels.
 
     Parameters
     ----------
@@ -61,27 +72,24 @@ def response_of_lines(
         The prepared recording.
     measurements
         One entry a line.
-    channels
-        Places of set point, speed and torque, and of the speed of the ship where it was logged.
-    sensor
-        The speed signal.
+    excitation, sensor
+        Signals of the input and of the speed.
     load
         Propeller load of each window over that at the working point, shape (lines,).
     """
-    ship = signals.channels.get("v_s")
-    outputs = ("n", "M_s", *(() if ship is None else ("v_s",)), *(() if "X" not in signals.channels else ("X",)))
+    outputs = outputs_of(signals, measurements[0].channels)
     response = np.empty((len(outputs), 1, len(measurements)), dtype=np.complex128)
     common = np.zeros_like(response)
     covariance = np.empty((len(measurements), 2 * len(outputs), 2 * len(outputs)))
     for place, line in enumerate(measurements):
-        known = _known_outputs(signals, line)
-        shown = channels if "v_s" in known else channels[:3]
-        amplitude, noise = _amplitudes(line, shown, signals, sensor, load=load[place])
+        known = _known_outputs(signals, line, outputs)
+        rows = (excitation, sensor, *(signals.channels[name] for name in known[1:]))
+        amplitude, noise = _amplitudes(line, rows, thesis=signals.mode == "thesis", load=load[place])
         samples = line.noise.complex_samples
         values, spread = response_of_line(amplitude, noise, complex_samples=samples, weighted=len(outputs))
         # the common error takes part in the factor of the weights: speed and torque alone keep what they would have
         more = weight_factor(samples, len(outputs)) / weight_factor(samples, _SPEED_AND_TORQUE)
-        share = signals.excitations["n_set"].scale_std * np.sqrt(more)
+        share = excitation.scale_std * np.sqrt(more)
         spread = with_common_error(spread, values, share)
         common[[outputs.index(name) for name in known], 0, place] = share * values
         for position, name in enumerate(outputs):
@@ -96,52 +104,63 @@ def response_of_lines(
         frequency_hz=np.array([line.window.frequency_hz for line in measurements]),
         response=response,
         covariance=covariance,
-        inputs=("n_set",),
+        inputs=(excitation.name,),
         outputs=outputs,
         lines=tuple(line.window.line for line in measurements),
         degrees_of_freedom=np.array([2.0 * line.noise.complex_samples for line in measurements]),
-        common={SET_POINT_CALIBRATION: common},
+        common={excitation.scale_error: common},
     )
 
 
-def _known_outputs(signals: "Signals", line: LineMeasurement) -> tuple[str, ...]:
-    """Return the outputs that were measured at a line."""
-    known = ["n", "M_s"]
-    if "v_s" in signals.channels and line.window.frequency_hz <= signals.channels["v_s"].highest_hz:
-        known.append("v_s")
-    if line.rack is not None:
-        known.append("X")
-    return tuple(known)
+def _known_outputs(signals: "Signals", line: LineMeasurement, outputs: Sequence[str]) -> tuple[str, ...]:
+    """Return the outputs that were measured at a line, speed first."""
+    frequency = line.window.frequency_hz
+    return tuple(
+        name
+        for name in outputs
+        if name == "n"
+        or name in line.messages
+        or (name in line.channels and frequency <= signals.channels[name].highest_hz)
+    )
 
 
 def _amplitudes(
-    line: LineMeasurement, channels: list[int], signals: "Signals", sensor: "SpeedSignal", *, load: float
+    line: LineMeasurement, rows: Sequence["ChannelSignal"], *, thesis: bool, load: float
 ) -> tuple[ComplexArray, ComplexArray]:
-    """Return the amplitudes of set point, speed, torque, ship and rack, as far as measured, and their noise.
+    """Return the amplitudes of input, speed, torque and the other channels of a line, and their noise.
 
     Except in the thesis' way the torque is without the cross term of its quadratic propeller. The thesis' way divides
     each channel by its own mean of the window, "the offset, which serves as the normalisation point of each frequency"
     (section 3.3): a set point that is off by a constant is then off by a factor.
     """
-    frequency = line.window.frequency_hz
-    scale = np.array([1.0, 1.0 / sensor.gain(frequency), 1.0], dtype=np.complex128)
-    if len(channels) > scale.size:
-        scale = np.append(scale, 1.0 / signals.channels["v_s"].gain(frequency))
-    amplitude = line.amplitude[channels]
-    noise = line.noise.covariance[np.ix_(channels, channels)]
-    if line.rack is not None:
-        scale = np.append(scale, 1.0)
-        amplitude = np.append(amplitude, line.rack.amplitude)
-        own = line.rack.covariance[[*channels, -1]]
+    names = [row.name for row in rows if row.name in line.channels]
+    own_clock = [row.name for row in rows if row.name not in line.channels]
+    places = line.places(*names)
+    gain = [1.0 if row.name in own_clock else row.gain(line.window.frequency_hz) for row in rows]
+    scale = np.array([1.0 / value for value in gain], dtype=np.complex128)
+    amplitude = line.amplitude[places]
+    noise = line.noise.covariance[np.ix_(places, places)]
+    for name in own_clock:
+        message = line.messages[name]
+        amplitude = np.append(amplitude, message.amplitude)
+        # two channels on clocks of their own are taken as unrelated
+        own = np.zeros(amplitude.size, dtype=np.complex128)
+        own[: len(places)], own[-1] = message.covariance[places], message.covariance[-1]
         noise = np.block([[noise, own[:-1, np.newaxis].conj()], [own[np.newaxis]]])
     amplitude, noise = scale * amplitude, scale[:, np.newaxis] * noise * scale.conj()
-    if signals.mode == "thesis":
+    if thesis:
         offset = np.ones(amplitude.size)
-        offset[: len(channels)] = line.mean[channels]
+        offset[: len(places)] = line.mean[places]
         return amplitude / offset, noise / np.outer(offset, offset)
-    speed = channels[1]
+    speed = rows[1].name
     return without_cross_term(
-        amplitude, noise, harmonic=line.harmonic[0, speed], variance=line.harmonic_variance[0, speed], load=load
+        amplitude,
+        noise,
+        harmonic=line.of(line.harmonic[0], speed),
+        variance=line.of(line.harmonic_variance[0], speed),
+        load=load,
+        speed=1,
+        torque=names.index("M_s"),
     )
 
 

@@ -32,24 +32,24 @@ class LoadDrift:
         object.__setattr__(self, "delta", frozen_float(self.delta))
 
 
-def load_drift(measurements: Sequence["LineMeasurement"], *, speed: int, torque: int) -> LoadDrift:
+def load_drift(measurements: Sequence["LineMeasurement"], *, speed: str, torque: str = "M_s") -> LoadDrift:
     """Find the relative propeller load of each window.
 
     Parameters
     ----------
     measurements
         One entry a line, normalised with the working point.
-    speed
-        Place of the speed channel.
-    torque
-        Place of the torque channel.
+    speed, torque
+        Names of the two channels.
 
     Returns
     -------
     The drift.
     """
-    square = np.array([line.mean[speed] ** 2 + 0.5 * np.abs(line.amplitude[speed]) ** 2 for line in measurements])
-    delta = np.array([line.mean[torque] for line in measurements]) / square - 1.0
+    square = np.array(
+        [line.of(line.mean, speed) ** 2 + 0.5 * np.abs(line.of(line.amplitude, speed)) ** 2 for line in measurements]
+    )
+    delta = np.array([line.of(line.mean, torque) for line in measurements]) / square - 1.0
     return LoadDrift(
         delta=delta,
         standard_deviation=float(np.std(delta, ddof=1)) if delta.size > 1 else 0.0,

@@ -13,6 +13,7 @@ from shaftprint.reasons import Reason
 from shaftprint.spectra._stretches import stretch_periods
 
 if TYPE_CHECKING:
+    from shaftprint.signals import ExcitationSignal
     from shaftprint.spectra._line_measurement import LineMeasurement
 
 _UNEXCITED_SHARE = 0.1
@@ -44,7 +45,7 @@ def check_frequency_unit(measurements: Sequence["LineMeasurement"]) -> None:
     Parameters
     ----------
     measurements
-        One entry a line; the first channel is the set point.
+        One entry a line.
 
     Raises
     ------
@@ -52,20 +53,20 @@ def check_frequency_unit(measurements: Sequence["LineMeasurement"]) -> None:
         If the set point moves at ``1 / (2 pi)`` of the stated frequency in more than half of the windows, or at
         none of the stated frequencies.
     """
-    ratio = np.array([line.set_point_frequency_hz / line.window.frequency_hz for line in measurements])
+    ratio = np.array([line.excitation_frequency_hz / line.window.frequency_hz for line in measurements])
     angular = np.abs(ratio / _HZ_PER_RAD_S - 1.0) < 0.05
     if 2 * np.count_nonzero(angular) > ratio.size:
         worst = measurements[int(np.argmax(angular))]
         raise ResponseError(
             f"{worst.window.line}: expected the set point to move at "
-            f"{worst.window.frequency_hz:g} Hz, found {worst.set_point_frequency_hz:.3g} Hz, "
+            f"{worst.window.frequency_hz:g} Hz, found {worst.excitation_frequency_hz:.3g} Hz, "
             f"1/(2 pi) of it, likewise in {np.count_nonzero(angular)} of {ratio.size} sines: the "
             "campaign's frequency_hz seems to be in rad/s; divide it by 2 pi."
         )
     if not np.any(ratio == 1.0):
         first = measurements[0]
         found = (
-            "a set point that does not move" if np.all(np.isnan(ratio)) else f"{first.set_point_frequency_hz:.3g} Hz"
+            "a set point that does not move" if np.all(np.isnan(ratio)) else f"{first.excitation_frequency_hz:.3g} Hz"
         )
         raise ResponseError(
             f"{first.window.line}: expected the set point to move at {first.window.frequency_hz:g} "
@@ -76,39 +77,39 @@ def check_frequency_unit(measurements: Sequence["LineMeasurement"]) -> None:
 
 
 def check_set_point(
-    line: "LineMeasurement", *, expected: float, local_db: FloatArray, place: int, rpm: float
+    line: "LineMeasurement", *, expected: float, local_db: FloatArray, place: int, moved: "ExcitationSignal"
 ) -> SetPointFinding:
     """Compare the set point of one line with the campaign and with its neighbours.
 
     Parameters
     ----------
     line
-        The line; its first channel is the set point.
+        The line.
     expected
         Amplitude that the campaign asks for, over the working point.
     local_db
         Local signal-to-noise ratio of the set point of all lines [dB], shape (lines,).
     place
         Place of this line among them.
-    rpm
-        Engine speed of the working point [rpm], for messages.
+    moved
+        The signal that was moved, for messages.
 
     Returns
     -------
     Remarks, and whether the line can be used.
     """
-    found = float(np.abs(line.amplitude[0]))
-    if line.set_point_frequency_hz != line.window.frequency_hz:
-        return SetPointFinding(remarks=(_wrong_sine(line, found, expected, rpm),), usable=False)
+    found = line.excited
+    if line.excitation_frequency_hz != line.window.frequency_hz:
+        return SetPointFinding(remarks=(_wrong_sine(line, found, expected, moved),), usable=False)
     if found < _UNEXCITED_SHARE * expected:
-        return SetPointFinding(remarks=(amplitude_remark(found, expected, rpm),), usable=False)
+        return SetPointFinding(remarks=(amplitude_remark(found, expected, moved),), usable=False)
     disturbed = _disturbed_stretches(line)
     if np.any(disturbed):
         usable = bool(disturbed.mean() < _STRETCH_LIMIT)
         return SetPointFinding(remarks=(_stretch_remark(line, disturbed),), usable=usable)
     remarks = []
     if abs(found - expected) > _AMPLITUDE_TOLERANCE * expected:
-        remarks.append(amplitude_remark(found, expected, rpm))
+        remarks.append(amplitude_remark(found, expected, moved))
     offset_hz = _frequency_offset_hz(line)
     offset_bins = abs(offset_hz) * line.window.duration_s
     typical_db = _typical_db(local_db, place)
@@ -131,7 +132,7 @@ def shape_reasons(lines: Sequence["LineMeasurement"]) -> tuple[Reason, ...]:
     Parameters
     ----------
     lines
-        One entry a line; the first channel is the set point.
+        One entry a line.
     """
     bent = [line for line in lines if _harmonic_share(line) > _HARMONIC_LIMIT]
     if not bent:
@@ -152,36 +153,40 @@ def shape_reasons(lines: Sequence["LineMeasurement"]) -> tuple[Reason, ...]:
 
 def _harmonic_share(line: "LineMeasurement") -> float:
     """Return the size of harmonics 2 and 3 of the set point over its sine; 0 where they were not fitted."""
-    size = float(np.sqrt(np.nansum(np.abs(line.harmonic[:, 0]) ** 2)))
-    return size / max(float(np.abs(line.amplitude[0])), np.finfo(np.float64).tiny)
+    size = float(np.sqrt(np.nansum(np.abs(line.of(line.harmonic, line.excitation)) ** 2)))
+    return size / max(line.excited, np.finfo(np.float64).tiny)
 
 
-def _wrong_sine(line: "LineMeasurement", found: float, expected: float, rpm: float) -> str:
-    hz = line.set_point_frequency_hz
+def _wrong_sine(line: "LineMeasurement", found: float, expected: float, moved: "ExcitationSignal") -> str:
+    hz = line.excitation_frequency_hz
     if not _moves(line, expected):
-        return amplitude_remark(found, expected, rpm)
+        return amplitude_remark(found, expected, moved)
     if not abs(hz / line.window.frequency_hz - 1.0) * line.window.periods >= 1.0:
-        share = line.variances.signal[0] / line.variances.overall[0]
+        share = line.of(line.variances.signal, line.excitation) / line.of(line.variances.overall, line.excitation)
         return f"set point is not a clean sine: the line is {100.0 * share:.0f} % of its variance"
     return f"set point moves at {hz:.3g} Hz where the campaign says {line.window.frequency_hz:g} Hz"
 
 
 def _moves(line: "LineMeasurement", expected: float) -> bool:
     """Whether the set point moves at all as much as a sine of the expected amplitude would make it."""
-    return bool(line.variances.overall[0] > (_UNEXCITED_SHARE * expected) ** 2 / 2.0)
+    return bool(line.of(line.variances.overall, line.excitation) > (_UNEXCITED_SHARE * expected) ** 2 / 2.0)
 
 
-def amplitude_remark(found: float, expected: float, rpm: float) -> str:
+def amplitude_remark(found: float, expected: float, moved: "ExcitationSignal") -> str:
     """Say what amplitude the set point has.
 
     Parameters
     ----------
     found, expected
         Amplitudes over the working point.
-    rpm
-        Engine speed of the working point [rpm].
+    moved
+        The signal that was moved.
     """
-    return f"set point has an amplitude of {found * rpm:.3g} rpm where the campaign asks for {expected * rpm:.3g} rpm"
+    unit, size = moved.shown_unit, moved.shown_reference
+    return (
+        f"{moved.words} has an amplitude of {found * size:.3g} {unit} where the campaign asks for "
+        f"{expected * size:.3g} {unit}"
+    )
 
 
 def _stretch_s(line: "LineMeasurement") -> float:
@@ -190,14 +195,14 @@ def _stretch_s(line: "LineMeasurement") -> float:
 
 def _frequency_offset_hz(line: "LineMeasurement") -> float:
     """Difference between true and stated frequency, from the turning of the phase over the window."""
-    turn = np.unwrap(np.angle(line.stretches[0] / line.amplitude[0]))
+    turn = np.unwrap(np.angle(line.excited_stretches / line.of(line.amplitude, line.excitation)))
     place = np.arange(turn.size) - 0.5 * (turn.size - 1)
     slope_rad = float((place @ turn) / (place @ place))
     return slope_rad / (2.0 * np.pi * _stretch_s(line))
 
 
 def _disturbed_stretches(line: "LineMeasurement") -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    amplitude = np.abs(line.stretches[0])
+    amplitude = np.abs(line.excited_stretches)
     typical = np.median(amplitude)
     disturbed: np.ndarray[tuple[int, ...], np.dtype[np.bool_]] = (
         np.abs(amplitude - typical) > _STRETCH_TOLERANCE * typical

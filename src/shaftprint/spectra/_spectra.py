@@ -9,7 +9,6 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ResponseError
 from shaftprint.reasons import Reason
-from shaftprint.signals import MessageSignal
 from shaftprint.spectra._clock_check import clock_reasons
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._harmonics import Harmonics, collect_harmonics
@@ -17,18 +16,17 @@ from shaftprint.spectra._line_fit import SineMethod, WindowSamples, cut_window
 from shaftprint.spectra._line_measurement import LineMeasurement, measure_line
 from shaftprint.spectra._line_responses import response_of_lines
 from shaftprint.spectra._load_drift import LoadDrift, load_drift
-from shaftprint.spectra._rack_line import cut_rack
+from shaftprint.spectra._message_line import cut_messages
 from shaftprint.spectra._set_point_check import amplitude_remark, check_frequency_unit, check_set_point, shape_reasons
 from shaftprint.spectra._shift_check import shift_reasons
 from shaftprint.spectra._signal_to_noise import SignalToNoise, signal_to_noise
 from shaftprint.spectra._sine_fit import WholePeriodSine
 from shaftprint.spectra._windows import Window, plan_windows
-from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
     from shaftprint.arrays import BoolArray, FloatArray
     from shaftprint.campaign import Campaign
-    from shaftprint.signals import Signals, SpeedSignal
+    from shaftprint.signals import ExcitationSignal, Signals, SpeedSignal
 
 _WHOLE_PERIOD_SINE = WholePeriodSine()
 
@@ -42,8 +40,7 @@ class Spectra:
     """All that the sines of a campaign tell about one shaft line."""
 
     response: FrequencyResponse
-    """Response from ``n_set`` to ``n`` and ``M_s``; to ``v_s`` where the speed of the ship was logged, to ``X`` where
-    the rack was."""
+    """Response from what was moved, such as ``n_set``, to ``n`` and ``M_s``, and to the other channels that answer."""
     windows: tuple[Window, ...]
     """Window of each line (thesis table 3.5)."""
     signal_to_noise: SignalToNoise
@@ -65,12 +62,13 @@ def estimate_response(
     *,
     method: SineMethod = _WHOLE_PERIOD_SINE,
     speed: str | None = None,
+    excitation: str = "n_set",
 ) -> FrequencyResponse:
     """Estimate the response from set point to speed, torque and rack with full covariance.
 
     Parameters, result and errors are those of `estimate_spectra`, of which this is the response.
     """
-    return estimate_spectra(signals, campaign, method=method, speed=speed).response
+    return estimate_spectra(signals, campaign, method=method, speed=speed, excitation=excitation).response
 
 
 @refusing_none(ResponseError)
@@ -80,6 +78,7 @@ def estimate_spectra(
     *,
     method: SineMethod = _WHOLE_PERIOD_SINE,
     speed: str | None = None,
+    excitation: str = "n_set",
 ) -> Spectra:
     """Measure every sine of a campaign in every channel.
 
@@ -101,6 +100,8 @@ def estimate_spectra(
         The way to measure a sine: `WholePeriodSine`, or for comparison `ExactBin` or `HighestPeak`.
     speed
         Name of the speed sensor to use, by default the first of the vessel.
+    excitation
+        Name of what was moved, the input of the response.
 
     Returns
     -------
@@ -113,39 +114,38 @@ def estimate_spectra(
         not move, no sine of the campaign is in the recording, or frequencies are in rad/s.
     """
     sensor = _speed_signal(signals, speed)
-    ship = () if "v_s" not in signals.channels else ("v_s",)
-    names = ("n_set", *signals.speeds, *ship, "M_s")
-    used_channels = [0, names.index(sensor.name), len(names) - 1, *(names.index(name) for name in ship)]
+    moved = _excitation(signals, excitation)
+    names = _channels_on_grid(signals, moved)
     cuts, left_out = _cut_windows(signals, campaign, names)
-    measurements = [_measure(signals, cut, names, method) for cut in cuts]
+    measurements = [_measure(signals, cut, moved, method) for cut in cuts]
     check_frequency_unit(measurements)
-    measurements, silent = _without_silent(signals, campaign, measurements)
+    measurements, silent = _without_silent(moved, campaign, measurements)
     ratios = signal_to_noise(
-        [line.variances if signals.channels.get("X") is None else line.variances_with_rack for line in measurements],
+        [line.variances_with(*signals.messages) for line in measurements],
         lines=tuple(line.window.line for line in measurements),
-        channels=names if signals.channels.get("X") is None else (*names, "X"),
+        channels=(*names, *signals.messages),
     )
-    remarks, usable = _judge(signals, campaign, measurements, sensor, ratios.local_db[:, 0])
-    drift = load_drift(measurements, speed=used_channels[1], torque=used_channels[2])
+    remarks, usable = _judge(
+        signals, campaign, measurements, sensor, moved, ratios.local_db[:, names.index(moved.name)]
+    )
+    drift = load_drift(measurements, speed=sensor.name)
     thesis = signals.mode == "thesis"
-    against = () if thesis else _against(cuts, measurements, sensor, used_channels)
-    used = np.ones_like(usable) if thesis else usable
     load = np.ones(len(measurements)) if thesis else 1.0 + drift.delta
     response = replace(
-        response_of_lines(signals, measurements, channels=used_channels, sensor=sensor, load=load),
-        used=used,
+        response_of_lines(signals, measurements, excitation=moved, sensor=sensor, load=load),
+        used=np.ones_like(usable) if thesis else usable,
         remarks=remarks | silent | left_out,
         load=load,
         averaging_s=sensor.averaging_s,
         hold_s=sensor.hold_s,
         pick_up_delay_s=sensor.delay_s,
     )
-    shifted = () if thesis else shift_reasons(response)
+    against = () if thesis else _against(cuts, measurements, sensor, moved, response)
     return Spectra(
-        response=replace(response, reasons=(*signals.reasons, *against, *shifted)),
+        response=replace(response, reasons=(*signals.reasons, *against)),
         windows=tuple(line.window for line in measurements),
         signal_to_noise=ratios,
-        harmonics=collect_harmonics(measurements, speed=used_channels[1], torque=used_channels[2]),
+        harmonics=collect_harmonics(measurements, speed=sensor.name),
         load_drift=drift,
         speed=sensor.name,
         remarks=remarks | silent | left_out,
@@ -153,11 +153,31 @@ def estimate_spectra(
 
 
 def _against(
-    cuts: Sequence[WindowSamples], lines: Sequence[LineMeasurement], sensor: "SpeedSignal", places: Sequence[int]
+    cuts: Sequence[WindowSamples],
+    lines: Sequence[LineMeasurement],
+    sensor: "SpeedSignal",
+    moved: "ExcitationSignal",
+    response: FrequencyResponse,
 ) -> tuple[Reason, ...]:
-    """Return what the sines say against clocks and set point."""
-    channels = {"the set point": places[0], f"the speed {sensor.name}": places[1], "the shaft torque": places[2]}
-    return (*clock_reasons(cuts, lines, channels=channels), *shape_reasons(lines))
+    """Return what the sines say against clocks, set point and latencies."""
+    channels = {f"the {moved.words}": moved.name, f"the speed {sensor.name}": sensor.name, "the shaft torque": "M_s"}
+    shifted = shift_reasons(response) if moved.from_engine else ()
+    return (*clock_reasons(cuts, lines, channels=channels), *shape_reasons(lines), *shifted)
+
+
+def _excitation(signals: "Signals", name: str) -> "ExcitationSignal":
+    if name not in signals.excitations:
+        raise ResponseError(
+            f"excitation {name}: expected one of {', '.join(signals.excitations)}, found no such channel in the "
+            "signals; name its sensor in the vessel file."
+        )
+    return signals.excitations[name]
+
+
+def _channels_on_grid(signals: "Signals", moved: "ExcitationSignal") -> tuple[str, ...]:
+    """Return the channels that a window is cut out of: what was moved, and what answers on the grid."""
+    apart = {*signals.excitations, *signals.messages} - {moved.name}
+    return tuple(name for name in signals.channels if name not in apart)
 
 
 def _speed_signal(signals: "Signals", speed: str | None) -> "SpeedSignal":
@@ -174,9 +194,8 @@ def _cut_windows(
     signals: "Signals", campaign: "Campaign", names: Sequence[str]
 ) -> tuple[list[WindowSamples], dict[str, str]]:
     """Cut every line out of the normalised channels; say which lines the recording does not hold."""
-    rows = [signals.channels[name] for name in names]
-    channels = tuple(row.values for row in rows)
-    scale = np.array([[1.0 / row.reference] for row in rows])
+    channels = {name: signals.channels[name].values for name in names}
+    scale = np.array([[1.0 / signals.channels[name].reference] for name in names])
     cuts, left_out = [], {}
     for window in plan_windows(campaign):
         if window.frequency_hz > _HIGHEST_SHARE_OF_RATE * signals.rate_hz:
@@ -207,42 +226,46 @@ def _cut_windows(
     return cuts, left_out
 
 
-def _measure(signals: "Signals", cut: WindowSamples, names: Sequence[str], method: SineMethod) -> LineMeasurement:
+def _measure(signals: "Signals", cut: WindowSamples, moved: "ExcitationSignal", method: SineMethod) -> LineMeasurement:
     window = cut.window
     finite = np.isfinite(cut.values)
     if not finite.all():
         channel, place = np.argwhere(~finite)[0]
         raise ResponseError(
-            f"{window.line}: expected numbers in {names[channel]}, found one that is not finite at "
+            f"{window.line}: expected numbers in {cut.channels[channel]}, found one that is not finite at "
             f"{window.start_s + cut.time_s[place]:.3f} s: repair the signal before."
         )
-    still = np.ptp(cut.values[1:], axis=1) == 0.0
-    if still.any():
-        raise ResponseError(
-            f"{window.line}: expected {names[1 + int(np.argmax(still))]} to move, found a constant "
-            f"between {window.start_s:g} and {window.stop_s:g} s: the sensor or its channel is dead."
-        )
-    rack = signals.channels.get("X")
-    return measure_line(cut, method, cut_rack(rack, window) if isinstance(rack, MessageSignal) else None)
+    for name in cut.channels:
+        if name != moved.name and np.ptp(cut.of(name)) == 0.0:
+            raise ResponseError(
+                f"{window.line}: expected {name} to move, found a constant between {window.start_s:g} and "
+                f"{window.stop_s:g} s: the sensor or its channel is dead."
+            )
+    return measure_line(
+        cut,
+        method,
+        excitation=moved.name,
+        speed=signals.engine_speed.name,
+        from_engine=moved.from_engine,
+        messages={name: cut_messages(signal, window) for name, signal in signals.messages.items()},
+    )
 
 
-def _expected_amplitude(signals: "Signals", campaign: "Campaign", line: LineMeasurement) -> float:
-    """Amplitude that the campaign asks of the set point, over the working point."""
+def _expected_amplitude(moved: "ExcitationSignal", campaign: "Campaign", line: LineMeasurement) -> float:
+    """Amplitude that the campaign asks for, over the working point."""
     amplitude_v = next(sine.amplitude_v for sine in campaign.sines if sine.name == line.window.line)
-    return amplitude_v * abs(signals.calibration.slope_rev_s_per_v) / signals.working_point.engine_speed_rev_s
+    return amplitude_v * abs(moved.per_volt) / moved.reference
 
 
 def _without_silent(
-    signals: "Signals", campaign: "Campaign", measurements: Sequence[LineMeasurement]
+    moved: "ExcitationSignal", campaign: "Campaign", measurements: Sequence[LineMeasurement]
 ) -> tuple[list[LineMeasurement], dict[str, str]]:
-    """Leave out lines whose set point does not move: they have no response, not even a bad one."""
+    """Leave out lines whose excitation does not move: they have no response, not even a bad one."""
     heard, silent = [], {}
-    rpm = rpm_from_rev_s(signals.working_point.engine_speed_rev_s)
     for line in measurements:
-        expected = _expected_amplitude(signals, campaign, line)
-        found = float(np.abs(line.amplitude[0]))
-        if found < _SILENT_SHARE * expected:
-            silent[line.window.line] = f"left out: {amplitude_remark(found, expected, rpm)}"
+        expected = _expected_amplitude(moved, campaign, line)
+        if line.excited < _SILENT_SHARE * expected:
+            silent[line.window.line] = f"left out: {amplitude_remark(line.excited, expected, moved)}"
         else:
             heard.append(line)
     return heard, silent
@@ -253,32 +276,28 @@ def _judge(
     campaign: "Campaign",
     measurements: Sequence[LineMeasurement],
     sensor: "SpeedSignal",
+    moved: "ExcitationSignal",
     local_db: "FloatArray",
 ) -> tuple[dict[str, str], "BoolArray"]:
-    """Collect remarks on each line and say which lines have a clean set point and a speed without aliasing."""
+    """Collect remarks on each line and say which lines have a clean excitation and a speed without aliasing."""
     remarks = {}
     usable = np.ones(len(measurements), dtype=bool)
     for place, line in enumerate(measurements):
-        name = line.window.line
-        finding = check_set_point(
-            line,
-            expected=_expected_amplitude(signals, campaign, line),
-            local_db=local_db,
-            place=place,
-            rpm=rpm_from_rev_s(signals.working_point.engine_speed_rev_s),
-        )
-        found = list(finding.remarks)
-        aliased = line.window.frequency_hz > sensor.nyquist_hz
+        frequency = line.window.frequency_hz
+        expected = _expected_amplitude(moved, campaign, line)
+        finding = check_set_point(line, expected=expected, local_db=local_db, place=place, moved=moved)
+        lines = list(finding.remarks)
+        aliased = frequency > sensor.nyquist_hz
         if aliased:
-            found.append(f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased")
-        if line.rack_remark:
-            found.append(line.rack_remark)
-        if "v_s" in signals.channels and not line.window.frequency_hz <= signals.channels["v_s"].highest_hz:
-            cycle = signals.channels["v_s"].cycle_s
-            found.append(
-                f"v_s is not measured: a value every {cycle:g} s is too seldom for {line.window.frequency_hz:g} Hz"
-            )
-        if found:
-            remarks[name] = "; ".join(found)
+            lines.append(f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased")
+        lines += line.message_remarks.values()
+        lines += [
+            f"{name} is not measured: a value every {signals.channels[name].cycle_s:g} s is too seldom for "
+            f"{frequency:g} Hz"
+            for name in line.channels
+            if signals.channels[name].is_side and frequency > signals.channels[name].highest_hz
+        ]
+        if lines:
+            remarks[line.window.line] = "; ".join(lines)
         usable[place] = finding.usable and not aliased
     return remarks, usable

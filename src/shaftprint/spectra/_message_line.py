@@ -1,4 +1,4 @@
-"""What the fuel rack shows of a line, measured at the times of its own messages.
+"""What a channel on a clock of its own, such as the fuel rack, shows of a line: at the times of its own messages.
 
 A sine fitted to samples at their own times needs neither a grid nor a hold; where a logger has held the messages, what
 holding does to a sine is divided out. Noise is seen at the same frequencies as that of the other channels, with phases
@@ -28,8 +28,8 @@ _PHASES = 1000
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class RackWindow:
-    """The rack inside one window, or why it cannot be measured there."""
+class MessageWindow:
+    """Messages inside one window, or why they cannot be measured there."""
 
     samples: WindowSamples | None
     """Values over the working point, one channel; nothing where the line cannot be measured."""
@@ -37,30 +37,30 @@ class RackWindow:
     """What averaging and holding make of a sine of amplitude 1."""
     step: float
     """Step of the channel over the working point."""
-    messages: float
+    count: float
     """Number of messages in the window."""
     remark: str
     """Why the line cannot be measured; empty where it can."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class RackLine:
-    """What the rack tells of one line, over its working point."""
+class MessageLine:
+    """What the messages tell of one line, over their working point."""
 
     amplitude: complex
     """Complex amplitude of the line."""
     covariance: ComplexArray
-    """``E[a_X a^H]`` of its noise with that of every other channel and, last, with itself, shape (channels + 1,)."""
+    """``E[a_m a^H]`` of its noise with that of every other channel and, last, with itself, shape (channels + 1,)."""
     variances: LineVariances
     """Variances for the signal-to-noise ratio, of the one channel."""
 
 
-def cut_rack(rack: "MessageSignal", window: "Window") -> RackWindow:
-    """Cut a window out of the fuel rack.
+def cut_messages(signal: "MessageSignal", window: "Window") -> MessageWindow:
+    """Cut a window out of a channel on a clock of its own.
 
     Parameters
     ----------
-    rack
+    signal
         The signal.
     window
         The window.
@@ -71,39 +71,44 @@ def cut_rack(rack: "MessageSignal", window: "Window") -> RackWindow:
     the channel does not cover the window and where it stands still.
     """
     frequency = window.frequency_hz
-    result = RackWindow(
+    result = MessageWindow(
         samples=None,
-        gain=rack.gain(frequency),
-        step=rack.resolution / rack.reference,
-        messages=window.duration_s / rack.cycle_s,
+        gain=signal.gain(frequency),
+        step=signal.resolution / signal.reference,
+        count=window.duration_s / signal.cycle_s,
         remark="",
     )
-    highest = rack.highest_hz
+    highest = signal.highest_hz
     if frequency > highest:
         return replace(
-            result, remark=f"X is not measured: {frequency:g} Hz is above {highest:g} Hz, what messages show"
+            result,
+            remark=f"{signal.name} is not measured: {frequency:g} Hz is above {highest:g} Hz, what messages show",
         )
-    missing = rack.coverage.missing(window.start_s, window.stop_s)
+    missing = signal.coverage.missing(window.start_s, window.stop_s)
     if missing:
-        return replace(result, remark=f"X is not measured: {missing}")
-    cut = cut_window(window, (rack.values / rack.reference,), rate_hz=rack.rate_hz, start_s=rack.start_s)
+        return replace(result, remark=f"{signal.name} is not measured: {missing}")
+    cut = cut_window(
+        window, {signal.name: signal.values / signal.reference}, rate_hz=signal.rate_hz, start_s=signal.start_s
+    )
     if cut is None:
-        span = f"{rack.start_s:.1f} to {rack.stop_s:.1f} s"
-        return replace(result, remark=f"X is not measured: the window is not inside {span}, when it was logged")
+        span = f"{signal.start_s:.1f} to {signal.stop_s:.1f} s"
+        return replace(
+            result, remark=f"{signal.name} is not measured: the window is not inside {span}, when it was logged"
+        )
     if np.ptp(cut.values) == 0.0:
-        return replace(result, remark="X is not measured: it moves by less than the step of its channel")
+        return replace(result, remark=f"{signal.name} is not measured: it moves by less than the step of its channel")
     return replace(result, samples=cut)
 
 
-def measure_rack(
-    rack: RackWindow, samples: WindowSamples, method: SineMethod, spectrum: ComplexArray, relation: ShaftRelation
-) -> RackLine | None:
-    """Measure one line in the fuel rack, with its noise and that of the other channels.
+def measure_messages(
+    messages: MessageWindow, samples: WindowSamples, method: SineMethod, spectrum: ComplexArray, relation: ShaftRelation
+) -> MessageLine | None:
+    """Measure one line in the messages, with their noise and that of the other channels.
 
     Parameters
     ----------
-    rack
-        The rack inside the window.
+    messages
+        The messages inside the window.
     samples
         The other channels inside the window.
     method
@@ -117,24 +122,24 @@ def measure_rack(
     -------
     Amplitude and noise; nothing where the line cannot be measured.
     """
-    if rack.samples is None:
+    if messages.samples is None:
         return None
-    fit = method.fit(rack.samples)
+    fit = method.fit(messages.samples)
     own = _residual_at_bins(fit, samples, spectrum.shape[1])
     together = np.concatenate([spectrum, own])
-    cleaned = without_modulation(together, samples.values[-1], relation, periods=samples.window.periods)
-    # a torque without noise has no slow changes to look for in the rack: what was found then is rounding, enlarged
+    cleaned = without_modulation(together, samples.of("M_s"), relation, periods=samples.window.periods)
+    # a torque without noise has no slow changes to look for in them: what was found then is rounding, enlarged
     if np.vdot(cleaned[-1], cleaned[-1]).real > _ENLARGED * np.vdot(own, own).real:
         cleaned = together
     noise = line_noise(cleaned, periods=samples.window.periods, relation=relation)
-    amplitude = complex(fit.amplitude[0, 0] / rack.gain)
-    covariance = noise.covariance[-1] / rack.gain
-    seen = float(noise.covariance[-1, -1].real) / abs(rack.gain) ** 2
-    covariance[-1] = _with_steps(seen, rack, fit, abs(amplitude))
-    return RackLine(
+    amplitude = complex(fit.amplitude[0, 0] / messages.gain)
+    covariance = noise.covariance[-1] / messages.gain
+    seen = float(noise.covariance[-1, -1].real) / abs(messages.gain) ** 2
+    covariance[-1] = _with_steps(seen, messages, fit, abs(amplitude))
+    return MessageLine(
         amplitude=amplitude,
         covariance=covariance,
-        variances=line_variances(fit.amplitude[0], rack.samples.values, own, periods=samples.window.periods),
+        variances=line_variances(fit.amplitude[0], messages.samples.values, own, periods=samples.window.periods),
     )
 
 
@@ -155,10 +160,10 @@ def _residual_at_bins(fit: LineFit, samples: WindowSamples, bins: int) -> Comple
     return spectrum
 
 
-def _with_steps(variance: float, rack: RackWindow, fit: LineFit, amplitude: float) -> float:
+def _with_steps(variance: float, messages: MessageWindow, fit: LineFit, amplitude: float) -> float:
     """Return the noise variance ``E|a|^2`` of the line with all that the steps of the channel add.
 
-    Where noise moves the rack from step to step, steps ``q`` are white noise of variance ``q^2 / 12``, seen beside the
+    Where noise moves the value from step to step, steps ``q`` are white noise of variance ``q^2 / 12``, seen beside the
     line like any other. Where it does not, they distort the sine itself, which nothing beside the line shows: of a sine
     of amplitude ``A`` in normal noise of deviation ``s`` the amplitude then errs by
 
@@ -168,7 +173,7 @@ def _with_steps(variance: float, rack: RackWindow, fit: LineFit, amplitude: floa
     ``1 / (pi x)``: at ten steps and no noise half a per cent of the sine. Messages that meet the same few phases in
     every period add the error of so few samples.
     """
-    step = rack.step
+    step = messages.step
     white = step**2 / 3.0
     noise = max(float(fit.residual.var()) - step**2 / 12.0, 0.0)
     order = np.arange(1.0, 6.0)
@@ -176,4 +181,4 @@ def _with_steps(variance: float, rack: RackWindow, fit: LineFit, amplitude: floa
     distortion = 2.0 * step**3 / (np.pi**4 * max(amplitude, 0.25 * step)) * float((left / order**3).sum())
     turns = fit.samples.time_s * fit.samples.window.frequency_hz
     phases = np.unique(np.round(turns * _PHASES) % _PHASES).size
-    return max(variance, white / rack.messages) + distortion + float(left[0]) * white / phases
+    return max(variance, white / messages.count) + distortion + float(left[0]) * white / phases
