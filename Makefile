@@ -9,9 +9,7 @@ PYTHONS := python3.13 python3.12 python3.11 python3.14 python3 python
 PYTHON ?= $(shell for p in $(PYTHONS); do \
 	$$p -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 # the rooms that calculate: 95 % of their branches together must be tested
-ROOMS := signals spectra models identify
-comma := ,
-space := $(subst ,, )
+ROOMS := signals spectra models catalogue simulation identify
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test test-all lint docs bench wheel lock clean
@@ -26,9 +24,8 @@ demo: $(VENV)/run ## Sail the simulated tug and identify it; results in demo/
 test test-all: export OPENBLAS_NUM_THREADS ?= 1
 test: $(VENV)/test ## Run the tests that a change needs, with the coverage of the calculating rooms
 	$(BIN)/python -m pytest -n auto --dist loadfile -m "not slow and not wrong_recordings" \
-		--cov=shaftprint --cov-branch --cov-report=
-	$(BIN)/python -m coverage report --include '$(subst $(space),$(comma),$(ROOMS:%=src/shaftprint/%/*))' \
-		--skip-covered --fail-under 95
+		$(ROOMS:%=--cov=shaftprint.%) --cov-branch --cov-report=
+	$(BIN)/python -m coverage report --skip-covered --fail-under 95
 
 test-all: test ## Run the slow tests and every wrong recording too
 	$(BIN)/python -m pytest -n auto --dist loadfile -m slow

@@ -166,6 +166,7 @@ def test_from_repeats_it_is_the_same_where_all_is_nearly_linear(make_response):
     np.testing.assert_allclose(redrawn.upper - redrawn.lower, stepped.upper - stepped.lower, rtol=0.25)
 
 
+@pytest.mark.slow
 def test_bands_hold_the_truth_in_95_of_100_tests(make_response, truths):
     """300 tests of CL4, noise of 2 %: a coverage is known to 1.3 percent then, the mean of all to less."""
     model = structure("CL4")

@@ -116,6 +116,7 @@ def test_intervals_cover_the_truth_in_95_of_100_tests(make_response, name):
         assert 0.935 < covered < 0.965, parameter.name
 
 
+@pytest.mark.slow
 def test_stated_deviations_cover_the_truth_too(make_response):
     """12 degrees of freedom for every line: each test states its own deviations, from its own estimates."""
     truth, _ = CASES["CL4"]

@@ -70,6 +70,7 @@ def peaked(upper=1.0):
 GOVERNOR = {"K_p": 3.0, "K_i": 4.3}
 
 
+@pytest.mark.slow
 def test_where_a_parameter_means_nothing_they_come_from_draws_and_are_uniform(make_response):
     """The lag's time means nothing without its gain: chi-square with one or two freedoms would both be wrong."""
     p = []

@@ -7,6 +7,9 @@ from iminuit import Minuit
 from shaftprint.catalogue import structure
 from shaftprint.identify import Prior, Settings, identify, profile_intervals
 
+pytestmark = pytest.mark.slow
+
+
 BENCHMARK = {"tau_n": 0.4, "K_p": 4.0, "K_i": 5.0, "g": -0.5, "v": 1.0}
 GAUGE = {"tau_dn": 0.32, "tau_up": 1.016, "k_q": 2.0, "g": 0.0, "v": 1.0, "K_p": 5.7, "K_i": 4.27, "t_d": 0.07}
 GAUGE |= {"t_sp": 0.05, "omega_n": 10.3, "zeta": 0.47, "c_set": 1.0, "t_gauge": 0.0}

@@ -11,6 +11,9 @@ from shaftprint.identify import Prior, Settings, identify, profile_intervals
 from shaftprint.identify.search import Draw
 from shaftprint.spectra import FrequencyResponse
 
+pytestmark = pytest.mark.slow
+
+
 TESTS = 200
 FREQUENCY_HZ = np.geomspace(0.0044, 3.4, 13)
 # Complex samples that a recording has behind the noise of a line.

@@ -108,6 +108,7 @@ def test_an_unweighted_fit_has_none(make_response):
         profile_intervals(found)
 
 
+@pytest.mark.slow
 def test_cover_the_truth_in_95_of_100_tests_although_the_cost_is_no_parabola(make_response, truths):
     """CL4 from thirteen noisy lines: lag and delay trade along a curved valley."""
     tests = 100

@@ -250,7 +250,13 @@ def test_responses_equal_the_printed_equations(name):
             np.testing.assert_allclose(shipped.response(values, 1j * OMEGA), expected, rtol=1e-12, atol=0.0)
 
 
-@pytest.mark.parametrize("name", FORMS)
+# of many parameters, each with derivatives of 50 digits
+LONG = ("FREE-PITCH", "FREE-LOG", "FREE-CLOSED", "GAUGE-ECU", "GAUGE-INFLOW")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow) if name in LONG else name for name in FORMS]
+)
 def test_gradients_of_all_parameters_equal_50_digit_arithmetic(name):
     """Held parameters too; 1e-9 of each complex derivative by itself, at every frequency."""
     shipped = structure(name)

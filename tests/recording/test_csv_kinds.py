@@ -105,6 +105,7 @@ def test_text_that_cannot_be_used_is_explained(tmp_path, content, expected):
         read_recording(path)
 
 
+@pytest.mark.slow
 def test_many_blocks_of_dates(tmp_path):
     path = tmp_path / "log.csv"
     first = np.datetime64("2026-03-04T23:00:00")

@@ -93,6 +93,7 @@ def _read_mutated(name, inputs, folder):
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FORMATS)
 def test_mutated_files_end_in_channels_or_in_one_sentence(tmp_path, name):
     # Dewesoft's library runs in a process of its own, which takes half a second
