@@ -46,6 +46,38 @@ LOOP = """
         return replace(loop.tied("tau_n", lambda log_tau: np.exp(log_tau), log_tau), name="MY/LOOP", title="own")
 """
 
+LINE = """
+    from shaftprint.catalogue import ShipRole
+    from shaftprint.models import (
+        Delay, Gain, PIGovernor, Parameter, SecondOrderLag, Sensitivity, Shaft, SpeedSensor, Structure, TorqueBalance
+    )
+
+    J_AFT = Parameter("J_aft", "s", 0.0, 2.0, 0.3, "inertia time aft of the gauge", role=ShipRole.INERTIA_DOWNSTREAM)
+    J_FORE = Parameter("J_fore", "s", 0.0, 5.0, 1.0, "inertia time before the gauge", role=ShipRole.INERTIA_UPSTREAM)
+    LOAD = Parameter("load", "-", 1.0, 3.0, 2.0, "slope of the load", role=ShipRole.LOAD_SLOPE)
+    ENGINE = Parameter("slope", "-", -3.0, 0.9, 0.0, "slope of the engine", role=ShipRole.ENGINE_SPEED_SLOPE)
+    FUEL = Parameter("fuel", "-", 0.0, 5.0, 1.0, "torque for fuel", held=True, role=ShipRole.ENGINE_RACK_SLOPE)
+    GAIN = Parameter("P", "-", 0.0, 20.0, 5.0, "gain", role=ShipRole.PROPORTIONAL_GAIN)
+    RESET = Parameter("I", "1/s", 0.0, 20.0, 4.0, "integral gain", role=ShipRole.INTEGRAL_GAIN)
+    DELAY = Parameter("dead", "s", 0.0, 0.5, 0.1, "delay in the loop", role=ShipRole.LOOP_DELAY)
+    LATE = Parameter("late", "s", 0.0, 0.5, 0.05, "latency of the set point", role=ShipRole.SET_POINT_LATENCY)
+    FREQUENCY = Parameter("w", "rad/s", 3.0, 60.0, 10.0, "actuator", role=ShipRole.ACTUATOR_FREQUENCY)
+    DAMPING = Parameter("d", "-", 0.1, 4.0, 0.5, "actuator", role=ShipRole.ACTUATOR_DAMPING)
+    MEAN = Parameter("mean", "s", 0.0, 1.0, 0.0, "mean of the pick-up", held=True, role=ShipRole.PICK_UP_AVERAGE)
+    HOLD = Parameter("hold", "s", 0.0, 1.0, 0.0, "hold of the pick-up", held=True, role=ShipRole.PICK_UP_HOLD)
+    PICK_UP = Parameter("behind", "s", 0.0, 1.0, 0.0, "delay of the pick-up", held=True, role=ShipRole.PICK_UP_DELAY)
+
+    loop = PIGovernor(GAIN, RESET) * Gain(FUEL) * Delay(DELAY) * SecondOrderLag(FREQUENCY, DAMPING)
+    loop = loop * Shaft((J_AFT, J_FORE), LOAD, ENGINE)
+    speed = loop * Sensitivity(loop) * Delay(LATE)
+    line = Structure(
+        name="MY-LINE",
+        title="the line in names of my own",
+        input="n_set",
+        outputs={"n": speed * SpeedSensor(MEAN, HOLD, PICK_UP), "M_s": speed * TorqueBalance(J_AFT, LOAD)},
+    )
+"""
+
 
 @pytest.fixture
 def written(tmp_path, monkeypatch):
@@ -305,3 +337,31 @@ def test_a_fault_while_a_file_runs_leaves_the_path_as_it_was(written):
     with pytest.raises(StructureError):
         chosen_structures(["my_ship.py:x"])
     assert list(sys.path) == before[0]
+
+
+def test_a_structure_in_names_of_ones_own_is_known_by_its_roles(run, recording, written, tmp_path):
+    """``J_aft`` in seconds gets kg m2, the vessel file's value, a budget and its place in a comparison."""
+    written(LINE)
+    for name in ("first", "second"):
+        result = run("identify", recording, *GIVEN, "--structure", "my_ship.py:line", "-o", tmp_path / name)
+        assert result.exit_code == 0, result.stderr
+    found = read_fingerprint(tmp_path / "first" / "fingerprint.json")
+    inertia, action = found.quantity("I_dn"), found.quantity("governor proportional action")
+    # the truth of the simulated tug, and the torsional vibration calculation of its vessel file
+    assert abs(inertia.value - 17.0) < 3.0 * inertia.std < 1.5
+    assert inertia.expected == pytest.approx(17.0, rel=1e-3)
+    assert action.unit == "N m/rpm"
+    assert action.value / found.quantity("P").value == pytest.approx(
+        found.conditions.shaft_torque.value / found.conditions.engine_speed.value
+    )
+    # of the inertia upstream the vessel file knows as much as of tau_up, and it stands for the delay of the pick-up
+    assert set(found.priors) == {"J_fore", "slope"}
+    assert "TVC" in found.priors["J_fore"].sources
+    assert found.held["behind"] > 0.0
+    budget = {row.name: row.variances for row in found.budget.rows}
+    assert "TVC" in budget["P"]
+    assert {"gauge scale"} <= set(budget["I_dn"])
+    compared = run("compare", tmp_path / "first", tmp_path / "second")
+    assert compared.exit_code == 0, compared.stderr
+    assert "I_dn" in compared.stdout
+    assert "see I_dn" in compared.stdout

@@ -84,3 +84,14 @@ def test_a_measured_latency_of_the_set_point_is_known():
     assert known["t_sp"] == Prior(mean=0.05, std=0.005, sources={"set-point latency": 0.005})
     measured.sensors.set_point = SimpleNamespace(latency_s=0.05, latency_std_s=None)
     assert "t_sp" not in priors_from_vessel(structure("GAUGE-CLOSED"), measured, WORKING_POINT)
+
+
+def test_inertia_downstream_is_known_beforehand_where_no_torque_shows_it():
+    """17 kg m2 +/- 3 % of the vessel file, 2 pi 17 n_s0 / M_s0; with the torque it is what the test measures."""
+    ship, both = load_vessel("stan-tug-1205"), structure("GAUGE-CLOSED")
+    speed_only = both.of_outputs("n")
+    assert "tau_dn" not in priors_from_vessel(both, ship, WORKING_POINT)
+    known = priors_from_vessel(speed_only, ship, WORKING_POINT)["tau_dn"]
+    factor = ship.inertia_downstream_kg_m2 / ship.inertia_upstream_kg_m2
+    assert known.mean == pytest.approx(factor * priors_from_vessel(both, ship, WORKING_POINT)["tau_up"].mean)
+    assert set(known.sources) == {"TVC", "gauge scale"}

@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from shaftprint.catalogue import structure
+from shaftprint.catalogue import structure, thesis_families
 from shaftprint.errors import StructureError
 from shaftprint.models import loop_gain
-from shaftprint.report import Curve, plot_correlation, plot_nyquist, plot_residuals, plot_sensitivity, thesis_families
+from shaftprint.report import Curve, plot_correlation, plot_nyquist, plot_residuals, plot_sensitivity
 from shaftprint.report.figures import line_chi_square, normalised_residuals, parameter_steps
 
 

@@ -3,33 +3,42 @@
 The language in which they are written, blocks and structures, is ``models``; symbols and signs are explained there.
 """
 
+from shaftprint.catalogue._gauge import gauge_governor, gauge_line
 from shaftprint.catalogue._known_propeller import KnownPropeller, with_known_propeller
 from shaftprint.catalogue._limited import limited
-from shaftprint.catalogue._limited_governor import AHEAD_S, limited_governor
+from shaftprint.catalogue._limited_governor import AHEAD_S, Symbol, limited_governor
 from shaftprint.catalogue._roles import ROLES, ShipRole
 from shaftprint.catalogue._sailing_at_large import pitch_actuator, sailing_at_large
 from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
 from shaftprint.catalogue._shipped import expect_roles, shipped_structure
 from shaftprint.catalogue._thesis import STRUCTURES, structure
+from shaftprint.catalogue._thesis_figures import Family, thesis_families
+from shaftprint.catalogue._thesis_values import THESIS_VALUES
 from shaftprint.catalogue._two_masses import two_mass_line
 
 __all__ = [
     "AHEAD_S",
     "ROLES",
     "STRUCTURES",
+    "THESIS_VALUES",
+    "Family",
     "KnownPropeller",
     "PitchSpeed",
     "SailingShaft",
     "SailingTorque",
     "ShipRole",
     "ShipSpeed",
+    "Symbol",
     "expect_roles",
+    "gauge_governor",
+    "gauge_line",
     "limited",
     "limited_governor",
     "pitch_actuator",
     "sailing_at_large",
     "shipped_structure",
     "structure",
+    "thesis_families",
     "two_mass_line",
     "with_known_propeller",
 ]

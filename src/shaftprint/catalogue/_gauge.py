@@ -207,6 +207,35 @@ def engine() -> Structure:
     )
 
 
+def gauge_governor() -> Structure:
+    """Return governor and engine of the gauge-aware closed loop, ``M_b / e = v C exp(-s t_d) F`` without inertia."""
+    return Structure(
+        name="GAUGE-GOVERNOR",
+        title="governor and engine of the gauge-aware closed loop",
+        input="e",
+        outputs={"M_b": _governor_and_engine(V_ONE)},
+    )
+
+
+def gauge_line() -> Structure:
+    """Return what the inertia upstream makes of the engine's torque at the gauge, ``M_s / M_b``.
+
+    ``M_s / M_b = (tau_dn s + k_q) / ((tau_up + tau_dn) s + k_q - g)``.
+    """
+    return Structure(
+        name="GAUGE-LINE",
+        title="line of the gauge-aware closed loop",
+        input="M_b",
+        outputs={"M_s": _rigid_shaft() * _rigid_load()},
+    )
+
+
+def _governor_and_engine(v: Parameter) -> Expression:
+    """Return ``M_b / e`` without the slope of the engine torque with speed."""
+    rack = PIGovernor(GAUGE_K_P, GAUGE_K_I)
+    return rack * Gain(v) * Delay(T_D) * SecondOrderLag(GAUGE_OMEGA_N, GAUGE_ZETA)
+
+
 def _rigid_shaft() -> Expression:
     """Return ``n / M_b`` of one rigid body."""
     return Shaft((TAU_DN, TAU_UP), K_Q, G)

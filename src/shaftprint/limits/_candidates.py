@@ -7,6 +7,7 @@ from enum import Enum
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.catalogue import Symbol
 
 
 class Kind(Enum):
@@ -33,14 +34,14 @@ STRUCTURE_LIMITS: Mapping[Kind, tuple[str, ...]] = {
 
 # Values with which a limit does nothing. None of them is a round zero, for that would be another simulation.
 IDLE: Mapping[str, float] = {
-    "m_max": 60.0,
-    "m_min": -60.0,
-    "T_aw": 0.5,
-    "r_x": 1e5,
-    "d_e": 1e-12,
-    "a_0": 1.0,
-    "tau_tc": 1.0,
-    "r_s": 1e5,
+    Symbol.TORQUE_LIMIT: 60.0,
+    Symbol.MOTORING_LIMIT: -60.0,
+    Symbol.ANTI_WINDUP: 0.5,
+    Symbol.RACK_RATE: 1e5,
+    Symbol.DEADBAND: 1e-12,
+    Symbol.UNBOOSTED_TORQUE: 1.0,
+    Symbol.TURBOCHARGER_LAG: 1.0,
+    Symbol.SET_POINT_RATE: 1e5,
 }
 
 
@@ -62,14 +63,24 @@ class LimitCandidate:
 
 CANDIDATES: tuple[LimitCandidate, ...] = (
     LimitCandidate(
-        kind=Kind.TORQUE, level="m_max", companions=("T_aw",), shares=(0.4, 0.5, 0.6, 0.7, 0.8, 0.87, 0.93, 0.97)
+        kind=Kind.TORQUE,
+        level=Symbol.TORQUE_LIMIT,
+        companions=(Symbol.ANTI_WINDUP,),
+        shares=(0.4, 0.5, 0.6, 0.7, 0.8, 0.87, 0.93, 0.97),
     ),
-    LimitCandidate(kind=Kind.MOTORING, level="m_min", companions=("T_aw",), shares=(0.05, 0.3, 0.6, 0.85)),
-    LimitCandidate(kind=Kind.RATE, level="r_x", levels=tuple(np.geomspace(0.5, 30.0, 9).tolist())),
-    LimitCandidate(kind=Kind.RAMP, level="r_s", levels=tuple(np.geomspace(0.01, 4.0, 12).tolist())),
-    LimitCandidate(kind=Kind.DEADBAND, level="d_e", levels=(0.016, 0.011, 0.0075, 0.005, 0.0033, 0.0022, 0.0015)),
     LimitCandidate(
-        kind=Kind.SMOKE, level="a_0", companions=("tau_tc", "T_aw"), levels=(0.3, 0.42, 0.55, 0.7, 0.85, 0.95)
+        kind=Kind.MOTORING, level=Symbol.MOTORING_LIMIT, companions=(Symbol.ANTI_WINDUP,), shares=(0.05, 0.3, 0.6, 0.85)
+    ),
+    LimitCandidate(kind=Kind.RATE, level=Symbol.RACK_RATE, levels=tuple(np.geomspace(0.5, 30.0, 9).tolist())),
+    LimitCandidate(kind=Kind.RAMP, level=Symbol.SET_POINT_RATE, levels=tuple(np.geomspace(0.01, 4.0, 12).tolist())),
+    LimitCandidate(
+        kind=Kind.DEADBAND, level=Symbol.DEADBAND, levels=(0.016, 0.011, 0.0075, 0.005, 0.0033, 0.0022, 0.0015)
+    ),
+    LimitCandidate(
+        kind=Kind.SMOKE,
+        level=Symbol.UNBOOSTED_TORQUE,
+        companions=(Symbol.TURBOCHARGER_LAG, Symbol.ANTI_WINDUP),
+        levels=(0.3, 0.42, 0.55, 0.7, 0.85, 0.95),
     ),
 )
 """In the order in which they are tried."""
@@ -97,13 +108,17 @@ def starts_of(
             # below the torque of steady running there is no line that could be tested
             highest = float(np.max(torque))
             tried = [max(share * highest, 1.02) for share in candidate.shares]
-            return [{"m_max": level} for level in dict.fromkeys(tried)]
+            return [{Symbol.TORQUE_LIMIT: level} for level in dict.fromkeys(tried)]
         case Kind.MOTORING:
             lowest = float(np.min(torque))
-            return [{"m_min": share * lowest} for share in candidate.shares] if lowest < -0.05 else []
+            return [{Symbol.MOTORING_LIMIT: share * lowest} for share in candidate.shares] if lowest < -0.05 else []
         case Kind.SMOKE:
-            limit = values["m_max"] if values["m_max"] < IDLE["m_max"] else full
-            return [{"a_0": a, "tau_tc": lag, "m_max": limit} for a in candidate.levels for lag in LAGS_S]
+            limit = values[Symbol.TORQUE_LIMIT] if values[Symbol.TORQUE_LIMIT] < IDLE[Symbol.TORQUE_LIMIT] else full
+            return [
+                {Symbol.UNBOOSTED_TORQUE: a, Symbol.TURBOCHARGER_LAG: lag, Symbol.TORQUE_LIMIT: limit}
+                for a in candidate.levels
+                for lag in LAGS_S
+            ]
         case _:
             return [{candidate.level: level} for level in candidate.levels]
 

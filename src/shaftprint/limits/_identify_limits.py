@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from shaftprint.campaign import Campaign
-from shaftprint.catalogue import limited_governor
+from shaftprint.catalogue import Symbol, limited_governor
 from shaftprint.identify import Prior
 from shaftprint.limits._candidates import CANDIDATES, Kind
 from shaftprint.limits._limit_fit import LimitFit
@@ -67,8 +67,8 @@ def identify_limits(
     units = Units.of(signals, vessel)
     whole = whole_governor()
     priors = {
-        "c_set": Prior(1.0, max(signals.dc_scale_std / signals.dc_scale, 1e-4)),
-        "e_set": Prior(0.0, _offset_std(signals)),
+        Symbol.SET_POINT_SCALE: Prior(1.0, max(signals.dc_scale_std / signals.dc_scale, 1e-4)),
+        Symbol.SET_POINT_OFFSET: Prior(0.0, _offset_std(signals)),
     }
     say("Looking for limits")
     search = Search.of(whole, test, campaign, drive_hz=COARSE_HZ, full=units.full, priors=priors)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from shaftprint.catalogue import Symbol
 from shaftprint.distributions import NORMAL_95
 from shaftprint.limits._candidates import CANDIDATES, Kind, LimitCandidate
 from shaftprint.limits._limit_fit import LimitEstimate
@@ -73,7 +74,7 @@ class Units:
         """Return the ways in which a parameter is printed, the clearest first."""
         gauge, brake, rpm = self.gauge_std, self.brake_nm, self.speed_rpm
         match name:
-            case "m_max":
+            case Symbol.TORQUE_LIMIT:
                 return (
                     Scale(
                         name="share",
@@ -82,7 +83,7 @@ class Units:
                         factor=1.0 / self.full,
                         share_std=gauge,
                     ),
-                    Scale(name="m_max", unit="-", meaning="the same over the brake torque of the working point"),
+                    Scale(name=name, unit="-", meaning="the same over the brake torque of the working point"),
                     Scale(
                         name="M_max",
                         unit="N m",
@@ -91,19 +92,19 @@ class Units:
                         share_std=gauge,
                     ),
                 )
-            case "m_min":
+            case Symbol.MOTORING_LIMIT:
                 return (
-                    Scale(name="m_min", unit="-", meaning="lowest brake torque over that of the working point"),
+                    Scale(name=name, unit="-", meaning="lowest brake torque over that of the working point"),
                     Scale(
                         name="M_min", unit="N m", meaning="torque of the motored engine", factor=brake, share_std=gauge
                     ),
                 )
-            case "r_x":
+            case Symbol.RACK_RATE:
                 return (
-                    Scale(name="r_x", unit="1/s", meaning="fastest change of the rack over that of the working point"),
+                    Scale(name=name, unit="1/s", meaning="fastest change of the rack over that of the working point"),
                     Scale(name="R_x", unit="N m/s", meaning="the same as brake torque", factor=brake, share_std=gauge),
                 )
-            case "r_s":
+            case Symbol.SET_POINT_RATE:
                 return (
                     Scale(
                         name="r_s_rpm",
@@ -113,13 +114,13 @@ class Units:
                         share_std=RAMP_STD,
                     ),
                     Scale(
-                        name="r_s",
+                        name=name,
                         unit="1/s",
                         meaning="the same over the speed of the working point",
                         share_std=RAMP_STD,
                     ),
                 )
-            case "d_e":
+            case Symbol.DEADBAND:
                 return (
                     Scale(
                         name="d_e_rpm",
@@ -127,14 +128,14 @@ class Units:
                         meaning="speed error within which the governor does nothing, half of the band",
                         factor=rpm,
                     ),
-                    Scale(name="d_e", unit="-", meaning="the same over the speed of the working point"),
+                    Scale(name=name, unit="-", meaning="the same over the speed of the working point"),
                 )
-            case "a_0":
-                return (Scale(name="a_0", unit="-", meaning="torque without boost over full-load torque"),)
-            case "tau_tc":
-                return (Scale(name="tau_tc", unit="s", meaning="time in which the boost follows the torque"),)
+            case Symbol.UNBOOSTED_TORQUE:
+                return (Scale(name=name, unit="-", meaning="torque without boost over full-load torque"),)
+            case Symbol.TURBOCHARGER_LAG:
+                return (Scale(name=name, unit="s", meaning="time in which the boost follows the torque"),)
             case _:
-                return (Scale(name="T_aw", unit="s", meaning="time in which the integrator is led back at a limit"),)
+                return (Scale(name=name, unit="s", meaning="time in which the integrator is led back at a limit"),)
 
 
 def numbers_of(found: Fitted, spread: LevelScatter, units: Units) -> tuple[LimitEstimate, ...]:
@@ -159,7 +160,7 @@ def _printed(found: Fitted, spread: LevelScatter, units: Units, kind: Kind, name
     at_bound = value in (parameter.lower, parameter.upper)
     interval = profile_interval(found, spread, name)
     doubt = _doubt(value, interval, at_bound=at_bound)
-    line_std = found.priors["e_set"].std
+    line_std = found.priors[Symbol.SET_POINT_OFFSET].std
     if kind in (Kind.TORQUE, Kind.SMOKE) and line_std > LARGEST_LINE_STD:
         doubt = doubt or (
             f"the speed fell behind the set point so often that their line is known to {100.0 * line_std:.2g} % only, "

@@ -7,6 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_bool
 from shaftprint.campaign import Campaign
+from shaftprint.catalogue import Symbol
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, Prior, Settings, identify_jointly
 from shaftprint.identify.search import Draw
@@ -15,19 +16,24 @@ from shaftprint.limits.prediction import OUTPUT, GovernorRecord, GovernorTest, M
 from shaftprint.models import Structure
 
 GOVERNOR: Mapping[str, float] = {
-    "K_p": 5.0,
-    "K_i": 4.0,
-    "t_d": 0.07,
-    "omega_n": 11.0,
-    "zeta": 0.55,
-    "t_sp": 0.05,
-    "c_set": 1.0,
-    "e_set": 0.0,
+    Symbol.PROPORTIONAL_GAIN: 5.0,
+    Symbol.INTEGRAL_GAIN: 4.0,
+    Symbol.LOOP_DELAY: 0.07,
+    Symbol.ACTUATOR_FREQUENCY: 11.0,
+    Symbol.ACTUATOR_DAMPING: 0.55,
+    Symbol.SET_POINT_LATENCY: 0.05,
+    Symbol.SET_POINT_SCALE: 1.0,
+    Symbol.SET_POINT_OFFSET: 0.0,
 }
 """What is always free, and where the search begins."""
 # Gain of twice the log-likelihood over what Schwarz' criterion asks that a limit must bring to be named.
 LEAST_GAIN = 25.0
-FAST = ("t_d", "omega_n", "zeta", "t_sp")
+FAST = (
+    Symbol.LOOP_DELAY,
+    Symbol.ACTUATOR_FREQUENCY,
+    Symbol.ACTUATOR_DAMPING,
+    Symbol.SET_POINT_LATENCY,
+)
 """What slow sines tell too little of."""
 MOST_LIMITS = 4
 # Candidates of a round that are fitted.
@@ -115,7 +121,7 @@ def values_without_limits(whole: Structure) -> dict[str, float]:
     """Return the value of every parameter of a governor that nothing limits."""
     default = {p.name: p.value for p in whole.parameters}
     # a slope of zero is a small one: a round zero would be another simulation
-    return {**default, **GOVERNOR, **IDLE, "g": 1e-12}
+    return {**default, **GOVERNOR, **IDLE, Symbol.ENGINE_SPEED_SLOPE: 1e-12}
 
 
 def fitted(
@@ -339,13 +345,19 @@ class Search:
         A line that rests near its torque limit has an optimum with the limit acting at rest, a lower level, a lower set
         point and a slower governor, and one without.
         """
-        scale, offset = self.priors["c_set"].mean, self.priors["e_set"]
+        scale, offset = self.priors[Symbol.SET_POINT_SCALE].mean, self.priors[Symbol.SET_POINT_OFFSET]
         levels: list[dict[str, float]] = [{}]
-        if "m_max" in parameters_of(here.kinds):
-            gains = {name: self.calm[name] for name in ("K_p", "K_i")}
-            levels = [{"m_max": share * here.values["m_max"], **gains} for share in LEVEL_SHARES]
+        if Symbol.TORQUE_LIMIT in parameters_of(here.kinds):
+            gains = {name: self.calm[name] for name in (Symbol.PROPORTIONAL_GAIN, Symbol.INTEGRAL_GAIN)}
+            levels = [
+                {Symbol.TORQUE_LIMIT: share * here.values[Symbol.TORQUE_LIMIT], **gains} for share in LEVEL_SHARES
+            ]
         offsets = [offset.mean + side * REST_PUSH * offset.std for side in (-1.0, 1.0)]
-        return [{"c_set": scale, "e_set": off, **level} for off in offsets for level in levels]
+        return [
+            {Symbol.SET_POINT_SCALE: scale, Symbol.SET_POINT_OFFSET: off, **level}
+            for off in offsets
+            for level in levels
+        ]
 
     def _tried(self, values: Mapping[str, float], kinds: Sequence[Kind], messages: Messages | None) -> Fitted | None:
         """Return the best governor from given values on; None where the simulation runs away from them."""
@@ -369,8 +381,14 @@ def with_messages(test: GovernorTest, messages: Messages | None) -> GovernorTest
 
 def _delay_moves(here: Fitted) -> list[dict[str, float]]:
     """Return the delays inside the loop and before it, moved from one to the other: they trade along a valley."""
-    late, before = here.values["t_d"], here.values["t_sp"]
-    return [{"t_d": max(late + by_s, 0.005), "t_sp": max(before - by_s, 0.005)} for by_s in (-PUSH_S, PUSH_S)]
+    late, before = here.values[Symbol.LOOP_DELAY], here.values[Symbol.SET_POINT_LATENCY]
+    return [
+        {
+            Symbol.LOOP_DELAY: max(late + by_s, 0.005),
+            Symbol.SET_POINT_LATENCY: max(before - by_s, 0.005),
+        }
+        for by_s in (-PUSH_S, PUSH_S)
+    ]
 
 
 def schwarz(one: Fitted) -> float:

@@ -14,6 +14,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.campaign import Campaign, Staircase
+from shaftprint.catalogue import Symbol
 from shaftprint.limits._candidates import Kind
 from shaftprint.limits._search import GOVERNOR, Fitted, values_without_limits
 from shaftprint.limits.prediction import GovernorRecord, GovernorTest, Innovations
@@ -122,7 +123,10 @@ class _Rounding:
     @classmethod
     def of(cls, best: Fitted, test: GovernorTest, campaign: Campaign) -> "_Rounding | None":
         record = test.record(drive_hz=ROUNDED_HZ)
-        limited, rate = Kind.RAMP in best.kinds, best.values["r_s"] / best.values["c_set"]
+        limited, rate = (
+            Kind.RAMP in best.kinds,
+            best.values[Symbol.SET_POINT_RATE] / best.values[Symbol.SET_POINT_SCALE],
+        )
         set_point = record.set_point_at(rate) if limited else np.asarray(record.drive["n_set"])
         time = record.start_s - record.margin / record.drive_rate_hz + record.drive_time_s
         waves = [one for one in campaign.excitations if not isinstance(one, Staircase)]

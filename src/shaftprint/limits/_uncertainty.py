@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.catalogue import Symbol
 from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import IdentificationError
 from shaftprint.limits._search import Fitted, fitted
@@ -88,7 +89,7 @@ def _taken_for_granted(found: Fitted, test: GovernorTest, signals: Signals, vess
     left = term.left(own)
     moved = [test.with_inertia(inertia), test.with_torque(torque)]
     changes = [_with_record(term, one, drive_hz).left(own) - left for one in moved]
-    sloped = {**found.values, "g": SLOPE_STD}
+    sloped = {**found.values, Symbol.ENGINE_SPEED_SLOPE: SLOPE_STD}
     changes.append(term.left(np.array([sloped[name] for name in term.whole.names])) - left)
     # a rate limit turns at whole steps of the simulation: half as long ones move the rate by as much as noise does
     finer = replace(term, record=test.record(drive_hz=2.0 * drive_hz))

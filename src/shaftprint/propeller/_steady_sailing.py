@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from shaftprint.errors import PropellerError
+from shaftprint.normalisation import inertia_time_s
 from shaftprint.propeller._open_water import OpenWaterCurve, OpenWaterPoint
 
 
@@ -30,7 +31,9 @@ class SteadySailing:
 
     def shaft_time_s(self, inertia_kg_m2: float) -> float:
         """Return ``tau = 2 pi I n_s / M_s`` [s] of an inertia on the propeller shaft [kg m2]."""
-        return 2.0 * math.pi * inertia_kg_m2 * self.shaft_speed_rev_s / self.shaft_torque_nm
+        return inertia_time_s(
+            inertia_kg_m2, shaft_speed_rev_s=self.shaft_speed_rev_s, shaft_torque_nm=self.shaft_torque_nm
+        )
 
 
 def sail_steadily(

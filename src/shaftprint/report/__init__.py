@@ -68,14 +68,12 @@ from shaftprint.report.figures import (
 from shaftprint.report.sections import change_in_words
 from shaftprint.report.thesis import (
     Explanation,
-    Family,
     damping_table,
     explain_thesis,
     explanation_sentences,
     gain_table,
     inertia_table,
     integral_table,
-    thesis_families,
 )
 
 __all__ = [
@@ -83,7 +81,6 @@ __all__ = [
     "Curve",
     "Difference",
     "Explanation",
-    "Family",
     "SimulatedSignal",
     "Table",
     "change_in_words",
@@ -134,7 +131,6 @@ __all__ = [
     "render_comparison",
     "render_report",
     "save_figure",
-    "thesis_families",
     "two_mass_sentence",
     "vessel_file_sentences",
     "water_table",

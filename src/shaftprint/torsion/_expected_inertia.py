@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from shaftprint.normalisation import inertia_time_s
 from shaftprint.torsion._entrained_water import WaterEstimate, water_estimates
 from shaftprint.units import rev_s_from_rpm
 
@@ -113,7 +114,7 @@ def expected_inertia(
     point = vessel.working_point
     speed = rev_s_from_rpm(point.engine_speed_rpm) if engine_speed_rev_s is None else engine_speed_rev_s
     torque = point.shaft_torque_nm if shaft_torque_nm is None else shaft_torque_nm
-    factor = 2.0 * math.pi * speed / vessel.gearbox.ratio / torque
+    factor = inertia_time_s(1.0, shaft_speed_rev_s=speed / vessel.gearbox.ratio, shaft_torque_nm=torque)
     scale = vessel.sensors.shaft_torque.scale_std
     sides = {side: [row for row in vessel.inertia if row.gauge == side] for side, _ in SIDES}
     times = tuple(_time(vessel, sides[side], index, side, factor, scale) for side, index in SIDES)

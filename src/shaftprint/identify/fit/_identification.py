@@ -162,6 +162,25 @@ class Identification:
         return tuple(found)
 
     @property
+    def by_role(self) -> dict[Role, float]:
+        """Every parameter of the first structure that has a role, free or not."""
+        named = self.structure.named(self.own_values())
+        return {role: float(named[name]) for name, role in self.structure.roles.items() if name in named}
+
+    def of_role(self, role: Role) -> Estimate:
+        """Return the free parameter of a role.
+
+        Raises
+        ------
+        IdentificationError
+            If there is none.
+        """
+        for estimate in self.parameters:
+            if estimate.role == role:
+                return estimate
+        raise IdentificationError(f"structure {self.structure.name} has no free parameter of the role {role.name}.")
+
+    @property
     def combinations(self) -> tuple[Estimate, ...]:
         """Every combination of parameters that a structure names, with its standard deviation to first order."""
         return tuple(

@@ -1,6 +1,5 @@
 """What the limited governor is driven by and compared with: set point, speed and engine torque of a whole test."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -11,6 +10,7 @@ from shaftprint.campaign import Campaign
 from shaftprint.catalogue import AHEAD_S
 from shaftprint.errors import SignalError
 from shaftprint.limits.prediction._set_point import GovernorRecord
+from shaftprint.normalisation import Normalisation
 from shaftprint.signals import Signals, deviation
 from shaftprint.time_domain import Decimator, Jump, full_load_shape, jumps_in, with_jumps
 from shaftprint.vessel import Vessel
@@ -178,7 +178,11 @@ def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> Gover
     asked = _filled(time, asked)
     jumps = jumps_in(time, asked, campaign)
     on_time = np.zeros(len(jumps))
-    per_inertia = 2.0 * math.pi * point.engine_speed_rev_s / (vessel.gearbox.ratio * point.shaft_torque_nm)
+    normalisation = Normalisation(
+        engine_speed_rev_s=point.engine_speed_rev_s,
+        gear_ratio=vessel.gearbox.ratio,
+        shaft_torque_nm=point.shaft_torque_nm,
+    )
     return GovernorTest(
         name=signals.recording_name,
         time_s=frozen_float(time),
@@ -187,7 +191,7 @@ def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> Gover
         late_s=frozen_float(on_time),
         speed=frozen_float(_filled(time, speed)),
         shaft_torque=frozen_float(_filled(time, torque)),
-        upstream_s=per_inertia * vessel.inertia_upstream_kg_m2,
+        upstream_s=normalisation.inertia_time_s(vessel.inertia_upstream_kg_m2),
         lost=frozen_bool(lost),
         begin_s=begin,
         end_s=end,

@@ -1,7 +1,6 @@
 """The thesis' way beside the identification: its models, and where its numbers come from."""
 
 from shaftprint.report.thesis._explanation import Explanation, can_explain, explain_thesis
-from shaftprint.report.thesis._families import Family, thesis_families
 from shaftprint.report.thesis._integral_gain import integral_gain
 from shaftprint.report.thesis._thesis_mode import calculated_inertia_time_s, thesis_findings, thesis_fit_table
 from shaftprint.report.thesis._words import (
@@ -14,7 +13,6 @@ from shaftprint.report.thesis._words import (
 
 __all__ = [
     "Explanation",
-    "Family",
     "calculated_inertia_time_s",
     "can_explain",
     "damping_table",
@@ -24,7 +22,6 @@ __all__ = [
     "inertia_table",
     "integral_gain",
     "integral_table",
-    "thesis_families",
     "thesis_findings",
     "thesis_fit_table",
 ]

@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.catalogue import ShipRole, gauge_governor, gauge_line
 from shaftprint.errors import IdentificationError
+from shaftprint.models import Role, Structure
 from shaftprint.report._curve import Curve, closed_loop_curve
 from shaftprint.report.thesis._integral_gain import IntegralGain, integral_gain
 from shaftprint.report.thesis._thesis_mode import GOVERNOR_FITS, calculated_inertia_time_s
@@ -158,14 +160,15 @@ def explain_thesis(
         raise IdentificationError(f"explanation: expected {', '.join(missing)}; fit them too.")
     governor, _ = open_loop(thesis.spectra.response)
     squares = np.abs(governor.response[0, 0]) ** 2
-    gauge = fits[GAUGE].structure.named(fits[GAUGE].values)
-    seen = gauge["v"] * gauge["K_p"] * gauge["tau_dn"] / (gauge["tau_up"] + gauge["tau_dn"])
+    gauge = fits[GAUGE].by_role
+    upstream, downstream = gauge[ShipRole.INERTIA_UPSTREAM], gauge[ShipRole.INERTIA_DOWNSTREAM]
+    gain = gauge[ShipRole.ENGINE_RACK_SLOPE] * gauge[ShipRole.PROPORTIONAL_GAIN]
     return Explanation(
         inertia=_inertia_steps(thesis, fits, vessel),
         lines=_line_steps(thesis, fits[GAUGE], response),
         curves=_damping(thesis, fits[GAUGE], np.geomspace(*SHOWN_RAD_S, GRID)),
         gains=_gain_steps(thesis, fits),
-        seen_gain=float(seen),
+        seen_gain=gain * downstream / (upstream + downstream),
         share_of_two_lines=float(squares[:2].sum() / squares.sum()),
         integral=integral_gain(thesis, fits[GAUGE]),
     )
@@ -193,10 +196,22 @@ def _inertia_steps(
     steps = (
         ("calculation, upstream of the gauge", upstream, np.nan, "the inertia that the thesis compares with"),
         ("calculation, downstream of the gauge", downstream, np.nan, "the inertia that n / M_s sees: it turns below"),
-        ("OL1, the thesis' way", *_estimate(core, "tau_n"), "the pick-up is late, which looks like inertia"),
-        ("pick-up in the model, the thesis' signals", *_estimate(sensed, "tau_dn"), "its mean, hold and delay known"),
-        ("OL1, shaftprint's signals", *_estimate(fits[CORE], "tau_n"), "speed without delay, weights, no alias"),
-        ("GAUGE-CLOSED", *_estimate(fits[GAUGE], "tau_dn"), "speed and torque together, k_q and g free"),
+        ("OL1, the thesis' way", *_estimate(core, ShipRole.INERTIA), "the pick-up is late, which looks like inertia"),
+        (
+            "pick-up in the model, the thesis' signals",
+            *_estimate(sensed, ShipRole.INERTIA_DOWNSTREAM),
+            "its mean, hold and delay known",
+        ),
+        (
+            "OL1, shaftprint's signals",
+            *_estimate(fits[CORE], ShipRole.INERTIA),
+            "speed without delay, weights, no alias",
+        ),
+        (
+            "GAUGE-CLOSED",
+            *_estimate(fits[GAUGE], ShipRole.INERTIA_DOWNSTREAM),
+            "speed and torque together, k_q and g free",
+        ),
     )
     return tuple(
         InertiaStep(what=what, value_s=value, std_s=std, factor=upstream / value, why=why)
@@ -204,19 +219,21 @@ def _inertia_steps(
     )
 
 
-def _estimate(fit: "Identification", name: str) -> tuple[float, float]:
-    found = next(estimate for estimate in fit.parameters if estimate.name == name)
-    return found.value, found.std
+def _estimate(fit: "Identification", role: Role) -> tuple[float, float]:
+    estimate = fit.of_role(role)
+    return estimate.value, estimate.std
 
 
 def _line_steps(thesis: "ThesisMode", gauge: "Identification", response: "FrequencyResponse") -> tuple[LineStep, ...]:
     omega = response.omega_rad_s
     chosen = np.flatnonzero((omega >= SHOWN_RAD_S[0]) & (omega <= SHOWN_RAD_S[1]) & response.used)
     s = 1j * omega[chosen]
-    p = gauge.structure.named(gauge.values)
+    gauge_latency, set_point_latency, scale = (
+        gauge.by_role[role] for role in (ShipRole.TORQUE_LATENCY, ShipRole.SET_POINT_LATENCY, ShipRole.SET_POINT_SCALE)
+    )
     speed, torque = (response.response[response.outputs.index(name), 0, chosen] for name in ("n", "M_s"))
-    # e inside the ship: the governor has the set point t_sp later than the logger, and with its true scale
-    measured = torque * np.exp(s * p["t_gauge"]) / (p["c_set"] * np.exp(-s * p["t_sp"]) - speed)
+    # e inside the ship: the governor has the set point later than the logger, and with its true scale
+    measured = torque * np.exp(s * gauge_latency) / (scale * np.exp(-s * set_point_latency) - speed)
     found = _damping(thesis, gauge, omega[chosen])
     return tuple(
         LineStep(
@@ -235,36 +252,40 @@ def _line_steps(thesis: "ThesisMode", gauge: "Identification", response: "Freque
 
 def _damping(thesis: "ThesisMode", gauge: "Identification", omega: FloatArray) -> Damping:
     s = 1j * omega
-    p = gauge.structure.named(gauge.values)
-    lag = p["omega_n"] ** 2 / (s**2 + 2.0 * p["zeta"] * p["omega_n"] * s + p["omega_n"] ** 2)
     joined = closed_loop_curve(Curve.of(thesis.identifications[CORE]), Curve.of(thesis.identifications["OL5"]))
     models = (Curve.of(gauge), joined)
     speeds = [np.abs(m.structure.response(m.values, s)[list(m.structure.outputs).index("n")]) for m in models]
     return Damping(
         omega_rad_s=omega,
-        governor=np.asarray(p["v"] * (p["K_p"] + p["K_i"] / s) * np.exp(-s * p["t_d"]) * lag),
-        inertia=np.asarray((p["tau_dn"] * s + p["k_q"]) / ((p["tau_up"] + p["tau_dn"]) * s + p["k_q"] - p["g"])),
+        governor=_part(gauge_governor(), gauge, omega),
+        inertia=_part(gauge_line(), gauge, omega),
         speed_gauge_aware=speeds[0],
         speed_thesis=speeds[1],
     )
+
+
+def _part(part: Structure, gauge: "Identification", omega: FloatArray) -> ComplexArray:
+    """Return the response of a part of the gauge-aware structure with the values of its fit."""
+    values = gauge.structure.named(gauge.values)
+    return np.asarray(part.response([values[name] for name in part.names], 1j * omega)[0])
 
 
 def _gain_steps(thesis: "ThesisMode", fits: "Mapping[str, Identification]") -> tuple[GainStep, ...]:
     steps = []
     for name in GOVERNORS:
         before = thesis.identifications[name]
-        gain, std = _estimate(fits[name], "K_p")
+        gain, std = _estimate(fits[name], ShipRole.PROPORTIONAL_GAIN)
         steps.append(
             GainStep(
                 structure=name,
-                thesis=before.value("K_p"),
+                thesis=before.of_role(ShipRole.PROPORTIONAL_GAIN).value,
                 thesis_fit_percent=before.fit_percent["M_s"],
                 weighted=gain,
                 weighted_std=std,
                 p_value=_p_value(fits[name]),
             )
         )
-    gain, std = _estimate(fits[GAUGE], "K_p")
+    gain, std = _estimate(fits[GAUGE], ShipRole.PROPORTIONAL_GAIN)
     gauge = GainStep(
         structure=GAUGE,
         thesis=np.nan,

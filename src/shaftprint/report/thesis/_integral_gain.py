@@ -16,6 +16,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.report._numbers import plain, rounded, with_deviation
 from shaftprint.report._table import Table
 from shaftprint.report.thesis._thesis_mode import GOVERNOR_FITS
@@ -78,19 +79,20 @@ def integral_gain(thesis: "ThesisMode", gauge: "Identification") -> IntegralGain
     gauge
         Weighted fit of GAUGE-CLOSED to shaftprint's response.
     """
-    p = gauge.structure.named(gauge.values)
-    found = next(estimate for estimate in gauge.parameters if estimate.name == "K_i")
+    parameters, gain = gauge.by_role, gauge.of_role(ShipRole.INTEGRAL_GAIN)
+    load, late = parameters[ShipRole.LOAD_SLOPE], parameters[ShipRole.SET_POINT_LATENCY]
+    integral = parameters[ShipRole.ENGINE_RACK_SLOPE] * gain.value
     pick_up = thesis.spectra.response.pick_up_delay_s
-    slowness = (p["k_q"] - p["g"]) / (p["v"] * p["K_i"]) + p["t_sp"] + pick_up
+    slowness = (load - parameters[ShipRole.ENGINE_SPEED_SLOPE]) / integral + late + pick_up
     response = thesis.spectra.response
     speed = response.response[response.outputs.index("n"), 0, 0]
     return IntegralGain(
         steps=tuple(_step(name, thesis) for name in GOVERNOR_FITS),
-        gauge_aware=found.value,
-        gauge_aware_std=found.std,
-        set_point_late_s=float(p["t_sp"]),
+        gauge_aware=gain.value,
+        gauge_aware_std=gain.std,
+        set_point_late_s=late,
         pick_up_late_s=pick_up,
-        seen=float(p["k_q"] / slowness),
+        seen=load / slowness,
         slowest_line=response.lines[0],
         slowest_error=float(abs(1.0 - speed)),
         off_share=thesis.off_share,
@@ -101,9 +103,9 @@ def _step(name: str, thesis: "ThesisMode") -> IntegralStep:
     plain_fit, off = thesis.identifications[name], thesis.set_point_off[name]
     return IntegralStep(
         structure=name,
-        thesis=plain_fit.value("K_i"),
+        thesis=plain_fit.of_role(ShipRole.INTEGRAL_GAIN).value,
         fit_percent=plain_fit.fit_percent["M_s"],
-        off=off.value("K_i"),
+        off=off.of_role(ShipRole.INTEGRAL_GAIN).value,
         off_fit_percent=off.fit_percent["M_s"],
     )
 

@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from shaftprint.catalogue import ShipRole
+from shaftprint.normalisation import inertia_time_s
 from shaftprint.report._numbers import plain, rounded
 from shaftprint.report._table import Cell, Table, symbol_html
 from shaftprint.spectra import open_loop
@@ -19,8 +21,11 @@ SHOWN = ("tau_n", "K_p", "K_i", "t_d", "omega_n", "zeta")
 def calculated_inertia_time_s(thesis: "ThesisMode", vessel: "Vessel") -> float:
     """Return ``2 pi I n_s0 / M_s0`` with the inertia upstream of the gauge [s] (thesis eq. 5.1: 1.016 s)."""
     point = thesis.signals.working_point
-    shaft_rev_s = point.engine_speed_rev_s / vessel.gearbox.ratio
-    return 2.0 * np.pi * vessel.inertia_upstream_kg_m2 * shaft_rev_s / point.shaft_torque_nm
+    return inertia_time_s(
+        vessel.inertia_upstream_kg_m2,
+        shaft_speed_rev_s=point.engine_speed_rev_s / vessel.gearbox.ratio,
+        shaft_torque_nm=point.shaft_torque_nm,
+    )
 
 
 def thesis_findings(thesis: "ThesisMode", vessel: "Vessel") -> tuple[str, ...]:
@@ -32,7 +37,7 @@ def _inertia(thesis: "ThesisMode", vessel: "Vessel") -> list[str]:
     core = thesis.identifications.get("OL1")
     if core is None:
         return []
-    found = core.value("tau_n")
+    found = core.of_role(ShipRole.INERTIA).value
     calculated = calculated_inertia_time_s(thesis, vessel)
     below = calculated * vessel.inertia_downstream_kg_m2 / vessel.inertia_upstream_kg_m2
     sensor = thesis.signals.engine_speed.delay_s
@@ -50,7 +55,7 @@ def _governor(thesis: "ThesisMode") -> list[str]:
     if len(fits) < 2:
         return []
     percent = [fit.fit_percent["M_s"] for fit in fits.values()]
-    gain = [fit.value("K_p") for fit in fits.values()]
+    gain = [fit.of_role(ShipRole.PROPORTIONAL_GAIN).value for fit in fits.values()]
     governor, _ = open_loop(thesis.spectra.response)
     share = np.abs(governor.response[0, 0]) ** 2
     share = 100.0 * share / share.sum()

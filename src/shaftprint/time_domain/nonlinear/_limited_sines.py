@@ -4,13 +4,20 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from shaftprint.catalogue import Symbol
 from shaftprint.models import Structure
 from shaftprint.time_domain._identify_in_time import output_error
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._simulator import ExactDelays, on_record
 
 # Values at which a limit does nothing, whatever is asked for.
-IDLE: Mapping[str, float] = {"m_max": 6.0, "m_min": -2.0, "r_x": 100.0, "d_e": 0.0, "a_0": 1.0}
+IDLE: Mapping[str, float] = {
+    Symbol.TORQUE_LIMIT: 6.0,
+    Symbol.MOTORING_LIMIT: -2.0,
+    Symbol.RACK_RATE: 100.0,
+    Symbol.DEADBAND: 0.0,
+    Symbol.UNBOOSTED_TORQUE: 1.0,
+}
 # A sine is touched where limits change more than this share of its motion.
 TOUCHED = 2e-3
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from shaftprint.catalogue import Symbol
 from shaftprint.identify import Identification
 from shaftprint.identify.fit import Estimate
 from shaftprint.signals import WorkingPoint
@@ -71,9 +72,9 @@ def _numbers(estimate: Estimate, point: WorkingPoint, vessel: Vessel) -> Iterato
 
     in_nm = (doubt, estimate.value * gauge)
     match estimate.name:
-        case "m_max":
+        case Symbol.TORQUE_LIMIT:
             own = ((estimate.value - 1.0) * doubt,)
-            yield number("m_max", "-", "torque limit over the brake torque of the working point", shares=own)
+            yield number(estimate.name, "-", "torque limit over the brake torque of the working point", shares=own)
             yield number(
                 "M_max", "N m", "torque limit of the engine at the working-point speed", scale=brake_nm, shares=in_nm
             )
@@ -81,23 +82,25 @@ def _numbers(estimate: Estimate, point: WorkingPoint, vessel: Vessel) -> Iterato
             yield number(
                 "share", "-", "the same over the full-load curve of the vessel file", scale=share, shares=in_nm
             )
-        case "m_min":
+        case Symbol.MOTORING_LIMIT:
             own = ((estimate.value - 1.0) * doubt,)
-            yield number("m_min", "-", "lowest brake torque over that of the working point", shares=own)
+            yield number(estimate.name, "-", "lowest brake torque over that of the working point", shares=own)
             yield number(
                 "M_min", "N m", "torque of the motored engine at the working-point speed", scale=brake_nm, shares=in_nm
             )
-        case "r_x":
+        case Symbol.RACK_RATE:
             own = (estimate.value * doubt,)
-            yield number("r_x", "1/s", "fastest change of the fuel rack over that of the working point", shares=own)
+            yield number(
+                estimate.name, "1/s", "fastest change of the fuel rack over that of the working point", shares=own
+            )
             yield number("R_x", "N m/s", "the same as brake torque", scale=brake_nm, shares=(estimate.value * gauge,))
-        case "d_e":
+        case Symbol.DEADBAND:
             rpm = rpm_from_rev_s(speed)
-            yield number("d_e", "-", "speed error within which the governor does nothing, half of the band")
+            yield number(estimate.name, "-", "speed error within which the governor does nothing, half of the band")
             yield number("d_e_rpm", "rpm", "the same in engine speed", scale=rpm)
-        case "T_aw":
-            yield number("T_aw", "s", "time in which the integrator is led back at a limit")
-        case "a_0":
-            yield number("a_0", "-", "torque without boost over full-load torque")
-        case "tau_tc":
-            yield number("tau_tc", "s", "lag of the turbocharger")
+        case Symbol.ANTI_WINDUP:
+            yield number(estimate.name, "s", "time in which the integrator is led back at a limit")
+        case Symbol.UNBOOSTED_TORQUE:
+            yield number(estimate.name, "-", "torque without boost over full-load torque")
+        case Symbol.TURBOCHARGER_LAG:
+            yield number(estimate.name, "s", "lag of the turbocharger")

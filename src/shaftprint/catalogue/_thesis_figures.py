@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from shaftprint.catalogue import structure
+from shaftprint.catalogue._thesis import structure
 from shaftprint.models import Gain, PIGovernor, Shaft, Structure
 
 Data = Literal["core", "governor"]
