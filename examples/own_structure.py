@@ -43,10 +43,14 @@ class Twist(Block):
         return np.array([c, 0.0]), np.array([1.0])
 
 
-TAU_DN = Parameter("tau_dn", "s", 0.0, 2.0, 0.3, "inertia time downstream of the torque gauge", role=ShipRole.INERTIA_DOWNSTREAM)
+TAU_DN = Parameter(
+    "tau_dn", "s", 0.0, 2.0, 0.3, "inertia time downstream of the torque gauge", role=ShipRole.INERTIA_DOWNSTREAM
+)
 K_Q = Parameter("k_q", "-", 1.0, 3.0, 2.0, "slope of the propeller torque", role=ShipRole.LOAD_SLOPE)
 COMPLIANCE = Parameter("c", "s", -0.01, 0.01, 0.001, "compliance of the shaft")
-T_GAUGE = Parameter("t_gauge", "s", -0.02, 0.02, 0.0, "error of the known latency of the torque telemetry", role=ShipRole.TORQUE_LATENCY)
+T_GAUGE = Parameter(
+    "t_gauge", "s", -0.02, 0.02, 0.0, "error of the known latency of the torque telemetry", role=ShipRole.TORQUE_LATENCY
+)
 
 
 def elastic_core():

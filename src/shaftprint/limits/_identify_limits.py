@@ -9,6 +9,7 @@ from shaftprint.campaign import Campaign
 from shaftprint.catalogue import Symbol, limited_governor
 from shaftprint.identify import Prior
 from shaftprint.limits._candidates import CANDIDATES, Kind
+from shaftprint.limits._governor_fit import GOVERNOR, Fitted, fitted, schwarz
 from shaftprint.limits._limit_fit import LimitFit
 from shaftprint.limits._numbers import (
     Units,
@@ -18,7 +19,7 @@ from shaftprint.limits._numbers import (
     quantum_exclusion,
     quantum_number,
 )
-from shaftprint.limits._search import GOVERNOR, Fitted, Scanned, Search, fitted, schwarz, with_messages
+from shaftprint.limits._search import Scanned, Search, with_messages
 from shaftprint.limits._set_point_quantum import quantum_of
 from shaftprint.limits._uncertainty import spread_of
 from shaftprint.limits.prediction import Messages, governor_test

@@ -8,8 +8,8 @@ import numpy as np
 from shaftprint.catalogue import Symbol
 from shaftprint.distributions import NORMAL_95
 from shaftprint.limits._candidates import CANDIDATES, Kind, LimitCandidate
+from shaftprint.limits._governor_fit import Fitted
 from shaftprint.limits._limit_fit import LimitEstimate
-from shaftprint.limits._search import Fitted
 from shaftprint.limits._set_point_quantum import Quantum
 from shaftprint.limits._uncertainty import LevelInterval, LevelScatter, profile_interval
 from shaftprint.limits.prediction import Messages

@@ -5,27 +5,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray, frozen_bool
+from shaftprint.arrays import BoolArray, frozen_bool
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import Symbol
 from shaftprint.errors import IdentificationError
-from shaftprint.identify import Identification, Prior, Settings, identify_jointly
-from shaftprint.identify.search import Draw
+from shaftprint.identify import Prior
 from shaftprint.limits._candidates import CANDIDATES, IDLE, Kind, LimitCandidate, parameters_of, starts_of
-from shaftprint.limits.prediction import OUTPUT, GovernorRecord, GovernorTest, Messages, PredictionError, messages_of
+from shaftprint.limits._governor_fit import GOVERNOR, Fitted, fitted, schwarz, values_without_limits
+from shaftprint.limits.prediction import OUTPUT, GovernorRecord, GovernorTest, Messages, messages_of
 from shaftprint.models import Structure
 
-GOVERNOR: Mapping[str, float] = {
-    Symbol.PROPORTIONAL_GAIN: 5.0,
-    Symbol.INTEGRAL_GAIN: 4.0,
-    Symbol.LOOP_DELAY: 0.07,
-    Symbol.ACTUATOR_FREQUENCY: 11.0,
-    Symbol.ACTUATOR_DAMPING: 0.55,
-    Symbol.SET_POINT_LATENCY: 0.05,
-    Symbol.SET_POINT_SCALE: 1.0,
-    Symbol.SET_POINT_OFFSET: 0.0,
-}
-"""What is always free, and where the search begins."""
 # Gain of twice the log-likelihood over what Schwarz' criterion asks that a limit must bring to be named.
 LEAST_GAIN = 25.0
 FAST = (
@@ -38,8 +27,8 @@ FAST = (
 MOST_LIMITS = 4
 # Candidates of a round that are fitted.
 POLISHED, POLISHED_CALM = 2, 4
-# Iterations of a fit that is compared with others, and of one that is reported.
-ROUGH, FINE = 6, 15
+# Iterations of a fit that is compared with others.
+ROUGH = 6
 # Share of the tests, the calmest first, whose torque changes so little that no limit is near.
 CALM = 0.5
 PUSH_S, LEAST_FALL = 0.03, 0.5
@@ -49,60 +38,6 @@ REST_PUSH, LEVEL_SHARES = 1.0, (0.8, 0.9, 1.0, 1.1, 1.2, 1.35)
 PROMISING, ROUNDS = 10.0, 3
 LEAST_SPEED = 0.1
 SMALLEST = 1e-12
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class One(Draw):
-    """A single start."""
-
-    values: FloatArray
-    """Free parameters, shape (free,)."""
-
-    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
-        """Return it within the bounds."""
-        return np.tile(np.clip(self.values, lower, upper), (count, 1))
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Fitted:
-    """A governor with some limits at its best."""
-
-    kinds: tuple[Kind, ...]
-    """Its limits, in the order in which they joined."""
-    term: PredictionError
-    """Its likelihood, in units of its own innovations."""
-    values: Mapping[str, float]
-    """Every parameter."""
-    fit: Identification
-    """The fit."""
-    priors: Mapping[str, Prior]
-    """What was known beforehand."""
-    messages: Messages | None = None
-    """Delays of the set point's jumps, where it is held between messages."""
-
-    @property
-    def own(self) -> FloatArray:
-        """All parameters in the structure's order, shape (parameters,)."""
-        return np.array([self.values[name] for name in self.term.whole.names])
-
-    @property
-    def log_squares(self) -> float:
-        """``N log`` of the squared innovations, and the priors: minus twice the log-likelihood but for a constant."""
-        found = self.term.innovations(self.own)
-        known = sum(((self.values[name] - prior.mean) / prior.std) ** 2 for name, prior in self.priors.items())
-        known += 0.0 if self.messages is None else self.messages.cost
-        return np.inf if found is None else found.count * float(np.log(found.squares)) + known
-
-    @property
-    def parameters(self) -> int:
-        """Number of parameters that were fitted: of held messages the cycle."""
-        return len(self.term.free) + (self.messages is not None)
-
-    @property
-    def known(self) -> FloatArray:
-        """One over the prior deviation of each free parameter, 0 without prior, shape (free,)."""
-        names = [p.name for p in self.term.structure.free]
-        return np.array([1.0 / self.priors[name].std if name in self.priors else 0.0 for name in names])
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -115,47 +50,6 @@ class Scanned:
     """Every parameter, with its level."""
     gain: float
     """Fall of minus twice the log-likelihood; negative where the level contradicts the data."""
-
-
-def values_without_limits(whole: Structure) -> dict[str, float]:
-    """Return the value of every parameter of a governor that nothing limits."""
-    default = {p.name: p.value for p in whole.parameters}
-    # a slope of zero is a small one: a round zero would be another simulation
-    return {**default, **GOVERNOR, **IDLE, Symbol.ENGINE_SPEED_SLOPE: 1e-12}
-
-
-def fitted(
-    whole: Structure,
-    record: GovernorRecord,
-    values: Mapping[str, float],
-    kinds: Sequence[Kind],
-    *,
-    priors: Mapping[str, Prior],
-    iterations: int = FINE,
-    held: Sequence[str] = (),
-    messages: Messages | None = None,
-) -> Fitted:
-    """Return the best governor with some limits, from given values on.
-
-    Parameters
-    ----------
-    record
-        The test; of a held set point with the jumps as late as the messages have them.
-    priors
-        What is known of the set point's scale and offset.
-    held
-        Names of parameters that stay although they would be free.
-    """
-    free = [name for name in (*GOVERNOR, *parameters_of(kinds)) if name not in held]
-    term = PredictionError.of(whole, record, values, free)
-    own = np.array([values[name] for name in whole.names])
-    term = term.with_scale_at(own)
-    draw = One(np.array([values[p.name] for p in term.structure.free]))
-    settings = Settings(priors=priors, starts=1, draw=draw, max_iterations=iterations, stability="ignored")
-    fit = identify_jointly([term], rng=np.random.default_rng(0), settings=settings)
-    found = {**values, **{estimate.name: estimate.value for estimate in fit.parameters}}
-    best = term.with_scale_at(np.array([found[name] for name in whole.names]))
-    return Fitted(kinds=tuple(kinds), term=best, values=found, fit=fit, priors=priors, messages=messages)
 
 
 def calm_part(record: GovernorRecord, campaign: Campaign) -> GovernorRecord:
@@ -389,11 +283,6 @@ def _delay_moves(here: Fitted) -> list[dict[str, float]]:
         }
         for by_s in (-PUSH_S, PUSH_S)
     ]
-
-
-def schwarz(one: Fitted) -> float:
-    """Return minus twice the log-likelihood with Schwarz' penalty for each parameter."""
-    return one.log_squares + one.parameters * float(np.log(one.term.data_count))
 
 
 def _strongest(scanned: Sequence[Scanned], count: int) -> list[Scanned]:

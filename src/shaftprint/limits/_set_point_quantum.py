@@ -16,7 +16,7 @@ from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.campaign import Campaign, Staircase
 from shaftprint.catalogue import Symbol
 from shaftprint.limits._candidates import Kind
-from shaftprint.limits._search import GOVERNOR, Fitted, values_without_limits
+from shaftprint.limits._governor_fit import GOVERNOR, Fitted, values_without_limits
 from shaftprint.limits.prediction import GovernorRecord, GovernorTest, Innovations
 
 # Steps that are looked for, over the speed of the working point. Finer ones cannot be told from what noise and

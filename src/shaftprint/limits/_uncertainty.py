@@ -17,7 +17,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import Symbol
 from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import IdentificationError
-from shaftprint.limits._search import Fitted, fitted
+from shaftprint.limits._governor_fit import Fitted, fitted
 from shaftprint.limits.prediction import GovernorTest, PredictionError
 from shaftprint.signals import Signals
 from shaftprint.vessel import Vessel
