@@ -6,8 +6,7 @@ import pytest
 from shaftprint.campaign import Campaign, load_campaign, setpoint
 from shaftprint.errors import SignalError
 from shaftprint.signals import common_shift_s, proposed_campaign
-from shaftprint.signals._found_tests import found_tests
-from shaftprint.signals._match import expect_campaign
+from shaftprint.signals.excitation import expect_campaign, found_tests
 
 RATE_HZ = 200.0
 SHORT = load_campaign("short")

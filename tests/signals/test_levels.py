@@ -8,13 +8,16 @@ import pytest
 from shaftprint.campaign import Campaign, setpoint
 from shaftprint.errors import SignalError
 from shaftprint.signals import deviation
-from shaftprint.signals._calibrate import calibrate
 from shaftprint.signals._compare import compare_speeds
-from shaftprint.signals._match import expect_campaign
-from shaftprint.signals._steady import SteadyStretch, steady_stretches
-from shaftprint.signals._steps import find_step_delays
 from shaftprint.signals._torque import expect_moving_torque
-from shaftprint.signals._working_point import find_working_point, stretches_at_working_point
+from shaftprint.signals.excitation import expect_campaign, find_step_delays
+from shaftprint.signals.levels import (
+    SteadyStretch,
+    calibrate,
+    find_working_point,
+    steady_stretches,
+    stretches_at_working_point,
+)
 
 RATE_HZ = 50.0
 

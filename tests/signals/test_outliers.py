@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from shaftprint.signals._outliers import (
+from shaftprint.signals.conditioning import (
     GOOD,
     HOLD,
     RAIL,

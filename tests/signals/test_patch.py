@@ -3,8 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from shaftprint.signals._outliers import FaultLimits, flagged
-from shaftprint.signals._patch import Patcher
+from shaftprint.signals.conditioning import FaultLimits, Patcher, flagged
 
 LIMITS = FaultLimits(floor=50.0, hold_samples=12, lowest=-3000.0, highest=3000.0)
 

@@ -8,7 +8,7 @@ import pytest
 from shaftprint.errors import SignalError
 from shaftprint.signals import inspect_channels, prepare_signals
 from shaftprint.signals._rack import rack_signal, read_rack
-from shaftprint.signals._steady import SteadyStretch
+from shaftprint.signals.levels import SteadyStretch
 from shaftprint.vessel import RackSensor, load_vessel
 
 SENSOR = RackSensor(channel="X_percent", unit="%", cycle_s=0.05, latency_s=0.01, latency_std_s=0.005)

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import SignalError
-from shaftprint.signals._pulses import number_pulses
-from shaftprint.signals._strips import find_strips, renumbered, revolutions
+from shaftprint.signals.pulses import find_strips, number_pulses, renumbered, revolutions
 
 # table 3.4 of the thesis, scaled to a whole turn
 TABLE_3_4 = np.array([90.40, 87.24, 90.74, 91.64]) / 360.02

@@ -3,9 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from shaftprint.signals._decimate import Grid
-from shaftprint.signals._pulses import number_pulses
-from shaftprint.signals._thesis import previous_neighbours, pulse_period_speed
+from shaftprint.signals.conditioning import Grid, previous_neighbours, pulse_period_speed
+from shaftprint.signals.pulses import number_pulses
 
 
 @settings(deadline=None, max_examples=40)

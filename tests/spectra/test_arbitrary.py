@@ -6,7 +6,7 @@ from scipy.signal import chirp, lfilter
 
 from shaftprint.errors import ResponseError
 from shaftprint.spectra import Arbitrary, response_from_arrays
-from shaftprint.spectra._local_polynomial import Bands, Transform, is_smooth
+from shaftprint.spectra.records import Bands, Transform, is_smooth
 
 RATE_HZ = 20.0
 

@@ -5,7 +5,6 @@ import pytest
 
 from shaftprint.errors import ResponseError
 from shaftprint.spectra import FrequencyResponse, WholePeriodSine, open_loop
-from shaftprint.spectra._line_measurement import measure_line
 from shaftprint.spectra._response_covariance import (
     real_covariance,
     real_jacobian,
@@ -13,6 +12,7 @@ from shaftprint.spectra._response_covariance import (
     weight_factor,
     with_common_error,
 )
+from shaftprint.spectra.lines import measure_line
 
 REPEATS = 500
 

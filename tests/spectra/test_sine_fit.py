@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from shaftprint.spectra import ExactBin, HighestPeak, WholePeriodSine, plan_windows
-from shaftprint.spectra._line_fit import cut_window
+from shaftprint.spectra.lines import cut_window
 
 METHODS = [WholePeriodSine(), ExactBin(), HighestPeak()]
 

@@ -6,12 +6,16 @@ from scipy.interpolate import CubicSpline
 
 from shaftprint.signals import SpeedSignal
 from shaftprint.spectra import ExactBin, WholePeriodSine
-from shaftprint.spectra._harmonics import collect_harmonics
-from shaftprint.spectra._line_measurement import measure_line, strongest_frequency_hz
-from shaftprint.spectra._load_drift import load_drift
-from shaftprint.spectra._modulation import without_modulation
-from shaftprint.spectra._noise import ShaftRelation, residual_spectrum
-from shaftprint.spectra._signal_to_noise import signal_to_noise
+from shaftprint.spectra.lines import (
+    ShaftRelation,
+    collect_harmonics,
+    load_drift,
+    measure_line,
+    residual_spectrum,
+    signal_to_noise,
+    strongest_frequency_hz,
+    without_modulation,
+)
 
 UNRELATED = ShaftRelation(speed=1, torque=2, ratio=0.0)
 

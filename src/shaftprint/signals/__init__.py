@@ -18,13 +18,11 @@ deviation             1        ``(x - x_0) / x_0`` from the working point
 from shaftprint.signals._clock import Mode
 from shaftprint.signals._content import Content, content_of
 from shaftprint.signals._contradictions import contradictions
-from shaftprint.signals._found_test import FoundTest, common_shift_s
 from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._inspect import ChannelReport, PulseReport, inspect_channels
 from shaftprint.signals._kind import ChannelKind
 from shaftprint.signals._kinds import KINDS
 from shaftprint.signals._prepare import find_tests, prepare_signals
-from shaftprint.signals._proposed_campaign import proposed_campaign
 from shaftprint.signals._signals import (
     ChannelSignal,
     ExcitationSignal,
@@ -38,7 +36,8 @@ from shaftprint.signals._signals import (
     StripAngles,
     WorkingPoint,
 )
-from shaftprint.signals._working_point import deviation
+from shaftprint.signals.excitation import FoundTest, common_shift_s, proposed_campaign
+from shaftprint.signals.levels import deviation
 
 __all__ = [
     "KINDS",

@@ -6,7 +6,7 @@ from threading import Lock
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, Advance
-from shaftprint.signals._decimate import Grid
+from shaftprint.signals.conditioning import Grid
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel

@@ -8,11 +8,9 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, blocks
-from shaftprint.signals._condition import conditioned
-from shaftprint.signals._decimate import Grid
 from shaftprint.signals._gaps import joined
-from shaftprint.signals._outliers import fault_limits
 from shaftprint.signals._pick_up import read_pick_up
+from shaftprint.signals.conditioning import Grid, conditioned, fault_limits
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel

@@ -5,16 +5,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
 
 from shaftprint.signals._channels import find_channel
-from shaftprint.signals._condition import Reading
 from shaftprint.signals._signals import ChannelSignal, Role
+from shaftprint.signals.conditioning import Reading
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel, Recording
     from shaftprint.signals._clock import Clock
-    from shaftprint.signals._dc_scale import DcScale
-    from shaftprint.signals._outliers import FaultLimits
     from shaftprint.signals._signals import SetPointCalibration, WorkingPoint
-    from shaftprint.signals._steady import SteadyStretch
+    from shaftprint.signals.conditioning import FaultLimits
+    from shaftprint.signals.levels import DcScale, SteadyStretch
     from shaftprint.vessel import Vessel
 
 

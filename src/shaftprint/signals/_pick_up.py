@@ -8,15 +8,21 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.signals._channels import Advance, blocks, find_channel, time_of
-from shaftprint.signals._condition import Reading
-from shaftprint.signals._edges import find_edges, pulse_levels
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps
 from shaftprint.signals._kind import ChannelKind, Source, SteadyState
-from shaftprint.signals._pulses import PulseTrain, number_pulses
 from shaftprint.signals._signals import Repair, SpeedSignal, StripAngles
-from shaftprint.signals._speed import spline_speed
-from shaftprint.signals._strips import find_strips, renumbered, revolutions, unplaced_stretches
-from shaftprint.signals._thesis import pulse_period_speed
+from shaftprint.signals.conditioning import Reading, pulse_period_speed
+from shaftprint.signals.pulses import (
+    PulseTrain,
+    find_edges,
+    find_strips,
+    number_pulses,
+    pulse_levels,
+    renumbered,
+    revolutions,
+    spline_speed,
+    unplaced_stretches,
+)
 from shaftprint.vessel import SpeedSensor
 
 if TYPE_CHECKING:

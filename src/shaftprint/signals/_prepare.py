@@ -8,33 +8,32 @@ from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
 from shaftprint.reasons import Reason
-from shaftprint.signals._calibrate import calibrate, calibrate_through_wander
 from shaftprint.signals._channels import find_channel
 from shaftprint.signals._clock import Mode, clock_of, common_clock
 from shaftprint.signals._compare import compare_speeds
-from shaftprint.signals._dc_scale import DcScale, dc_scale
-from shaftprint.signals._flat_top import expect_whole_crests
-from shaftprint.signals._found_test import FoundTest
-from shaftprint.signals._found_tests import found_tests
 from shaftprint.signals._gaps import Coverage
 from shaftprint.signals._kind import Source, SteadyState
 from shaftprint.signals._kinds import find_sources
-from shaftprint.signals._match import expect_campaign, left_out
 from shaftprint.signals._rates import expect_one_rate
 from shaftprint.signals._readings import Readings, logger_channels, read_all
 from shaftprint.signals._set_point import read_voltage
 from shaftprint.signals._signals import ChannelSignal, SetPointCalibration, Signals
-from shaftprint.signals._steadiness import expect_steady_gauge
-from shaftprint.signals._steady import steady_stretches
-from shaftprint.signals._steps import find_step_delays
 from shaftprint.signals._torque import expect_moving_torque
-from shaftprint.signals._working_point import (
+from shaftprint.signals.excitation import FoundTest, expect_campaign, find_step_delays, found_tests, left_out
+from shaftprint.signals.levels import (
+    DcScale,
+    calibrate,
+    calibrate_through_wander,
+    dc_scale,
     expect_plausible,
+    expect_steady_gauge,
     find_working_point,
+    steady_stretches,
     stretches_at_working_point,
     working_point_of_test,
     working_voltage,
 )
+from shaftprint.signals.pulses import expect_whole_crests
 
 if TYPE_CHECKING:
     from shaftprint.recording import Recording

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import SignalError
-from shaftprint.signals._condition import Reading
 from shaftprint.signals._gaps import Coverage, Gap, within
 from shaftprint.signals._pick_up import PickUp
 from shaftprint.signals._signals import Repair, Role
+from shaftprint.signals.conditioning import Reading
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray

@@ -20,24 +20,28 @@ For drives that are no ships `response_from_arrays` makes a response from plain 
 `plant_from_closed_loop` takes a plant out of its loop, and `FrequencyResponse` holds what another program has measured.
 """
 
-from shaftprint.spectra._arbitrary import Arbitrary
-from shaftprint.spectra._bin_selection import ExactBin, HighestPeak
 from shaftprint.spectra._closed_loop import plant_from_closed_loop
-from shaftprint.spectra._excitation import Excitation
 from shaftprint.spectra._frequency_response import FrequencyResponse
-from shaftprint.spectra._from_arrays import response_from_arrays
-from shaftprint.spectra._harmonics import Harmonics
-from shaftprint.spectra._line_fit import LineFit, SineMethod, WindowSamples
 from shaftprint.spectra._line_responses import NOT_MEASURED_STD, measured
-from shaftprint.spectra._load_drift import LoadDrift
 from shaftprint.spectra._measured_inputs import with_measured_inputs
 from shaftprint.spectra._open_loop import governor_and_engine, open_loop
-from shaftprint.spectra._periodic import Periodic
 from shaftprint.spectra._plain_covariance import circular_covariance, coherence_covariance
-from shaftprint.spectra._signal_to_noise import SignalToNoise
-from shaftprint.spectra._sine_fit import WholePeriodSine
 from shaftprint.spectra._spectra import Spectra, estimate_response, estimate_spectra
-from shaftprint.spectra._windows import Window, plan_windows, whole_period_window
+from shaftprint.spectra.lines import (
+    ExactBin,
+    Harmonics,
+    HighestPeak,
+    LineFit,
+    LoadDrift,
+    SignalToNoise,
+    SineMethod,
+    WholePeriodSine,
+    Window,
+    WindowSamples,
+    plan_windows,
+    whole_period_window,
+)
+from shaftprint.spectra.records import Arbitrary, Excitation, Periodic, response_from_arrays
 
 __all__ = [
     "NOT_MEASURED_STD",

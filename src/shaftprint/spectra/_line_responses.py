@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
-from shaftprint.spectra._cross_term import without_cross_term
 from shaftprint.spectra._frequency_response import FrequencyResponse
-from shaftprint.spectra._line_measurement import LineMeasurement
 from shaftprint.spectra._response_covariance import response_of_line, weight_factor, with_common_error
+from shaftprint.spectra.lines import LineMeasurement, without_cross_term
 
 if TYPE_CHECKING:
     from shaftprint.signals import ChannelSignal, ExcitationSignal, Signals, SpeedSignal

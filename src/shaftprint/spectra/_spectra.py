@@ -9,19 +9,31 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ResponseError
 from shaftprint.reasons import Reason
-from shaftprint.spectra._clock_check import clock_reasons
 from shaftprint.spectra._frequency_response import FrequencyResponse
-from shaftprint.spectra._harmonics import Harmonics, collect_harmonics
-from shaftprint.spectra._line_fit import SineMethod, WindowSamples, cut_window
-from shaftprint.spectra._line_measurement import LineMeasurement, measure_line
 from shaftprint.spectra._line_responses import response_of_lines
-from shaftprint.spectra._load_drift import LoadDrift, load_drift
-from shaftprint.spectra._message_line import cut_messages
-from shaftprint.spectra._set_point_check import amplitude_remark, check_frequency_unit, check_set_point, shape_reasons
 from shaftprint.spectra._shift_check import shift_reasons
-from shaftprint.spectra._signal_to_noise import SignalToNoise, signal_to_noise
-from shaftprint.spectra._sine_fit import WholePeriodSine
-from shaftprint.spectra._windows import Window, plan_windows
+from shaftprint.spectra.lines import (
+    Harmonics,
+    LineMeasurement,
+    LoadDrift,
+    SignalToNoise,
+    SineMethod,
+    WholePeriodSine,
+    Window,
+    WindowSamples,
+    amplitude_remark,
+    check_frequency_unit,
+    check_set_point,
+    clock_reasons,
+    collect_harmonics,
+    cut_messages,
+    cut_window,
+    load_drift,
+    measure_line,
+    plan_windows,
+    shape_reasons,
+    signal_to_noise,
+)
 
 if TYPE_CHECKING:
     from shaftprint.arrays import BoolArray, FloatArray

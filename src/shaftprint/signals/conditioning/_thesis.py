@@ -1,0 +1,77 @@
+"""The way of the thesis, step by step, to compare with on the same recording.
+
+"Fingerprinting II", section 3.1: pulse periods between whole samples (eq. 3.1), the previous neighbour
+when the rate is lowered, no filter before it, a plain line through the steady levels (eq. 3.2).
+"""
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.signals.conditioning._decimate import Grid
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel
+    from shaftprint.signals.pulses import PulseTrain
+
+# A rounding error must not push what lies on a sample to the next one.
+_ROUNDING = 1e-6
+
+
+def previous_neighbours(samples: Iterable[FloatArray], grid: Grid) -> FloatArray:
+    """Return the last sample at or before each instant of the grid, shape (grid.count,).
+
+    Before the first sample the first one is taken, after the last one the last.
+    """
+    out = np.empty(grid.count)
+    origin, done = 0, 0
+    last = np.nan
+    for block in samples:
+        origin += block.size
+        # a few instants too many, of which those beyond the block wait for the next one
+        reach = min(grid.count, int((origin - grid.first) / grid.step) + 2)
+        instants = np.arange(done, max(reach, done))
+        place = np.floor(grid.first + grid.step * instants + _ROUNDING).astype(np.int64)
+        place = np.maximum(place[place < origin], 0)
+        out[done : done + place.size] = block[place - origin + block.size]
+        done, last = done + place.size, block[-1]
+    out[done:] = last
+    return out
+
+
+def pulse_period_speed(
+    train: "PulseTrain",
+    strips: int,
+    channel: "Channel",
+    *,
+    start_s: float,
+    step_s: float,
+    count: int,
+) -> FloatArray:
+    """Return the speed from the last whole pulse period at each instant [rev/s], shape (count,).
+
+    A period in which a pulse is missing gets the mean of its neighbours, as outliers do.
+
+    Parameters
+    ----------
+    train
+        Numbered pulses; the first whole sample of each pulse is taken.
+    strips
+        Pulses a revolution; the angles between the strips are taken as equal.
+    channel
+        The channel, for its clock.
+    start_s, step_s, count
+        The grid [s]. Before the second pulse the first period is taken.
+    """
+    quantised = np.ceil(train.position - _ROUNDING)
+    speed = channel.rate_hz / (np.diff(quantised) * strips)
+    whole = np.diff(train.number) == 1
+    place = np.arange(speed.size)
+    speed[~whole] = np.interp(place[~whole], place[whole], speed[whole])
+    # the instant from which each period is the last whole one; the first serves from the beginning
+    ends_s = channel.start_s + quantised[2:] / channel.rate_hz
+    instant = np.ceil((ends_s - start_s) / step_s - _ROUNDING).astype(np.int64)
+    border = np.concatenate([[0], np.clip(instant, 0, count), [count]])
+    return np.repeat(speed, np.diff(border))

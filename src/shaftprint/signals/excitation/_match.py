@@ -1,0 +1,167 @@
+"""Whether a recording and a campaign belong together, judged by the set point."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.campaign import Campaign, Excitation, Sine, Staircase, setpoint
+from shaftprint.errors import SignalError
+from shaftprint.signals._gaps import EVERYTHING, Coverage, gap_findings
+from shaftprint.signals.excitation._found_test import FoundTest, common_shift_s
+from shaftprint.signals.excitation._found_tests import found_tests
+from shaftprint.signals.excitation._steps import step_window
+
+# Slow excitations only: a second of clock error must not look like another campaign.
+_SLOW_HZ = 0.2
+# Less of the movement that the campaign asks for is another test, or a channel behind a divider that nobody stated.
+_LEAST_MOVEMENT = 0.5
+_LEAST_EXPLAINED = 0.5
+_LOOKS_PER_S = 10.0
+_OPPOSITE_DEG = 150.0
+
+
+def measured_windows(campaign: Campaign) -> tuple[tuple[str, float, float], ...]:
+    """Return name, begin and end [s] of everything that is measured, in order of time."""
+    found = [(sine.name, sine.settled_s, sine.window_stop_s) for sine in campaign.sines]
+    found += [(chirp.name, chirp.start_s, chirp.stop_s) for chirp in campaign.chirps]
+    for stairs in campaign.staircases:
+        found += [(f"step {k} of {stairs.name}", *step_window(stairs, k)) for k in range(1, len(stairs.levels_v))]
+    return tuple(sorted(found, key=lambda window: window[1]))
+
+
+def left_out(campaign: Campaign, coverage: Coverage, *, name: str) -> tuple[str, ...]:
+    """Return what a recording does not hold of a campaign: one sentence for its ends and one for each gap.
+
+    Parameters
+    ----------
+    campaign
+        What was asked of the ship.
+    coverage
+        What the recording covers.
+    name
+        The recording, for messages.
+
+    Raises
+    ------
+    SignalError
+        If it holds nothing whole.
+    """
+    windows = measured_windows(campaign)
+    ends = replace(coverage, gaps=())
+    outside = [window for window in windows if ends.missing(*window[1:])]
+    if all(coverage.missing(*window[1:]) for window in windows):
+        gaps = f" with {len(coverage.gaps)} gaps" if coverage.gaps else ""
+        raise SignalError(
+            f'{name}: expected at least one whole test of the campaign "{campaign.name}" between {windows[0][1]:.1f} '
+            f"and {windows[-1][2]:.1f} s, found a recording from {coverage.start_s:.1f} to {coverage.stop_s:.1f} s"
+            f"{gaps}; use the whole recording, or the campaign file that belongs to it."
+        )
+    inside = [window for window in windows if window not in outside]
+    findings = gap_findings(coverage.gaps, inside)
+    if not outside:
+        return findings
+    span = f"the recording lasts from {coverage.start_s:.1f} to {coverage.stop_s:.1f} s"
+    names = ", ".join(window[0] for window in outside)
+    return (f"{span}, the campaign to {max(w[2] for w in windows):.1f} s; left out for that: {names}", *findings)
+
+
+def expect_campaign(
+    set_point_v: FloatArray,
+    campaign: Campaign,
+    *,
+    rate_hz: float,
+    start_s: float,
+    channel: str,
+    coverage: Coverage = EVERYTHING,
+) -> tuple[str, ...]:
+    """Check that the set point moves as the campaign says; return a finding for all that differs.
+
+    Only tests that the recording holds whole are judged. Where all are shifted alike, one finding says by how much.
+
+    Raises
+    ------
+    SignalError
+        If the set point never moves, or if it does not follow any of the slow tests.
+    """
+    stop_s = start_s + set_point_v.size / rate_hz
+    inside = [item for item in campaign.excitations if item.start_s < stop_s and item.stop_s > start_s]
+    levels = [campaign.offset_v, *(level for item in inside for level in _extremes(item, campaign))]
+    lowest, highest = float(np.min(set_point_v)), float(np.max(set_point_v))
+    expected = max(levels) - min(levels)
+    if highest - lowest < _LEAST_MOVEMENT * expected:
+        raise SignalError(
+            f"channel {channel}: expected a set point that moves by {expected:g} V, found it between "
+            f"{lowest:.4g} and {highest:.4g} V from start to end; check that the channel is the set "
+            "point and that the test was made."
+        )
+    held = [item for item in campaign.excitations if not coverage.missing(item.start_s, item.stop_s)]
+    slow = [item for item in held if not _is_fast(item)] or held
+    foreign = [
+        item.name for item in slow if _explained(set_point_v, item, campaign, rate_hz, start_s) < _LEAST_EXPLAINED
+    ]
+    found = found_tests(set_point_v, campaign, rate_hz=rate_hz, start_s=start_s)
+    shift_s = common_shift_s(found)
+    if foreign and len(foreign) == len(slow):
+        instead = _shift_words(shift_s) or _upside_down(found) or "check the campaign file and its start times"
+        raise SignalError(
+            f'channel {channel}: expected the set point of the campaign "{campaign.name}", found '
+            f"another course in every slow test ({', '.join(foreign)}): {instead}; `shaftprint inspect` with --vessel "
+            "and --campaign proposes the start of every test."
+        )
+    if shift_s:
+        return (f"{_shift_words(shift_s)}; `shaftprint inspect` proposes the start of every test",)
+    whole = {item.name for item in held}
+    judged = [test for test in found if test.planned.name in whole]
+    return tuple(
+        f"{test.planned.name} {difference}"
+        if test.is_found
+        else f"the set point does not follow the campaign during {test.planned.name}; check its times"
+        for test in judged
+        for difference in test.differences
+    )
+
+
+def _shift_words(shift_s: float) -> str:
+    if shift_s == 0.0:
+        return ""
+    late, how = ("later", "earlier") if shift_s < 0.0 else ("earlier", "later")
+    return f"the recording starts {abs(shift_s):.2f} s {late} than the campaign says: all tests are found so much {how}"
+
+
+def _upside_down(found: Sequence[FoundTest]) -> str:
+    """Return that the set point is upside down where all tests that have a sign say so."""
+    there = [test for test in found if test.is_found]
+    turned = [test.is_inverted or abs(test.phase_error_deg) > _OPPOSITE_DEG for test in there]
+    if len(there) < 2 or not all(turned):
+        return ""
+    return "every test is upside down; turn the sign of the channel, or of the levels in the campaign file"
+
+
+def _extremes(item: Excitation, campaign: Campaign) -> tuple[float, ...]:
+    if isinstance(item, Staircase):
+        return item.levels_v
+    return campaign.offset_v - item.amplitude_v, campaign.offset_v + item.amplitude_v
+
+
+def _is_fast(item: Excitation) -> bool:
+    return isinstance(item, Sine) and item.frequency_hz > _SLOW_HZ
+
+
+def _explained(
+    set_point_v: FloatArray,
+    item: Excitation,
+    campaign: Campaign,
+    rate_hz: float,
+    start_s: float,
+) -> float:
+    """Return the squared correlation of measured and planned set point during a test, 0 if opposite."""
+    first = max(round((item.start_s - start_s) * rate_hz), 0)
+    stop = min(round((item.stop_s - start_s) * rate_hz), set_point_v.size)
+    # every so many samples: enough for what is slow
+    places = np.arange(first, stop, max(int(rate_hz / _LOOKS_PER_S), 1))
+    planned, measured = setpoint(campaign, start_s + places / rate_hz), set_point_v[places]
+    if places.size == 0 or np.ptp(planned) == 0.0 or np.ptp(measured) == 0.0:
+        return 0.0
+    return max(float(np.corrcoef(planned, measured)[0, 1]), 0.0) ** 2

@@ -1,0 +1,39 @@
+"""Steady stretches, the wander about them, and what is read from their means: calibration and working point."""
+
+from shaftprint.signals.levels._calibrate import calibrate, calibrate_through_wander
+from shaftprint.signals.levels._dc_scale import DcScale, LowLines, dc_scale, low_lines, zero_frequency_ratio
+from shaftprint.signals.levels._load import torque_of_mean_load
+from shaftprint.signals.levels._steadiness import expect_steady_gauge
+from shaftprint.signals.levels._steady import SteadyStretch, steady_stretches
+from shaftprint.signals.levels._wander import fit_through_wander
+from shaftprint.signals.levels._working_point import (
+    deviation,
+    expect_plausible,
+    find_working_point,
+    mean_of_stretches,
+    stretches_at_working_point,
+    working_point_of_test,
+    working_voltage,
+)
+
+__all__ = [
+    "DcScale",
+    "LowLines",
+    "SteadyStretch",
+    "calibrate",
+    "calibrate_through_wander",
+    "dc_scale",
+    "deviation",
+    "expect_plausible",
+    "expect_steady_gauge",
+    "find_working_point",
+    "fit_through_wander",
+    "low_lines",
+    "mean_of_stretches",
+    "steady_stretches",
+    "stretches_at_working_point",
+    "torque_of_mean_load",
+    "working_point_of_test",
+    "working_voltage",
+    "zero_frequency_ratio",
+]

@@ -1,0 +1,180 @@
+"""The line from set-point voltage to engine speed, through the steady levels (thesis eq. 3.2).
+
+The demand wanders inside the engine's control unit, and the load moves the speed, both as slowly as a level is long:
+the line is fitted through a wander of which nothing is known beforehand (``_wander.py``). At the working voltage not
+only the levels count: over whole periods of a sine the mean speed is that of the mean voltage, since the governor
+integrates its error. The value of the line at the working voltage is the speed of the working point.
+"""
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import SignalError
+from shaftprint.signals._gaps import EVERYTHING, Coverage
+from shaftprint.signals._signals import SetPointCalibration
+from shaftprint.signals.levels._wander import fit_through_wander
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign
+    from shaftprint.signals.levels._steady import SteadyStretch
+
+# Stretches whose voltages are this near to each other, as a share of the range, are one level.
+_SAME_LEVEL = 0.02
+_SAME_LEVEL_V = 0.05
+_LEAST_RELATIVE_STD = 1e-5
+# Stretches and sines are cut into windows of this length [s], longer where there would be too many of them and shorter
+# where there would be too few.
+_WINDOWS_S = (10.0, 5.0, 2.5)
+_MOST_WINDOWS, _FEWEST_WINDOWS = 150, 12
+
+
+def calibrate(stretches: "tuple[SteadyStretch, ...]", *, channel: str) -> SetPointCalibration:
+    """Return the line through the steady levels the thesis' way: by least squares, each level counting the same.
+
+    Parameters
+    ----------
+    stretches
+        Where set point and speed stand still.
+    channel
+        Name of the set-point channel, for messages.
+
+    Raises
+    ------
+    SignalError
+        If there are fewer than two levels.
+    """
+    volts, speed, deviation = _two_levels(stretches, channel)
+    design = np.column_stack([volts, np.ones(volts.size)])
+    (slope, intercept), *_ = np.linalg.lstsq(design, speed, rcond=None)
+    misfit = float(np.sum((slope * volts + intercept - speed) ** 2))
+    variance = misfit / (volts.size - 2) if volts.size > 2 else float(np.mean(deviation**2))
+    covariance = variance * np.linalg.inv(design.T @ design)
+    return SetPointCalibration(
+        slope_rev_s_per_v=float(slope),
+        intercept_rev_s=float(intercept),
+        covariance=frozen_float(covariance),
+        level_v=frozen_float(volts),
+        level_rev_s=frozen_float(speed),
+        level_std_rev_s=frozen_float(deviation),
+    )
+
+
+def calibrate_through_wander(
+    stretches: "tuple[SteadyStretch, ...]",
+    campaign: "Campaign",
+    *,
+    about_v: float,
+    set_point_v: FloatArray,
+    speed_rev_s: FloatArray,
+    rate_hz: float,
+    start_s: float,
+    channel: str,
+    coverage: Coverage = EVERYTHING,
+) -> tuple[SetPointCalibration, float, float]:
+    """Return the line through steady levels and sines, its speed at the working voltage and that one's deviation.
+
+    Parameters
+    ----------
+    stretches
+        Where set point and speed stand still.
+    campaign
+        Says where the sines are.
+    about_v
+        The working voltage [V].
+    set_point_v, speed_rev_s
+        Set point and speed on the grid, shape (samples,).
+    rate_hz, start_s
+        The grid.
+    channel
+        Name of the set-point channel, for messages.
+    coverage
+        Says where the gaps are.
+
+    Raises
+    ------
+    SignalError
+        If there are fewer than two levels.
+    """
+    level_v, level_rev_s, level_std = _two_levels(stretches, channel)
+    total = sum(stretch.duration_s for stretch in stretches) + sum(sine.window_s for sine in campaign.sines)
+    for length_s in (max(_WINDOWS_S[0], total / _MOST_WINDOWS), *_WINDOWS_S[1:]):
+        windows = [
+            (round((begin - start_s) * rate_hz), round((end - start_s) * rate_hz))
+            for begin, end in _windows(stretches, campaign, length_s)
+            if not coverage.missing(begin, end)
+        ]
+        windows = [(first, stop) for first, stop in windows if first >= 0 and stop <= speed_rev_s.size]
+        if len(windows) >= _FEWEST_WINDOWS:
+            break
+    volts, speed = (
+        np.array([values[first:stop].mean() for first, stop in windows]) for values in (set_point_v, speed_rev_s)
+    )
+    begins, ends = np.array(windows).T / rate_hz
+    columns = np.column_stack([np.ones(volts.size), volts - about_v])
+    line = fit_through_wander(speed, columns, begins, ends)
+    # from (speed at the working voltage, slope) to (slope, intercept)
+    turn = np.array([[0.0, 1.0], [1.0, -about_v]])
+    slope, intercept = turn @ line.value
+    calibration = SetPointCalibration(
+        slope_rev_s_per_v=float(slope),
+        intercept_rev_s=float(intercept),
+        covariance=frozen_float(turn @ line.covariance @ turn.T),
+        level_v=frozen_float(level_v),
+        level_rev_s=frozen_float(level_rev_s),
+        level_std_rev_s=frozen_float(level_std),
+    )
+    return calibration, float(line.value[0]), float(line.std[0])
+
+
+def _windows(
+    stretches: "tuple[SteadyStretch, ...]", campaign: "Campaign", length_s: float
+) -> list[tuple[float, float]]:
+    """Return begin and end of every window [s], in order: parts of stretches, and whole periods of sines."""
+    found = []
+    for stretch in stretches:
+        borders = np.linspace(stretch.start_s, stretch.stop_s, max(int(stretch.duration_s / length_s), 1) + 1)
+        found += list(pairwise(borders.tolist()))
+    for sine in campaign.sines:
+        together = min(max(int(length_s * sine.frequency_hz), 1), sine.periods)
+        borders = sine.settled_s + np.arange(0, sine.periods + 1, together) / sine.frequency_hz
+        found += list(pairwise(borders.tolist()))
+    return sorted(found)
+
+
+def _two_levels(stretches: "tuple[SteadyStretch, ...]", channel: str) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return voltage, speed and standard deviation of the speed of each level; two at least."""
+    volts, speed, deviation = _levels(stretches)
+    if volts.size < 2:
+        found = ", ".join(f"{level:.3f} V" for level in volts) or "none"
+        raise SignalError(
+            f"channel {channel}: expected at least two steady levels of the set point to find its "
+            f"line, found {found}; record a staircase with two or more levels of at least 30 s."
+        )
+    return volts, speed, deviation
+
+
+def _levels(stretches: "tuple[SteadyStretch, ...]") -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return voltage, speed and standard deviation of the speed of each level, ascending."""
+    if not stretches:
+        return np.empty(0), np.empty(0), np.empty(0)
+    ordered = sorted(stretches, key=lambda stretch: stretch.set_point_v)
+    volts = np.array([stretch.set_point_v for stretch in ordered])
+    speed = np.array([stretch.speed_rev_s for stretch in ordered])
+    deviation = np.array([stretch.speed_std_rev_s for stretch in ordered])
+    duration = np.array([stretch.duration_s for stretch in ordered])
+    apart = max(_SAME_LEVEL * float(np.ptp(volts)), _SAME_LEVEL_V)
+    borders = np.flatnonzero(np.diff(volts) > apart) + 1
+    found = []
+    for group in np.split(np.arange(volts.size), borders):
+        weight = duration[group] / duration[group].sum()
+        mean = float(weight @ speed[group])
+        spread = float(np.sqrt(np.sum((weight * deviation[group]) ** 2)))
+        if group.size > 1:
+            between = float(weight @ (speed[group] - mean) ** 2) / (group.size - 1)
+            spread = max(spread, float(np.sqrt(between)))
+        found.append((float(weight @ volts[group]), mean, max(spread, _LEAST_RELATIVE_STD * mean)))
+    level_v, level_rev_s, level_std = np.array(found).T
+    return level_v, level_rev_s, level_std

@@ -1,0 +1,182 @@
+"""The steady state about which everything is normalised (thesis table 3.2)."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import SignalError
+from shaftprint.signals._signals import WorkingPoint
+from shaftprint.signals.levels._load import torque_of_mean_load
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign
+    from shaftprint.signals._gaps import Coverage
+    from shaftprint.signals.levels._steady import SteadyStretch
+    from shaftprint.vessel import Vessel
+
+# Voltages this near to the offset of the campaign are the working voltage.
+_NEAR_V = 0.25
+# A working point further off than this factor is not the load of another day, but a scale.
+_FAR = 1.5
+
+
+def deviation(values: FloatArray, reference: float) -> FloatArray:
+    """Return the normalised deviation ``(x - x_0) / x_0`` [-], shape of ``values``."""
+    return (values - reference) / reference
+
+
+def stretches_at_working_point(
+    stretches: "tuple[SteadyStretch, ...]", campaign: "Campaign", *, channel: str
+) -> "tuple[SteadyStretch, ...]":
+    """Return the quiet stretches between the tests at the working voltage.
+
+    Where there is no quiet stretch between tests, levels of staircases at the working voltage serve.
+
+    Parameters
+    ----------
+    stretches
+        Where set point, speed and torque stand still.
+    campaign
+        Says which voltage is the working voltage and when tests are made.
+    channel
+        Name of the set-point channel, for messages.
+
+    Raises
+    ------
+    SignalError
+        If nothing stands still within 0.25 V of the working voltage.
+    """
+    near = [stretch for stretch in stretches if abs(stretch.set_point_v - campaign.offset_v) < _NEAR_V]
+    if not near:
+        found = ", ".join(f"{stretch.set_point_v:.2f} V" for stretch in stretches) or "none"
+        raise SignalError(
+            f"channel {channel}: expected a quiet stretch of at least 15 s near the working voltage "
+            f"of {campaign.offset_v:g} V, found steady levels at {found}; check offset_v in the "
+            "campaign file."
+        )
+    return tuple(stretch for stretch in near if _between_tests(stretch, campaign)) or tuple(near)
+
+
+def find_working_point(used: "tuple[SteadyStretch, ...]") -> WorkingPoint:
+    """Return the mean of the stretches at the working point (see ``stretches_at_working_point``), the thesis' way.
+
+    The standard deviations are those of the means, from the scatter between stretches; with a single stretch from the
+    scatter within it. They are too small where the load wanders more slowly than the stretches follow each other.
+    """
+    weight = np.array([stretch.duration_s for stretch in used])
+    speed, speed_std = mean_of_stretches(
+        [stretch.speed_rev_s for stretch in used],
+        [stretch.speed_std_rev_s for stretch in used],
+        weight,
+    )
+    torque, torque_std = mean_of_stretches(
+        [stretch.torque_nm for stretch in used],
+        [stretch.torque_std_nm for stretch in used],
+        weight,
+    )
+    return WorkingPoint(
+        engine_speed_rev_s=speed,
+        shaft_torque_nm=torque,
+        engine_speed_std_rev_s=speed_std,
+        shaft_torque_std_nm=torque_std,
+        set_point_v=working_voltage(used),
+        load_std=float(np.hypot(torque_std / torque, 2.0 * speed_std / speed)),
+    )
+
+
+def working_voltage(used: "tuple[SteadyStretch, ...]") -> float:
+    """Return the mean voltage of the stretches at the working point [V]."""
+    weight = np.array([stretch.duration_s for stretch in used])
+    return mean_of_stretches([stretch.set_point_v for stretch in used], [0.0] * len(used), weight)[0]
+
+
+def working_point_of_test(
+    speed_rev_s: FloatArray,
+    torque_nm: FloatArray,
+    *,
+    at_v: float,
+    at: tuple[float, float],
+    rate_hz: float,
+    start_s: float,
+    coverage: "Coverage",
+) -> WorkingPoint:
+    """Return the working point under the mean load of the whole recording.
+
+    Parameters
+    ----------
+    speed_rev_s, torque_nm
+        Engine speed and shaft torque on the grid, shape (samples,).
+    at_v
+        The working voltage [V].
+    at
+        Speed of the set-point line there, with its standard deviation [rev/s].
+    rate_hz, start_s
+        The grid.
+    coverage
+        Says where the gaps are.
+    """
+    speed, speed_std = at
+    torque, torque_std = torque_of_mean_load(
+        speed_rev_s, torque_nm, about_rev_s=speed, rate_hz=rate_hz, start_s=start_s, coverage=coverage
+    )
+    load_std = torque_std / abs(torque)
+    return WorkingPoint(
+        engine_speed_rev_s=speed,
+        shaft_torque_nm=torque,
+        engine_speed_std_rev_s=speed_std,
+        shaft_torque_std_nm=abs(torque) * float(np.hypot(load_std, 2.0 * speed_std / speed)),
+        set_point_v=at_v,
+        load_std=load_std,
+    )
+
+
+def expect_plausible(point: WorkingPoint, vessel: "Vessel") -> tuple[str, ...]:
+    """Return what is strange about a working point beside the one that the vessel file expects.
+
+    Raises
+    ------
+    SignalError
+        If the torque is not positive: nothing can be taken relative to it.
+    """
+    sensor, expected = vessel.sensors.shaft_torque, vessel.working_point.shaft_torque_nm
+    torque = point.shaft_torque_nm
+    if not torque > 0.0:
+        raise SignalError(
+            f"channel {sensor.channel}: expected a positive mean torque at the working point, found {torque:.4g} N m; "
+            "turn the sign of scale_nm_per_unit in the vessel file, or correct zero_nm there."
+        )
+    if max(torque / expected, expected / torque) < _FAR:
+        return ()
+    return (
+        f"The mean torque of {sensor.channel} at the working point is {torque:.4g} N m; the vessel file expects "
+        f"{expected:.4g} N m. Check scale_nm_per_unit there, or shaft_torque_nm of its working point.",
+    )
+
+
+def _between_tests(stretch: "SteadyStretch", campaign: "Campaign") -> bool:
+    return all(
+        stretch.stop_s <= excitation.start_s or stretch.start_s >= excitation.stop_s
+        for excitation in campaign.excitations
+    )
+
+
+def mean_of_stretches(values: list[float], deviations: list[float], weight: FloatArray) -> tuple[float, float]:
+    """Return the weighted mean of stretches and its standard deviation.
+
+    Parameters
+    ----------
+    values, deviations
+        Mean of each stretch and its standard deviation.
+    weight
+        Weight of each stretch, shape (stretches,).
+    """
+    share = weight / weight.sum()
+    found = np.array(values)
+    mean = float(share @ found)
+    if found.size == 1:
+        return mean, deviations[0]
+    # effective number of stretches: long ones count more
+    effective = 1.0 / float(np.sum(share**2))
+    variance = float(share @ (found - mean) ** 2) / max(effective - 1.0, 1e-9)
+    return mean, float(np.sqrt(variance))

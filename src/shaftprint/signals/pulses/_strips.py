@@ -1,0 +1,187 @@
+"""Angles between the reflection strips of a shaft, found from the pulses themselves.
+
+At constant speed the interval from one strip to the next is to the time of one revolution as the angle
+is to a full turn (thesis "Fingerprinting II", eqs 3.3-3.5). Here every steady revolution counts, and the
+revolution is centred on the interval, so that a constant acceleration cancels.
+"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, FloatArray, IntArray, frozen_float
+from shaftprint.errors import SignalError
+from shaftprint.signals._signals import StripAngles
+
+if TYPE_CHECKING:
+    from shaftprint.signals.pulses._pulses import PulseTrain
+
+# A revolution is steady when its neighbours differ by less than this share.
+_STEADY = 0.01
+_FEWEST_REVOLUTIONS = 20
+_CLIP = 4.0
+
+# A strip is told from its neighbours when its angle fits this many times better.
+_CLEARLY_BETTER = 4.0
+
+
+def find_strips(train: "PulseTrain", strips: int, *, channel: str) -> StripAngles:
+    """Return the angles from strip to strip, beginning at the strip of pulse number 0.
+
+    Parameters
+    ----------
+    train
+        Numbered pulses.
+    strips
+        Pulses a revolution, at least 2.
+    channel
+        Name of the channel, for the result and for messages.
+
+    Raises
+    ------
+    SignalError
+        If there are fewer than 20 steady revolutions.
+    """
+    share, steady = _interval_shares(train, strips)
+    strip = train.number[:-1] % strips
+    angle, deviation = np.empty(strips), np.empty(strips)
+    for k in range(strips):
+        found = share[steady & (strip == k)]
+        if found.size < _FEWEST_REVOLUTIONS:
+            raise SignalError(
+                f"channel {channel}: expected at least {_FEWEST_REVOLUTIONS} steady revolutions "
+                f"to find the angles of its {strips} strips, found {found.size}."
+            )
+        angle[k], deviation[k] = _clipped_mean(found)
+    # the angles of one turn: what is left over is shared in proportion
+    total = angle.sum()
+    return StripAngles(channel=channel, angle_rev=frozen_float(angle / total), std_rev=frozen_float(deviation / total))
+
+
+def revolutions(train: "PulseTrain", angles: FloatArray) -> FloatArray:
+    """Return the angle of the shaft at each pulse since pulse number 0 [rev], shape (pulses,)."""
+    strips = angles.size
+    places = np.concatenate([[0.0], np.cumsum(angles[:-1])])
+    turned: FloatArray = train.number // strips + places[train.number % strips]
+    return turned
+
+
+def renumbered(train: "PulseTrain", strips: int) -> tuple[IntArray, tuple[float, ...]]:
+    """Return the pulse numbers, mended where the pattern of the strips shows a miscount.
+
+    Over a gap the number of missing pulses is a rounded guess. The pattern of uneven strips behind it
+    tells the number exactly, up to whole revolutions.
+
+    Returns
+    -------
+    number
+        Shape (pulses,).
+    position
+        Where a gap was recounted [samples].
+    """
+    number = train.number.copy()
+    share, steady = _interval_shares(train, strips)
+    gaps = np.flatnonzero(np.diff(number) > 1)
+    ends = np.concatenate([gaps, [number.size - 1]])
+    starts = np.concatenate([[0], gaps + 1])
+    longest = int(np.argmax(ends - starts))
+    reference = _pattern(share, steady, number, slice(starts[longest], ends[longest]), strips)
+    mended = []
+    # outwards from the longest stretch: each gap against the stretch nearer to it
+    for stretch in (*range(longest + 1, starts.size), *range(longest - 1, -1, -1)):
+        inside = slice(starts[stretch], ends[stretch])
+        shift = _shift(reference, _pattern(share, steady, number, inside, strips))
+        if shift == 0:
+            continue
+        if stretch > longest:
+            number[starts[stretch] :] += shift
+            mended.append(float(train.position[gaps[stretch - 1]]))
+        else:
+            number[: ends[stretch] + 1] += shift
+            mended.append(float(train.position[gaps[stretch]]))
+    return number - number[0], tuple(sorted(mended))
+
+
+def unplaced_stretches(train: "PulseTrain", strips: int, gaps: IntArray) -> list[tuple[float, float]]:
+    """Return the stretches behind gaps that are too short to show at which strip they begin.
+
+    Parameters
+    ----------
+    train
+        Numbered pulses.
+    strips
+        Pulses a revolution.
+    gaps
+        Numbers of the intervals over which the count is a guess, shape (gaps,), ascending.
+
+    Returns
+    -------
+    First and last pulse of each [samples].
+    """
+    share, steady = _interval_shares(train, strips)
+    borders = np.flatnonzero(np.diff(train.number) > 1)
+    starts, ends = np.concatenate([[0], borders + 1]), np.concatenate([borders, [train.number.size - 1]])
+    longest = int(np.argmax(ends - starts))
+    found = []
+    for gap in gaps.tolist():
+        behind = int(np.searchsorted(starts, gap, side="right"))
+        # behind, as seen from the longest stretch, at which the count begins
+        stretch = behind if behind > longest else behind - 1
+        inside = slice(starts[stretch], ends[stretch])
+        if not np.all(np.isfinite(_pattern(share, steady, train.number, inside, strips))):
+            found.append((float(train.position[starts[stretch]]), float(train.position[ends[stretch]])))
+    return found
+
+
+def _interval_shares(train: "PulseTrain", strips: int) -> tuple[FloatArray, BoolArray]:
+    """Return each interval as a share of the revolution around it, and where that is steady."""
+    interval = np.diff(train.position)
+    half, odd = strips // 2, strips % 2 == 1
+    weights = np.ones(strips if odd else strips + 1)
+    if not odd:
+        weights[0] = weights[-1] = 0.5
+    steady = np.zeros(interval.size, dtype=np.bool_)
+    share = np.full(interval.size, np.nan)
+    if interval.size < 4 * strips:
+        return share, steady
+    turn = np.convolve(interval, weights, mode="valid")
+    inside = slice(half, half + turn.size)
+    share[inside] = interval[inside] / turn
+    whole = np.diff(train.number) == 1
+    changed = np.full(turn.size, np.inf)
+    changed[strips:-strips] = np.abs(turn[2 * strips :] / turn[: -2 * strips] - 1.0)
+    complete = np.convolve(whole, np.ones(4 * half + 1), mode="same") > 4 * half
+    steady[inside] = (changed < _STEADY) & complete[inside]
+    return share, steady
+
+
+def _clipped_mean(values: FloatArray) -> tuple[float, float]:
+    """Return the mean of the values near the median and the standard deviation of that mean."""
+    for _ in range(3):
+        median = np.median(values)
+        spread = 1.4826 * np.median(np.abs(values - median))
+        values = values[np.abs(values - median) <= max(_CLIP * spread, 1e-12)]
+    # neighbouring intervals share an edge; seen from one strip a revolution apart they are independent
+    return float(values.mean()), float(values.std(ddof=1) / np.sqrt(values.size))
+
+
+def _pattern(share: FloatArray, steady: BoolArray, number: IntArray, inside: slice, strips: int) -> FloatArray:
+    """Return the mean share of each strip within a stretch, not a number where there is none."""
+    kept = steady[inside]
+    strip = number[:-1][inside][kept] % strips
+    count = np.bincount(strip, minlength=strips)
+    total = np.bincount(strip, weights=share[inside][kept], minlength=strips)
+    return np.where(count > 0, total / np.maximum(count, 1), np.nan)
+
+
+def _shift(reference: FloatArray, found: FloatArray) -> int:
+    """Return by how many strips a stretch is miscounted, between -strips/2 and strips/2."""
+    strips = reference.size
+    if not np.all(np.isfinite(reference)) or not np.all(np.isfinite(found)):
+        return 0
+    # a stretch counted one too low shows strip k where the reference has strip k + 1
+    errors = np.array([np.sum((np.roll(found, k) - reference) ** 2) for k in range(strips)])
+    best = int(np.argmin(errors))
+    if errors[best] * _CLEARLY_BETTER > errors[0]:
+        return 0
+    return best if best <= strips // 2 else best - strips

@@ -1,0 +1,62 @@
+"""Test lines: their windows, the fit of their sines, the noise beside them, what of ship or logger shows in them."""
+
+from shaftprint.spectra.lines._bin_selection import ExactBin, HighestPeak
+from shaftprint.spectra.lines._clock_check import clock_reasons
+from shaftprint.spectra.lines._cross_term import without_cross_term
+from shaftprint.spectra.lines._harmonics import Harmonics, collect_harmonics
+from shaftprint.spectra.lines._line_fit import LineFit, SineMethod, WindowSamples, cut_window
+from shaftprint.spectra.lines._line_measurement import LineMeasurement, measure_line, strongest_frequency_hz
+from shaftprint.spectra.lines._load_drift import LoadDrift, load_drift
+from shaftprint.spectra.lines._message_line import cut_messages
+from shaftprint.spectra.lines._modulation import without_modulation
+from shaftprint.spectra.lines._noise import (
+    Neighbours,
+    ShaftRelation,
+    equivalent_samples,
+    local_slope,
+    residual_spectrum,
+)
+from shaftprint.spectra.lines._set_point_check import (
+    amplitude_remark,
+    check_frequency_unit,
+    check_set_point,
+    shape_reasons,
+)
+from shaftprint.spectra.lines._signal_to_noise import SignalToNoise, signal_to_noise
+from shaftprint.spectra.lines._sine_fit import WholePeriodSine
+from shaftprint.spectra.lines._windows import Window, plan_windows, whole_period_window
+
+__all__ = [
+    "ExactBin",
+    "Harmonics",
+    "HighestPeak",
+    "LineFit",
+    "LineMeasurement",
+    "LoadDrift",
+    "Neighbours",
+    "ShaftRelation",
+    "SignalToNoise",
+    "SineMethod",
+    "WholePeriodSine",
+    "Window",
+    "WindowSamples",
+    "amplitude_remark",
+    "check_frequency_unit",
+    "check_set_point",
+    "clock_reasons",
+    "collect_harmonics",
+    "cut_messages",
+    "cut_window",
+    "equivalent_samples",
+    "load_drift",
+    "local_slope",
+    "measure_line",
+    "plan_windows",
+    "residual_spectrum",
+    "shape_reasons",
+    "signal_to_noise",
+    "strongest_frequency_hz",
+    "whole_period_window",
+    "without_cross_term",
+    "without_modulation",
+]

@@ -1,0 +1,165 @@
+"""What the sines themselves say of the clocks: each carries its frequency in set point, speed and torque alike.
+
+Over a window of ``i`` periods a frequency is known to a hundredth of a period and less, so that a line of 50 periods
+tells a clock to 1e-4. If the set point is off by one ratio at all lines, so is the clock of the recording (or all of
+the campaign file); if speed or torque differ from the set point, so does the clock of that channel. A single line that
+is off is a wrong entry of the campaign file, of which the remark of that line tells.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.reasons import Reason
+
+if TYPE_CHECKING:
+    from shaftprint.spectra.lines._line_fit import WindowSamples
+    from shaftprint.spectra.lines._line_measurement import LineMeasurement
+
+# A window with fewer periods does not tell its frequency apart from drift and image.
+_FEWEST_PERIODS = 6
+_FEWEST_LINES = 3
+# Largest error of a clock that changes no number by more than its deviation; loggers keep to a tenth of it.
+_TOLERANCE = 5e-4
+_DEVIATIONS = 5.0
+# Deviation of a frequency in bins: the Cramer-Rao bound sqrt(6) / (2 pi) for white noise, with half as much again for a
+# Hann window and noise that is not white; and what harmonics and drift leave of it.
+_BINS, _LEAST_BINS = 0.6, 0.003
+_AGREE = 2.0 / 3.0
+_SAMPLES_A_PERIOD = 20.0
+_PERCENT = 100.0
+
+
+def clock_reasons(
+    cuts: "Sequence[WindowSamples]", lines: "Sequence[LineMeasurement]", *, channels: Mapping[str, str]
+) -> tuple[Reason, ...]:
+    """Return a reason for each clock that the frequencies of the sines contradict.
+
+    Parameters
+    ----------
+    cuts, lines
+        Samples and measurement of every line; those with few periods are passed over.
+    channels
+        Name of each channel, by what a reader calls it; the first is what was excited.
+    """
+    samples = {cut.window.line: cut for cut in cuts}
+    told = [line for line in lines if line.window.periods >= _FEWEST_PERIODS]
+    if len(told) < _FEWEST_LINES:
+        return ()
+    names = list(channels.values())
+    found = np.array([_frequencies(samples[line.window.line], line, names) for line in told])
+    ratio, std = found[:, 0], found[:, 1]
+    planned = np.array([line.window.frequency_hz for line in told])
+    whole = _common_ratio(ratio[:, 0] / planned)
+    reasons = []
+    if whole is not None and abs(whole - 1.0) > _TOLERANCE:
+        reasons.append(_recording(whole))
+    for place, name in enumerate(channels):
+        if place:
+            spread = np.hypot(std[:, place], std[:, 0])
+            own = _weighted(ratio[:, place] / ratio[:, 0] - 1.0, spread)
+            if own is not None and abs(own) > _TOLERANCE:
+                reasons.append(_channel(name, own))
+    return tuple(reasons)
+
+
+def _recording(ratio: float) -> Reason:
+    return Reason(
+        kind="recording clock",
+        sentence=(
+            f"The clock of the recording is in doubt: all sines of the set point run {_PERCENT * (ratio - 1.0):+.2f} % "
+            "beside the frequencies of the campaign file; check the sample rate that the file declares, or all "
+            "frequency_hz of the campaign file."
+        ),
+    )
+
+
+def _channel(name: str, share: float) -> Reason:
+    return Reason(
+        kind="channel clock",
+        where=name,
+        sentence=(
+            f"The clock of {name} is in doubt: its sines run {_PERCENT * share:+.2f} % beside those of the set point; "
+            "check the sample rate that the file declares for its channel."
+        ),
+    )
+
+
+def _common_ratio(ratio: FloatArray) -> float | None:
+    """Return the ratio on which two thirds of the lines agree; None where they do not.
+
+    The noise of a set point is far below what a window resolves, and what is found beside a line whose frequency is
+    wrong is not noise: that the lines agree is the better measure.
+    """
+    known = ratio[np.isfinite(ratio)]
+    if known.size < _FEWEST_LINES:
+        return None
+    middle = float(np.median(known))
+    return middle if np.mean(np.abs(known - middle) < _TOLERANCE) >= _AGREE else None
+
+
+def _weighted(offset: FloatArray, std: FloatArray) -> float | None:
+    """Return the mean offset where it stands out of its deviation; None where it does not."""
+    known = np.isfinite(offset) & np.isfinite(std)
+    if np.count_nonzero(known) < _FEWEST_LINES:
+        return None
+    weight = std[known] ** -2.0
+    mean = float(weight @ offset[known] / weight.sum())
+    agree = np.abs(offset[known] - mean) < np.maximum(_DEVIATIONS * std[known], 0.5 * abs(mean))
+    return mean if abs(mean) > _DEVIATIONS * weight.sum() ** -0.5 and agree.mean() >= _AGREE else None
+
+
+def _frequencies(cut: "WindowSamples", line: "LineMeasurement", names: Sequence[str]) -> FloatArray:
+    """Return frequency [Hz] and its relative deviation of a line in some channels, shape (2, channels)."""
+    found = np.empty((2, len(names)))
+    noise = line.noise.covariance.diagonal().real
+    for row, name in enumerate(names):
+        found[0, row] = sine_frequency_hz(cut.of(name), cut.rate_hz, cut.window.frequency_hz)
+        share = np.sqrt(line.of(noise, name)) / max(abs(line.of(line.amplitude, name)), np.finfo(np.float64).tiny)
+        found[1, row] = np.hypot(_BINS * share, _LEAST_BINS) / cut.window.periods
+    return found
+
+
+def sine_frequency_hz(values: FloatArray, rate_hz: float, near_hz: float) -> float:
+    """Return the frequency of a sine, a few bins from where it is expected.
+
+    Highest point of the Hann-windowed transform, by parabolas through its logarithm with ever smaller steps.
+
+    Parameters
+    ----------
+    values
+        The record, shape (samples,).
+    rate_hz
+        Its sample rate [Hz].
+    near_hz
+        Expected frequency [Hz].
+
+    Returns
+    -------
+    The frequency [Hz]; not a number where the record has no maximum there.
+    """
+    block = max(int(rate_hz / (_SAMPLES_A_PERIOD * near_hz)), 1)
+    count = values.size // block
+    means = values[: count * block].reshape(count, block).mean(axis=1)
+    time = np.arange(count) * (block / rate_hz)
+    bin_hz = rate_hz / (count * block)
+    tapered = (means - means.mean()) * np.hanning(count)
+
+    def magnitude(frequency: FloatArray) -> FloatArray:
+        return np.asarray(np.abs(np.exp(-2j * np.pi * np.outer(frequency, time)) @ tapered))
+
+    reach = min(6.0, 0.3 * near_hz / bin_hz)
+    coarse = near_hz + bin_hz * np.arange(-reach, reach + 0.25, 0.5)
+    place = int(np.argmax(magnitude(coarse)))
+    if place in (0, coarse.size - 1):
+        return float("nan")
+    frequency = float(coarse[place])
+    for step in (0.5, 0.1, 0.02):
+        left, top, right = np.log(magnitude(frequency + step * bin_hz * np.arange(-1.0, 2.0)))
+        curvature = left - 2.0 * top + right
+        if not curvature < 0.0:
+            return float("nan")
+        frequency += float(np.clip(0.5 * (left - right) / curvature, -1.0, 1.0)) * step * bin_hz
+    return frequency

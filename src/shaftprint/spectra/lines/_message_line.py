@@ -1,0 +1,184 @@
+"""What a channel on a clock of its own, such as the fuel rack, shows of a line: at the times of its own messages.
+
+A sine fitted to samples at their own times needs neither a grid nor a hold; where a logger has held the messages, what
+holding does to a sine is divided out. Noise is seen at the same frequencies as that of the other channels, with phases
+from the same instant, so that their covariance is known too.
+"""
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import ComplexArray
+from shaftprint.spectra.lines._line_fit import LineFit, SineMethod, WindowSamples, cut_window
+from shaftprint.spectra.lines._modulation import without_modulation
+from shaftprint.spectra.lines._noise import ShaftRelation, line_noise
+from shaftprint.spectra.lines._signal_to_noise import NEIGHBOUR_BINS, LineVariances, line_variances
+
+if TYPE_CHECKING:
+    from shaftprint.signals import MessageSignal
+    from shaftprint.spectra.lines._windows import Window
+
+# Taking sidebands out leaves less, or by chance a little more.
+_ENLARGED = 2.0
+
+# Samples nearer to each other than this part of a period count as one.
+_PHASES = 1000
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class MessageWindow:
+    """Messages inside one window, or why they cannot be measured there."""
+
+    samples: WindowSamples | None
+    """Values over the working point, one channel; nothing where the line cannot be measured."""
+    gain: complex
+    """What averaging and holding make of a sine of amplitude 1."""
+    step: float
+    """Step of the channel over the working point."""
+    count: float
+    """Number of messages in the window."""
+    remark: str
+    """Why the line cannot be measured; empty where it can."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class MessageLine:
+    """What the messages tell of one line, over their working point."""
+
+    amplitude: complex
+    """Complex amplitude of the line."""
+    covariance: ComplexArray
+    """``E[a_m a^H]`` of its noise with that of every other channel and, last, with itself, shape (channels + 1,)."""
+    variances: LineVariances
+    """Variances for the signal-to-noise ratio, of the one channel."""
+
+
+def cut_messages(signal: "MessageSignal", window: "Window") -> MessageWindow:
+    """Cut a window out of a channel on a clock of its own.
+
+    Parameters
+    ----------
+    signal
+        The signal.
+    window
+        The window.
+
+    Returns
+    -------
+    The values of the window with what the channel does to them; no values above 0.45 of the rate of the messages, where
+    the channel does not cover the window and where it stands still.
+    """
+    frequency = window.frequency_hz
+    result = MessageWindow(
+        samples=None,
+        gain=signal.gain(frequency),
+        step=signal.resolution / signal.reference,
+        count=window.duration_s / signal.cycle_s,
+        remark="",
+    )
+    highest = signal.highest_hz
+    if frequency > highest:
+        return replace(
+            result,
+            remark=f"{signal.name} is not measured: {frequency:g} Hz is above {highest:g} Hz, what messages show",
+        )
+    missing = signal.coverage.missing(window.start_s, window.stop_s)
+    if missing:
+        return replace(result, remark=f"{signal.name} is not measured: {missing}")
+    cut = cut_window(
+        window, {signal.name: signal.values / signal.reference}, rate_hz=signal.rate_hz, start_s=signal.start_s
+    )
+    if cut is None:
+        span = f"{signal.start_s:.1f} to {signal.stop_s:.1f} s"
+        return replace(
+            result, remark=f"{signal.name} is not measured: the window is not inside {span}, when it was logged"
+        )
+    if np.ptp(cut.values) == 0.0:
+        return replace(result, remark=f"{signal.name} is not measured: it moves by less than the step of its channel")
+    return replace(result, samples=cut)
+
+
+def measure_messages(
+    messages: MessageWindow, samples: WindowSamples, method: SineMethod, spectrum: ComplexArray, relation: ShaftRelation
+) -> MessageLine | None:
+    """Measure one line in the messages, with their noise and that of the other channels.
+
+    Parameters
+    ----------
+    messages
+        The messages inside the window.
+    samples
+        The other channels inside the window.
+    method
+        The way to measure the sine.
+    spectrum
+        Fourier amplitudes of the residual of the other channels, shape (channels, bins).
+    relation
+        How the torque among them goes with the speed.
+
+    Returns
+    -------
+    Amplitude and noise; nothing where the line cannot be measured.
+    """
+    if messages.samples is None:
+        return None
+    fit = method.fit(messages.samples)
+    own = _residual_at_bins(fit, samples, spectrum.shape[1])
+    together = np.concatenate([spectrum, own])
+    cleaned = without_modulation(together, samples.of("M_s"), relation, periods=samples.window.periods)
+    # a torque without noise has no slow changes to look for in them: what was found then is rounding, enlarged
+    if np.vdot(cleaned[-1], cleaned[-1]).real > _ENLARGED * np.vdot(own, own).real:
+        cleaned = together
+    noise = line_noise(cleaned, periods=samples.window.periods, relation=relation)
+    amplitude = complex(fit.amplitude[0, 0] / messages.gain)
+    covariance = noise.covariance[-1] / messages.gain
+    seen = float(noise.covariance[-1, -1].real) / abs(messages.gain) ** 2
+    covariance[-1] = _with_steps(seen, messages, fit, abs(amplitude))
+    return MessageLine(
+        amplitude=amplitude,
+        covariance=covariance,
+        variances=line_variances(fit.amplitude[0], messages.samples.values, own, periods=samples.window.periods),
+    )
+
+
+def _residual_at_bins(fit: LineFit, samples: WindowSamples, bins: int) -> ComplexArray:
+    """Return the Fourier amplitudes of the residual at the bins of the other channels beside the line, else 0.
+
+    Phases count from the first sample of the other channels, as theirs do.
+    """
+    periods, count = samples.window.periods, samples.time_s.size
+    first, last = max(1, periods - NEIGHBOUR_BINS), min(bins - 1, periods + NEIGHBOUR_BINS)
+    turn = np.exp((-2j * np.pi * samples.rate_hz / count) * (fit.samples.time_s - samples.time_s[0]))
+    wave = turn**first
+    spectrum = np.zeros((1, bins), dtype=np.complex128)
+    for place in range(first, last + 1):
+        spectrum[0, place] = fit.residual[0] @ wave
+        wave *= turn
+    spectrum *= 2.0 / fit.samples.time_s.size
+    return spectrum
+
+
+def _with_steps(variance: float, messages: MessageWindow, fit: LineFit, amplitude: float) -> float:
+    """Return the noise variance ``E|a|^2`` of the line with all that the steps of the channel add.
+
+    Where noise moves the value from step to step, steps ``q`` are white noise of variance ``q^2 / 12``, seen beside the
+    line like any other. Where it does not, they distort the sine itself, which nothing beside the line shows: of a sine
+    of amplitude ``A`` in normal noise of deviation ``s`` the amplitude then errs by
+
+    ``sum_k (2 q / (pi k)) J_1(2 pi k A / q) exp(-2 pi^2 k^2 s^2 / q^2)``
+
+    (from Widrow and Kollar, "Quantization Noise", 2008), of which the mean square is taken with ``J_1(x)^2`` near
+    ``1 / (pi x)``: at ten steps and no noise half a per cent of the sine. Messages that meet the same few phases in
+    every period add the error of so few samples.
+    """
+    step = messages.step
+    white = step**2 / 3.0
+    noise = max(float(fit.residual.var()) - step**2 / 12.0, 0.0)
+    order = np.arange(1.0, 6.0)
+    left = np.exp(-4.0 * np.pi**2 * order**2 * noise / step**2)
+    distortion = 2.0 * step**3 / (np.pi**4 * max(amplitude, 0.25 * step)) * float((left / order**3).sum())
+    turns = fit.samples.time_s * fit.samples.window.frequency_hz
+    phases = np.unique(np.round(turns * _PHASES) % _PHASES).size
+    return max(variance, white / messages.count) + distortion + float(left[0]) * white / phases
