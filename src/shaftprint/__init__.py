@@ -51,6 +51,7 @@ _ROOMS = (
     "kernels",
     "limits",
     "models",
+    "normalisation",
     "propeller",
     "publication",
     "reasons",

@@ -14,6 +14,7 @@ from shaftprint import identify as identify
 from shaftprint import kernels as kernels
 from shaftprint import limits as limits
 from shaftprint import models as models
+from shaftprint import normalisation as normalisation
 from shaftprint import propeller as propeller
 from shaftprint import publication as publication
 from shaftprint import reasons as reasons

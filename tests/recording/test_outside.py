@@ -1,5 +1,6 @@
 """Readers from other packages, and a Dewesoft library that stands in for the one that needs Dewesoft's files."""
 
+import os
 import sys
 from pathlib import Path
 
@@ -8,7 +9,7 @@ import pytest
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording import Samples, read_recording, recording_from_arrays
-from shaftprint.recording.readers import _dewesoft, _outside
+from shaftprint.recording.readers import _outside
 
 # Names and signatures as in dwdatareader 1.3.0; DWIGetScaledSamples fills two arrays whose ctypes views it is given.
 STAND_IN = """
@@ -122,7 +123,7 @@ def test_arrays_that_are_no_channels_are_refused(native):
 def dewesoft(tmp_path, monkeypatch):
     """A folder in which the stand-in is found first, also by other processes."""
     (tmp_path / "dwdatareader.py").write_text(STAND_IN)
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.delitem(sys.modules, "dwdatareader", raising=False)
     return tmp_path
@@ -157,7 +158,7 @@ def test_a_library_that_ends_the_process_ends_in_a_sentence(dewesoft):
     path = dewesoft / "log.d7d"
     path.write_bytes(b"DEWE")
     with pytest.raises(RecordingError, match="Dewesoft's library refuses"):
-        _dewesoft.read(path)
+        read_recording(path)
 
 
 @pytest.mark.parametrize(("ending", "package"), [(".mf4", "asammdf"), (".tdms", "nptdms")])

@@ -11,11 +11,11 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Source
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._damage import told_as_damage
-from shaftprint.recording.readers._hdf5_open import expect_storage, is_hdf5, open_hdf5
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._native import has_mark
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._vectors import Vector, gather_vectors
+from shaftprint.recording.readers.hdf5_files import expect_storage, is_hdf5, open_hdf5
 
 NAME = "HDF5 or NetCDF-4"
 

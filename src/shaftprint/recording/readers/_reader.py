@@ -1,4 +1,4 @@
-"""What a reader of one file format looks like: a file of its own with a name and two functions."""
+"""What a reader of one file format looks like: a file or folder with a name and two functions."""
 
 from pathlib import Path
 from typing import Protocol

@@ -14,8 +14,9 @@ from shaftprint.recording._recording import Recording
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._hints import rate_hint
-from shaftprint.recording.readers._mat_v5_headers import MatHeader, headers_of
-from shaftprint.recording.readers._mat_variables import (
+from shaftprint.recording.readers._vectors import Vector
+from shaftprint.recording.readers.matlab._v5_headers import MatHeader, headers_of
+from shaftprint.recording.readers.matlab._variables import (
     MatVariables,
     cell_reason,
     gather_variables,
@@ -23,7 +24,6 @@ from shaftprint.recording.readers._mat_variables import (
     object_reason,
     sparse_reason,
 )
-from shaftprint.recording.readers._vectors import Vector
 
 NAME = "MATLAB v4 to v7"
 

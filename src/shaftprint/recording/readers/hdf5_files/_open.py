@@ -9,9 +9,9 @@ from typing import Any
 import h5py
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording.readers import _hdf5_probe
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
-from shaftprint.recording.readers._hdf5_outside import outside_of, stored_outside
+from shaftprint.recording.readers.hdf5_files import _probe
+from shaftprint.recording.readers.hdf5_files._references import outside_of, stored_outside
 
 _SIGNATURE = b"\x89HDF\r\n\x1a\n"
 # Blocks are unpacked whole; ours and MATLAB's have up to a few MB.
@@ -91,7 +91,7 @@ def expect_storage(path: Path, name: str, dataset: Any) -> None:
 
 def _expect_an_end(path: Path, what: str) -> None:
     """Refuse a file in which HDF5's library does not find back."""
-    program = [sys.executable, "-P", _hdf5_probe.__file__, str(path.resolve())]
+    program = [sys.executable, "-P", _probe.__file__, str(path.resolve())]
     done = subprocess.run(  # noqa: S603
         program,
         stdin=subprocess.DEVNULL,

@@ -11,9 +11,11 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Source
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._damage import told_as_damage
-from shaftprint.recording.readers._hdf5_open import expect_storage, open_hdf5
 from shaftprint.recording.readers._hints import rate_hint
-from shaftprint.recording.readers._mat_variables import (
+from shaftprint.recording.readers._opened import Opened
+from shaftprint.recording.readers._vectors import Vector
+from shaftprint.recording.readers.hdf5_files import expect_storage, open_hdf5
+from shaftprint.recording.readers.matlab._variables import (
     MatVariables,
     cell_reason,
     gather_variables,
@@ -21,8 +23,6 @@ from shaftprint.recording.readers._mat_variables import (
     object_reason,
     sparse_reason,
 )
-from shaftprint.recording.readers._opened import Opened
-from shaftprint.recording.readers._vectors import Vector
 
 NAME = "MATLAB v7.3"
 

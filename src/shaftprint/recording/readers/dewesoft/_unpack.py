@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from shaftprint.recording.readers._dewesoft_index import INDEX, UnpackedChannel
+from shaftprint.recording.readers.dewesoft._index import INDEX, UnpackedChannel
 
 _BLOCK = 262_144
 

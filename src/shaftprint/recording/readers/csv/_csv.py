@@ -18,16 +18,16 @@ from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._clock import SampleClock, on_clock, uniform_clock
-from shaftprint.recording.readers._csv_dates import dates, seconds_from
-from shaftprint.recording.readers._csv_header import (
+from shaftprint.recording.readers._epoch import from_second_zero
+from shaftprint.recording.readers._hints import rate_hint
+from shaftprint.recording.readers.csv._dates import dates, seconds_from
+from shaftprint.recording.readers.csv._header import (
     WHITE_SPACE,
     Header,
     looks_like_a_table,
     read_header,
     split_row,
 )
-from shaftprint.recording.readers._epoch import from_second_zero
-from shaftprint.recording.readers._hints import rate_hint
 
 NAME = "CSV"
 

@@ -34,7 +34,7 @@ def look(path: str) -> None:
         The HDF5 file.
     """
     _watch()
-    outside = runpy.run_path(str(Path(__file__).with_name("_hdf5_outside.py")))
+    outside = runpy.run_path(str(Path(__file__).with_name("_references.py")))
     with contextlib.suppress(Exception), h5py.File(path, "r") as file:
         # a file that leads to others is refused by the reader; here, too, nothing of the others is opened
         if not outside["outside_of"](file, watch=_watch):

@@ -7,9 +7,9 @@ from pathlib import Path
 
 from shaftprint.errors import RecordingError
 from shaftprint.escape import csv_cell_text
-from shaftprint.recording.readers._csv_dates import is_date
 from shaftprint.recording.readers._units import plain_unit, seconds_in
 from shaftprint.recording.readers._vectors import TIME_NAMES
+from shaftprint.recording.readers.csv._dates import is_date
 
 WHITE_SPACE = " "
 _MARKS = (";", "\t", ",")

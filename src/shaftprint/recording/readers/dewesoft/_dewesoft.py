@@ -17,12 +17,12 @@ from shaftprint.recording._channel import Channel, Source
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers._clock import SampleClock, on_clock, uniform_clock
 from shaftprint.recording.readers._damage import told_as_damage
-from shaftprint.recording.readers._dewesoft_index import INDEX, UnpackedChannel
 from shaftprint.recording.readers._extra import expect_library
 from shaftprint.recording.readers._gather import Gathered
 from shaftprint.recording.readers._hints import expect_hints
 from shaftprint.recording.readers._opened import Opened
 from shaftprint.recording.readers._units import plain_unit
+from shaftprint.recording.readers.dewesoft._index import INDEX, UnpackedChannel
 
 NAME = "Dewesoft"
 
@@ -61,7 +61,7 @@ def read(path: Path, **hints: object) -> Recording:
 
 
 def _unpack(path: Path, folder: Path) -> Any:
-    program = [sys.executable, "-m", "shaftprint.recording.readers._dewesoft_unpack", str(path.resolve()), str(folder)]
+    program = [sys.executable, "-m", "shaftprint.recording.readers.dewesoft._unpack", str(path.resolve()), str(folder)]
     done = subprocess.run(program, capture_output=True, text=True, errors="replace", check=False)  # noqa: S603
     if done.returncode != 0:
         messages = [line.strip() for line in done.stderr.splitlines() if line.strip()]
