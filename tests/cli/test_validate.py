@@ -61,6 +61,7 @@ def test_a_record_that_is_not_there_ends_in_a_sentence(run, recording, demo):
     assert "record C11: expected a chirp or staircase of campaign" in result.stderr
 
 
+@pytest.mark.slow
 def test_a_record_of_the_identification_is_refused(run, recording, demo):
     refused = run("validate", recording, *GIVEN, "--fingerprint", demo[0], "--record", "St1", "--used", "St1")
     assert refused.exit_code == 1

@@ -15,6 +15,9 @@ from shaftprint.tug import Tug, read_truth, sail, truth_path
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import load_vessel
 
+pytestmark = pytest.mark.slow
+
+
 SHIPS = 10
 
 

@@ -13,6 +13,9 @@ from shaftprint.spectra import estimate_response
 from shaftprint.time_domain import identify_in_time, records_of
 from shaftprint.tug import sail
 
+pytestmark = pytest.mark.slow
+
+
 # all that is known of the line but what the test is asked for
 HELD = ("t_d", "g")
 

@@ -16,6 +16,9 @@ from shaftprint.tug import Noise, Truth, Tug, sail
 from shaftprint.validation import validate
 from shaftprint.vessel import Vessel
 
+pytestmark = pytest.mark.slow
+
+
 # frequency [Hz], amplitude [V], periods: large where the limits allow it, long where they do not
 LINES = (
     (0.03, 0.6, 2),

@@ -64,6 +64,7 @@ def test_latency_that_the_vessel_does_not_know_of_stays_in_the_rack(found, with_
     assert late_s == pytest.approx(np.full(3, 0.008), abs=2e-4)
 
 
+@pytest.mark.slow
 def test_thesis_mode_leaves_all_of_the_latency_in(found, with_bus):
     ship, tug = fine(with_bus), Tug(noise=QUIET)
     signals, spectra = found(ship, tug, mode="thesis")

@@ -75,6 +75,7 @@ def matlab_path(short_trip, tmp_path_factory):
     return path
 
 
+@pytest.mark.slow
 def test_matlab_file_gives_the_same(short_campaign, identified, found, matlab_path):
     """It holds values where the logger's own file holds counts: all that differs is the rounding of one product."""
     converted = identified(matlab_path, short_campaign)
@@ -90,6 +91,7 @@ def test_matlab_file_gives_the_same(short_campaign, identified, found, matlab_pa
     assert converted.fit.cost == pytest.approx(found.fit.cost, rel=1e-8)
 
 
+@pytest.mark.slow
 def test_same_values_in_another_container_give_the_same_to_the_last_bit(
     short_campaign, identified, matlab_path, tmp_path
 ):

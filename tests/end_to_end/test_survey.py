@@ -1,10 +1,13 @@
 """A survey made in a program is that of the command line, byte by byte but for the time."""
 
+import pytest
 from click.testing import CliRunner
 
 import shaftprint as sp
 from shaftprint.cli import shaftprint
 from shaftprint.fingerprint import read_fingerprint, write_fingerprint
+
+pytestmark = pytest.mark.slow
 
 
 def test_library_and_program_write_the_same_fingerprint(short_trip, tmp_path):

@@ -72,6 +72,7 @@ def test_servo(run, capsys):
     assert defined["found"].p_value > 0.01
 
 
+@pytest.mark.slow
 def test_belt_drive(run, capsys):
     defined = run("belt_drive.py")
     expect_truth(defined, ("J_1", "J_2", "k", "c", "b_1", "b_2", "t_d"))
@@ -109,6 +110,7 @@ def test_two_inputs(run):
     assert tied["d_c"] == pytest.approx(22.5, rel=5e-3)
 
 
+@pytest.mark.slow
 def test_underway(run, capsys):
     defined = run("underway.py")
     printed = capsys.readouterr().out
@@ -119,6 +121,7 @@ def test_underway(run, capsys):
         assert estimate.std < 0.07, name
 
 
+@pytest.mark.slow
 def test_long_chirp(run):
     fits = run("long_chirp.py")["fits"]
     # the three parameters of CL2 cannot follow lag and delay: K_p falls to its bound, as in thesis table 5.3
@@ -139,6 +142,7 @@ def test_long_chirp(run):
         assert percent < fits["GAUGE-CLOSED"].fit_ceiling[output] + 0.5
 
 
+@pytest.mark.slow
 def test_limits(run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     defined = run("limits.py")
@@ -175,6 +179,7 @@ def test_predict_campaign(run, capsys):
     assert predicted["thesis"].estimate("tau_up").std > 0.1
 
 
+@pytest.mark.slow
 def test_export_and_simulate(run, capsys):
     pytest.importorskip("fmpy", reason="FMUs are run by FMPy")
     if shutil.which("cc") is None:

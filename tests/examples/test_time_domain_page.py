@@ -25,6 +25,7 @@ def defined(tmp_path_factory):
     return names
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["found", "again"])
 def test_the_fan_is_found_from_all_three_tests(defined, name):
     fit = defined[name]
@@ -34,6 +35,7 @@ def test_the_fan_is_found_from_all_three_tests(defined, name):
         assert abs(estimate.value - TRUTH[estimate.name]) < 3.0 * estimate.std, estimate.name
 
 
+@pytest.mark.slow
 def test_every_record_has_its_own_noise(defined):
     """First coefficients 0.5 and 0.8, as they were put in."""
     chirp, steps = (part.noise for part in defined["found"].parts[1:])
@@ -42,6 +44,7 @@ def test_every_record_has_its_own_noise(defined):
     assert not defined["records"][1].used[700:760].any()
 
 
+@pytest.mark.slow
 def test_slow_lines_and_fast_records_give_the_ship(defined):
     """The inertia time is the tug's, at the working point that was measured in this recording."""
     ship = defined["ship"]

@@ -5,6 +5,9 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
+
 ROOT = Path(__file__).parents[2]
 EXAMPLE = ROOT / "examples" / "compare_fingerprints.py"
 PAGE = (ROOT / "docs" / "tutorials" / "two-fingerprints.md").read_text(encoding="utf-8")

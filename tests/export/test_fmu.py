@@ -101,6 +101,7 @@ def test_binary_has_every_function_of_the_standard(fmu, declared_functions, tmp_
     assert [name for name in sorted(names) if not hasattr(library, name)] == []
 
 
+@pytest.mark.slow
 def test_versions_agree(fmu, slave, solved):
     found = []
     for version in (2, 3):
@@ -233,6 +234,7 @@ def test_time_constants_that_no_step_can_follow(exported, tmp_path):
 # ---- samples ----
 
 
+@pytest.mark.slow
 def test_samples_scatter_as_the_covariance_says(exported, fmu, slave, tmp_path):
     """The standard deviation over samples is that of exact derivatives and the covariance."""
     fmu(*GAUGE)  # skips where there is no compiler
@@ -284,6 +286,7 @@ def test_samples_need_a_covariance_and_a_source(exported, tmp_path):
 # ---- sources and binaries ----
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", [2, 3])
 def test_sources_are_built_by_fmpy(fmu, exported, slave, tmp_path, version, capfd):
     build = pytest.importorskip("fmpy.build", reason="FMPy builds the sources")

@@ -25,6 +25,7 @@ def binary_of(path, system, version):
         return archive.read(name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("system", PLATFORMS)
 def test_equal_models_give_equal_binaries(exported, zig_fmu, tmp_path, monkeypatch, system):
     """Built in another folder at another time they are the same, and tell no folder of the computer."""
@@ -72,6 +73,7 @@ def word(content, at):
     return content[at : content.index(b"\0", at)].decode()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", [2, 3])
 def test_library_for_windows(zig_fmu, declared_functions, version):
     library = binary_of(zig_fmu(*TORQUE, version=version), "win64", version)

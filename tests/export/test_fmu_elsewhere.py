@@ -163,6 +163,7 @@ def largest_share(found, expected):
     return (np.abs(found - expected).max(axis=0)[moving] / extent[moving]).max()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("system", SYSTEMS)
 @pytest.mark.parametrize("version", [2, 3])
 @EVERY

@@ -181,6 +181,7 @@ def test_starts_in_steady_running(fmu, slave):
         assert own.get("engine_speed", "shaft_torque") == pytest.approx([0.9 * SPEED_RPM, 0.81 * TORQUE_NM], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_late_mean_starts_in_steady_running(fmu, slave):
     """A pick-up that averages and is late shows the set point at once where the ship has run at it for ever."""
     chosen = structure("FREE-PITCH").free_between(T_average=(0.0, 1.0), t_pickup=(0.0, 1.0))

@@ -221,6 +221,7 @@ def in_time(text, outputs, until_s, step_s, jump):
     return times, np.array(found).T
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("chosen", "jump"),
     [

@@ -102,6 +102,7 @@ def test_p_values_are_uniform(make_response, name, freedom):
     assert scipy.stats.kstest(tests.p_values(), "uniform").pvalue > 0.01
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["OL5", "CL4"])
 def test_intervals_cover_the_truth_in_95_of_100_tests(make_response, name):
     """Profiles: twice the rise of the cost where the truth is held is below 3.84."""

@@ -266,6 +266,7 @@ def best_of_a_fine_profile(response, weights):
     return lowest
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("weighting", [MaximumLikelihood(), Unweighted()], ids=["covariance", "unweighted"])
 def test_default_search_finds_the_best_of_ol3s_optima_in_40_of_40_noise_draws(make_response, weighting):
     """Every turn of the fast lines' phase is an optimum; the data are those of a lag that OL3 does not have."""

@@ -42,6 +42,7 @@ def test_every_kind_of_reason_has_its_row():
     assert set(HANGING) == set(get_args(ReasonKind))
 
 
+@pytest.mark.slow
 def test_what_does_not_hang_on_the_scale_of_the_gauge_stays_usable(gauge):
     """The slope of the load and the sum of the delays are ratios of what one recording shows."""
     fitted, _ = gauge

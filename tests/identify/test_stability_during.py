@@ -121,6 +121,7 @@ def test_starts_that_stay_unstable_are_left_out(make_response):
     assert found.reached == 6
 
 
+@pytest.mark.slow
 def test_a_joint_fit_is_stable_in_every_experiment(make_response):
     """Seven times the gain at the second working point: the true model is unstable there."""
     own = delayed_loop()

@@ -166,6 +166,7 @@ def test_what_is_written_is_read_again(native, tmp_path, write):
         assert np.array_equal(channel.values(0, channel.count), expected)
 
 
+@pytest.mark.slow
 def test_scipy_reads_what_is_written_for_version_5(native, tmp_path, counts):
     path = tmp_path / "out.mat"
     with read_recording(native) as recording:

@@ -271,6 +271,7 @@ def simulated_pairs(fingerprint, change, correlation, seed):
         yield differences(*pair)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("correlation", "least"), [(0.0, 0.0395), (0.8, 0.005)])
 def test_an_unchanged_ship_is_called_changed_in_one_of_twenty_comparisons(fingerprint, correlation, least):
     """Of eight independent numbers 1 - (1 - 0.05 / 8)^8 = 0.0489, within 0.0095 in 19 of 20 runs of 2000 pairs; of
@@ -281,6 +282,7 @@ def test_an_unchanged_ship_is_called_changed_in_one_of_twenty_comparisons(finger
     assert least < alarms / PAIRS < 0.0584
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("change", "power"), [(4.0, 0.8972), (4.5, 0.9613), (5.0, 0.9883)])
 def test_a_change_is_named_as_often_as_its_size_allows(fingerprint, change, power):
     """One of eight: the normal distribution leaves 0.05 / 16 beyond 2.7344, and the change is that much further out.

@@ -66,6 +66,7 @@ def test_budget_of_a_fit_is_drawn_whole(identification):
     np.testing.assert_allclose(sum(widths[:, 1] for widths in found.values()), 100.0 * np.ones(len(stated.rows)))
 
 
+@pytest.mark.slow
 def test_profiles_pass_the_limit_at_the_ends_of_the_intervals(identification):
     names = ["K_p", "zeta", "k_q"]
     figure = plot_profiles(identification, names)

@@ -65,6 +65,7 @@ def test_a_fingerprint_of_an_own_structure_says_which_option_is_wanted(run, forg
     assert not helper.exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["export csv", "export modelica", "simulate"])
 def test_the_option_still_takes_a_file(command, run, forged, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

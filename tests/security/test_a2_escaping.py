@@ -153,6 +153,7 @@ def test_the_c_of_an_fmu_holds_its_title_and_nothing_of_it_runs(title, tmp_path)
 # XML
 
 
+@pytest.mark.slow
 @any_text
 def test_xml_of_the_fmu_of_ssp_and_of_osp_gives_every_text_back(tmp_path_factory, text):
     folder = tmp_path_factory.mktemp("xml")
@@ -247,6 +248,7 @@ def test_matlab_strings_give_every_text_back(text):
     assert not set(escape.matlab_comment(text)) & set("\r\n\x0b\x0c\x85\u2028\u2029")
 
 
+@pytest.mark.slow
 def test_octave_runs_nothing_of_a_name_and_gives_it_back(tmp_path, monkeypatch):
     """One run of Octave for all texts: a function and a data file for each, named after the text where that may be."""
     if shutil.which("octave") is None:
@@ -460,6 +462,7 @@ def test_names_of_files_hold_nothing_that_a_system_refuses():
         assert not set(name) & set('\\/:*"<>|\x00\x1b\n')
 
 
+@pytest.mark.slow
 def test_a_report_of_hostile_names_in_a_browser(run, forged, demo, tmp_path):
     """Every name of two fingerprints is hostile; the page runs nothing, asks for nothing, and shows the names."""
     if not CHROMIUM.exists():

@@ -132,6 +132,7 @@ def run_where_nothing_can_be_written(tmp_path: Path, script: str) -> "subprocess
     return subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True)
 
 
+@pytest.mark.slow
 def test_equations_are_compiled_without_a_folder_and_leave_nothing(tmp_path):
     done = run_where_nothing_can_be_written(tmp_path, SIMULATE)
     assert done.returncode == 0, done.stderr
@@ -139,6 +140,7 @@ def test_equations_are_compiled_without_a_folder_and_leave_nothing(tmp_path):
     assert list((tmp_path / "scratch").iterdir()) == []
 
 
+@pytest.mark.slow
 def test_what_lies_in_the_shared_temporary_folder_is_not_touched(tmp_path):
     """Another user's index of kernels, where shaftprint kept its own once: every file there is a trap."""
     trap = tmp_path / "scratch" / "shaftprint"
@@ -164,6 +166,7 @@ print(len(kernels), sum(kernel._cache.cache_path is not None for kernel in kerne
 """
 
 
+@pytest.mark.slow
 def test_kernels_of_the_package_need_no_folder_that_can_be_written(tmp_path):
     done = run_where_nothing_can_be_written(tmp_path, READ_ONLY)
     assert done.returncode == 0, done.stderr
@@ -172,6 +175,7 @@ def test_kernels_of_the_package_need_no_folder_that_can_be_written(tmp_path):
     assert kept == 0
 
 
+@pytest.mark.slow
 def test_kernels_are_kept_in_the_private_folder(tmp_path):
     home = tmp_path / "home"
     home.mkdir(mode=0o700)

@@ -40,6 +40,7 @@ def limited():
     resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 20, resource.RLIM_INFINITY))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", [".nc", ".csv"])
 def test_sail_ends_with_its_sentence(tmp_path, ending):
     path = tmp_path / f"test{ending}"

@@ -77,6 +77,7 @@ def committed(tmp_path, monkeypatch):
 # ---- stopped ----
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 @pytest.mark.parametrize("kind", ["kill", "interrupt", "full"])
 def test_stopped_at_every_call_to_the_system(swift, kind):

@@ -63,6 +63,7 @@ def test_a_name_that_is_too_long_ends_convert_in_a_sentence(tmp_path, recording,
     assert "File name too long" in done.stderr
 
 
+@pytest.mark.slow
 def test_sail_needs_room_for_the_name_of_the_truth(tmp_path):
     path = tmp_path / name_of(253, ".nc")
     done = program("sail", "stan-tug-1205", "short", "-o", path, "--no-progress")
@@ -72,6 +73,7 @@ def test_sail_needs_room_for_the_name_of_the_truth(tmp_path):
     assert list(Path(tmp_path).iterdir()) == []
 
 
+@pytest.mark.slow
 def test_export_of_a_long_name(demo, tmp_path):
     """All writers take the same temporary name."""
     assert program("export", "json", demo[0], "-o", tmp_path / name_of(253, ".json")).returncode == 0

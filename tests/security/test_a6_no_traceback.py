@@ -134,6 +134,7 @@ def ends_in_a_sentence(run, command, path, folder):
         assert "Traceback" not in result.stderr
 
 
+@pytest.mark.slow
 def test_whatever_stands_in_the_place_of_numbers(run, forged, fingerprint_text, tmp_path):
     import json
 

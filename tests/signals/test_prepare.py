@@ -129,6 +129,7 @@ def test_faults_are_repaired_and_listed_in_order_of_time(spoiled, vessel, campai
     assert found.engine_speed.speed_rev_s == pytest.approx(signals.engine_speed.speed_rev_s, rel=5e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mode", ["shaftprint", "thesis"])
 def test_any_chunk_gives_the_same_bits(ship, vessel, campaign, mode):
     whole = prepare_signals(ship.recording(), vessel, campaign, mode=mode)
@@ -168,6 +169,7 @@ def test_thesis_mode_shows_the_symptoms_of_the_thesis(thesis, silent, silent_shi
     assert thesis.strips[0].angle_rev == pytest.approx(silent.strips[0].angle_rev, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_each_channel_has_its_own_clock(silent_ship, vessel, campaign):
     recording = silent_ship.recording()
     torque = recording.channels["M_s"]

@@ -76,6 +76,7 @@ def test_records_of_different_length_share_the_response(expect_honest):
     assert 0.3 < np.trace(both.covariance.sum(axis=0)) / np.trace(alone.covariance.sum(axis=0)) < 0.7
 
 
+@pytest.mark.slow
 def test_two_inputs_at_once(expect_honest):
     rng = np.random.default_rng(4)
 
@@ -132,6 +133,7 @@ def test_lines_stand_close_where_the_response_turns_quickly_and_are_not_biased(e
     assert np.diff(lines)[lines[1:] > 6.0].max() > 0.3
 
 
+@pytest.mark.slow
 def test_a_peak_too_narrow_for_the_record_widens_the_covariance():
     # half of its power lies within 2 * 0.02 * 2 Hz = 0.08 Hz, a band needs 13 bins of 1 / 40 s = 0.33 Hz
     rng = np.random.default_rng(12)

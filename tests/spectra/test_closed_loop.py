@@ -44,6 +44,7 @@ def test_the_covariance_is_the_scatter_for_a_noisy_loop(expect_honest):
         expect_honest(direct, truth)
 
 
+@pytest.mark.slow
 def test_the_covariance_is_the_scatter_for_a_periodic_reference(expect_honest):
     rng = np.random.default_rng(2)
     found = []

@@ -60,6 +60,7 @@ def test_stated_covariance_is_the_scatter_over_repeats(make_window, coloured, pe
     assert weighed.mean() == pytest.approx(2.0, rel=0.15)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("periods", [14, 30])
 def test_noise_that_comes_through_the_shaft_is_not_noise_of_the_torque(make_window, coloured, periods):
     """Speed noise near a peak, torque noise (2 + tau s) times it and a little of its own, as steep as a ship's.
@@ -104,6 +105,7 @@ def test_plain_mean_of_neighbours_would_be_wrong_under_four_periods(make_window,
     assert covariance[:, 1, 1].real.mean() < 1.3 * np.mean(np.abs(error) ** 2)
 
 
+@pytest.mark.slow
 def test_response_covariance_holds_with_noise_of_the_input(make_window, coloured):
     amplitude, covariance, samples = repeated(make_window, coloured, periods=8, slope=1, noise_of_input=0.05)
     truth = np.array([0.9 * np.exp(-0.5j), 2.1 * np.exp(0.7j)])

@@ -42,6 +42,7 @@ def noise_of_three(rng, count, colour=0.8):
     return np.stack([common, 0.7 * common + white[1], lfilter([1.0], [1.0, -0.95], white[2]) - common])[:, 50:]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("periods", "colour"), [(6, 0.8), (13, 0.8), (13, -0.5)])
 def test_the_covariance_is_the_scatter_with_noise_of_the_input_and_correlated_outputs(expect_honest, periods, colour):
     rng = np.random.default_rng(periods)

@@ -147,6 +147,7 @@ def test_small_noise_from_rest_to_rest_gives_the_truth(make_record):
         assert 1e-5 < estimate.std / estimate.value < 2e-3, estimate.name
 
 
+@pytest.mark.slow
 def test_estimates_are_those_of_maximum_likelihood_in_time(motion, make_record):
     """White noise of known size: weighted least squares over all samples, linear about the truth, is that estimate."""
     n = motion[2]
@@ -192,6 +193,7 @@ def test_a_record_that_ends_before_the_lag_shows_gives_the_truth_without_noise(m
         fitted(record, transients=False)
 
 
+@pytest.mark.slow
 def test_intervals_and_tests_are_right_over_repeats(make_record):
     """200 records of the last chirp, cut in motion, with noise drawn anew at the lines: intervals hold the truth."""
     clean = spectrum_of(make_record(1115.0, 1670.0), "n_set", ("n", "M_s"))
@@ -220,6 +222,7 @@ def test_intervals_and_tests_are_right_over_repeats(make_record):
     assert 0.03 < np.mean(p_values < 0.1) < 0.17
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("size", "widest"), [(2e-5, 0.1), (5e-4, np.inf)])
 def test_the_simulated_tug_at_small_amplitude_has_the_gauge_aware_loop(size, widest):
     """Its equations share nothing with the models; the chirp begins at rest and ends at full speed.
@@ -297,6 +300,7 @@ def found(make_record):
     return fitted(make_record(size=0.1))
 
 
+@pytest.mark.slow
 def test_profiles_verdict_and_repeats_take_it(found):
     intervals = profile_intervals(found)
     for estimate in found.parameters:
@@ -315,6 +319,7 @@ def test_profiles_verdict_and_repeats_take_it(found):
     assert found.objective.terms[0].name == "lines of record C2"
 
 
+@pytest.mark.slow
 def test_sines_and_chirp_in_one_likelihood_know_the_sum_of_both(found, make_record):
     """Independent data: their information adds up, as matrices."""
     cl4, frequency = structure("CL4"), np.array([0.0044, 0.0193, 0.06, 0.178, 0.373, 0.781, 1.637, 3.433])

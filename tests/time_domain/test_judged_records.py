@@ -54,6 +54,7 @@ def test_the_reason_names_record_and_friction():
     assert "look for dry friction" in verdict.reason
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [7000, 7001, 7002])
 def test_structure_with_the_friction_is_trusted(seed):
     record, rotor = drawn_record(seed, coloured=seed % 2 == 1)

@@ -217,6 +217,7 @@ def test_offset_and_gap_leave_the_estimates_where_they_are(lag):
     assert "lines" not in verdict.reason
 
 
+@pytest.mark.slow
 def test_stated_uncertainty_is_the_scatter_of_two_hundred_tests(lag):
     """200 tests with AR(1) noise: coverage of the 95 % intervals, mean square of the standardised errors, p-values.
 
@@ -280,6 +281,7 @@ def test_state_in_motion_is_estimated(lag):
     assert np.max(found[False][0]) > 10.0 * np.max(found[True][0])
 
 
+@pytest.mark.slow
 def test_initial_state_is_given_with_its_deviation(lag):
     """Eighty records that begin at 2.0: errors over what is stated, whose mean square scatters by 0.16."""
     errors = []
