@@ -7,6 +7,7 @@ from zoneinfo import ZoneInfo
 import numpy as np
 import pytest
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint import Quantity, read_fingerprint, write_fingerprint
 from shaftprint.identify import Prior, Settings, Unweighted
@@ -52,6 +53,35 @@ def test_loads_back_equal_with_all_that_a_number_can_be(fingerprint, path):
         update={"parameters": (odd, odd), "covariance": ((np.inf, -1e-17), (-1e-17, 0.1 + 0.2)), "findings": ()}
     )
     assert written_and_read(unusual, path) == unusual
+
+
+def without_roles(content):
+    """Return the JSON of a version before roles."""
+    if isinstance(content, dict):
+        return {k: without_roles(v) for k, v in content.items() if k != "role" or "sha256" in content}
+    return [without_roles(item) for item in content] if isinstance(content, list) else content
+
+
+def test_an_earlier_file_gets_the_roles_of_its_structure(fingerprint, path):
+    path.write_text(json.dumps(without_roles(json.loads(fingerprint.model_dump_json()))), encoding="utf-8")
+    found = read_fingerprint(path)
+    assert found.quantity("I_dn").role == ShipRole.INERTIA_DOWNSTREAM
+    assert found.multiplied(found.quantity("I_dn")).role == ShipRole.INERTIA_DOWNSTREAM
+    conditions = found.conditions
+    assert found.model_copy(update={"conditions": fingerprint.conditions}) == fingerprint
+    assert conditions.engine_speed.role is None
+
+
+def test_an_earlier_file_of_an_own_structure_stays_without_roles(fingerprint, path):
+    content = without_roles(json.loads(fingerprint.model_dump_json()))
+    path.write_text(json.dumps(content | {"structure": "MINE"}), encoding="utf-8")
+    assert all(number.role is None for number in read_fingerprint(path).physical)
+
+
+def test_a_role_that_is_none_is_refused(fingerprint, path):
+    with_field(fingerprint, path, lambda content: content["parameters"][0].update(role="tailor"))
+    with pytest.raises(FingerprintError, match=r"parameters\.0\.role: expected one of inertia downstream, .* 'tailor'"):
+        read_fingerprint(path)
 
 
 @pytest.mark.parametrize(
