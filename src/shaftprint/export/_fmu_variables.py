@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from typing import Literal
 
 from shaftprint.export._c_text import identifier
-from shaftprint.export._described import known_text
 from shaftprint.export._fmu_equations import FmuEquations
 from shaftprint.export._model import ExportedModel
+from shaftprint.export._parameter_descriptions import known_text
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 from shaftprint import __version__
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ExportError
-from shaftprint.export._described import scaled_signal
 from shaftprint.export._model import ExportedModel, exported_model
 from shaftprint.export._model_response import ModelResponse, model_response
+from shaftprint.export._parameter_descriptions import scaled_signal
 from shaftprint.export._tables import number_rows, parameter_rows
 from shaftprint.export.linear import DelayModel, delay_model
 from shaftprint.files import written_whole

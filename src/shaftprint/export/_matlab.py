@@ -14,9 +14,9 @@ from shaftprint import __version__
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ExportError
 from shaftprint.escape import matlab_comment, matlab_string, printable
-from shaftprint.export._described import scaled_signal
 from shaftprint.export._model import ExportedModel
 from shaftprint.export._model_response import ModelResponse, channel_covariance, model_response
+from shaftprint.export._parameter_descriptions import scaled_signal
 from shaftprint.export.linear import DelayModel, delay_model
 from shaftprint.files import written_whole
 from shaftprint.spectra import FrequencyResponse

@@ -7,10 +7,10 @@ from xml.etree.ElementTree import Element, SubElement, register_namespace
 from shaftprint import __version__
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ExportError
-from shaftprint.export._described import described_parameters
 from shaftprint.export._fmu_units import BASE_UNITS, unit_name
 from shaftprint.export._fmu_variables import structured_name
 from shaftprint.export._model import ExportedModel
+from shaftprint.export._parameter_descriptions import described_parameters
 from shaftprint.export._xml import xml_document
 from shaftprint.files import written_whole
 

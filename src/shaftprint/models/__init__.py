@@ -30,38 +30,53 @@ from shaftprint.models._blocks import (
     PIGovernor,
     SecondOrderLag,
 )
-from shaftprint.models._calculus import derivatives, postorder, rebuilt, replaced
 from shaftprint.models._check import check_structure
 from shaftprint.models._combination import Combination
 from shaftprint.models._delays import AveragingSensor, Delay, PadeDelay, ZeroOrderHold
 from shaftprint.models._diagram import Diagram, Port
-from shaftprint.models._engine_parts import boosted, firing_delay, full_load, quadratic_propeller
-from shaftprint.models._evaluate import Leaves, evaluate
 from shaftprint.models._expression import Constant, Expression, Inverse, Sensitivity, feedback
-from shaftprint.models._flow import Flow
-from shaftprint.models._formula import Formula, Number, as_formula, choose, clip, maximum, minimum, number, table
 from shaftprint.models._free_response import free_responses
-from shaftprint.models._held import Held
-from shaftprint.models._limits import (
-    Governed,
-    deadband,
-    first_order_lag,
-    limited_pi,
-    rate_limited,
-    second_order_lag,
-)
 from shaftprint.models._margins import Margins, margins, poles
 from shaftprint.models._nyquist import is_stable, loop_gain, stable_rows, unstable_poles
 from shaftprint.models._own_blocks import FunctionBlock, RationalBlock
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._program import Computed, Late, Program, program_of
 from shaftprint.models._role import Basis, PhysicalForm, Role
+from shaftprint.models._sampled_drive import Held
 from shaftprint.models._shaft_blocks import DynamicInflow, EntrainedWater, Inertia, Shaft, TorqueBalance
 from shaftprint.models._small_signal import SmallSignal
 from shaftprint.models._step_response import step_response
 from shaftprint.models._structure import Structure
 from shaftprint.models._tabulated import Tabulated
-from shaftprint.models._tie import Tie
+from shaftprint.models._tied_parameter import Tie
+from shaftprint.models.equations import (
+    Flow,
+    Formula,
+    Governed,
+    Leaves,
+    Number,
+    as_formula,
+    boosted,
+    choose,
+    clip,
+    deadband,
+    derivatives,
+    evaluate,
+    firing_delay,
+    first_order_lag,
+    full_load,
+    limited_pi,
+    maximum,
+    minimum,
+    number,
+    postorder,
+    quadratic_propeller,
+    rate_limited,
+    rebuilt,
+    replaced,
+    second_order_lag,
+    table,
+)
 
 __all__ = [
     "AveragingSensor",

@@ -11,7 +11,7 @@ from shaftprint.models._combination import Combination
 from shaftprint.models._expression import Expression, Sensitivity
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._role import Role
-from shaftprint.models._tie import Tie
+from shaftprint.models._tied_parameter import Tie
 
 
 def channel_paths(

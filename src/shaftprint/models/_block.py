@@ -9,10 +9,8 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.models._expression import Dual, Expression, Gradient, Polynomials, Walk
-from shaftprint.models._flow import Flow
-from shaftprint.models._formula import Formula
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._realisation import Ratio, coefficients, realised
+from shaftprint.models.equations import Flow, Formula, Ratio, coefficients, realised
 
 # Share of a parameter by which it is moved to find a derivative: errors of rounding and of the formula are alike.
 STEP = 1e-3

@@ -9,9 +9,8 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
 from shaftprint.models._expression import Polynomials
-from shaftprint.models._flow import Flow
-from shaftprint.models._formula import Formula
 from shaftprint.models._parameter import Parameter
+from shaftprint.models.equations import Flow, Formula
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -16,11 +16,10 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
 from shaftprint.models._expression import Dual, Gradient, Walk
-from shaftprint.models._flow import Flow
-from shaftprint.models._formula import Formula, number
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._program import Program, completed
 from shaftprint.models._small_signal import SmallSignal
+from shaftprint.models.equations import Flow, Formula, number
 
 Equations = Callable[[Flow, Formula, Any], Mapping[str, Formula]]
 

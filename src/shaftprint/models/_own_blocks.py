@@ -12,9 +12,9 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.models._block import Block
 from shaftprint.models._expression import Polynomials
-from shaftprint.models._formula import Formula
 from shaftprint.models._imaginary_step import NOT_DIFFERENTIABLE, slope, stepped
 from shaftprint.models._parameter import Parameter
+from shaftprint.models.equations import Formula
 
 Coefficients: TypeAlias = Callable[..., tuple[Sequence[ArrayLike], Sequence[ArrayLike]]]
 

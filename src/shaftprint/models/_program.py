@@ -5,12 +5,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from shaftprint.errors import StructureError
-from shaftprint.models._calculus import postorder, replaced, swept
 from shaftprint.models._expression import Expression
-from shaftprint.models._flow import Flow, Past
-from shaftprint.models._flowing import split_shift, through
-from shaftprint.models._formula import Formula, as_formula, number
+from shaftprint.models._expression_flow import split_shift, through
 from shaftprint.models._structure import Structure
+from shaftprint.models.equations import Flow, Formula, Past, as_formula, number, postorder, replaced, swept
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

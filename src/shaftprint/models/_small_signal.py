@@ -5,10 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.models._calculus import derivatives
-from shaftprint.models._evaluate import Array, Leaves, evaluate
-from shaftprint.models._formula import Formula
 from shaftprint.models._program import Program
+from shaftprint.models.equations import Array, Formula, Leaves, derivatives, evaluate
 
 
 class SmallSignal:

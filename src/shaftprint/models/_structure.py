@@ -21,7 +21,7 @@ from shaftprint.models._combination import Combination
 from shaftprint.models._expression import Expression, Walk
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._role import Role
-from shaftprint.models._tie import Tie, through_ties
+from shaftprint.models._tied_parameter import Tie, through_ties
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, weakref_slot=True)

@@ -8,7 +8,7 @@ each parameter, a block that the compiler can treat as one vector.
 from collections.abc import Iterable, Sequence
 
 from shaftprint.models import Formula, postorder
-from shaftprint.simulation._hoisted import FormulaSlopes, Hoisted
+from shaftprint.simulation._loop_invariants import FormulaSlopes, Hoisted
 from shaftprint.simulation._text import statements
 
 LANES = 8

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import StructureError
 from shaftprint.models import Program, Structure
-from shaftprint.simulation._built import build
+from shaftprint.simulation._compiled_structure import build
 from shaftprint.simulation._steady import Steady
 
 

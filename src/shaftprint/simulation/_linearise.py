@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.models import Leaves, SmallSignal, Structure
-from shaftprint.simulation._built import build
+from shaftprint.simulation._compiled_structure import build
 from shaftprint.simulation._equilibrium import Equilibrium, held_zeros, input_vector
 
 

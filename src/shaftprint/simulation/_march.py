@@ -8,7 +8,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.errors import StructureError
-from shaftprint.simulation._built import Built
+from shaftprint.simulation._compiled_structure import Built
 from shaftprint.simulation._equation_text import LANES
 from shaftprint.simulation._grid import Shift, stencils
 from shaftprint.simulation._steady import Steady

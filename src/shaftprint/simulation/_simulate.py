@@ -10,7 +10,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import StructureError
 from shaftprint.models import Structure
-from shaftprint.simulation._built import build
+from shaftprint.simulation._compiled_structure import build
 from shaftprint.simulation._equilibrium import held_zeros
 from shaftprint.simulation._march import March
 

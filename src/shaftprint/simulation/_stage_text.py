@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from shaftprint.simulation._equation_text import LANES, LEAVES, EquationText, indented
-from shaftprint.simulation._hoisted import FormulaSlopes
+from shaftprint.simulation._loop_invariants import FormulaSlopes
 from shaftprint.simulation._text import statements
 
 

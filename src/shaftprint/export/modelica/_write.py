@@ -9,9 +9,9 @@ from shaftprint.arguments import refusing_none
 from shaftprint.errors import ExportError
 from shaftprint.escape import html_text, modelica_string
 from shaftprint.export._c_text import identifier
-from shaftprint.export._described import described_parameters
 from shaftprint.export._fmu_signals import ENGINE_SPEED, FmuSignal, fmu_signal
 from shaftprint.export._model import ExportedModel
+from shaftprint.export._parameter_descriptions import described_parameters
 from shaftprint.export.modelica._equations import ModelicaEquations, Names, modelica_equations
 from shaftprint.export.modelica._expressions import RESERVED, modelica_name, modelica_number
 from shaftprint.files import written_whole

@@ -1,9 +1,8 @@
 """MATLAB files, version 4 to 7 and 7.3."""
 
-from shaftprint.recording.readers._reader import Reader
 from shaftprint.recording.readers.matlab import _v5, _v73
 
-MATLAB_READERS: tuple[Reader, ...] = (_v5, _v73)
+READERS = (_v5, _v73)
 """The formats that MATLAB writes."""
 
-__all__ = ["MATLAB_READERS"]
+__all__ = ["READERS"]

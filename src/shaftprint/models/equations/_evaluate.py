@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from shaftprint.arrays import FloatArray, IntArray
-from shaftprint.models._calculus import postorder
-from shaftprint.models._formula import Formula
+from shaftprint.models.equations._calculus import postorder
+from shaftprint.models.equations._formula import Formula
 
 # Real; complex only where a derivative is checked by a complex step.
 Array: TypeAlias = FloatArray

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 from typing import Self
 
 from shaftprint.errors import StructureError
-from shaftprint.models._calculus import depends, derivative, replaced
-from shaftprint.models._formula import Formula, Number, as_formula, number
+from shaftprint.models.equations._calculus import depends, derivative, replaced
+from shaftprint.models.equations._formula import Formula, Number, as_formula, number
 
 
 @dataclass(frozen=True, slots=True, eq=False)

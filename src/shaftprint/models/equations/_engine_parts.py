@@ -3,9 +3,9 @@
 Speeds, torques and rack are over their values at the working point: ``n`` stands for ``n / n_0 - 1``.
 """
 
-from shaftprint.models._flow import Flow
-from shaftprint.models._formula import Formula, Number, as_formula, table
-from shaftprint.models._limits import first_order_lag
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula, Number, as_formula, table
+from shaftprint.models.equations._limits import first_order_lag
 
 
 def quadratic_propeller(speed: Formula, slope: Number) -> Formula:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterable, Iterator
 
-from shaftprint.models._formula import Formula, choose, number, power
+from shaftprint.models.equations._formula import Formula, choose, number, power
 
 Replacement = Callable[[Formula], Formula | None]
 

@@ -12,8 +12,8 @@ from shaftprint.errors import StructureError
 from shaftprint.models import Formula, Program, Structure, derivatives, postorder, program_of
 from shaftprint.simulation._compile import module_of
 from shaftprint.simulation._exact_text import ExactText
-from shaftprint.simulation._hoisted import Hoisted, hoisted
 from shaftprint.simulation._kernel_text import KernelText
+from shaftprint.simulation._loop_invariants import Hoisted, hoisted
 from shaftprint.simulation._plain_text import Plain, plain_function
 from shaftprint.simulation._steady import SteadyEquations
 

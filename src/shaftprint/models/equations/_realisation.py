@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from typing import TypeAlias
 
 from shaftprint.errors import StructureError
-from shaftprint.models._flow import Flow
-from shaftprint.models._formula import Formula, Number, as_formula, number
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula, Number, as_formula, number
 
 Coefficients: TypeAlias = list[Formula]
 Ratio: TypeAlias = tuple[Coefficients, Coefficients]

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from shaftprint.models._flow import Flow
-from shaftprint.models._formula import Formula, Number, as_formula, clip
+from shaftprint.models.equations._flow import Flow
+from shaftprint.models.equations._formula import Formula, Number, as_formula, clip
 
 
 def deadband(error: Formula, half_width: Number) -> Formula:
