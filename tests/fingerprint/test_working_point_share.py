@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.fingerprint import physical_quantities
-from shaftprint.fingerprint._physical import physical_numbers
+from shaftprint.fingerprint import physical_numbers, physical_quantities
 from shaftprint.fingerprint._working_point_share import (
     LOAD_WANDER,
     RACK,

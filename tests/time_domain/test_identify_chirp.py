@@ -11,10 +11,10 @@ from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError, SignalError
 from shaftprint.identify import Settings, Unweighted, assess, bootstrap, identify, identify_jointly, profile_intervals
+from shaftprint.identify.search import Given
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain import identify_chirp, record_from_arrays, spectrum_of, spectrum_term
 from shaftprint.time_domain._bands import bands_of
-from shaftprint.time_domain._identify_chirp import Given
 from shaftprint.tug import Tug, simulate_signals
 from shaftprint.vessel import load_vessel
 

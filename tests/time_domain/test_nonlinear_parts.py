@@ -10,9 +10,10 @@ from shaftprint.campaign import Campaign
 from shaftprint.catalogue import limited
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Estimate
+from shaftprint.identify.search import Given
 from shaftprint.signals import SetPointCalibration, Signals, WorkingPoint
 from shaftprint.time_domain import NonlinearSettings, limit_numbers, record_from_arrays, structure_for, without_orders
-from shaftprint.time_domain.nonlinear import Given, SomeDrawn, limited_sines, sharpened
+from shaftprint.time_domain.nonlinear import SomeDrawn, limited_sines, sharpened
 from shaftprint.vessel import load_vessel
 
 POINT = WorkingPoint(

@@ -23,9 +23,10 @@ from shaftprint.fingerprint._fingerprint import (
 )
 from shaftprint.fingerprint._inertia import inertia_beside
 from shaftprint.fingerprint._json_file import fingerprint_sha256, read_fingerprint, write_fingerprint
+from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._model import IdentifiedModel, identified_model, named_structure
-from shaftprint.fingerprint._physical import GAUGE_ZERO, physical_quantities
+from shaftprint.fingerprint._physical import GAUGE_ZERO, physical_numbers, physical_quantities
 from shaftprint.fingerprint._take import take_fingerprint
 from shaftprint.fingerprint._vessel_fields import BEHIND, TVC, FieldValue, stated_behind, vessel_fields
 
@@ -47,8 +48,10 @@ __all__ = [
     "fingerprint_sha256",
     "identified_model",
     "inertia_beside",
+    "margin_numbers",
     "margin_quantities",
     "named_structure",
+    "physical_numbers",
     "physical_quantities",
     "read_fingerprint",
     "stated_behind",

@@ -1,6 +1,6 @@
 """Fit a structure to a long record through its Fourier transform: a chirp, or anything else that excites many lines."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, MaximumLikelihood, Settings, identify, identify_jointly
 from shaftprint.identify.fit import Cluster, with_sensor
 from shaftprint.identify.likelihood import with_load
-from shaftprint.identify.search import Draw
+from shaftprint.identify.search import Given
 from shaftprint.models import Integrator, Structure, free_responses
 from shaftprint.time_domain._nodes import Nodes
 from shaftprint.time_domain._record import Record
@@ -25,18 +25,6 @@ SEARCHED, SEARCH_ITERATIONS = 40, 30
 STEPS, TINY_DAMPING = 4, 1e-9
 # Share of the cost that a step must promise.
 WORTH_A_STEP = 1e-13
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Given(Draw):
-    """Start values that are known already."""
-
-    theta: FloatArray
-    """Start values, shape (count, parameters)."""
-
-    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
-        """Return them, within the bounds."""
-        return np.clip(self.theta, lower, upper)
 
 
 def identify_chirp(

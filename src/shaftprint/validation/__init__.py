@@ -19,7 +19,7 @@ from shaftprint.validation._step_comparison import StepNumber
 from shaftprint.validation._thesis_models import thesis_models
 from shaftprint.validation._validate import validate
 from shaftprint.validation._validation import ExcerptComparison, ExcerptTraces, Validation
-from shaftprint.validation._validation_records import Excerpt
+from shaftprint.validation._validation_records import Excerpt, default_records, excerpts_of
 from shaftprint.validation.measures import Misfit, Outcome, RemainingDelay
 
 __all__ = [
@@ -34,6 +34,8 @@ __all__ = [
     "StepNumber",
     "Validation",
     "ValidationSettings",
+    "default_records",
+    "excerpts_of",
     "identified_model",
     "linear_prediction",
     "model_of",

@@ -39,3 +39,15 @@ class Uniform(Draw):
     def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
         """Return independent uniform starts."""
         return lower + rng.random((count, lower.size)) * (upper - lower)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Given(Draw):
+    """Starts that are all given."""
+
+    values: FloatArray
+    """Free parameters, shape (starts, free)."""
+
+    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
+        """Return them within the bounds, from the first on again where more are asked for."""
+        return np.asarray(np.clip(self.values, lower, upper)[np.arange(count) % self.values.shape[0]])

@@ -7,12 +7,11 @@ from shaftprint.time_domain.nonlinear._jump_resonance import JumpStretch, jump_s
 from shaftprint.time_domain.nonlinear._limited_sines import limited_sines
 from shaftprint.time_domain.nonlinear._numbers import LimitNumber, limit_numbers
 from shaftprint.time_domain.nonlinear._orders import without_orders
-from shaftprint.time_domain.nonlinear._search import Given, SomeDrawn
+from shaftprint.time_domain.nonlinear._search import SomeDrawn
 from shaftprint.time_domain.nonlinear._settings import NonlinearSettings
 from shaftprint.time_domain.nonlinear._structure import LimitedModel, full_load_shape, structure_for
 
 __all__ = [
-    "Given",
     "Jump",
     "JumpStretch",
     "LimitNumber",

@@ -9,7 +9,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.identify import Identification, LatinHypercube, Prior, Settings, identify_jointly
 from shaftprint.identify.likelihood import Term
-from shaftprint.identify.search import Draw
+from shaftprint.identify.search import Draw, Given
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain.nonlinear._settings import NonlinearSettings
@@ -18,18 +18,6 @@ Part: TypeAlias = tuple[Structure, FrequencyResponse] | Term
 
 # A range whose ends differ by more than this factor is drawn by its logarithm.
 WIDE_RANGE = 20.0
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Given(Draw):
-    """Starts that are all given."""
-
-    values: FloatArray
-    """Free parameters, shape (starts, free)."""
-
-    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
-        """Return them within the bounds, from the first on again where more are asked for."""
-        return np.asarray(np.clip(self.values, lower, upper)[np.arange(count) % self.values.shape[0]])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
