@@ -10,29 +10,7 @@ from shaftprint.errors import ReportError
 from shaftprint.fingerprint import fingerprint_sha256
 from shaftprint.report._page import Page, write_page
 from shaftprint.report._table import Table
-from shaftprint.report.sections import (
-    Inputs,
-    Section,
-    comparison_section,
-    cover_of,
-    explanation_section,
-    fit_section,
-    inertia_section,
-    parameter_section,
-    quality_section,
-    response_section,
-    search_section,
-    sensitivity_section,
-    signal_section,
-    stability_section,
-    structure_section,
-    summary_section,
-    thesis_section,
-    time_section,
-    uncertainty_section,
-    validation_section,
-    verdict_section,
-)
+from shaftprint.report.sections import Inputs, Section, cover_of, page_sections
 
 if TYPE_CHECKING:
     from shaftprint.models import Structure
@@ -110,31 +88,8 @@ def render_report(
         validations=survey.validations,
         clocks=() if recording is None else logger_clocks(recording),
     )
-    page = _page(inputs, _sections(inputs))
+    page = _page(inputs, page_sections(inputs))
     return write_page(directory, page, interactive=interactive, overwrite=overwrite, progress=progress)
-
-
-def _sections(inputs: Inputs) -> list[Section]:
-    return [
-        verdict_section(inputs),
-        summary_section(inputs),
-        parameter_section(inputs),
-        *uncertainty_section(inputs),
-        *inertia_section(inputs),
-        fit_section(inputs),
-        *stability_section(inputs),
-        *validation_section(inputs),
-        search_section(inputs),
-        *comparison_section(inputs),
-        quality_section(inputs),
-        response_section(inputs),
-        signal_section(inputs),
-        *time_section(inputs),
-        *structure_section(inputs),
-        *thesis_section(inputs),
-        *explanation_section(inputs),
-        *sensitivity_section(inputs),
-    ]
 
 
 def _logs(inputs: Inputs) -> list[tuple[str, str, str]]:

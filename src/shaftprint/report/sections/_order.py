@@ -1,0 +1,46 @@
+"""The sections of a report in the order of the page: a new one is a function and a line here."""
+
+from shaftprint.report.sections._inertia import inertia_section
+from shaftprint.report.sections._measurement import response_section, signal_section, time_section
+from shaftprint.report.sections._models import (
+    explanation_section,
+    sensitivity_section,
+    structure_section,
+    thesis_section,
+)
+from shaftprint.report.sections._quality import quality_section
+from shaftprint.report.sections._results import (
+    fit_section,
+    parameter_section,
+    stability_section,
+    summary_section,
+    verdict_section,
+)
+from shaftprint.report.sections._search import comparison_section, search_section
+from shaftprint.report.sections._sections import Inputs, Section
+from shaftprint.report.sections._uncertainty import uncertainty_section
+from shaftprint.report.sections._validation import validation_section
+
+
+def page_sections(inputs: Inputs) -> list[Section]:
+    """Return the sections that a survey fills, in their order."""
+    return [
+        verdict_section(inputs),
+        summary_section(inputs),
+        parameter_section(inputs),
+        *uncertainty_section(inputs),
+        *inertia_section(inputs),
+        fit_section(inputs),
+        *stability_section(inputs),
+        *validation_section(inputs),
+        search_section(inputs),
+        *comparison_section(inputs),
+        quality_section(inputs),
+        response_section(inputs),
+        signal_section(inputs),
+        *time_section(inputs),
+        *structure_section(inputs),
+        *thesis_section(inputs),
+        *explanation_section(inputs),
+        *sensitivity_section(inputs),
+    ]
