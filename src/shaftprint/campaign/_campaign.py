@@ -1,14 +1,15 @@
 """The noun of the room: everything that is asked of the ship during one recording."""
 
+from collections.abc import Mapping
 from importlib.resources import files
 from itertools import pairwise
 from pathlib import Path
 from typing import Self, TypeAlias
 
-from pydantic import model_validator
+from pydantic import Field, model_validator
 
 from shaftprint.arguments import refusing_none
-from shaftprint.campaign._excitations import Chirp, Sine, Staircase
+from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
 from shaftprint.errors import SettingsError
 from shaftprint.settings import Name, Number, PositiveNumber, Settings, load_settings
 
@@ -24,6 +25,8 @@ class Campaign(Settings):
     """Length of the recording that it needs [s]."""
     offset_v: Number
     """Set point outside of every excitation [V]."""
+    further_offsets_v: Mapping[Name, Number] = Field(default_factory=dict)
+    """Middle of the sines that move something else than the set point of the speed [V], by the name of that input."""
     sample_rate_hz: PositiveNumber | None = None
     """Rate at which the test is meant to be recorded [Hz]; no frequency may reach half of it."""
     sines: tuple[Sine, ...] = ()
@@ -39,14 +42,36 @@ class Campaign(Settings):
         found: tuple[Excitation, ...] = (*self.sines, *self.chirps, *self.staircases)
         return tuple(sorted(found, key=lambda excitation: excitation.start_s))
 
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """What is moved, the set point of the speed first."""
+        return tuple(dict.fromkeys((SPEED_SET_POINT, *(sine.input for sine in self.sines))))
+
+    def middle_v(self, name: str) -> float:
+        """Return the voltage of an input outside of every excitation [V]; 0 where the campaign does not name it."""
+        return self.offset_v if name == SPEED_SET_POINT else self.further_offsets_v.get(name, 0.0)
+
+    def of_input(self, name: str = SPEED_SET_POINT) -> Self:
+        """Return the campaign with those excitations alone that move one input."""
+        sines = tuple(sine for sine in self.sines if sine.input == name)
+        if name == SPEED_SET_POINT:
+            return self.model_copy(update={"sines": sines})
+        return self.model_copy(update={"sines": sines, "chirps": (), "staircases": ()})
+
     @model_validator(mode="after")
     def _can_be_sailed(self) -> Self:
-        found = [*self._names_twice(), *self._overlaps(), *self._too_late(), *self._too_fast()]
+        found = [*self._without_offset(), *self._names_twice(), *self._overlaps(), *self._too_late(), *self._too_fast()]
         if not self.excitations:
             found.append("expected at least one sine, chirp or staircase, found none.")
         if found:
             raise ValueError(" ".join(found))
         return self
+
+    def _without_offset(self) -> list[str]:
+        missing = [name for name in self.inputs if name != SPEED_SET_POINT and name not in self.further_offsets_v]
+        return [
+            f"expected further_offsets_v.{name}, the middle of the sines that move it, found none." for name in missing
+        ]
 
     def _names_twice(self) -> list[str]:
         names = [excitation.name for excitation in self.excitations]

@@ -7,6 +7,9 @@ from pydantic import Field, model_validator
 
 from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
 
+SPEED_SET_POINT = "set_point"
+"""What an excitation moves where nothing else is said: the set point of the speed."""
+
 # A window of a whole number of periods may fall short by rounding of its decimal stop time.
 _PERIOD_ROUNDING = 1e-9
 
@@ -16,6 +19,8 @@ class Sine(Settings):
 
     name: Name
     """Name of the line, such as ``S1``."""
+    input: Name = SPEED_SET_POINT
+    """What it moves: a table of the vessel file's sensors."""
     frequency_hz: PositiveNumber
     """Frequency [Hz]."""
     amplitude_v: PositiveNumber

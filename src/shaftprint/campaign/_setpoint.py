@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._campaign import Campaign, Excitation
-from shaftprint.campaign._excitations import Chirp, Sine, Staircase
+from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
 from shaftprint.errors import SettingsError
 
 
 @refusing_none(SettingsError)
-def setpoint(campaign: Campaign, time_s: ArrayLike) -> FloatArray:
+def setpoint(campaign: Campaign, time_s: ArrayLike, *, input: str = SPEED_SET_POINT) -> FloatArray:
     """Return the set point of a campaign at given times.
 
     A value depends on its own time only, so a long recording may be rendered in chunks of any size.
@@ -25,6 +25,8 @@ def setpoint(campaign: Campaign, time_s: ArrayLike) -> FloatArray:
         What is asked of the ship.
     time_s
         Times since the start of the recording [s], any shape, in any order.
+    input
+        What is moved: a table of the vessel file's sensors.
 
     Returns
     -------
@@ -32,15 +34,16 @@ def setpoint(campaign: Campaign, time_s: ArrayLike) -> FloatArray:
         Set point [V], shape of ``time_s``; the offset outside of every excitation.
     """
     time = np.asarray(time_s, dtype=np.float64)
-    voltage = np.full(time.shape, campaign.offset_v)
+    offset_v = campaign.middle_v(input)
+    voltage = np.full(time.shape, offset_v)
     if time.size == 0:
         return voltage
     first, last = float(time.min()), float(time.max())
-    for excitation in campaign.excitations:
+    for excitation in campaign.of_input(input).excitations:
         if excitation.start_s <= last and first < excitation.stop_s:
             inside = (time >= excitation.start_s) & (time < excitation.stop_s)
             elapsed = time[inside] - excitation.start_s
-            voltage[inside] = _voltage(excitation, elapsed, campaign.offset_v)
+            voltage[inside] = _voltage(excitation, elapsed, offset_v)
     return voltage
 
 

@@ -148,7 +148,16 @@ def free_pitch() -> Structure:
                 "theta_set": (by_pitch * ship + pitch * pitch_ship) * Delay(T_LOG),
             },
         },
-        combinations=(*_combinations(), *_ship_combinations()),
+        combinations=(
+            *_combinations(),
+            *_ship_combinations(),
+            Combination(
+                name="p / tau_u",
+                unit="1/s",
+                of=lambda p: p["p"] / p["tau_u"],
+                meaning="acceleration of the ship for one unit of pitch",
+            ),
+        ),
     )
 
 

@@ -13,7 +13,7 @@ from shaftprint.errors import StructureError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted
 from shaftprint.models import Structure
 from shaftprint.signals import Mode
-from shaftprint.survey import Measurement, SettingsOf, Trial, priors_of, response_of
+from shaftprint.survey import Measurement, SettingsOf, Trial, pairs_of, priors_of
 
 _OPTIONS = (
     prior_option,
@@ -118,7 +118,7 @@ def settings_of(structures: Sequence[Structure], options: FitOptions) -> Setting
 
     def settings(chosen: Structure, measurement: Measurement, trial: Trial) -> Settings:
         # refused before anything is fitted, if the recording does not give what the structure describes
-        response_of(chosen, measurement.responses)
+        pairs_of(chosen, measurement.responses)
         stated = _stated(chosen, structures, dict(options.priors))
         priors = priors_of(chosen, trial.vessel, measurement.signals, stated)
         return Settings(

@@ -218,6 +218,19 @@ class Structure:
             combinations=tuple(c for c in self.combinations if c.is_defined_by(values)),
         )
 
+    def of_input(self, name: str) -> "Structure":
+        """Return the structure from one of its inputs alone, with all of its parameters.
+
+        Raises
+        ------
+        StructureError
+            If the name is not an input.
+        """
+        if name not in self.inputs:
+            raise StructureError(f"structure {self.name} has no input {name}; it has {', '.join(self.inputs)}.")
+        paths = dict(zip(self.channels, self.paths, strict=True))
+        return replace(self, input=name, inputs=(name,), outputs={one: paths[one, name] for one in self.outputs})
+
     def named(self, values: ArrayLike) -> dict[str, FloatArray]:
         """Return every parameter by name, tied ones included.
 

@@ -5,6 +5,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.signals._pick_up import Speed
+from shaftprint.signals._pitch import PitchSetPoint
 from shaftprint.signals._rack import Rack
 from shaftprint.signals._set_point import SetPoint
 from shaftprint.signals._ship_speed import ShipSpeed
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
     from shaftprint.vessel import Vessel
 
 KINDS: "Mapping[str, ChannelKind[Any]]" = MappingProxyType(
-    {kind.name: kind for kind in (SetPoint(), Speed(), ShipSpeed(), ShaftTorque(), Rack())}
+    {kind.name: kind for kind in (SetPoint(), PitchSetPoint(), Speed(), ShipSpeed(), ShaftTorque(), Rack())}
 )
 """Kinds by symbol, in the order in which their signals stand."""
 

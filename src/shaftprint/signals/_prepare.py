@@ -94,7 +94,7 @@ def prepare_signals(
     delays, missed = find_step_delays(
         readings.set_point,
         readings.pick_ups[0].values,
-        campaign,
+        campaign.of_input(),
         rate_hz=clock.rate_hz,
         start_s=clock.start_s,
         coverage=readings.coverage,
@@ -145,7 +145,7 @@ def find_tests(recording: "Recording", vessel: "Vessel", campaign: Campaign) -> 
     channel = find_channel(recording, sensor.channel, unit=sensor.unit, use="set point")
     rate_hz = min(_SET_POINT_HZ, channel.rate_hz)
     clock = clock_of(channel, rate_hz)
-    return found_tests(read_voltage(channel, clock).values, campaign, rate_hz=rate_hz, start_s=clock.start_s)
+    return found_tests(read_voltage(channel, clock).values, campaign.of_input(), rate_hz=rate_hz, start_s=clock.start_s)
 
 
 def _cut_crests(sources: "Sequence[Source[Any]]") -> tuple[Reason, ...]:
@@ -167,9 +167,9 @@ def _differences_from_campaign(
     grid = {"rate_hz": readings.clock.rate_hz, "start_s": readings.clock.start_s}
     lost = left_out(campaign, coverage, name=str(recording.path))
     mismatches = expect_campaign(
-        readings.set_point, campaign, **grid, channel=sensors.set_point.channel, coverage=coverage
+        readings.set_point, campaign.of_input(), **grid, channel=sensors.set_point.channel, coverage=coverage
     )
-    expect_moving_torque(readings.torque_nm, campaign, sensors.shaft_torque, **grid, coverage=coverage)
+    expect_moving_torque(readings.torque_nm, campaign.of_input(), sensors.shaft_torque, **grid, coverage=coverage)
     return lost, mismatches
 
 
@@ -181,6 +181,7 @@ def _steady_state(
     The values of the set point become a speed, in place since the signals of a whole test are large.
     """
     clock, channel = readings.clock, vessel.sensors.set_point.channel
+    tests = campaign.of_input()
     n_set, speed, torque = readings.set_point, readings.pick_ups[0].values, readings.torque_nm
     grid = {"rate_hz": clock.rate_hz, "start_s": clock.start_s}
     coverage = readings.coverage
@@ -196,7 +197,7 @@ def _steady_state(
         about_v = working_voltage(quiet)
         calibration, *at = calibrate_through_wander(
             stretches,
-            campaign,
+            tests,
             about_v=about_v,
             set_point_v=n_set,
             speed_rev_s=speed,
@@ -208,10 +209,10 @@ def _steady_state(
         strange = expect_plausible(point, vessel)
         gauge = vessel.sensors.shaft_torque.channel
         unsteady = expect_steady_gauge(
-            stretches, campaign, speed_rev_s=speed, torque_nm=torque, **grid, channel=gauge, coverage=coverage
+            stretches, tests, speed_rev_s=speed, torque_nm=torque, **grid, channel=gauge, coverage=coverage
         )
         _calibrated_in_place(n_set, calibration)
-        scale = _rescale(n_set, speed, campaign, coverage, calibration, **grid, about=point.engine_speed_rev_s)
+        scale = _rescale(n_set, speed, tests, coverage, calibration, **grid, about=point.engine_speed_rev_s)
     steady = SteadyState(clock=clock, stretches=quiet, working_point=point, calibration=calibration, scale=scale)
     return steady, strange, unsteady
 

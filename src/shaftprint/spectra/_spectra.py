@@ -127,6 +127,7 @@ def estimate_spectra(
     """
     sensor = _speed_signal(signals, speed)
     moved = _excitation(signals, excitation)
+    campaign = campaign.of_input(moved.input)
     names = _channels_on_grid(signals, moved)
     cuts, left_out = _cut_windows(signals, campaign, names)
     measurements = [_measure(signals, cut, moved, method) for cut in cuts]

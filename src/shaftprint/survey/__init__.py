@@ -6,7 +6,7 @@ rooms that they come from.
 """
 
 from shaftprint.survey._fits import comparisons_of, fit, priors_of
-from shaftprint.survey._measurement import Measurement, measure, response_of, responses_of
+from shaftprint.survey._measurement import Measurement, measure, pairs_of, response_of, responses_of
 from shaftprint.survey._progress import SILENT, Progress, Silent
 from shaftprint.survey._survey import SettingsOf, Survey, fingerprint_of, run, survey_of
 from shaftprint.survey._thesis_mode import SET_POINT_OFF, ThesisMode
@@ -31,6 +31,7 @@ __all__ = [
     "fit",
     "load_trial",
     "measure",
+    "pairs_of",
     "priors_of",
     "response_of",
     "responses_of",

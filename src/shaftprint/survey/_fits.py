@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from shaftprint.identify import Identification, Prior, Settings, identify, priors_from_vessel
+from shaftprint.identify import Identification, Prior, Settings, identify, identify_jointly, priors_from_vessel
 from shaftprint.identify.comparison import StructureComparison, compare_fits
 from shaftprint.models import Structure
 from shaftprint.signals import Signals
-from shaftprint.survey._measurement import Measurement, response_of
+from shaftprint.survey._measurement import Measurement, pairs_of
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.vessel import Vessel
 
@@ -52,8 +52,11 @@ def fit(
     progress.begin("Fitting the structures", total=float(len(structures)))
     fits = []
     for structure in structures:
-        response = response_of(structure, measurement.responses)
-        fits.append(identify(structure, response, rng=copy.deepcopy(rng), settings=settings[structure.name]))
+        pairs, how = pairs_of(structure, measurement.responses), settings[structure.name]
+        if len(pairs) == 1:
+            fits.append(identify(*pairs[0], rng=copy.deepcopy(rng), settings=how))
+        else:
+            fits.append(identify_jointly(pairs, rng=copy.deepcopy(rng), settings=how))
         progress.advance(1.0)
     return tuple(fits)
 

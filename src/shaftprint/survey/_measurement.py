@@ -1,7 +1,7 @@
 """From a raw recording to the responses that structures are fitted to."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from shaftprint.clocks import logger_clocks
@@ -34,7 +34,9 @@ class Measurement:
     spectra: Spectra
     """Responses and signal-to-noise ratios."""
     responses: tuple[FrequencyResponse, ...]
-    """What structures are fitted to: the measured response, and what follows from it."""
+    """What structures are fitted to: the measured response, what follows from it, and that to further excitations."""
+    further: Mapping[str, Spectra] = field(default_factory=dict)
+    """Spectra of what was moved beside the set point of the speed, by its symbol."""
 
 
 def measure(
@@ -57,8 +59,18 @@ def measure(
     influences = clock_influences(clocks, spectra=spectra, signals=signals)
     signals = replace(signals, findings=(*signals.findings, *clock_findings(influences)))
     latency = trial.vessel.sensors.set_point.latency_s or 0.0
+    further = {
+        name: estimate_spectra(signals, trial.campaign, method=method, excitation=name)
+        for name, moved in signals.excitations.items()
+        if name != spectra.response.inputs[0] and moved.input in trial.campaign.inputs
+    }
     responses = responses_of(spectra.response, set_point_latency_s=latency)
-    return Measurement(signals=signals, spectra=spectra, responses=responses)
+    return Measurement(
+        signals=signals,
+        spectra=spectra,
+        responses=(*responses, *(one.response for one in further.values())),
+        further=further,
+    )
 
 
 def responses_of(response: FrequencyResponse, *, set_point_latency_s: float = 0.0) -> tuple[FrequencyResponse, ...]:
@@ -77,6 +89,23 @@ def responses_of(response: FrequencyResponse, *, set_point_latency_s: float = 0.
         return responses
     governor, _ = governor_and_engine(response, set_point_latency_s=set_point_latency_s)
     return (*responses, governor, plant_from_closed_loop(response, input="X", output=("n", "M_s")))
+
+
+def pairs_of(
+    structure: Structure, responses: Sequence[FrequencyResponse]
+) -> tuple[tuple[Structure, FrequencyResponse], ...]:
+    """Return what is fitted to what: a structure and its response, or for each excited input its part and response.
+
+    Raises
+    ------
+    StructureError
+        If the recording does not give the response that a structure describes.
+    """
+    answers = {*structure.outputs}
+    excited = {response.inputs[0]: response for response in responses if answers <= {*response.outputs}}
+    if len(structure.inputs) > 1 and {*structure.inputs} <= {*excited}:
+        return tuple((structure.of_input(name), excited[name]) for name in structure.inputs)
+    return ((structure, response_of(structure, responses)),)
 
 
 def response_of(structure: Structure, responses: Sequence[FrequencyResponse]) -> FrequencyResponse:

@@ -25,14 +25,14 @@ from shaftprint.tug.plant import (
 )
 from shaftprint.vessel import Vessel
 
-# Places in the vector that is perturbed: seven states, the demand in the ECU and the rack given a delay ago.
-_DEMAND, _RACK_DELAYED, _SIZE = 7, 8, 9
+# Places in the vector that is perturbed: seven states, the demand in the ECU, the rack given a delay ago, the pitch.
+_DEMAND, _RACK_DELAYED, _PITCH, _SIZE = 7, 8, 9, 10
 # Places in what comes out: the rates of the states, then the rack given and the torque at the gauge.
 _GIVEN, _GAUGE, _RATES = 7, 8, 9
 
 
 def linearised_response(
-    tug: Tug, vessel: Vessel, frequency_hz: ArrayLike, *, outputs: tuple[str, ...] = ("n", "M_s")
+    tug: Tug, vessel: Vessel, frequency_hz: ArrayLike, *, outputs: tuple[str, ...] = ("n", "M_s"), input: str = "n_set"
 ) -> ComplexArray:
     """Return the response from set point to speed, torque and rack at the working point, with the exact delays.
 
@@ -48,6 +48,8 @@ def linearised_response(
     outputs
         Which responses: ``n``, ``M_s``, ``X``, the fuel rack that the governor gives before the delay, and of a tug
         that sails ``v_s``, the speed of the ship.
+    input
+        ``n_set``, or of a tug that sails ``theta_set``, the set point of the pitch.
 
     Returns
     -------
@@ -81,29 +83,39 @@ def linearised_response(
         given, gauge = slope[_GIVEN], slope[_GAUGE]
         inner = slope[states, _RACK_DELAYED] * delay
         left = value * np.eye(inner.size) - slope[np.ix_(states, states)] - np.outer(inner, given[states])
-        right = slope[states, _DEMAND] + inner * given[_DEMAND]
-        demand = np.exp(-value * tug.set_point_latency_s)
-        x = np.linalg.solve(left, right) * demand
+        moved, size, late = _excitation(tug, input, value, speed)
+        right = slope[states, moved] + inner * given[moved]
+        x = np.linalg.solve(left, right) * late
         found = {
-            "n": plant.gear_ratio * x[SPEED],
-            "M_s": (gauge[states] @ x) * speed / torque,
-            "X": (given[states] @ x + given[_DEMAND] * demand) * speed / rack,
+            "n": plant.gear_ratio * x[SPEED] * size / speed,
+            "M_s": (gauge[states] @ x + gauge[moved] * late) * size / torque,
+            "X": (given[states] @ x + given[moved] * late) * size / rack,
         }
         if plant.sails:
-            found["v_s"] = x[-1] * speed / way
+            found["v_s"] = x[-1] * size / way
         response[:, 0, line] = [found[name] for name in outputs]
     return response
 
 
+def _excitation(tug: Tug, name: str, s: complex, speed: float) -> tuple[int, float, complex]:
+    """Return place of what is moved, its working point, and what comes between its set point and the line."""
+    if name == "n_set":
+        return _DEMAND, speed, complex(np.exp(-s * tug.set_point_latency_s))
+    if name != "theta_set" or tug.sailing is None:
+        raise SettingsError(f"input: expected n_set, or theta_set of a tug that sails, found {name}.")
+    return _PITCH, tug.sailing.pitch_ratio, 1.0 / (tug.sailing.pitch_lag_s * s + 1.0)
+
+
 def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
-    """Return the slopes of the rates, the rack given and the gauge torque, shape (9, 9)."""
+    """Return the slopes of the rates, the rack given and the gauge torque, shape (9, 10)."""
     state = equilibrium(plant, engine_speed_rev_s)
-    centre = np.array([*state, engine_speed_rev_s, state[RACK]])
+    centre = np.array([*state, engine_speed_rev_s, state[RACK], 0.0])
     # at the quay the rates are at most quadratic: the central difference has no truncation error; underway it is 1e-8
     size = 1e-4 * centre
     size[RACK_RATE] = size[RACK]
     size[ANGLE] = 1.0
     size[WAY] = max(size[WAY], 1e-4)
+    size[_PITCH] = 1e-4
     slope = np.empty((_RATES, _SIZE))
     for place in range(_SIZE):
         shift = np.zeros(_SIZE)
@@ -115,6 +127,6 @@ def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
 
 def _rates(plant: Plant, vector: FloatArray) -> FloatArray:
     rates: Any = derivatives
-    found = rates.py_func(vector[:_DEMAND], *vector[_DEMAND:], 0.0, 0.0, plant)
+    found = rates.py_func(vector[:_DEMAND], *vector[_DEMAND:_PITCH], 0.0, 0.0, plant, 1.0, vector[_PITCH])
     # the angle's rate, which is the speed, plays no part
     return np.array([*found[:5], 0.0, found[9], found[5], found[6]])

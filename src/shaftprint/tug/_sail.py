@@ -34,6 +34,7 @@ from shaftprint.tug.sensors import (
     Fault,
     Helm,
     PickUp,
+    PitchLever,
     SpeedLog,
     TorqueGauge,
 )
@@ -126,9 +127,9 @@ class _Crew:
                 f"campaign {campaign.name}: expected at least one sample at {self._rate_hz:g} Hz, "
                 f"found a duration of {campaign.duration_s:g} s."
             )
-        # bus and log come last: without them the others draw the same numbers
-        process, torque, set_point, *speeds, bus, log = (
-            np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(5 + len(vessel.sensors.speed))
+        # bus, log and pitch come last: without them the others draw the same numbers
+        process, torque, set_point, *speeds, bus, log, pitch = (
+            np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(6 + len(vessel.sensors.speed))
         )
         duration_s = campaign.duration_s
         plant = build_plant(tug, vessel)
@@ -152,9 +153,16 @@ class _Crew:
         ]
         self._control_unit = self._watch_bus(float(first[RACK]), bus)
         self._log = self._read_log(float(first[WAY]), log)
-        on_board = (self._helm, *self._pick_ups, self._gauge, self._control_unit, self._log)
+        self._lever = self._stand_by_lever(pitch)
+        on_board = (self._helm, *self._pick_ups, self._gauge, self._control_unit, self._log, self._lever)
         self._sensors: tuple[_Sensor, ...] = tuple(sensor for sensor in on_board if sensor is not None)
         self._limited = {excitation.name: 0 for excitation in campaign.excitations}
+
+    def _stand_by_lever(self, rng: np.random.Generator) -> PitchLever | None:
+        sensor = self._vessel.sensors.pitch_set_point
+        if sensor is None:
+            return None
+        return PitchLever(sensor.channel, self._tug, self._campaign, rng=rng)
 
     def _watch_bus(self, first_rack: float, rng: np.random.Generator) -> ControlUnit | None:
         sensor = self._vessel.sensors.rack
@@ -241,6 +249,14 @@ class _Crew:
             scale=self._gauge.scale,
             long_name="torque telemetry of the propeller shaft",
         )
+        if self._lever is not None:
+            writer.declare(
+                self._lever.channel,
+                unit="V",
+                rate_hz=self._rate_hz,
+                scale=VOLT_PER_COUNT,
+                long_name="set point of the pitch of the propeller",
+            )
         if self._control_unit is not None:
             writer.declare(
                 self._control_unit.channel,

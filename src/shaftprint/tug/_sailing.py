@@ -15,6 +15,14 @@ from shaftprint.vessel import Hull, Vessel
 THRUST_POWERS = (0.6172142, -0.6612127, 0.3512421, -0.3911370)
 TORQUE_POWERS = (0.0560555, -0.0006303, -0.0349506, 0.0, -0.0072440)
 
+# Change of those powers for a change of P/D about 1.11: first and second order of the Taylor series.
+THRUST_PITCH_POWERS = ((0.8444796, -0.6073492, 0.6328687, 0.0), (0.0931354, -0.3935522, 0.285076, 0.0))
+TORQUE_PITCH_POWERS = (
+    (0.1144793, -0.0034072, -0.0037785, 0.0, 0.0),
+    (0.0613468, -0.0076738, 0.0247989, 0.0, 0.0),
+)
+CURVES_PITCH_RATIO = 1.11
+
 _BISECTIONS = 200
 
 
@@ -33,6 +41,14 @@ class Sailing:
     """``K_T`` of propeller and nozzle: coefficients of ``J^0, J^1, ...``."""
     torque_powers: tuple[float, ...] = TORQUE_POWERS
     """``K_Q``: coefficients of ``J^0, J^1, ...``; scaled so that the vessel's effective ``K_Q`` holds at ``J = 0``."""
+    thrust_pitch_powers: tuple[tuple[float, ...], ...] = THRUST_PITCH_POWERS
+    """First and second order of ``K_T`` in the deviation of ``P/D``: coefficients of ``J^0, J^1, ...`` of each."""
+    torque_pitch_powers: tuple[tuple[float, ...], ...] = TORQUE_PITCH_POWERS
+    """The same of ``K_Q``."""
+    pitch_ratio: float = CURVES_PITCH_RATIO
+    """``P/D`` to which the curves belong."""
+    pitch_lag_s: float = 1.0
+    """Lag of the pitch actuator [s], where the vessel has a controllable pitch."""
     surging_mass_kg: float | None = None
     """Mass of the ship with the water that surges along [kg]; ``None``: the vessel's."""
     resistance_factor: float = 1.0
@@ -50,6 +66,10 @@ class Way(NamedTuple):
     """``M_p / n_s^2`` of one shaft over ``J``: coefficients of its powers [N m s2]."""
     pull_n_s2: FloatArray
     """``k_p (1 - t) T / n_s^2`` over ``J``: coefficients of its powers [N s2]."""
+    torque_pitch_nm_s2: FloatArray
+    """Change of ``M_p / n_s^2`` with ``P/D``, first and second order, shape (2, powers) [N m s2]."""
+    pull_pitch_n_s2: FloatArray
+    """Change of the pull over ``n_s^2`` with ``P/D``, first and second order, shape (2, powers) [N s2]."""
     advance_per_m: float
     """``(1 - w) / D`` [1/m]: ``J = v (1 - w) / (n_s D)``."""
     mass_kg: float
@@ -62,6 +82,8 @@ class Way(NamedTuple):
 AT_THE_QUAY = Way(
     torque_nm_s2=np.zeros(1),
     pull_n_s2=np.zeros(1),
+    torque_pitch_nm_s2=np.zeros((2, 1)),
+    pull_pitch_n_s2=np.zeros((2, 1)),
     advance_per_m=0.0,
     mass_kg=1.0,
     resistance_at_1_m_s=0.0,
@@ -91,6 +113,8 @@ def way_of(sailing: Sailing, vessel: Vessel) -> Way:
     return Way(
         torque_nm_s2=factor * force * diameter * np.array(sailing.torque_powers),
         pull_n_s2=pull * np.array(sailing.thrust_powers),
+        torque_pitch_nm_s2=factor * force * diameter * np.array(sailing.torque_pitch_powers),
+        pull_pitch_n_s2=pull * np.array(sailing.thrust_pitch_powers),
         advance_per_m=(1.0 - sailing.wake_fraction) / diameter,
         mass_kg=hull.surging_mass_kg if sailing.surging_mass_kg is None else sailing.surging_mass_kg,
         resistance_at_1_m_s=resistance,
@@ -132,6 +156,11 @@ def sailing_truth(sailing: Sailing, way: Way, shaft_speed_rev_s: float) -> dict[
         "b": _log_slope(way.torque_nm_s2, advance),
         "e": way.resistance_exponent,
         "tau_u": way.mass_kg * speed / resistance,
+        "p": sailing.pitch_ratio * _power_sum(way.pull_pitch_n_s2[0], advance) / _power_sum(way.pull_n_s2, advance),
+        "q": sailing.pitch_ratio
+        * _power_sum(way.torque_pitch_nm_s2[0], advance)
+        / _power_sum(way.torque_nm_s2, advance),
+        "tau_th": sailing.pitch_lag_s,
     }
 
 
@@ -158,7 +187,7 @@ def _check(sailing: Sailing) -> None:
         value = getattr(sailing, name)
         if not -0.5 < value < 1.0:
             raise SettingsError(f"tug: expected {name} between -0.5 and 1, found {value:g}; give a fraction.")
-    for name in ("surging_mass_kg", "resistance_factor", "resistance_exponent"):
+    for name in ("surging_mass_kg", "resistance_factor", "resistance_exponent", "pitch_lag_s"):
         value = getattr(sailing, name)
         if value is not None and not value > 0.0:
             raise SettingsError(f"tug: expected {name} above 0, found {value:g}; give a positive value.")

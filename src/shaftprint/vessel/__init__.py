@@ -29,6 +29,7 @@ from shaftprint.vessel._links import ShaftLink
 from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, RackMap, WorkingPoint
 from shaftprint.vessel._sensors import (
     Logger,
+    PitchSetPointSensor,
     RackSensor,
     Sensors,
     SetPointSensor,
@@ -44,6 +45,7 @@ __all__ = [
     "Hull",
     "InertiaRow",
     "Logger",
+    "PitchSetPointSensor",
     "Propeller",
     "RackMap",
     "RackSensor",

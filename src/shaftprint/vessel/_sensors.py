@@ -175,6 +175,21 @@ class ShipSpeedSensor(Settings):
         return M_S_PER_KNOT if self.unit == "kn" else 1.0
 
 
+class PitchSetPointSensor(Settings):
+    """The voltage that asks a controllable-pitch propeller for its pitch."""
+
+    channel: Name
+    """Name of the channel in the recording."""
+    unit: Literal["V"]
+    """Unit of the channel."""
+    pitch_ratio_per_v: Number
+    """Pitch over diameter for one volt [1/V]."""
+    pitch_ratio_at_zero_v: Number
+    """Pitch over diameter at no voltage [-]."""
+    scale_std_fraction: NotNegativeNumber = 0.0
+    """Relative standard deviation of the pitch for one volt."""
+
+
 class Logger(Settings):
     """The instrument that recorded the channels."""
 
@@ -198,12 +213,16 @@ class Sensors(Settings):
     ship_speed: ShipSpeedSensor | None = None
     """Speed of the ship, where it was logged."""
 
+    pitch_set_point: PitchSetPointSensor | None = None
+    """The set point of the pitch of a controllable-pitch propeller, where it was logged."""
+
     @model_validator(mode="after")
     def _names_and_channels_differ(self) -> Self:
         names = [sensor.name for sensor in self.speed]
         channels = [sensor.channel for sensor in self.speed]
         channels += [self.shaft_torque.channel, self.set_point.channel]
-        channels += [sensor.channel for sensor in (self.rack, self.ship_speed) if sensor is not None]
+        further = (self.rack, self.ship_speed, self.pitch_set_point)
+        channels += [sensor.channel for sensor in further if sensor is not None]
         found = []
         for what, values in (("name", names), ("channel", channels)):
             twice = sorted({value for value in values if values.count(value) > 1})

@@ -19,7 +19,8 @@ Underway the propeller turns in water that comes towards it, and the ship has a 
 
     M_p = n_s^2 P_Q(J)      m dv/dt = n_s^2 P_T(J) - c v^e      J = (1 - w) v / (n_s D)
 
-with ``P_Q`` the torque of one propeller and ``P_T`` the pull of all of them over ``n_s^2``, thrust deduction taken off.
+with ``P_Q`` the torque of one propeller and ``P_T`` the pull of all of them over ``n_s^2``, thrust deduction taken off;
+both change with the pitch, to second order about that of the curves.
 
 A smoke limiter lets the engine burn no more than the boost gives air for: ``M_b <= M_full (a + (1 - a) b)`` with the
 boost ``b`` of a turbocharger that follows the torque late, ``tau_tc db/dt = M_b / M_full - b``: steady running is never
@@ -119,13 +120,23 @@ def _power_sum(powers, at):  # type: ignore[no-untyped-def]
 
 
 @compiled(inline="always")
-def _under_way(speed_s, ship_speed, propeller_noise, way):  # type: ignore[no-untyped-def]
+def _pitched(change, at, pitch):  # type: ignore[no-untyped-def]
+    """Return what a deviation of the pitch changes in a sum of powers, to second order."""
+    return pitch * (_power_sum(change[0], at) + pitch * _power_sum(change[1], at))
+
+
+@compiled(inline="always")
+def _under_way(speed_s, ship_speed, propeller_noise, pitch, way):  # type: ignore[no-untyped-def]
     """Return the torque of a propeller [N m] and the acceleration of the ship [m/s2]."""
     square = speed_s * abs(speed_s)
     advance = way.advance_per_m * ship_speed / speed_s
-    pull = square * _power_sum(way.pull_n_s2, advance) * (1.0 + propeller_noise)
+    pull, torque = _power_sum(way.pull_n_s2, advance), _power_sum(way.torque_nm_s2, advance)
+    if pitch != 0.0:
+        pull += _pitched(way.pull_pitch_n_s2, advance, pitch)
+        torque += _pitched(way.torque_pitch_nm_s2, advance, pitch)
+    pull = square * pull * (1.0 + propeller_noise)
     resistance = way.resistance_at_1_m_s * ship_speed**way.resistance_exponent
-    return square * _power_sum(way.torque_nm_s2, advance), (pull - resistance) / way.mass_kg
+    return square * torque, (pull - resistance) / way.mass_kg
 
 
 @compiled(inline="always")
@@ -153,7 +164,7 @@ def governor_rack(speed_s, integral, demand, plant, air=1.0):  # type: ignore[no
 
 @compiled(inline="always")
 def derivatives(  # type: ignore[no-untyped-def]
-    state, demand, rack_delayed, propeller_noise, engine_noise, plant, air=1.0
+    state, demand, rack_delayed, propeller_noise, engine_noise, plant, air=1.0, pitch=0.0
 ):
     """Return rates of the first five states, rack given, ``M_s``, ``M_b``, whether it is limited, rate of the ship."""
     speed_s, integral, rack, rack_rate, slipstream = state[0], state[1], state[2], state[3], state[4]
@@ -168,7 +179,7 @@ def derivatives(  # type: ignore[no-untyped-def]
     load = plant.propeller_nm_s2 * speed_s * abs(speed_s)
     way_rate = 0.0
     if plant.sails:
-        load, way_rate = _under_way(speed_s, state[6], propeller_noise, plant.way)
+        load, way_rate = _under_way(speed_s, state[6], propeller_noise, pitch, plant.way)
     hydrodynamic = load
     slipstream_rate = 0.0
     if plant.inflow_gain != 0.0:
@@ -271,17 +282,18 @@ def _moved(x, h, rates):  # type: ignore[no-untyped-def]
 
 
 @compiled(inline="always")
-def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant, air):  # type: ignore[no-untyped-def]
+def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant, air, pitch):  # type: ignore[no-untyped-def]
     """Return the state after a step of the classical fourth-order method, whose first rates ``k1`` are known.
 
-    ``demand``, ``past``, ``propeller`` and ``engine`` hold the inputs at the start, middle and end of the step.
+    ``demand``, ``past``, ``propeller``, ``engine`` and ``pitch`` hold the inputs at the start, middle and end of the
+    step.
     """
     x2 = _moved(x, 0.5 * h, k1)
-    k2 = derivatives(x2, demand[1], past[1], propeller[1], engine[1], plant, air)
+    k2 = derivatives(x2, demand[1], past[1], propeller[1], engine[1], plant, air, pitch[1])
     x3 = _moved(x, 0.5 * h, k2)
-    k3 = derivatives(x3, demand[1], past[1], propeller[1], engine[1], plant, air)
+    k3 = derivatives(x3, demand[1], past[1], propeller[1], engine[1], plant, air, pitch[1])
     x4 = _moved(x, h, k3)
-    k4 = derivatives(x4, demand[2], past[2], propeller[2], engine[2], plant, air)
+    k4 = derivatives(x4, demand[2], past[2], propeller[2], engine[2], plant, air, pitch[2])
     part = h / 6.0
     return (
         x[0] + part * (k1[0] + 2.0 * k2[0] + 2.0 * k3[0] + k4[0]),
@@ -296,12 +308,12 @@ def _runge_kutta(h, x, k1, demand, past, propeller, engine, plant, air):  # type
 
 @compiled(nogil=True)
 def advance(  # type: ignore[no-untyped-def]
-    step_s, demand, propeller_noise, engine_noise, plant, delay, carried, traces
+    step_s, demand, pitch, propeller_noise, engine_noise, plant, delay, carried, traces
 ) -> None:
     """Step the line and fill the traces.
 
-    ``demand`` has two values a step and one more (half steps); the disturbances one value a step and one more.
-    All that goes on is carried, so that the result does not depend on how the time is cut into calls.
+    ``demand`` and ``pitch`` have two values a step and one more (half steps); the disturbances one value a step
+    and one more. All that goes on is carried, so that the result does not depend on how the time is cut into calls.
     """
     state, history = carried.state, carried.history
     x = (state[0], state[1], state[2], state[3], state[4], state[5], state[6])
@@ -312,13 +324,14 @@ def advance(  # type: ignore[no-untyped-def]
         propeller = (propeller_noise[j], 0.5 * (propeller_noise[j] + propeller_noise[j + 1]), propeller_noise[j + 1])
         engine = (engine_noise[j], 0.5 * (engine_noise[j] + engine_noise[j + 1]), engine_noise[j + 1])
         asked = (demand[2 * j], demand[2 * j + 1], demand[2 * j + 2])
+        blades = (pitch[2 * j], pitch[2 * j + 1], pitch[2 * j + 2])
         past = (
             _past(history, mask, k + delay.first[0], delay.weights[0]),
             _past(history, mask, k + delay.first[1], delay.weights[1]),
             _past(history, mask, k + delay.first[2], delay.weights[2]),
         )
         air = plant.air_share + (1.0 - plant.air_share) * carried.boost[0]
-        rates = derivatives(x, asked[0], past[0], propeller[0], engine[0], plant, air)
+        rates = derivatives(x, asked[0], past[0], propeller[0], engine[0], plant, air, blades[0])
         # the limiter of the rate keeps no state of its own: it starts from the rack that it gave last
         last = history[(k - 1) & mask]
         given = min(max(rates[5], last - largest_change), last + largest_change)
@@ -333,7 +346,7 @@ def advance(  # type: ignore[no-untyped-def]
         if plant.air_share < 1.0:
             _, full_load = torque_limits(plant.gear_ratio * x[0], plant)
             carried.boost[0] += step_s / plant.turbocharger_lag_s * (rates[7] / full_load - carried.boost[0])
-        x = _runge_kutta(step_s, x, rates, asked, past, propeller, engine, plant, air)
+        x = _runge_kutta(step_s, x, rates, asked, past, propeller, engine, plant, air, blades)
         k += 1
     state[0], state[1], state[2], state[3], state[4], state[5], state[6] = x
     carried.counter[0] = k

@@ -12,6 +12,7 @@ from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant._demand import Demand
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._physics import build_plant, equilibrium, steady_boost
+from shaftprint.tug.plant._pitch import PitchActuator
 from shaftprint.tug.plant._plant import RACK, Carried, Delay, Traces, advance, interpolation_weights
 from shaftprint.vessel import Vessel
 
@@ -78,6 +79,7 @@ def voyage(
     """
     plant = build_plant(tug, vessel)
     demand = Demand(tug, vessel, campaign, start_s=start_s, step_s=step_s)
+    pitch = PitchActuator(tug, vessel, campaign, start_s=start_s, step_s=step_s)
     delay_steps = plant.delay_s / step_s
     # the delayed rack is interpolated over four nodes of which the newest must already be known
     if 0.0 < delay_steps < 3.0:
@@ -97,7 +99,7 @@ def voyage(
         speed, angle, torque, brake, rack, way = np.empty((6, count))
         limited = np.empty(count, dtype=np.bool_)
         traces = Traces(speed, angle, torque, brake, rack, limited, way)
-        advance(step_s, demand.next(count, wander), propeller, engine, plant, delay, carried, traces)
+        advance(step_s, demand.next(count, wander), pitch.next(count), propeller, engine, plant, delay, carried, traces)
         yield Leg(
             time_s=start_s + step_s * np.arange(done, done + count, dtype=np.float64),
             shaft_speed_rev_s=speed,

@@ -6,17 +6,19 @@ Each takes the legs of a voyage of ``shaftprint.tug.plant`` in order and gives t
 from shaftprint.tug.sensors._control_unit import LOWEST_PERCENT, ControlUnit
 from shaftprint.tug.sensors._faults import Fault, draw_dropouts, draw_times
 from shaftprint.tug.sensors._gauge import TorqueGauge, shaft_orders
-from shaftprint.tug.sensors._helm import Helm
+from shaftprint.tug.sensors._helm import PITCH_INPUT, Helm, PitchLever
 from shaftprint.tug.sensors._log import SpeedLog
 from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT, PickUp
 
 __all__ = [
     "LOWEST_PERCENT",
+    "PITCH_INPUT",
     "VOLT_PER_COUNT",
     "ControlUnit",
     "Fault",
     "Helm",
     "PickUp",
+    "PitchLever",
     "SpeedLog",
     "TorqueGauge",
     "draw_dropouts",

@@ -1,14 +1,17 @@
-"""The logger's view of the set-point voltage."""
+"""The logger's view of the set-point voltages."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from shaftprint.campaign import Campaign
+from shaftprint.campaign import Campaign, setpoint
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import Leg, helm_voltage
 from shaftprint.tug.sensors._faults import Fault, draw_spikes
 from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT
 from shaftprint.vessel import Vessel
+
+PITCH_INPUT = "pitch_set_point"
+"""Table of the vessel file's sensors by which a campaign names the pitch."""
 
 _RANGE_V = 10.0
 
@@ -43,3 +46,23 @@ class Helm:
             Fault(channel=self.channel, kind="spike", time_s=sample / self._rate_hz, duration_s=1.0 / self._rate_hz)
             for sample in self._spikes.sample.tolist()
         ]
+
+
+class PitchLever:
+    """Stream of the raw counts of the channel that asks for the pitch."""
+
+    def __init__(self, channel: str, tug: Tug, campaign: Campaign, *, rng: np.random.Generator) -> None:
+        self.channel = channel
+        self._campaign = campaign
+        self._rms_v = tug.noise.set_point_rms_v
+        self._rng = rng
+
+    def next(self, leg: Leg) -> NDArray[np.int16]:
+        """Return the counts of the next leg, shape (steps,)."""
+        voltage = setpoint(self._campaign, leg.time_s, input=PITCH_INPUT)
+        voltage += self._rms_v * self._rng.standard_normal(voltage.size)
+        return np.rint(voltage / VOLT_PER_COUNT).clip(-32768, 32767).astype(np.int16)
+
+    def faults(self) -> list[Fault]:
+        """Return no fault."""
+        return []
