@@ -13,7 +13,7 @@ from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.report import _page as page_module
 from shaftprint.report import _render as render_module
 from shaftprint.report import render_report
-from shaftprint.report.sections import time_section
+from shaftprint.report.sections import fit_section, stability_section, summary_section, time_section
 from shaftprint.survey import ThesisMode
 
 VOID = {"meta", "img", "br", "link"}
@@ -130,7 +130,7 @@ def test_the_page_asks_for_nothing_outside(report, page):
 
 
 def test_without_interactive_figures_the_page_runs_no_script(tmp_path, survey, monkeypatch):
-    monkeypatch.setattr(render_module, "_sections", lambda inputs: [render_module.fit_section(inputs)])
+    monkeypatch.setattr(render_module, "page_sections", lambda inputs: [fit_section(inputs)])
     report = render_report(tmp_path / "static", survey, interactive=False)
     page = Page(report.read_text(encoding="utf-8"))
     assert not page.all("script")
@@ -248,7 +248,7 @@ def test_tests_that_ended_before_the_recording_began_are_not_drawn(campaign, sig
 
 
 def test_names_of_users_are_escaped(tmp_path, survey, monkeypatch):
-    monkeypatch.setattr(render_module, "_sections", lambda inputs: [render_module.summary_section(inputs)])
+    monkeypatch.setattr(render_module, "page_sections", lambda inputs: [summary_section(inputs)])
     evil = "<b>Tug & Co</b>"
     fingerprint = survey.fingerprint
     renamed = fingerprint.model_copy(
@@ -265,7 +265,7 @@ def test_names_of_users_are_escaped(tmp_path, survey, monkeypatch):
 
 
 def test_an_earlier_report_is_kept_unless_overwriting_is_asked_for(tmp_path, survey, monkeypatch):
-    monkeypatch.setattr(render_module, "_sections", lambda inputs: [])
+    monkeypatch.setattr(render_module, "page_sections", lambda inputs: [])
     (tmp_path / "recording.nc").write_text("raw")
     first = render_report(tmp_path, survey).read_bytes()
     (tmp_path / "figures").mkdir()
@@ -290,9 +290,9 @@ def test_a_report_that_fails_leaves_nothing(tmp_path, survey, monkeypatch):
 
 @pytest.mark.slow
 def test_a_large_picture_becomes_png(tmp_path, survey, monkeypatch):
-    sections = [render_module.fit_section]
+    sections = [fit_section]
     monkeypatch.setattr(page_module, "LARGEST_SVG_BYTES", 10)
-    monkeypatch.setattr(render_module, "_sections", lambda inputs: [make(inputs) for make in sections])
+    monkeypatch.setattr(render_module, "page_sections", lambda inputs: [make(inputs) for make in sections])
     page = render_report(tmp_path / "report", survey)
     images = Page(page.read_text(encoding="utf-8")).all("img")
     assert {image["src"] for image in images} == {"figures/fit.png", "figures/residuals.png", "figures/step.png"}
@@ -301,8 +301,8 @@ def test_a_large_picture_becomes_png(tmp_path, survey, monkeypatch):
 
 
 def test_a_structure_without_feedback_has_no_stability_section(tmp_path, survey, fits, monkeypatch):
-    found = render_module.stability_section
+    found = stability_section
     inputs = []
-    monkeypatch.setattr(render_module, "_sections", lambda given: inputs.append(given) or [])
+    monkeypatch.setattr(render_module, "page_sections", lambda given: inputs.append(given) or [])
     render_report(tmp_path / "report", survey)
     assert found(replace(inputs[0], identification=fits["OL1"])) == []
