@@ -37,6 +37,7 @@ def two_loggers(duration_s, offset_s, drift, *, rate_hz=RATE_HZ, noise=0.005, se
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("duration_s", "offset_s", "drift", "rate_hz", "within_s"),
     [
@@ -56,6 +57,7 @@ def test_offset_and_drift_are_found(duration_s, offset_s, drift, rate_hz, within
     assert found.map.drift == pytest.approx(drift, abs=4.0 * np.sqrt(found.map.covariance[1, 1]))
 
 
+@pytest.mark.slow
 def test_the_standard_deviation_is_right():
     """Forty draws of the noise: distances from the truth in standard deviations at either end."""
     away = []
@@ -101,6 +103,7 @@ def test_a_channel_that_stands_still_is_refused():
         align(Content(name="b", start_s=0.0, rate_hz=50.0, values=np.ones(45_000)), reference)
 
 
+@pytest.mark.slow
 def test_a_logger_that_stopped_for_a_while_is_refused():
     other, reference, _ = two_loggers(3600.0, 0.4, 30e-6)
     cut = np.concatenate([other.values[:75_000], other.values[95_000:]])

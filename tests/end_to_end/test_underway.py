@@ -143,6 +143,7 @@ def test_what_can_be_found_at_all(propeller):
     assert "w" in identifiability(known["FREE-SHIP"].free_between(k_q=(1.8, 2.2)), rng=rng).identifiable
 
 
+@pytest.mark.slow
 def test_slow_log_leaves_fast_lines_out(trip, tmp_path):
     """A value a second shows nothing above 0.45 Hz; shaft and torque stay what they were."""
     campaign = load_campaign("short").model_copy(update={"offset_v": -6.66, "staircases": (), "duration_s": 700.0})

@@ -11,6 +11,9 @@ from shaftprint.signals import prepare_signals
 from shaftprint.spectra import estimate_spectra
 from shaftprint.tug import Tug, sail
 
+pytestmark = pytest.mark.slow
+
+
 INFLOW = Tug(inflow_gain=1.0, inflow_time_s=0.12, entrained_water_kg_m2=4.4)
 
 

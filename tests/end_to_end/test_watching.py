@@ -13,6 +13,9 @@ from shaftprint.fingerprint import SourceFile, take_fingerprint
 from shaftprint.report import change_in_words, differences
 from shaftprint.tug import Noise, Tug, sail
 
+pytestmark = pytest.mark.slow
+
+
 LATER = Tug(torque_zero_offset_nm=20.0, noise=replace(Noise(), inflow_rms=0.018, surge_rms=0.006))
 LONGER_DELAY = replace(LATER, governor_delay_s=0.0703 + 0.02)
 # Gains are normalised with the torque, of which the propeller takes 8 % more.

@@ -55,6 +55,7 @@ def test_each_end_lies_on_the_contour_that_belongs_to_95_percent(gauge_fit, prof
     assert stated["delay margin"].interval_95 == pytest.approx([m.delay_margin_s for m in reached[4:]], rel=1e-4)
 
 
+@pytest.mark.slow
 def test_no_set_that_the_data_allow_lies_outside(gauge_fit, profiled):
     """The ends of all other intervals are on the same contour: their margins are inside."""
     stated = {q.name: q for q in margin_quantities(gauge_fit, profiled)}

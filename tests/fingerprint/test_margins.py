@@ -9,6 +9,7 @@ from shaftprint.models import margins
 SAMPLES = 60
 
 
+@pytest.mark.slow
 def test_standard_deviations_are_the_scatter_over_the_covariance(gauge_fit):
     model, middle = gauge_fit.structure, gauge_fit.values
     free = [model.names.index(parameter.name) for parameter in model.free]

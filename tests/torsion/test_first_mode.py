@@ -78,6 +78,7 @@ def test_first_mode_within_one_percent(line, find, excite, seed):
     assert 0.0 < damping.std < 0.05 * damping.value
 
 
+@pytest.mark.slow
 def test_stated_deviation_is_the_scatter_of_repeats(find):
     """Twelve sweeps that differ in their noise only: the scatter is known to a fifth."""
     found = [find(sweep, 100 + seed)["f_1"] for seed in range(12)]

@@ -78,6 +78,7 @@ def test_uncertainty_of_the_frequency(chain):
     assert only_mass.frequency_std_hz == pytest.approx(share * only_mass.frequency_hz, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_uncertainty_of_the_shipped_line_is_its_scatter(line):
     """Lines drawn from the stated inertias and stiffnesses, a fifth of their deviations."""
     rng = np.random.default_rng(7)
