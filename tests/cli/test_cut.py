@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.recording import Channel, RecordingWriter, cut, read_recording, write_by_ending
-from shaftprint.recording._recording import Recording
+from shaftprint.recording import Channel, Recording, RecordingWriter, cut, read_recording, write_by_ending
 
 RATE_HZ = 100.0
 COUNT = 1000

@@ -1,21 +1,16 @@
 """Bars are drawn on a terminal only."""
 
-import io
-
 import pytest
-from rich.console import Console
 
-from shaftprint.cli import _progress
 from shaftprint.cli._progress import progress
 
 
 @pytest.fixture
 def terminal(monkeypatch):
-    screen = io.StringIO()
-    monkeypatch.setattr(
-        _progress, "Console", lambda **_: Console(file=screen, force_terminal=True, width=100, legacy_windows=False)
-    )
-    return screen
+    """Let the error output pass for a terminal."""
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "100")
 
 
 def _work(*, hidden):
@@ -30,19 +25,23 @@ def _work(*, hidden):
         return done, after
 
 
-def test_bars_on_a_terminal(terminal):
+@pytest.mark.usefixtures("terminal")
+def test_bars_on_a_terminal(capsys):
     done, after = _work(hidden=False)
     assert done == [(1.5, 2.0)]
     assert after == [(2.0, 2.0), (0, None)]
-    assert "Reading" in terminal.getvalue()
-    assert "Drawing" in terminal.getvalue()
+    shown = capsys.readouterr().err
+    assert "Reading" in shown
+    assert "Drawing" in shown
 
 
-def test_no_bars_on_request(terminal):
+@pytest.mark.usefixtures("terminal")
+def test_no_bars_on_request(capsys):
     assert _work(hidden=True) == (None, None)
-    assert terminal.getvalue() == ""
+    assert capsys.readouterr() == ("", "")
 
 
-def test_no_bars_without_terminal(capsys):
+def test_no_bars_without_terminal(capsys, monkeypatch):
+    monkeypatch.delenv("FORCE_COLOR", raising=False)
     assert _work(hidden=False) == (None, None)
     assert capsys.readouterr() == ("", "")
