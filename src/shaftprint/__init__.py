@@ -22,6 +22,7 @@ room            nouns                       verbs
 ``fingerprint`` ``Fingerprint``             ``take_fingerprint``, ``read_fingerprint``, ``write_fingerprint``
 ``export``      ``ExportedModel``           ``exported_model``, ``write_fmu``, ``write_matlab``, ``write_modelica``
 ``survey``      ``Survey``                  ``run``, ``measure``, ``fit``, ``survey_of``
+``tables``      ``Table``                   ``parameter_table``, ``physical_table``
 ``report``                                  ``render_report``, ``plot_bode``
 ``tug``         ``Truth``                   ``sail``
 =============== =========================== ==========================================================================
@@ -62,6 +63,7 @@ _ROOMS = (
     "simulation",
     "spectra",
     "survey",
+    "tables",
     "time_domain",
     "torsion",
     "tug",

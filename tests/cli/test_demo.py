@@ -36,9 +36,9 @@ def test_last_lines_say_what_was_found_and_where(demo):
     _, result = demo
     tail = result.stdout[result.stdout.index("What was found") :]
     assert "the inertia behind the torque gauge: " in tail
-    assert "in truth 17 kg m2." in tail
-    assert "in truth 0.1221 s." in tail
-    assert "in truth 2." in tail
+    assert "true value 17.00 kg m2." in tail
+    assert "true value 0.1221 s." in tail
+    assert "true value 2.000." in tail
     assert "The thesis' way finds an inertia time of" in tail
     assert tail.rstrip().splitlines()[-4:-1] == [
         f"Recording:   {Path('demo', 'recording.nc')}",

@@ -21,8 +21,8 @@ def test_all_that_is_in_it(run, demo):
     for finding in found.findings:
         assert finding in output
     assert found.conditions.vessel in output
-    assert "known beforehand: " in output
-    assert "g = 0 +/- 0.1" in output
+    assert "priors: " in output
+    assert "g = 0.00 +/- 0.10" in output
     # the truth is not for those who identify
     assert "truth" not in output
 

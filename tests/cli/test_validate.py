@@ -10,7 +10,7 @@ import pytest
 
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
-from shaftprint.cli._fingerprint_model import fingerprint_model
+from shaftprint.cli._validation import fingerprint_model
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint import read_fingerprint
 from shaftprint.recording import read_recording

@@ -62,17 +62,15 @@ def test_a_simulated_logger_is_told_as_it_was(tmp_path):
             assert stretch.offset_s == pytest.approx(0.4 + 30e-6 * stretch.time_s, abs=5.0 * stretch.std_s)
     # the same table by both commands, with the same numbers
     printed, again = (
-        {
-            row.split()[0]: row.split()
-            for row in run.output.partition("Clock map of shaft.nc")[2].splitlines()
-            if row.split()
-        }
-        for run in (found, shown)
+        next(row for row in run.output.splitlines() if row.split()[:2] == ["shaft.nc", "n_s"]) for run in (found, shown)
     )
-    for name, true in (("offset", 0.4 + 30e-6 * line.middle_s), ("drift", 30.0)):
-        assert again[name] == printed[name]
-        assert float(again[name][2]) == pytest.approx(true, abs=3.0 * float(again[name][3]))
-    assert again["minutes"][:3] == ["minutes", "compared", "14"]
+    assert again == printed
+    # logger, channels, offset +/- std [ms], at [s], drift +/- std [ppm], correlation, largest std, minutes, scatter
+    words = printed.split()
+    offset_ms, offset_std_ms, middle_s, drift_ppm, drift_std_ppm = (float(words[place]) for place in (2, 4, 5, 6, 8))
+    assert offset_ms == pytest.approx(1e3 * (0.4 + 30e-6 * middle_s), abs=3.0 * offset_std_ms)
+    assert drift_ppm == pytest.approx(30.0, abs=3.0 * drift_std_ppm)
+    assert words[11] == "14"
 
 
 def log(folder, name, *channels):

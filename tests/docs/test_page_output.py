@@ -9,7 +9,7 @@ from pages import shown
 from shaftprint.catalogue import structure
 from shaftprint.clocks import Alignment, ClockMap, LoggerClock, Stretch
 from shaftprint.fingerprint import ClockInfluence
-from shaftprint.report._clocks import clock_sentences
+from shaftprint.report.sections import clock_sentences
 
 NUMBER = re.compile(r"(?<![\w.])[-−]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
@@ -44,7 +44,7 @@ def test_the_readme_shows_lines_of_the_demo_in_their_order(demo):
 def test_what_the_readme_shows_is_told_rightly():
     """The numbers are those of the whole campaign: the truth, and intervals that hold it."""
     for sentence in sentences(shown("README.md"))[1:]:
-        value, *ends, true = numbers(re.sub("95 % between|kg m2", "", sentence))
+        value, *ends, true = numbers(re.sub("95 % interval|kg m2", "", sentence))
         if len(ends) == 1:
             assert abs(value - true) < 3.0 * ends[0], sentence
         else:

@@ -6,7 +6,7 @@ import pytest
 from shaftprint.identify import profile_intervals
 from shaftprint.identify.uncertainty import Budget, BudgetRow, budget, step_band
 from shaftprint.report.figures import plot_budget, plot_profiles, plot_step_band
-from shaftprint.report.sections import budget_table
+from shaftprint.tables import Column, Symbol, budget_table
 
 STATED = Budget(
     sources=("noise of n", "noise of M_s", "TVC", "air"),
@@ -44,9 +44,10 @@ def test_some_numbers_only_and_none():
 
 def test_table_has_shares_in_percent_and_leaves_out_what_is_not_known():
     table = budget_table(STATED)
-    assert table.header[:2] == ("quantity", "one std")
-    assert table.header[3] == "noise of <i>M</i><sub>s</sub>"
-    assert table.header[4:] == ("TVC", "air")
+    headings = [column.heading for column in table.columns]
+    assert headings[:2] == ["quantity", "one std"]
+    assert table.columns[3] == Column(Symbol("noise of M_s"), number=True)
+    assert headings[4:] == ["TVC", "air"]
     assert [str(cell) for cell in table.rows[0][1:]] == ["1.0", "50 %", "25 %", "25 %", "–"]
     assert [str(cell) for cell in table.rows[1][1:]] == ["0.010 s", "150 %", "−50 %", "–", "–"]
     assert len(table.rows) == 2

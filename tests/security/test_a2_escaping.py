@@ -445,9 +445,9 @@ def test_html_gives_every_text_back_and_has_no_tag_of_it(text):
 @any_text
 def test_tables_of_a_page_give_every_text_back(text):
     from shaftprint.report._page import _environment
-    from shaftprint.report._table import Table
+    from shaftprint.tables import Table, texts
 
-    table = Table(caption="c", header=("name", "x"), rows=((text, "1"),))
+    table = Table(title="c", columns=texts("name", "x"), rows=((text, "1"),))
     reader = _Reader()
     reader.feed(_environment().get_template("table.html.j2").render(table=table))
     reader.close()

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 
 from shaftprint.catalogue import ShipRole
-from shaftprint.cli._numbers import plain, with_uncertainty
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import echo, on_terminal
 from shaftprint.fingerprint import Fingerprint, Quantity
 from shaftprint.identify import Identification
+from shaftprint.tables import interval, rounded, with_deviation
 
 
 def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], core: Identification) -> None:
@@ -16,7 +16,8 @@ def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], core: Id
         quantity = fingerprint.quantity(name)
         unit = "" if quantity.unit == "-" else f" {quantity.unit}"
         given = _given(quantity, fingerprint)
-        echo(f"  * {words}: {_value(quantity)}{unit}{given}; in truth {plain(truth[name])}{unit}.")
+        value = on_terminal(f"{_value(quantity)}{unit}{given}; true value {rounded(truth[name])}{unit}.")
+        echo(f"  * {words}: {value}")
     for sentence in _of_the_thesis(fingerprint, core):
         echo(f"  * {sentence}")
     echo()
@@ -25,9 +26,9 @@ def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], core: Id
 def _value(quantity: Quantity) -> str:
     """Return the value with its 95 % interval, or with its standard deviation where there is no interval."""
     if quantity.interval_95 is None:
-        return with_uncertainty(quantity.value, quantity.std)
+        return with_deviation(quantity.value, quantity.std)
     lower, upper = quantity.interval_95
-    return f"{plain(quantity.value)}, 95 % between {plain(lower)} and {plain(upper)}"
+    return f"{rounded(quantity.value)}, 95 % interval {interval(lower, upper, quantity.std)}"
 
 
 def _given(quantity: Quantity, fingerprint: Fingerprint) -> str:
@@ -35,17 +36,17 @@ def _given(quantity: Quantity, fingerprint: Fingerprint) -> str:
     parameter = fingerprint.multiplied(quantity)
     if parameter is None or parameter.name not in fingerprint.priors or quantity.expected is None:
         return ""
-    return f", known from the vessel file as {with_uncertainty(quantity.expected, quantity.expected_std or 0.0)}"
+    return f", with the prior of the vessel file {with_deviation(quantity.expected, quantity.expected_std or 0.0)}"
 
 
 SENTENCES = {
     "I_dn": "Propeller, shaft and entrained water, the inertia behind the torque gauge",
     "I_up": "Engine, coupling and gearbox, the inertia before the torque gauge",
     "k_q": "The propeller torque grows with this power of the speed; 2 says that gauge and inflow are in order",
-    "t_d + t_sp": "From the set point to the fuel it takes, all delays together",
+    "t_d + t_sp": "Total delay from the set point to the fuel",
     "K_p / K_i": "The governor's reset time",
-    "gain margin": "The governor gain may grow by this factor before the line hunts",
-    "delay margin": "This much more delay in the loop would make the line hunt",
+    "gain margin": "Gain margin: the governor gain may grow by this factor before the speed oscillates",
+    "delay margin": "Delay margin: this much more delay in the loop makes the speed oscillate",
 }
 
 

@@ -6,23 +6,19 @@ from shaftprint.cli._terminal import echo
 from shaftprint.errors import SignalError
 from shaftprint.escape import toml_string
 from shaftprint.signals import FoundTest, common_shift_s, proposed_campaign
+from shaftprint.tables import Table, numbers, texts
 
 _SECTIONS = ("staircases", "sines", "chirps")
 
 
 def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign) -> None:
     """Print when and how every test was made; where that is other than planned, the lines that fit too."""
-    rows = [_row(test) for test in found]
     columns = (
-        "test",
-        "planned at [s]",
-        "begins at [s]",
-        "phase [deg]",
-        "frequency [Hz]",
-        "amplitude [V]",
-        "as planned",
+        *texts("test"),
+        *numbers("planned at [s]", "begins at [s]", "phase [deg]", "frequency [Hz]", "amplitude [V]"),
+        *texts("as planned"),
     )
-    print_table("Tests in the recorded set point", columns, rows, numbers=range(1, 6))
+    print_table(Table(title="Tests in the recorded set point", columns=columns, rows=tuple(map(_row, found))))
     if not any(test.differences for test in found):
         return
     shift_s = common_shift_s(found)

@@ -1,17 +1,17 @@
-"""What a test would find, as tables and sentences on the terminal."""
+"""The predicted accuracy of a test on the terminal."""
 
 import math
 from collections.abc import Mapping
 
 from shaftprint.campaign import Campaign
-from shaftprint.cli._fingerprint_tables import print_findings
-from shaftprint.cli._numbers import plain, with_uncertainty
+from shaftprint.cli._fingerprint_tables import print_assumed
 from shaftprint.cli._tables import print_table
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import echo, print_findings
 from shaftprint.identify.fit import Estimate
 from shaftprint.identify.prediction import Accuracy, Identifiability
 from shaftprint.identify.uncertainty import Interval
 from shaftprint.spectra import FrequencyResponse
+from shaftprint.tables import MEANING, Symbol, Table, interval, numbers, texts, unit_text, with_deviation
 
 
 def print_prediction(
@@ -22,7 +22,7 @@ def print_prediction(
     accuracy: Accuracy,
     intervals: Mapping[str, Interval],
 ) -> None:
-    """Print what a test would find.
+    """Print how accurate a planned test would be.
 
     Parameters
     ----------
@@ -31,27 +31,13 @@ def print_prediction(
     possible
         What the equations allow.
     accuracy, intervals
-        What the lines would tell.
+        The predicted accuracy with the lines.
     """
     structure = possible.structure
     echo(f"{campaign.name}; {structure.name}: {structure.title}")
     _print_conditions(response, noise, accuracy)
     print_findings("What these outputs can tell at all", possible.sentences)
-    columns = ("quantity", "unit", "value +/- 1 std", "std [%]", "95 % interval", "meaning")
-    meanings = {p.name: p.meaning for p in accuracy.objective.parameters}
-    meanings |= {c.name: c.meaning for c in (*possible.combinations, *accuracy.objective.combinations)}
-    rows = [
-        (
-            estimate.name,
-            estimate.unit,
-            with_uncertainty(estimate.value, estimate.std),
-            _percent(estimate),
-            _interval(intervals.get(estimate.name)),
-            meanings[estimate.name],
-        )
-        for estimate in (*accuracy.parameters, *accuracy.combinations)
-    ]
-    print_table("What these lines would tell", columns, rows, numbers=(2, 3, 4), spare=True)
+    print_table(_accuracy_table(possible, accuracy, intervals))
     print_findings("In words", accuracy.sentences)
 
 
@@ -61,9 +47,35 @@ def _print_conditions(response: FrequencyResponse, noise: str, accuracy: Accurac
     echo(f"  lines used: {', '.join(used)}")
     for name, remark in response.remarks.items():
         echo(f"  {name} not used: {remark}")
-    known = [f"{name} = {plain(prior.mean)} +/- {plain(prior.std)}" for name, prior in accuracy.priors.items()]
-    held = [f"{p.name} = {plain(p.value)}" for p in accuracy.objective.parameters if p.held]
-    echo(f"  known beforehand: {', '.join(known) or 'nothing'}; held: {', '.join(held) or 'nothing'}\n")
+    priors = {name: (prior.mean, prior.std) for name, prior in accuracy.priors.items()}
+    print_assumed(priors, {p.name: p.value for p in accuracy.objective.parameters if p.held})
+
+
+def _accuracy_table(possible: Identifiability, accuracy: Accuracy, intervals: Mapping[str, Interval]) -> Table:
+    meanings = {p.name: p.meaning for p in accuracy.objective.parameters}
+    meanings |= {c.name: c.meaning for c in (*possible.combinations, *accuracy.objective.combinations)}
+    rows = tuple(
+        (
+            Symbol(estimate.name),
+            with_deviation(estimate.value, estimate.std),
+            _percent(estimate),
+            _interval_text(intervals.get(estimate.name), estimate.std),
+            unit_text(estimate.unit),
+            meanings[estimate.name],
+        )
+        for estimate in (*accuracy.parameters, *accuracy.combinations)
+    )
+    return Table(
+        title="Predicted accuracy with these lines",
+        columns=(
+            *texts("quantity"),
+            *numbers("value ± std", "std [%]", "95 % interval"),
+            *texts("unit"),
+            MEANING,
+        ),
+        rows=rows,
+        note="An end of an interval with an asterisk is a bound of the search and not a result.",
+    )
 
 
 def _percent(estimate: Estimate) -> str:
@@ -73,9 +85,9 @@ def _percent(estimate: Estimate) -> str:
     return f"{percent:.0f}" if percent >= 100.0 else f"{percent:.2g}"
 
 
-def _interval(interval: Interval | None) -> str:
+def _interval_text(ends: Interval | None, std: float) -> str:
     """Return a profile interval; an end that only a bound of the search sets is marked."""
-    if interval is None:
+    if ends is None:
         return ""
-    ends = ((interval.lower, interval.lower_open), (interval.upper, interval.upper_open))
-    return " to ".join(f"{'bound ' if is_open else ''}{end:.4g}" for end, is_open in ends)
+    lower, _, upper = interval(ends.lower, ends.upper, std).partition(" to ")
+    return f"{lower}{'*' * ends.lower_open} to {upper}{'*' * ends.upper_open}"

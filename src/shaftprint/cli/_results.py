@@ -1,16 +1,19 @@
-"""The files of results that ``identify`` and ``demo`` leave behind."""
+"""The results of ``identify`` and ``demo``: files, where they are, and which structure the data want."""
 
 from collections.abc import Mapping
 from pathlib import Path
 
 from shaftprint.cli._fingerprint_file import FINGERPRINT, REPORT
 from shaftprint.cli._progress import Steps
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._tables import print_tables
+from shaftprint.cli._terminal import echo, print_findings
 from shaftprint.fingerprint import write_fingerprint
+from shaftprint.identify.comparison import StructureComparison
 from shaftprint.recording import read_recording
 from shaftprint.report import render_report
 from shaftprint.spectra import ExactBin, FrequencyResponse, HighestPeak, estimate_response
 from shaftprint.survey import Survey, ThesisMode
+from shaftprint.tables import structure_tables
 
 
 def write_results(
@@ -65,3 +68,9 @@ def _line_selection(survey: Survey) -> dict[str, FrequencyResponse]:
     for name, method in others.items():
         selection[name] = estimate_response(survey.signals, survey.campaign, method=method)
     return selection
+
+
+def print_comparison(comparison: StructureComparison) -> None:
+    """Print which structure the data want and why, and the criteria and tests of all."""
+    print_findings(f"Which structure: {comparison.best.name}", comparison.sentences)
+    print_tables(structure_tables(comparison))

@@ -6,11 +6,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.cli._numbers import with_uncertainty
 from shaftprint.cli._simulated_model import SimulatedModel
 from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo
 from shaftprint.report import SimulatedSignal
+from shaftprint.tables import MEANING, Table, numbers, rounded, texts, unit_text, with_deviation
+
+VALUE_DIGITS, RANGE_DIGITS, STD_DIGITS = 6, 5, 2
 
 
 def print_simulation(
@@ -26,26 +28,35 @@ def print_simulation(
     structure = model.structure
     std = dict(zip(model.uncertain, np.sqrt(np.diag(model.covariance)), strict=True))
     std |= dict.fromkeys(model.not_known, math.inf)
-    rows = [
-        (p.name, with_uncertainty(value, std[p.name]) if p.name in std else f"{value:.6g}", p.unit, origin, p.meaning)
+    values = [
+        (p.name, _value(value, std.get(p.name)), unit_text(p.unit), origin, p.meaning)
         for p, value, origin in zip(structure.parameters, model.values, model.origins, strict=True)
         if not (p.held and value == 0.0 and origin != "--set")
     ]
     print_table(
-        f"{structure.name}: {structure.title}", ("parameter", "value", "unit", "from", "meaning"), rows, spare=True
+        Table(
+            title=f"{structure.name}: {structure.title}",
+            columns=(*texts("parameter"), *numbers("value"), *texts("unit", "from"), MEANING),
+            rows=tuple(values),
+        )
     )
-    rows = [
+    ranges = [
         (
             signal.title,
             signal.unit,
-            f"{signal.values.min():.5g}",
-            f"{signal.values.max():.5g}",
-            "" if signal.std is None else f"{signal.std.max():.2g}",
+            rounded(float(signal.values.min()), RANGE_DIGITS),
+            rounded(float(signal.values.max()), RANGE_DIGITS),
+            "" if signal.std is None else rounded(float(signal.std.max()), STD_DIGITS),
         )
         for signal in signals
     ]
-    columns = ("signal", "unit", "lowest", "highest", "largest std")
-    print_table(f"From {time_s[0]:g} to {time_s[-1]:g} s", columns, rows, numbers=(2, 3, 4))
+    print_table(
+        Table(
+            title=f"From {time_s[0]:g} to {time_s[-1]:g} s",
+            columns=(*texts("signal", "unit"), *numbers("lowest", "highest", "largest std")),
+            rows=tuple(ranges),
+        )
+    )
     if model.uncertain:
         echo("The standard deviations hold the covariance of the parameters, not noise, weather or load.")
     if model.not_known:
@@ -53,3 +64,7 @@ def print_simulation(
         echo(f"The test said nothing of {', '.join(model.not_known)}: the band leaves {left} out.")
     for sentence in warnings:
         echo(sentence)
+
+
+def _value(value: float, std: float | None) -> str:
+    return rounded(value, VALUE_DIGITS) if std is None else with_deviation(value, std)

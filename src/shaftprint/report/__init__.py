@@ -20,16 +20,7 @@ from shaftprint.report._comparison import render_comparison
 from shaftprint.report._comparison_tables import difference_table
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
 from shaftprint.report._differences import LOAD_REPEATABILITY, Difference, differences
-from shaftprint.report._inertia_tables import (
-    expected_inertia_table,
-    inertia_budget_table,
-    mass_table,
-    mode_table,
-    two_mass_sentence,
-    water_table,
-)
 from shaftprint.report._render import render_report
-from shaftprint.report._table import Table
 from shaftprint.report._vessel_file_words import vessel_file_sentences
 from shaftprint.report.figures import (
     SimulatedSignal,
@@ -82,21 +73,16 @@ __all__ = [
     "Difference",
     "Explanation",
     "SimulatedSignal",
-    "Table",
     "change_in_words",
     "closed_loop_curve",
     "damping_table",
     "difference_table",
     "differences",
-    "expected_inertia_table",
     "explain_thesis",
     "explanation_sentences",
     "gain_table",
-    "inertia_budget_table",
     "inertia_table",
     "integral_table",
-    "mass_table",
-    "mode_table",
     "open_loop_curve",
     "plot_bode",
     "plot_calibration",
@@ -131,7 +117,5 @@ __all__ = [
     "render_comparison",
     "render_report",
     "save_figure",
-    "two_mass_sentence",
     "vessel_file_sentences",
-    "water_table",
 ]

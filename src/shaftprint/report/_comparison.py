@@ -11,11 +11,11 @@ from shaftprint.report._comparison_tables import beside_table, condition_table, 
 from shaftprint.report._curve import fingerprint_curve
 from shaftprint.report._differences import LOAD_REPEATABILITY, Difference, differences
 from shaftprint.report._page import Page, write_page
-from shaftprint.report._table import Table
 from shaftprint.report._vessel_file_words import vessel_file_sentences, vessel_file_table
 from shaftprint.report.figures import plot_bode, plot_differences, shown_names
 from shaftprint.report.plots import bode_plot, difference_plot
 from shaftprint.report.sections import Picture, Section, comparison_cover, not_alike
+from shaftprint.tables import Table, texts
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint
@@ -193,7 +193,7 @@ def _files(fingerprints: "Mapping[str, Fingerprint]") -> Table:
         for source in fingerprint.sources
     )
     return Table(
-        caption="Files that went into the fingerprints",
-        header=("fingerprint", "file", "what it is", "SHA-256"),
+        title="Files that went into the fingerprints",
+        columns=texts("fingerprint", "file", "what it is", "SHA-256"),
         rows=rows,
     )

@@ -4,18 +4,29 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.distributions import NORMAL_95
-from shaftprint.report._fingerprint_tables import limits
-from shaftprint.report._numbers import decimals_of, interval, plain, rounded, with_deviation
-from shaftprint.report._symbols import unit_text
-from shaftprint.report._table import Cell, Table, symbol_html
+from shaftprint.tables import (
+    MEANING,
+    Symbol,
+    Table,
+    decimals_of,
+    interval,
+    limits,
+    numbers,
+    p_value_text,
+    plain,
+    rounded,
+    texts,
+    unit_text,
+    with_deviation,
+)
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quantity
     from shaftprint.report._differences import Difference
 
 PERCENT = 100.0
-SMALLEST_P = 1e-4
 NOT_THERE = "–"
+MOVING = ": normalised numbers, which move with the working point"
 
 
 def difference_table(first: str, other: str, found: "Sequence[Difference]") -> Table:
@@ -28,9 +39,9 @@ def difference_table(first: str, other: str, found: "Sequence[Difference]") -> T
     found
         Their differences.
     """
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
+    rows = tuple(
         (
-            symbol_html(one.first.name),
+            Symbol(one.first.name),
             with_deviation(one.first.value, one.first.std),
             with_deviation(one.other.value, one.other.std),
             *_apart(one),
@@ -40,8 +51,16 @@ def difference_table(first: str, other: str, found: "Sequence[Difference]") -> T
         )
         for one in found
     )
-    header = ("quantity", first, other, "difference", "95 % interval", "%", "p", "outcome", "unit", "meaning")
-    return Table(caption=f"{other} compared with {first}", header=header, rows=rows)
+    return Table(
+        title=f"{other} compared with {first}{MOVING if all(one.normalised for one in found) else ''}",
+        columns=(
+            *texts("quantity"),
+            *numbers(first, other, "difference", "95 % interval", "%", "p"),
+            *texts("outcome", "unit"),
+            MEANING,
+        ),
+        rows=rows,
+    )
 
 
 def _apart(one: "Difference") -> tuple[str, str, str, str]:
@@ -51,8 +70,7 @@ def _apart(one: "Difference") -> tuple[str, str, str, str]:
         return rounded(one.value), NOT_THERE, share, NOT_THERE
     low, high = one.interval_95
     std = 0.5 * (high - low) / NORMAL_95
-    probability = f"< {SMALLEST_P:g}" if one.p_value < SMALLEST_P else plain(one.p_value, 4)
-    return plain(one.value, decimals_of(one.value, std)), interval(low, high, std), share, probability
+    return plain(one.value, decimals_of(one.value, std)), interval(low, high, std), share, p_value_text(one.p_value)
 
 
 def beside_table(fingerprints: "Mapping[str, Fingerprint]") -> list[Table]:
@@ -63,20 +81,20 @@ def beside_table(fingerprints: "Mapping[str, Fingerprint]") -> list[Table]:
         ("Combinations of parameters", "combinations"),
         ("Parameters, normalised with the working point of each test", "parameters"),
     )
-    tables = [_beside(caption, {n: getattr(f, group) for n, f in fingerprints.items()}) for caption, group in groups]
+    tables = [_beside(title, {n: getattr(f, group) for n, f in fingerprints.items()}) for title, group in groups]
     return [table for table in tables if table.rows]
 
 
-def _beside(caption: str, quantities: "Mapping[str, Sequence[Quantity]]") -> Table:
+def _beside(title: str, quantities: "Mapping[str, Sequence[Quantity]]") -> Table:
     there = {name: {q.name: q for q in found} for name, found in quantities.items()}
     names = list(dict.fromkeys(q for found in there.values() for q in found))
-    rows: list[tuple[Cell, ...]] = []
+    rows: list[tuple[str, ...]] = []
     for name in names:
         units = {found[name].unit for found in there.values() if name in found}
         cells = [_cell(found.get(name)) for found in there.values()]
-        rows.append((symbol_html(name), *cells, " or ".join(sorted(unit_text(unit) for unit in units))))
+        rows.append((Symbol(name), *cells, " or ".join(sorted(unit_text(unit) for unit in units))))
     note = "± is one standard deviation, in brackets the 95 % interval."
-    return Table(caption=caption, header=("quantity", *quantities, "unit"), rows=tuple(rows), note=note)
+    return Table(title=title, columns=texts("quantity", *quantities, "unit"), rows=tuple(rows), note=note)
 
 
 def _cell(quantity: "Quantity | None") -> str:
@@ -100,7 +118,7 @@ def condition_table(fingerprints: "Mapping[str, Fingerprint]") -> Table:
         ("signals prepared in", *(f"{f.conditions.mode} mode" for f in fingerprints.values())),
         ("verdict", *(f.verdict.reason for f in fingerprints.values())),
     )
-    return Table(caption="Conditions of the tests", header=("what", *fingerprints), rows=rows)
+    return Table(title="Conditions of the tests", columns=texts("what", *fingerprints), rows=rows)
 
 
 def _working(quantity: "Quantity") -> str:

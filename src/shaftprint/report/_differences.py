@@ -26,8 +26,8 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from shaftprint.distributions import NORMAL_95, normal_cdf
 from shaftprint.fingerprint import GAUGE_ZERO
-from shaftprint.report._fingerprint_tables import limits
 from shaftprint.report._shared_errors import shared_errors
+from shaftprint.tables import limits
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quantity

@@ -19,10 +19,11 @@ from markupsafe import Markup
 
 from shaftprint.escape import html_value
 from shaftprint.report._folder import FIGURES, PAGE, PLOTS, report_written_whole
-from shaftprint.report._table import Table, sentence_html
+from shaftprint.report._html import cell_html, sentence_html
 from shaftprint.report.figures import save_figure
 from shaftprint.report.plots import plotly_script, plotly_sheets, plotly_version, quick_script
 from shaftprint.report.sections import Cover, Picture, Section
+from shaftprint.tables import Table
 
 # Of a larger one a picture in dots is smaller, and still fine in print.
 LARGEST_SVG_BYTES = 80_000
@@ -211,6 +212,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.filters["symbols"] = sentence_html
+    environment.filters["cell"] = cell_html
     return environment
 
 

@@ -9,8 +9,8 @@ from shaftprint.clocks import logger_clocks
 from shaftprint.errors import ReportError
 from shaftprint.fingerprint import fingerprint_sha256
 from shaftprint.report._page import Page, write_page
-from shaftprint.report._table import Table
 from shaftprint.report.sections import Inputs, Section, cover_of, page_sections
+from shaftprint.tables import Table, texts
 
 if TYPE_CHECKING:
     from shaftprint.models import Structure
@@ -105,8 +105,8 @@ def _page(inputs: Inputs, sections: Sequence[Section]) -> Page:
     conditions = fingerprint.conditions
     sha256 = fingerprint_sha256(fingerprint)
     files = Table(
-        caption="Files that went into this report",
-        header=("file", "what it is", "SHA-256"),
+        title="Files that went into this report",
+        columns=texts("file", "what it is", "SHA-256"),
         rows=(
             *((source.name, source.role, source.sha256) for source in fingerprint.sources),
             *_logs(inputs),

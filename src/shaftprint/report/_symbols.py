@@ -3,10 +3,10 @@
 import re
 
 from shaftprint.escape import printable
+from shaftprint.tables import unit_text
 
 _GREEK = {"tau", "omega", "zeta", "delta", "eta", "rho"}
 _NAME = re.compile(r"[A-Za-z]+(?:_[A-Za-z0-9]+)?")
-_UNITS = {"kg m2": "kg m²", "N m": "N·m", "N m/rpm": "N·m/rpm", "N m/(rpm s)": "N·m/(rpm·s)", "1/s": "s⁻¹", "-": ""}
 
 
 def name_parts(formula: str) -> list[tuple[str, str, str]]:
@@ -39,11 +39,6 @@ def mathtext(formula: str) -> str:
         symbol = rf"\{base}" if base in _GREEK else base
         words.append(rf"${symbol}_{{\mathrm{{{index}}}}}$" if index else rf"${symbol}$")
     return "".join(words)
-
-
-def unit_text(unit: str) -> str:
-    """Return a unit as printed; nothing for a number without unit."""
-    return _UNITS.get(unit, unit)
 
 
 def with_unit(label: str, unit: str) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.report._shared_errors import shared_errors
-from shaftprint.report._table import Cell, Table
+from shaftprint.tables import Table, texts
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import FieldValue, Fingerprint
@@ -66,12 +66,12 @@ def vessel_file_table(fingerprints: "Mapping[str, Fingerprint]") -> Table:
     """
     known = {name: f.vessel_fields for name, f in fingerprints.items() if f.vessel_fields}
     fields = dict.fromkeys(field for stated in known.values() for field in stated)
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
+    rows = tuple(
         (field, *(_words(stated.get(field)) for stated in known.values()))
         for field in fields
         if len({stated.get(field) for stated in known.values()}) > 1
     )
-    return Table(caption="Where the vessel files differ", header=("field", *known), rows=rows)
+    return Table(title="Where the vessel files differ", columns=texts("field", *known), rows=rows)
 
 
 def _words(value: "FieldValue | None") -> str:

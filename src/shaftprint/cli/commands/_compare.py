@@ -5,16 +5,16 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._fingerprint_file import FINGERPRINT, REPORT, fingerprint_at
-from shaftprint.cli._numbers import plain
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
-from shaftprint.cli._tables import print_table
+from shaftprint.cli._tables import print_tables
 from shaftprint.cli._terminal import echo
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.report import (
     LOAD_REPEATABILITY,
     Difference,
     change_in_words,
+    difference_table,
     differences,
     render_comparison,
     vessel_file_sentences,
@@ -82,7 +82,6 @@ def command(
         _print_tables(first_name, name, apart[name])
         for sentence in vessel_file_sentences(first, other):
             echo(sentence)
-        _print_left_out(apart[name])
     if output is not None:
         echo(f"Report: {output / REPORT}")
 
@@ -120,30 +119,7 @@ def _parts(place: Path) -> tuple[str, ...]:
     return folder.parts
 
 
-def _print_tables(first: str, name: str, found: tuple[Difference, ...]) -> None:
-    header = ["quantity", first, name, "difference", "95 % interval", "p-value", "outcome"]
-    title = f"{name} compared with {first}"
-    print_table(title, header, [_row(one) for one in found if not one.normalised])
-    moving = [_row(one) for one in found if one.normalised]
-    if moving:
-        print_table(f"{title}: normalised numbers, which move with the working point", header, moving)
-
-
-def _print_left_out(found: tuple[Difference, ...]) -> None:
-    """Print which numbers were not compared, and why."""
-    for reason in dict.fromkeys(_reason(one) for one in found if one.because):
-        names = ", ".join(one.first.name for one in found if one.because and _reason(one) == reason)
-        echo(f"Not compared, {reason}: {names}.")
-
-
-def _reason(one: Difference) -> str:
-    """Return why a number cannot be compared, without which one to see instead."""
-    return one.because.partition(";")[0]
-
-
-def _row(one: Difference) -> list[str]:
-    unit = "" if one.first.unit == "-" else f" {one.first.unit}"
-    ends = "-" if one.interval_95 is None else " to ".join(plain(end) for end in one.interval_95)
-    probability = "-" if one.p_value is None else f"{one.p_value:.2g}"
-    values = [f"{plain(quantity.value)}{unit}" for quantity in (one.first, one.other)]
-    return [one.first.name, *values, plain(one.value), ends, probability, one.outcome]
+def _print_tables(first: str, name: str, compared: tuple[Difference, ...]) -> None:
+    physical = [one for one in compared if not one.normalised]
+    normalised = [one for one in compared if one.normalised]
+    print_tables([difference_table(first, name, physical), difference_table(first, name, normalised)])

@@ -6,15 +6,14 @@ from pathlib import Path
 import click
 import numpy as np
 
-from shaftprint.cli._comparison_tables import print_comparison
 from shaftprint.cli._demo_summary import print_summary
 from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.cli._fingerprint_tables import print_fingerprint
-from shaftprint.cli._fit_tables import print_fits
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._progress import Steps, no_progress_option, progress
-from shaftprint.cli._results import print_paths, write_results
+from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._signal_tables import print_lines
+from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo
 from shaftprint.survey import (
     Survey,
@@ -27,6 +26,7 @@ from shaftprint.survey import (
     thesis_way,
     weighted_fits,
 )
+from shaftprint.tables import fits_table
 from shaftprint.tug import Truth, sail
 
 VESSEL = "stan-tug-1205"
@@ -85,9 +85,11 @@ def _identify(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> tupl
 
 def _print(survey: Survey, thesis: ThesisMode, true: Mapping[str, float]) -> None:
     print_lines(survey.spectra)
-    print_fits("Structures of the thesis, on the same signals, weighted by their noise", survey.fits[1:])
-    print_fits(
-        "Structures of the thesis, signals and fits done the thesis' way", tuple(thesis.identifications.values())
+    print_table(fits_table("Structures of the thesis, on the same signals, weighted by their noise", survey.fits[1:]))
+    print_table(
+        fits_table(
+            "Structures of the thesis, signals and fits done the thesis' way", tuple(thesis.identifications.values())
+        )
     )
     print_fingerprint(survey.fingerprint, truth=true)
 

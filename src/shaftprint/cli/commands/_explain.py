@@ -5,12 +5,12 @@ from pathlib import Path
 import click
 import numpy as np
 
-from shaftprint.cli._inputs import campaign_option, vessel_option
+from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.cli._report_tables import on_terminal, print_report_table
 from shaftprint.cli._results import print_paths, write_results
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._tables import print_table
+from shaftprint.cli._terminal import echo, on_terminal
 from shaftprint.report import (
     Explanation,
     damping_table,
@@ -61,5 +61,5 @@ def command(
 def _print(explanation: Explanation) -> None:
     tables = (inertia_table, damping_table, gain_table, integral_table)
     for sentence, make in zip(explanation_sentences(explanation), tables, strict=True):
-        print_report_table(make(explanation))
+        print_table(make(explanation))
         echo(f"{on_terminal(sentence)}\n")

@@ -5,17 +5,17 @@ from pathlib import Path
 import click
 import numpy as np
 
-from shaftprint.cli._comparison_tables import print_comparison
-from shaftprint.cli._fingerprint_tables import print_findings, print_fingerprint
+from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
-from shaftprint.cli._fit_tables import print_fits
-from shaftprint.cli._inputs import campaign_option, structure_sources, vessel_option
+from shaftprint.cli._options import campaign_option, structure_sources, vessel_option
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.cli._results import print_paths, write_results
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._results import print_comparison, print_paths, write_results
+from shaftprint.cli._tables import print_table
+from shaftprint.cli._terminal import echo, print_findings
 from shaftprint.survey import run
+from shaftprint.tables import fits_table
 
 
 @click.command("identify")
@@ -69,7 +69,7 @@ def command(
     print_fingerprint(survey.fingerprint)
     print_findings("Limits", survey.limit_hints)
     if len(survey.fits) > 1:
-        print_fits("All structures", survey.fits)
+        print_table(fits_table("All structures", survey.fits))
     for comparison in survey.comparisons:
         print_comparison(comparison)
     print_paths(output)

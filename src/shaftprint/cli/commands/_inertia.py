@@ -6,17 +6,19 @@ import click
 
 from shaftprint.cli._file_to_write import expect_free, expect_no_input
 from shaftprint.cli._fingerprint_file import fingerprint_at, fingerprint_file
-from shaftprint.cli._report_tables import on_terminal, print_report_table
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._tables import print_table
+from shaftprint.cli._terminal import echo, on_terminal
 from shaftprint.files import written_whole
 from shaftprint.fingerprint import inertia_beside
 from shaftprint.report import (
+    plot_modes,
+    save_figure,
+)
+from shaftprint.tables import (
     expected_inertia_table,
     inertia_budget_table,
     mass_table,
     mode_table,
-    plot_modes,
-    save_figure,
     two_mass_sentence,
     water_table,
 )
@@ -108,11 +110,11 @@ def _print(
     )
     for table in tables:
         if table.rows:
-            print_report_table(table)
+            print_table(table)
     if vibrations is None:
         echo("No torsional modes: the vessel file has no [[links]] between its masses.")
         return
-    print_report_table(mode_table(vibrations))
+    print_table(mode_table(vibrations))
     line = vibrations.line
     driven = line.bodies[int((line.inertia_kg_m2 * (1.0 - line.is_downstream)).argmax())]
     echo(f"{on_terminal(two_mass_sentence(two_masses(line, driven=[driven])))}\n")

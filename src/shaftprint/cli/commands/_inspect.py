@@ -6,22 +6,20 @@ import click
 import numpy as np
 
 from shaftprint.campaign import Campaign, load_campaign
-from shaftprint.cli._clock_tables import print_clocks
-from shaftprint.cli._fingerprint_tables import print_findings
 from shaftprint.cli._found_tests import print_found_tests
-from shaftprint.cli._inputs import NAMES
+from shaftprint.cli._options import NAMES, hints_of, reading_options
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.cli._reading import hints_of, reading_options
 from shaftprint.cli._sensor_map import Seen, proposed_sensors
 from shaftprint.cli._signal_tables import print_lines, print_signals
-from shaftprint.cli._tables import print_table
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._tables import print_table, print_tables
+from shaftprint.cli._terminal import echo, print_findings
 from shaftprint.clocks import logger_clocks
 from shaftprint.fingerprint import clock_findings, clock_influences
 from shaftprint.limits import limit_hints
 from shaftprint.recording import Recording, read_recording
 from shaftprint.signals import ChannelReport, contradictions, find_tests, inspect_channels, prepare_signals
 from shaftprint.spectra import Spectra, estimate_spectra
+from shaftprint.tables import Table, clock_map_table, numbers, texts
 from shaftprint.vessel import Vessel, load_vessel
 
 # Noise as strong as the response: a weaker line adds little.
@@ -54,7 +52,7 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
     with read_recording(recording, **hints_of(**said)) as opened:
         clocks = logger_clocks(opened)
         seen = _print_channels(opened, hidden=no_progress)
-        print_clocks(clocks)
+        print_tables([clock_map_table(clocks)])
         if ship is None:
             print_findings("Left out", [f"{name}: {reason}" for name, reason in opened.left_out.items()])
             echo("Proposal for the vessel file; lines that begin with # are for you to fill in\n")
@@ -78,8 +76,11 @@ def _print_channels(opened: Recording, *, hidden: bool) -> list[Seen]:
         span = f"{channel.start_s:g} to {channel.start_s + channel.duration_s:g}"
         rows.append((channel.name, channel.unit, f"{channel.rate_hz:g}", span, *values, str(levels.missing)))
     echo(f"{opened.path}: {opened.format}, SHA-256 {opened.sha256}\n")
-    columns = ("channel", "unit", "rate [Hz]", "span [s]", "lowest", "mean", "highest", "not a number")
-    print_table("Channels, raw", columns, rows, numbers=(2, 4, 5, 6, 7))
+    columns = (
+        *(*texts("channel", "unit"), *numbers("rate [Hz]"), *texts("span [s]")),
+        *numbers("lowest", "mean", "highest", "not a number"),
+    )
+    print_table(Table(title="Channels, raw", columns=columns, rows=tuple(rows)))
     if opened.began is not None:
         echo(f"Second 0 is {opened.began.isoformat(sep=' ')} by the logger's clock.\n")
     return seen
@@ -89,8 +90,12 @@ def _print_sensors(opened: Recording, ship: Vessel, *, hidden: bool) -> None:
     with progress(hidden=hidden) as steps:
         steps.begin("Looking at the sensors")
         reports = inspect_channels(opened, ship)
-    columns = ("channel", "used for", "levels", "pulses [1/s]", "strip angles [deg]", "faults")
-    print_table("Sensors of the vessel file", columns, [_sensor_row(report) for report in reports], numbers=(3,))
+    columns = (
+        *texts("channel", "used for", "levels"),
+        *numbers("pulses [1/s]"),
+        *texts("strip angles [deg]", "faults"),
+    )
+    print_table(Table(title="Sensors of the vessel file", columns=columns, rows=tuple(map(_sensor_row, reports))))
     gaps = [gap.sentence for report in reports for gap in report.gaps]
     if gaps:
         more = [f"{len(gaps) - _MOST_GAPS} more"] if len(gaps) > _MOST_GAPS else []

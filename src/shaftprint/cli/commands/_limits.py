@@ -4,13 +4,13 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._fingerprint_tables import print_findings
-from shaftprint.cli._inputs import campaign_option, vessel_option
-from shaftprint.cli._numbers import with_uncertainty
+from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.cli._tables import print_table
+from shaftprint.cli._tables import print_tables
+from shaftprint.cli._terminal import print_findings
 from shaftprint.limits import LimitEstimate, LimitFit, identify_limits
 from shaftprint.survey import load_trial, measure
+from shaftprint.tables import Symbol, Table, numbers, texts, unit_text, with_deviation
 
 
 @click.command("limits")
@@ -36,20 +36,7 @@ def print_limits(found: LimitFit) -> None:
     """Print the answer first: limits with their levels, what may be trusted, then the tables."""
     print_findings("Limits", [found.sentence, *(_answer(found, number) for number in _first_numbers(found))])
     print_findings("Not seen", list(found.not_seen.values()))
-    if found.numbers:
-        print_table(
-            "Numbers of the limits",
-            ("symbol", "value +/- 1 std", "95 % interval", "unit", "trusted", "meaning"),
-            [_row(number) for number in found.numbers],
-        )
-    print_table(
-        "Governor that goes with them",
-        ("symbol", "value +/- 1 std", "unit"),
-        [
-            (e.name, f"{with_uncertainty(e.value, e.std)}{' at bound' if e.at_bound else ''}", e.unit)
-            for e in found.governor
-        ],
-    )
+    print_tables([_number_table(found), _governor_table(found)])
     trusted = ", ".join(number.name for number in found.trusted) or "none"
     doubted = [f"{number.name}: {number.doubt}." for number in found.numbers if not number.trusted]
     print_findings("Verdict", [f"Numbers that can be trusted: {trusted}.", *doubted])
@@ -73,7 +60,30 @@ def _interval(number: LimitEstimate) -> str:
     return f"{number.lower:.4g} to {number.upper:.4g}"
 
 
-def _row(number: LimitEstimate) -> tuple[str, ...]:
-    value = with_uncertainty(number.value, number.std)
-    trusted = "yes" if number.trusted else number.doubt
-    return number.name, value, _interval(number), number.unit, trusted, number.meaning
+def _number_table(found: LimitFit) -> Table:
+    rows = tuple(
+        (
+            Symbol(number.name),
+            with_deviation(number.value, number.std),
+            _interval(number),
+            unit_text(number.unit),
+            "yes" if number.trusted else number.doubt,
+            number.meaning,
+        )
+        for number in found.numbers
+    )
+    columns = (*texts("symbol"), *numbers("value ± std", "95 % interval"), *texts("unit", "trusted", "meaning"))
+    return Table(title="Numbers of the limits", columns=columns, rows=rows)
+
+
+def _governor_table(found: LimitFit) -> Table:
+    rows = tuple(
+        (
+            Symbol(estimate.name),
+            with_deviation(estimate.value, estimate.std) + (" (at its bound)" if estimate.at_bound else ""),
+            unit_text(estimate.unit),
+        )
+        for estimate in found.governor
+    )
+    columns = (*texts("symbol"), *numbers("value ± std"), *texts("unit"))
+    return Table(title="Governor that goes with them", columns=columns, rows=rows)

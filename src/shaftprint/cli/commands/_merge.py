@@ -4,13 +4,14 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._clock_tables import print_clocks
 from shaftprint.cli._file_to_write import expect_no_input
-from shaftprint.cli._inputs import NAMES
+from shaftprint.cli._options import NAMES
+from shaftprint.cli._tables import print_tables
 from shaftprint.cli._terminal import echo
 from shaftprint.clocks import align, logger_clocks, merged
 from shaftprint.recording import Recording, read_recording, write_recording
 from shaftprint.signals import Content, content_of
+from shaftprint.tables import clock_map_table
 from shaftprint.vessel import Vessel, load_vessel
 
 RATE_HZ = 50.0
@@ -58,7 +59,7 @@ def command(
             latency_std_s=1e-3 * latency_std_ms,
         )
         both = merged(still, [(moving, found)])
-        print_clocks(logger_clocks(both))
+        print_tables([clock_map_table(logger_clocks(both))])
         write_recording(output, both.channels.values(), attributes=both.attributes, overwrite=force)
     echo(output)
 

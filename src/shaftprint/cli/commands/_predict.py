@@ -9,8 +9,8 @@ import numpy as np
 
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.catalogue import structure
-from shaftprint.cli._inputs import NAMES, campaign_option
 from shaftprint.cli._known_values import hold_option, named_value, prior_option, rpm_per_volt_option
+from shaftprint.cli._options import NAMES, campaign_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._prediction_tables import print_prediction
 from shaftprint.cli._progress import no_progress_option, progress

@@ -7,8 +7,8 @@ import numpy as np
 
 from shaftprint.cli._file_to_write import expect_free, expect_no_input
 from shaftprint.cli._fingerprint_file import fingerprint_at, fingerprint_file
-from shaftprint.cli._inputs import NAMES
 from shaftprint.cli._known_values import named_value, rpm_per_volt_option
+from shaftprint.cli._options import NAMES
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model

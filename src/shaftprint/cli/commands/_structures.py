@@ -7,6 +7,7 @@ from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo
 from shaftprint.models import Parameter, Structure
+from shaftprint.tables import MEANING, Symbol, Table, numbers, texts
 
 
 @click.command("structures")
@@ -18,20 +19,22 @@ def command(names: tuple[TypedName, ...]) -> None:
     own, which is Python and is run. Held parameters keep their value unless they are freed.
     """
     for chosen in chosen_structures(names or tuple(map(TypedName, STRUCTURES))):
-        print_table(
-            f"{chosen.name}: {chosen.title}, {', '.join(chosen.inputs)} -> {', '.join(chosen.outputs)}",
-            ("parameter", "unit", "lower", "upper", "value", "meaning"),
-            [_row(parameter) for parameter in chosen.parameters],
-            numbers=(2, 3, 4),
-            spare=True,
-        )
+        print_table(_parameter_table(chosen))
         _print_combinations(chosen)
+
+
+def _parameter_table(chosen: Structure) -> Table:
+    return Table(
+        title=f"{chosen.name}: {chosen.title}, {', '.join(chosen.inputs)} -> {', '.join(chosen.outputs)}",
+        columns=(*texts("parameter", "unit"), *numbers("lower", "upper", "value"), MEANING),
+        rows=tuple(_row(parameter) for parameter in chosen.parameters),
+    )
 
 
 def _row(parameter: Parameter) -> tuple[str, ...]:
     value = f"{parameter.value:g}, held" if parameter.held else f"{parameter.value:g}"
     lower, upper = f"{parameter.lower:g}", f"{parameter.upper:g}"
-    return parameter.name, parameter.unit, lower, upper, value, parameter.meaning
+    return Symbol(parameter.name), parameter.unit, lower, upper, value, parameter.meaning
 
 
 def _print_combinations(chosen: Structure) -> None:

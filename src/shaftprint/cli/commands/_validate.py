@@ -7,18 +7,18 @@ import click
 import numpy as np
 
 from shaftprint.cli._fingerprint_file import fingerprint_at
-from shaftprint.cli._fingerprint_model import fingerprint_model
 from shaftprint.cli._fit_options import FitOptions, fit_options, held_structures, settings_of, structures_of
-from shaftprint.cli._inputs import campaign_option, vessel_option
+from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
 from shaftprint.cli._progress import Steps, no_progress_option, progress
+from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo
-from shaftprint.cli._validation_results import write_validations
-from shaftprint.cli._validation_tables import print_compared_models, print_validation
+from shaftprint.cli._validation import fingerprint_model, print_validation, write_validations
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.models import Structure
 from shaftprint.survey import Measurement, Trial, fit, load_trial, measure
+from shaftprint.tables import models_table
 from shaftprint.validation import Model, identified_model, thesis_models, validate
 
 DEFAULT_STRUCTURE = TypedName("GAUGE-CLOSED")
@@ -107,7 +107,7 @@ def command(
             write_validations(folder, validations, steps=steps)
     print_validation(validations[0])
     if thesis_sets:
-        print_compared_models(validations)
+        print_table(models_table(validations))
     if output is not None:
         echo(f"Figures: {output}")
 

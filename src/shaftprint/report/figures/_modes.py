@@ -4,7 +4,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report._numbers import plain, with_deviation
 from shaftprint.report.figures._style import (
     FONT_PT,
     REFERENCE,
@@ -15,6 +14,7 @@ from shaftprint.report.figures._style import (
     look,
     new_figure,
 )
+from shaftprint.tables import plain, with_deviation
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -1,8 +1,8 @@
 """Words on interactive figures: names with slanted letters and lowered indices, all else as it is written."""
 
 from shaftprint.escape import html_text
-from shaftprint.report._symbols import unit_text
-from shaftprint.report._table import symbol_html
+from shaftprint.report._html import symbol_html
+from shaftprint.tables import unit_text
 
 
 def name_text(formula: str) -> str:

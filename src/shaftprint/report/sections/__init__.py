@@ -1,5 +1,6 @@
 """The sections of the report: title, sentences, tables and pictures, made from what a survey produced."""
 
+from shaftprint.report.sections._clocks import clock_sentences
 from shaftprint.report.sections._comparison_cover import change_in_words, comparison_cover, not_alike
 from shaftprint.report.sections._cover import Cover
 from shaftprint.report.sections._inertia import inertia_section
@@ -9,15 +10,14 @@ from shaftprint.report.sections._results import fit_section, stability_section, 
 from shaftprint.report.sections._search import comparison_section, search_section
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 from shaftprint.report.sections._superintendent import cover_of
-from shaftprint.report.sections._uncertainty import budget_table
 
 __all__ = [
     "Cover",
     "Inputs",
     "Picture",
     "Section",
-    "budget_table",
     "change_in_words",
+    "clock_sentences",
     "comparison_cover",
     "comparison_section",
     "cover_of",

@@ -3,10 +3,9 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.report._numbers import plain
-from shaftprint.report._symbols import unit_text
 from shaftprint.report.figures import in_percent
 from shaftprint.report.sections._cover import Card, Cover, State
+from shaftprint.tables import plain, unit_text
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint

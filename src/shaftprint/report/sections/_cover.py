@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from shaftprint.report._table import Table
+from shaftprint.tables import Table
 
 State: TypeAlias = Literal["fine", "look", "bad", "open"]
 

@@ -1,15 +1,14 @@
 """The section of a report on the inertia by calculation and the torsional modes of the line."""
 
 from shaftprint.fingerprint import inertia_beside
-from shaftprint.report._inertia_tables import (
+from shaftprint.report.figures import plot_modes
+from shaftprint.report.sections._sections import Inputs, Picture, Section
+from shaftprint.tables import (
     expected_inertia_table,
     inertia_budget_table,
     mode_table,
     water_table,
 )
-from shaftprint.report._table import with_symbols
-from shaftprint.report.figures import plot_modes
-from shaftprint.report.sections._sections import Inputs, Picture, Section
 from shaftprint.torsion import modes, torsional_line
 
 OPENING = (
@@ -43,7 +42,7 @@ def inertia_section(inputs: Inputs) -> list[Section]:
             key="inertia",
             title="Inertia by calculation",
             paragraphs=(OPENING,),
-            tables=tuple(with_symbols(table) for table in tables if table.rows),
+            tables=tuple(table for table in tables if table.rows),
             pictures=pictures,
         )
     ]

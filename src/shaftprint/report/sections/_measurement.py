@@ -4,7 +4,6 @@ from functools import partial
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from shaftprint.report._signal_tables import calibration_table, step_table, strip_table
 from shaftprint.report.figures import (
     plot_calibration,
     plot_campaign,
@@ -20,6 +19,7 @@ from shaftprint.report.figures import (
 from shaftprint.report.plots import bode_plot, excitation_plot
 from shaftprint.report.sections._sections import Inputs, Picture, Section, picture_name
 from shaftprint.spectra import open_loop
+from shaftprint.tables import calibration_table, step_table, strip_table
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Excitation

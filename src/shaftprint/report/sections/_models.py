@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from shaftprint.escape import plain_name
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
-from shaftprint.report._table import with_symbols
 from shaftprint.report.figures import (
     plot_bode,
     plot_closed_loop_comparison,
@@ -76,7 +75,7 @@ def explanation_section(inputs: Inputs) -> list[Section]:
             key="explanation",
             title="Where the thesis' numbers come from",
             paragraphs=explanation_sentences(explanation),
-            tables=tuple(with_symbols(make(explanation)) for make in EXPLAINED),
+            tables=tuple(make(explanation) for make in EXPLAINED),
             pictures=(
                 Picture(
                     name="missing_damping",

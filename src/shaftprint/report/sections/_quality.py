@@ -4,17 +4,24 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from shaftprint.fingerprint import clock_influences
-from shaftprint.report._clocks import clock_map_table, clock_sentences
-from shaftprint.report._levels import clock_table, level_table
-from shaftprint.report._numbers import plain
-from shaftprint.report._signal_tables import local_ratio_table, overall_ratio_table, repair_table, window_table
 from shaftprint.report._symbols import name_parts
 from shaftprint.report.figures import THESIS_LIMIT_DB, plot_signal_to_noise
 from shaftprint.report.plots import signal_to_noise_plot
+from shaftprint.report.sections._clocks import clock_sentences
 from shaftprint.report.sections._sections import Inputs, Picture, Section
+from shaftprint.tables import (
+    clock_map_table,
+    clock_table,
+    level_table,
+    local_ratio_table,
+    overall_ratio_table,
+    plain,
+    repair_table,
+    window_table,
+)
 
 if TYPE_CHECKING:
-    from shaftprint.report._table import Table
+    from shaftprint.tables import Table
 
 
 def quality_section(inputs: Inputs) -> Section:

@@ -5,20 +5,22 @@ from typing import TYPE_CHECKING
 
 from shaftprint.distributions import NORMAL_95
 from shaftprint.report._curve import Curve
-from shaftprint.report._fingerprint_tables import (
+from shaftprint.report.figures import plot_bode, plot_correlation, plot_nyquist, plot_residuals, plot_step_band
+from shaftprint.report.plots import bode_plot, nyquist_plot, residual_plot, step_plot
+from shaftprint.report.sections._sections import Inputs, Picture, Section
+from shaftprint.tables import (
     combination_table,
     expected_text,
     fit_table,
     margin_table,
     parameter_table,
     physical_table,
+    plain,
+    rounded,
     truth_of_combinations,
+    unit_text,
+    with_deviation,
 )
-from shaftprint.report._numbers import plain, rounded, with_deviation
-from shaftprint.report._symbols import unit_text
-from shaftprint.report.figures import plot_bode, plot_correlation, plot_nyquist, plot_residuals, plot_step_band
-from shaftprint.report.plots import bode_plot, nyquist_plot, residual_plot, step_plot
-from shaftprint.report.sections._sections import Inputs, Picture, Section
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quantity

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from shaftprint.report._table import Table
+from shaftprint.tables import Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,11 +5,19 @@ from typing import TYPE_CHECKING
 
 from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint import GAUGE_ZERO
-from shaftprint.report._fingerprint_tables import expected_text, limits
-from shaftprint.report._numbers import decimals_of, interval, plain, with_deviation
-from shaftprint.report._symbols import unit_text
-from shaftprint.report._table import Cell, Table
 from shaftprint.report.sections._cover import Card, Cover, State, overall
+from shaftprint.tables import (
+    Table,
+    decimals_of,
+    expected_text,
+    interval,
+    limits,
+    numbers,
+    plain,
+    texts,
+    unit_text,
+    with_deviation,
+)
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quantity
@@ -225,7 +233,7 @@ def _measured(fingerprint: "Fingerprint") -> Card:
 def _numbers(fingerprint: "Fingerprint") -> list[Table]:
     """Return the numbers that a superintendent asks for, as far as they are there."""
     there = {q.name: q for q in (*fingerprint.physical, *fingerprint.combinations, *fingerprint.margins)}
-    rows: list[tuple[Cell, ...]] = []
+    rows: list[tuple[str, ...]] = []
     for name, words in NUMBERS:
         quantity = there.get(name)
         if quantity is None:
@@ -238,5 +246,5 @@ def _numbers(fingerprint: "Fingerprint") -> list[Table]:
         rows.append((marked, value, interval(lower, upper, quantity.std), expected))
     if not rows:
         return []
-    header = ("what", "found", "95 % interval", "vessel file")
-    return [Table(caption="What was found", header=header, rows=tuple(rows))]
+    columns = (*texts("what"), *numbers("found", "95 % interval", "vessel file"))
+    return [Table(title="What was found", columns=columns, rows=tuple(rows))]

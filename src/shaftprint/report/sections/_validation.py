@@ -4,16 +4,14 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from shaftprint.report._numbers import plain
-from shaftprint.report._table import Cell, Table, symbol_html
 from shaftprint.report.figures import plot_validation, plot_validation_summary
 from shaftprint.report.plots import validation_plot
 from shaftprint.report.sections._sections import Inputs, Picture, Section, picture_name
+from shaftprint.tables import misfit_table
 
 if TYPE_CHECKING:
     from shaftprint.validation import ExcerptComparison, Validation
 
-PERCENT = 100.0
 MOST_BANDS = 2
 AROUND_STEP_S = (0.5, 6.0)
 # A step counts as larger than another where it is higher by more than the noise of a level.
@@ -87,45 +85,3 @@ def shown_excerpts(validation: "Validation") -> "list[ExcerptComparison]":
 def _height(comparison: "ExcerptComparison") -> float:
     set_point = comparison.traces.set_point
     return abs(float(set_point[-1] - set_point[0]))
-
-
-def misfit_table(validation: "Validation") -> Table:
-    """Return what the model misses of every excerpt and output beyond noise, and the delay that is left."""
-    rows: list[tuple[Cell, ...]] = []
-    for comparison in validation.comparisons:
-        excerpt = comparison.excerpt
-        for misfit, delay in zip(comparison.misfits, comparison.delays, strict=True):
-            low, high = (PERCENT * end for end in misfit.error_interval)
-            rows.append(
-                (
-                    f"{excerpt.record}, {excerpt.title}".replace(" -", " −"),
-                    symbol_html(misfit.output),
-                    f"{plain(PERCENT * misfit.error, 1)} %",
-                    f"{plain(low, 1)} to {plain(high, 1)} %",
-                    f"{plain(misfit.fit_percent, 1)} %",
-                    f"{plain(misfit.fit_ceiling, 1)} %",
-                    _milliseconds(delay.delay_s, delay.std_s),
-                    misfit.outcome + (" (identified from it)" if excerpt.in_sample else ""),
-                )
-            )
-    allowed = f"{PERCENT * validation.settings.largest_error:g} %"
-    return Table(
-        caption="What the model misses",
-        header=(
-            "excerpt",
-            "output",
-            "beyond noise",
-            "95 % interval",
-            "FitPercent",
-            "right model",
-            "delay left [ms]",
-            "outcome",
-        ),
-        rows=tuple(rows),
-        note=f"Shares of the motion in the excerpt. It passes where the interval lies below {allowed}, and fails where "
-        "it lies above.",
-    )
-
-
-def _milliseconds(delay_s: float, std_s: float) -> str:
-    return f"{plain(1000.0 * delay_s, 1)} ± {plain(1000.0 * std_s, 1)}"

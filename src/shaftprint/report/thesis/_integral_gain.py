@@ -17,9 +17,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from shaftprint.catalogue import ShipRole
-from shaftprint.report._numbers import plain, rounded, with_deviation
-from shaftprint.report._table import Table
 from shaftprint.report.thesis._thesis_mode import GOVERNOR_FITS
+from shaftprint.tables import Table, numbers, plain, rounded, texts, with_deviation
 
 if TYPE_CHECKING:
     from shaftprint.identify import Identification
@@ -114,8 +113,12 @@ def integral_gain_table(gain: IntegralGain) -> Table:
     """Return the integral gain structure by structure, with the set point as it is and off."""
     off = f"set point off by {plain(PERCENT * gain.off_share, 2)} %"
     return Table(
-        caption="The integral gain: the same in all structures, with a right set point and with one that is off",
-        header=("structure", "K_i, the thesis' way", "FitPercent", f"K_i, {off}", f"FitPercent, {off}"),
+        title="The integral gain: the same in all structures, with a right set point and with one that is off",
+        columns=(
+            *texts("structure"),
+            *numbers("K_i, the thesis' way", "FitPercent", f"K_i, {off}", f"FitPercent, {off}"),
+        ),
+        symbols=True,
         rows=tuple(
             (
                 step.structure,

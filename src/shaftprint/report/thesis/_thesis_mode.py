@@ -6,9 +6,8 @@ import numpy as np
 
 from shaftprint.catalogue import ShipRole
 from shaftprint.normalisation import inertia_time_s
-from shaftprint.report._numbers import plain, rounded
-from shaftprint.report._table import Cell, Table, symbol_html
 from shaftprint.spectra import open_loop
+from shaftprint.tables import Symbol, Table, numbers, plain, rounded, texts
 
 if TYPE_CHECKING:
     from shaftprint.survey import ThesisMode
@@ -84,7 +83,7 @@ def _aliased(thesis: "ThesisMode") -> list[str]:
 
 def thesis_fit_table(thesis: "ThesisMode") -> Table:
     """Return parameters and FitPercent of the unweighted fits (as thesis tables 5.2 and 5.3)."""
-    rows: list[tuple[Cell, ...]] = []
+    rows: list[tuple[str, ...]] = []
     for name, fit in thesis.identifications.items():
         values = tuple(
             rounded(fit.value(parameter)) if parameter in fit.structure.names else "–" for parameter in SHOWN
@@ -93,13 +92,10 @@ def thesis_fit_table(thesis: "ThesisMode") -> Table:
         margin = fit.margins
         rows.append((name, *values, *percent, "–" if margin is None else plain(margin.gain_margin, 2)))
     return Table(
-        caption="Unweighted fits in thesis mode (as tables 5.2 and 5.3)",
-        header=(
-            "structure",
-            *(symbol_html(parameter) for parameter in SHOWN),
-            symbol_html("FitPercent n"),
-            symbol_html("FitPercent M_s"),
-            "gain margin",
+        title="Unweighted fits in thesis mode (as tables 5.2 and 5.3)",
+        columns=(
+            *texts("structure"),
+            *numbers(*(Symbol(name) for name in (*SHOWN, "FitPercent n", "FitPercent M_s")), "gain margin"),
         ),
         rows=tuple(rows),
         note="Units: s, -, 1/s, s, rad/s, -. FitPercent of M_s / e for OL2 to OL5, of n / M_s for OL1.",

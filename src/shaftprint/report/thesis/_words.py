@@ -5,9 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report._numbers import plain, rounded, with_deviation
-from shaftprint.report._table import Table
 from shaftprint.report.thesis._integral_gain import integral_gain_table, integral_gain_words
+from shaftprint.tables import Table, numbers, p_value_text, plain, rounded, texts, with_deviation
 
 if TYPE_CHECKING:
     from shaftprint.report.thesis._explanation import Explanation, GainStep, LineStep
@@ -33,8 +32,9 @@ def integral_table(explanation: "Explanation") -> Table:
 def inertia_table(explanation: "Explanation") -> Table:
     """Return the inertia time step by step."""
     return Table(
-        caption="The factor: the inertia time, one change a row",
-        header=("step", "inertia time [s]", "calculated upstream over it", "what changed"),
+        title="The factor: the inertia time, one change a row",
+        columns=(*texts("step"), *numbers("inertia time [s]", "calculated upstream over it"), *texts("what changed")),
+        symbols=True,
         rows=tuple(
             (step.what, _with_std(step.value_s, step.std_s), plain(step.factor, 2), step.why)
             for step in explanation.inertia
@@ -45,18 +45,13 @@ def inertia_table(explanation: "Explanation") -> Table:
 def damping_table(explanation: "Explanation") -> Table:
     """Return governor and engine line by line, without and with the inertia upstream of the gauge."""
     return Table(
-        caption="The damping: governor and engine from 0.5 to 12 rad/s",
-        header=(
-            "line",
-            "[rad/s]",
-            "M_s / e measured",
-            "governor and engine",
-            "inertia",
-            "product",
-            "n / n_set measured",
-            "gauge-aware",
-            "OL1+OL5",
+        title="The damping: governor and engine from 0.5 to 12 rad/s",
+        columns=(
+            *texts("line"),
+            *numbers("[rad/s]", "M_s / e measured", "governor and engine", "inertia", "product"),
+            *numbers("n / n_set measured", "gauge-aware", "OL1+OL5"),
         ),
+        symbols=True,
         rows=tuple(_damping_row(step) for step in explanation.lines),
         note=(
             "Magnitude and phase; of n / n_set the magnitude. Inertia: (tau_dn s + k_q) / ((tau_up + tau_dn) s + k_q - "
@@ -69,14 +64,12 @@ def damping_table(explanation: "Explanation") -> Table:
 def gain_table(explanation: "Explanation") -> Table:
     """Return the proportional gain structure by structure."""
     return Table(
-        caption="The drift: the proportional gain of each structure",
-        header=(
-            "structure",
-            "K_p, the thesis' way",
-            "FitPercent",
-            "K_p, weighted",
-            "p-value",
+        title="The drift: the proportional gain of each structure",
+        columns=(
+            *texts("structure"),
+            *numbers("K_p, the thesis' way", "FitPercent", "K_p, weighted", "p-value"),
         ),
+        symbols=True,
         rows=tuple(_gain_row(step) for step in explanation.gains),
         note="The p-value is the chance of data at least as far off if the structure held; below 0.01 it is rejected.",
     )
@@ -112,13 +105,6 @@ def _gain_row(step: "GainStep") -> tuple[str, ...]:
         with_deviation(step.weighted, step.weighted_std),
         p_value_text(step.p_value),
     )
-
-
-def p_value_text(value: float) -> str:
-    """Return a p-value with two digits, or as smaller than a millionth."""
-    if math.isnan(value):
-        return "–"
-    return "< 0.000001" if value < 1e-6 else rounded(value, 2)
 
 
 def _inertia_words(explanation: "Explanation") -> str:

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._fingerprint_file import fingerprint_at
-from shaftprint.cli._inputs import NAMES
+from shaftprint.cli._options import NAMES
 from shaftprint.cli._own_structure import TypedName
 from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._terminal import echo

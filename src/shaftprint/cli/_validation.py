@@ -1,16 +1,28 @@
-"""The figures that ``validate`` leaves behind."""
+"""What ``validate`` works with and leaves behind: the model of a fingerprint, the figures, the tables."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
+from shaftprint.arrays import frozen_float
 from shaftprint.cli._progress import Steps
+from shaftprint.cli._tables import print_tables
+from shaftprint.cli._terminal import print_findings
+from shaftprint.errors import FingerprintError
 from shaftprint.escape import plain_name
+from shaftprint.fingerprint import Fingerprint, identified_model
+from shaftprint.models import Structure
 from shaftprint.report import plot_validation, plot_validation_summary, save_figure
-from shaftprint.validation import ExcerptComparison, Validation
+from shaftprint.signals import Signals
+from shaftprint.tables import misfit_table, step_number_table
+from shaftprint.units import rpm_from_rev_s
+from shaftprint.validation import ExcerptComparison, Model, Validation
 
 # As the thesis shares its sets between the parts (a) and (b) of figures 5.7 to 5.9.
 GROUPS = {"a": ("CL4", "OL1+OL5", "benchmark"), "b": ("CL3", "OL1+OL4", "benchmark")}
 AROUND_STEP_S = (0.5, 4.0)
+WORDS = {"passes": "passes", "fails": "fails", "undecided": "does not fail; noise hides part of it"}
 
 
 def write_validations(folder: Path, validations: Sequence[Validation], *, steps: Steps) -> None:
@@ -70,3 +82,43 @@ def _groups(validations: Sequence[Validation]) -> dict[str, list[Validation]]:
         return {"": list(validations)}
     by_name = {validation.model.name: validation for validation in validations[1:]}
     return {f" {part}": [validations[0], *(by_name[name] for name in names)] for part, names in GROUPS.items()}
+
+
+# Parameters are normalised at the working point: at another one inertia times and gains are others.
+_SAME_WORKING_POINT = 0.02
+
+
+def fingerprint_model(fingerprint: Fingerprint, structure: Structure, signals: Signals) -> Model:
+    """Return the model of a fingerprint; the lines that it was identified from count where it is of this recording.
+
+    Raises
+    ------
+    FingerprintError
+        If the structure has other parameters than the fingerprint, or the working points of both differ by more than
+        2 %.
+    """
+    found = identified_model(fingerprint, structure)
+    here = rpm_from_rev_s(signals.working_point.engine_speed_rev_s)
+    there = fingerprint.conditions.engine_speed.value
+    if abs(here / there - 1.0) > _SAME_WORKING_POINT:
+        raise FingerprintError(
+            f"fingerprint of {fingerprint.conditions.vessel}: expected a recording around its working point of "
+            f"{there:.1f} rpm, found {here:.1f} rpm; identify the recording at its own working point."
+        )
+    lost = ~np.isfinite(np.diag(found.covariance))
+    own = any(s.role == "recording" and s.sha256 == signals.recording_sha256 for s in fingerprint.sources)
+    return Model(
+        name=fingerprint.structure,
+        structure=found.structure,
+        values=found.values,
+        covariance=frozen_float(np.where(lost[:, None] | lost[None, :], 0.0, found.covariance)),
+        used=fingerprint.conditions.lines_used if own else (),
+        not_known=found.not_known,
+    )
+
+
+def print_validation(validation: Validation) -> None:
+    """Print the verdict, every excerpt, the numbers of every step, and how it was found."""
+    print_findings(f"Validation: {WORDS[validation.outcome]}", validation.sentences)
+    print_tables([misfit_table(validation), step_number_table(validation)])
+    print_findings("How this was found", validation.findings)

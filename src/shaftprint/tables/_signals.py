@@ -1,19 +1,19 @@
-"""Tables of the measurement: calibration, steps, strips, windows, signal-to-noise ratios, repairs."""
+"""Tables of the measurement: calibration, speeds, steps, strips, windows, signal-to-noise ratios, repairs."""
 
-from collections import Counter
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report._numbers import plain, with_deviation
-from shaftprint.report._table import Cell, Table, symbol_html
-from shaftprint.units import SECONDS_PER_MINUTE
+from shaftprint.tables._numbers import plain, with_deviation
+from shaftprint.tables._table import Column, Symbol, Table, numbers, texts
+from shaftprint.units import MILLI, SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
-    from shaftprint.signals import Signals
+    from shaftprint.signals import Repair, Signals, SpeedSignal
     from shaftprint.spectra import Spectra
 
 DEGREES_PER_REV = 360.0
+PERCENT = 100.0
 
 
 def calibration_table(signals: "Signals") -> Table:
@@ -32,8 +32,8 @@ def calibration_table(signals: "Signals") -> Table:
             )
         )
     return Table(
-        caption="Set-point voltage and engine speed at the steady levels (as table 3.1)",
-        header=("set point [V]", "engine speed [rpm]", "above the line [rpm]"),
+        title="Set-point voltage and engine speed at the steady levels (as table 3.1)",
+        columns=numbers("set point [V]", "engine speed [rpm]", "above the line [rpm]"),
         rows=tuple(rows),
         note=(
             f"Line: slope {with_deviation(slope, float(std[0]))} rpm/V, intercept "
@@ -61,8 +61,12 @@ def step_table(signals: "Signals") -> Table:
         error = float(delays.std(ddof=1)) / np.sqrt(delays.size) if delays.size > 1 else 0.0
         note += f" Mean of {name}: {with_deviation(float(delays.mean()), error)} s."
     return Table(
-        caption="Delay between set point and speed at each step (as table 3.3)",
-        header=("staircase", "set point crosses at [s]", "speed crosses at [s]", "delay [s]", "speed"),
+        title="Delay between set point and speed at each step (as table 3.3)",
+        columns=(
+            *texts("staircase"),
+            *numbers("set point crosses at [s]", "speed crosses at [s]", "delay [s]"),
+            *texts("speed"),
+        ),
         rows=rows,
         note=note,
     )
@@ -80,13 +84,13 @@ def strip_table(signals: "Signals") -> Table:
                     strip.channel,
                     str(number),
                     with_deviation(value, DEGREES_PER_REV * float(std)),
-                    f"{plain(100.0 * (value / even - 1.0), 2)} %",
+                    f"{plain(PERCENT * (value / even - 1.0), 2)} %",
                 )
             )
     removed = "not removed (thesis mode)" if signals.mode == "thesis" else "removed from the speed"
     return Table(
-        caption="Angles between the reflection strips (as table 3.4)",
-        header=("channel", "strip", "angle to the next [deg]", "error of an even spacing"),
+        title="Angles between the reflection strips (as table 3.4)",
+        columns=(*texts("channel"), *numbers("strip", "angle to the next [deg]", "error of an even spacing")),
         rows=tuple(rows),
         note=f"The uneven angles are {removed}.",
     )
@@ -109,8 +113,12 @@ def window_table(spectra: "Spectra") -> Table:
         for window in spectra.windows
     )
     return Table(
-        caption="Analysis windows of whole periods (as table 3.5)",
-        header=("line", "periods i", "frequency [Hz]", "start [s]", "stop [s]", "used", "remark"),
+        title="Analysis windows of whole periods (as table 3.5)",
+        columns=(
+            *texts("line"),
+            *numbers("periods i", "frequency [Hz]", "start [s]", "stop [s]"),
+            *texts("used", "remark"),
+        ),
         rows=rows,
     )
 
@@ -118,45 +126,89 @@ def window_table(spectra: "Spectra") -> Table:
 def overall_ratio_table(spectra: "Spectra") -> Table:
     """Return the overall signal-to-noise ratio of each channel (thesis table 3.6)."""
     ratios = spectra.signal_to_noise
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
-        (symbol_html(channel), plain(float(value), 4))
+    rows = tuple(
+        (Symbol(channel), plain(float(value), 4))
         for channel, value in zip(ratios.channels, ratios.overall, strict=True)
     )
     return Table(
-        caption="Overall signal-to-noise ratio of each channel (as table 3.6)",
-        header=("channel", "ratio, 1 without noise"),
+        title="Overall signal-to-noise ratio of each channel (as table 3.6)",
+        columns=(*texts("channel"), *numbers("ratio, 1 without noise")),
         rows=rows,
     )
 
 
 def local_ratio_table(spectra: "Spectra") -> Table:
     """Return the local signal-to-noise ratio of each line and channel (thesis table 3.7)."""
-    ratios = spectra.signal_to_noise
-    rows = tuple(
-        (line, *(plain(float(value), 1) for value in values))
-        for line, values in zip(ratios.lines, ratios.local_db, strict=True)
-    )
+    ratios, response = spectra.signal_to_noise, spectra.response
+    rows = []
+    for line, values in zip(ratios.lines, ratios.local_db, strict=True):
+        place = response.lines.index(line)
+        frequency = float(response.frequency_hz[place])
+        rows.append(
+            (
+                line,
+                plain(frequency, 4),
+                plain(2.0 * np.pi * frequency, 2),
+                *(plain(float(value), 1) for value in values),
+                "yes" if response.used[place] else "no",
+            )
+        )
+    channels = (Column(Symbol(channel), number=True) for channel in ratios.channels)
     return Table(
-        caption="Local signal-to-noise ratio [dB], 20 bins on each side (as table 3.7)",
-        header=("line", *(symbol_html(channel) for channel in ratios.channels)),
-        rows=rows,
+        title="Local signal-to-noise ratio [dB], 20 bins on each side (as table 3.7)",
+        columns=(*texts("line"), *numbers("[Hz]", "[rad/s]"), *channels, *texts("used")),
+        rows=tuple(rows),
         note="0 dB means as much noise as signal; the thesis asks for 3 dB. A line below it stays in a fit that is "
         "weighted by the noise: there it counts for as little as it knows.",
     )
 
 
 def repair_table(signals: "Signals") -> Table:
-    """Return how many places of each channel were repaired, and how."""
-    places = Counter((repair.channel, repair.kind) for repair in signals.repairs)
-    samples: Counter[tuple[str, str]] = Counter()
+    """Return how many places of each channel were repaired, how, and between which seconds."""
+    repairs: dict[tuple[str, str], list[Repair]] = {}
     for repair in signals.repairs:
-        samples[repair.channel, repair.kind] += repair.count
+        repairs.setdefault((repair.channel, repair.kind), []).append(repair)
     rows = tuple(
-        (channel, kind, str(number), str(samples[channel, kind])) for (channel, kind), number in sorted(places.items())
+        (
+            channel,
+            kind,
+            str(len(places)),
+            str(sum(repair.count for repair in places)),
+            plain(min(repair.time_s for repair in places), 2),
+            plain(max(repair.time_s for repair in places), 2),
+        )
+        for (channel, kind), places in sorted(repairs.items())
     )
     return Table(
-        caption="Repairs of raw channels",
-        header=("channel", "kind", "places", "samples or pulses"),
+        title="Repairs of raw channels",
+        columns=(*texts("channel", "kind"), *numbers("places", "samples or pulses", "first [s]", "last [s]")),
         rows=rows,
         note="The raw file is never changed; every repair with its time is kept in the prepared signals.",
+    )
+
+
+def speed_table(signals: "Signals") -> Table:
+    """Return mean, pulse rate, averaging and delay of every pick-up."""
+    return Table(
+        title="Engine-speed channels; the first is identified",
+        columns=(
+            *texts("sensor", "channel"),
+            *numbers("mean [rpm]", "off the first [%]", "pulses [1/s]"),
+            *numbers("aliased above [Hz]", "mean over [ms]", "delay [ms]"),
+        ),
+        rows=tuple(_speed_row(speed, signals.engine_speed) for speed in signals.speeds.values()),
+    )
+
+
+def _speed_row(speed: "SpeedSignal", first: "SpeedSignal") -> tuple[str, ...]:
+    mean = float(np.mean(speed.speed_rev_s))
+    return (
+        speed.name,
+        speed.channel,
+        plain(SECONDS_PER_MINUTE * mean, 2),
+        plain(PERCENT * (mean / float(np.mean(first.speed_rev_s)) - 1.0), 3),
+        plain(speed.pulse_rate_hz, 2),
+        plain(speed.nyquist_hz, 2),
+        plain(MILLI * speed.averaging_s, 1),
+        plain(MILLI * speed.delay_s, 1),
     )

@@ -4,7 +4,15 @@ import math
 
 NARROW_SPACE = "\u202f"
 LEAST_DIGITS = 4
+DIGITS_OF_STD = 2
 NOT_KNOWN = "not known"
+SMALLEST_P = 1e-6
+_UNITS = {"kg m2": "kg m²", "N m": "N·m", "N m/rpm": "N·m/rpm", "N m/(rpm s)": "N·m/(rpm·s)", "1/s": "s⁻¹", "-": ""}
+
+
+def unit_text(unit: str) -> str:
+    """Return a unit as printed; nothing for a number without unit."""
+    return _UNITS.get(unit, unit)
 
 
 def plain(value: float, decimals: int) -> str:
@@ -20,18 +28,30 @@ def plain(value: float, decimals: int) -> str:
 def decimals_of(value: float, std: float) -> int:
     """Return how many decimals are worth printing: two digits of the standard deviation, or four of the value."""
     if std > 0.0 and math.isfinite(std):
-        return max(0, 1 - math.floor(math.log10(std)))
+        return max(0, _place(std))
     if value == 0.0 or not math.isfinite(value):
         return 0
     return max(0, LEAST_DIGITS - 1 - math.floor(math.log10(abs(value))))
 
 
+def _place(value: float) -> int:
+    """Return how many decimals leave two digits of a number; less than none where it is a hundred or more."""
+    return DIGITS_OF_STD - 1 - math.floor(math.log10(abs(value)))
+
+
 def with_deviation(value: float, std: float) -> str:
-    """Return ``value ± one standard deviation``."""
-    if math.isinf(std) or math.isnan(std):
-        return f"{plain(value, decimals_of(value, 0.0))} ({NOT_KNOWN})"
-    decimals = decimals_of(value, std)
-    return f"{plain(value, decimals)} ± {plain(std, decimals)}"
+    """Return ``value ± one standard deviation``, both rounded to the second digit of the standard deviation.
+
+    A value keeps two digits of its own where a standard deviation of a hundred or more would leave none.
+    """
+    if not (math.isfinite(std) and math.isfinite(value)):
+        return f"{rounded(value)} ({NOT_KNOWN})"
+    if std == 0.0:
+        return f"{rounded(value)} ± {plain(0.0, decimals_of(value, 0.0))}"
+    place = _place(std)
+    least = _place(value) if value else 0
+    shown = place if place >= 0 else max(place, least)
+    return f"{plain(round(value, shown), max(shown, 0))} ± {plain(round(std, place), max(place, 0))}"
 
 
 def interval(lower: float, upper: float, std: float) -> str:
@@ -47,3 +67,10 @@ def rounded(value: float, digits: int = LEAST_DIGITS) -> str:
     if value == 0.0 or not math.isfinite(value):
         return plain(value, 0)
     return plain(value, max(0, digits - 1 - math.floor(math.log10(abs(value)))))
+
+
+def p_value_text(p_value: float | None) -> str:
+    """Return a p-value with two digits, or as smaller than a millionth; a dash where there is none."""
+    if p_value is None or math.isnan(p_value):
+        return "–"
+    return "< 0.000001" if p_value < SMALLEST_P else rounded(p_value, DIGITS_OF_STD)

@@ -1,12 +1,11 @@
-"""Tables on the inertia by calculation and on the torsional modes, as plain text for report and terminal."""
+"""Tables on the inertia by calculation and on the torsional modes."""
 
 import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.report._numbers import plain, rounded, with_deviation
-from shaftprint.report._symbols import unit_text
-from shaftprint.report._table import Table
+from shaftprint.tables._numbers import plain, rounded, unit_text, with_deviation
+from shaftprint.tables._table import Table, numbers, texts
 
 if TYPE_CHECKING:
     from shaftprint.torsion import ExpectedInertia, ExpectedValue, InertiaComparison, Modes, TwoMasses
@@ -15,7 +14,7 @@ if TYPE_CHECKING:
 PERCENT = 100.0
 # Sources with a smaller share of the variance are put together.
 SMALL_SHARE = 0.01
-TOLD = "told beforehand"
+ASSUMED = "assumed"
 SHOWN_MODES = 6
 # Sums of a table are exact, whatever its rows are worth: with these decimals they can be checked by hand.
 DECIMALS = 3
@@ -25,8 +24,14 @@ def mass_table(vessel: "Vessel") -> Table:
     """Return the inertia table of a vessel, each row on its own shaft and at the propeller shaft."""
     ratio = vessel.gearbox.ratio
     return Table(
-        caption="Inertia table of the vessel file",
-        header=("mass", "on its shaft [kg m²]", "shaft", "at the propeller shaft [kg m²]", "of the gauge", "source"),
+        title="Inertia table of the vessel file",
+        columns=(
+            *texts("mass"),
+            *numbers("on its shaft [kg m²]"),
+            *texts("shaft"),
+            *numbers("at the propeller shaft [kg m²]"),
+            *texts("of the gauge", "source"),
+        ),
         rows=tuple(
             (
                 row.name,
@@ -38,28 +43,36 @@ def mass_table(vessel: "Vessel") -> Table:
             )
             for row in vessel.inertia
         ),
+        symbols=True,
         note=f"Inertias on the engine shaft count {rounded(ratio)} squared, the gear ratio, at the propeller shaft.",
     )
 
 
 def expected_inertia_table(expected: "ExpectedInertia", beside: "Sequence[InertiaComparison]" = ()) -> Table:
     """Return sums and inertia times by calculation, beside those that a test found where there are such."""
-    found = {row.expected.name: row for row in beside}
-    header = ("quantity", "calculated ± std", "unit", "meaning")
-    rows = [
-        (item.name, f"{plain(item.value, DECIMALS)} ± {rounded(item.std, 2)}", unit_text(item.unit), item.meaning)
+    identified = {row.expected.name: row for row in beside}
+    columns = (*texts("quantity"), *numbers("calculated ± std"))
+    columns += numbers("identified ± std", "difference over its std") * bool(identified)
+    rows = tuple(
+        (
+            item.name,
+            f"{plain(item.value, DECIMALS)} ± {rounded(item.std, 2)}",
+            *(_identified(identified.get(item.name)) * bool(identified)),
+            unit_text(item.unit),
+            item.meaning,
+        )
         for item in (*expected.sums, *expected.times)
-    ]
-    if not found:
-        return Table(caption="Inertia by calculation, at the propeller shaft", header=header, rows=tuple(rows))
+    )
+    note = (
+        f"“{ASSUMED}”: this number went into the fit as a prior, so that finding it again says nothing. Both "
+        "deviations count in the last difference."
+    )
     return Table(
-        caption="Inertia by calculation beside the identified, at the propeller shaft",
-        header=(*header[:2], "identified ± std", "difference over its std", *header[2:]),
-        rows=tuple((*row[:2], *_found(found.get(row[0])), *row[2:]) for row in rows),
-        note=(
-            f"“{TOLD}”: this number went into the fit as known, so that finding it again says nothing. Both "
-            "deviations count in the last difference."
-        ),
+        title=f"Inertia by calculation{' beside the identified' if identified else ''}, at the propeller shaft",
+        columns=(*columns, *texts("unit", "meaning")),
+        rows=rows,
+        note=note if identified else "",
+        symbols=True,
     )
 
 
@@ -67,9 +80,10 @@ def inertia_budget_table(expected: "ExpectedInertia") -> Table:
     """Return what each source does to the expected inertia times, largest first."""
     rows = [row for item in expected.times for row in _sources(item)]
     return Table(
-        caption="Uncertainty of the calculated inertia times",
-        header=("quantity", "source", "change for one std [s]", "share of the variance"),
+        title="Uncertainty of the calculated inertia times",
+        columns=(*texts("quantity", "source"), *numbers("change for one std [s]", "share of the variance")),
         rows=tuple(rows),
+        symbols=True,
         note="A gauge that shows too much makes both times too small.",
     )
 
@@ -77,8 +91,8 @@ def inertia_budget_table(expected: "ExpectedInertia") -> Table:
 def water_table(expected: "ExpectedInertia") -> Table:
     """Return the entrained water by each method, and the downstream side with it."""
     return Table(
-        caption="Entrained water by each method, in place of the water of the inertia table",
-        header=("method", "water [kg m²]", "I_dn [kg m²]", "tau_dn [s]", "from"),
+        title="Entrained water by each method, in place of the water of the inertia table",
+        columns=(*texts("method"), *numbers("water [kg m²]", "I_dn [kg m²]", "tau_dn [s]"), *texts("from")),
         rows=tuple(
             (
                 wet.water.method,
@@ -89,6 +103,7 @@ def water_table(expected: "ExpectedInertia") -> Table:
             )
             for wet in expected.wet
         ),
+        symbols=True,
         note="A propeller row that holds some of the water already makes these too large.",
     )
 
@@ -97,8 +112,8 @@ def mode_table(modes: "Modes") -> Table:
     """Return the slowest torsional modes."""
     shown = range(min(SHOWN_MODES, len(modes.frequency_hz)))
     return Table(
-        caption="Torsional modes",
-        header=("mode", "frequency [Hz]", "damping ratio", "moves most", "twists most"),
+        title="Torsional modes",
+        columns=(*texts("mode"), *numbers("frequency [Hz]", "damping ratio"), *texts("moves most", "twists most")),
         rows=tuple(
             (
                 str(mode + 1),
@@ -109,6 +124,7 @@ def mode_table(modes: "Modes") -> Table:
             )
             for mode in shown
         ),
+        symbols=True,
         note=(
             "Deviations are those of the stated inertias and stiffnesses. Damping: losses of couplings and shafts at "
             "the frequency of the mode, the damper, and the slope of the propeller torque."
@@ -116,15 +132,15 @@ def mode_table(modes: "Modes") -> Table:
     )
 
 
-def two_mass_sentence(found: "TwoMasses") -> str:
+def two_mass_sentence(masses: "TwoMasses") -> str:
     """Return what two masses in place of the line are, and how far they hold."""
     return (
-        f"Two masses for identification, at the propeller shaft: {rounded(found.engine_kg_m2)} and "
-        f"{rounded(found.propeller_kg_m2)} kg m² with {rounded(found.stiffness_nm_rad / 1000.0, 3)} kN·m/rad and "
-        f"{rounded(found.damping_nm_s_rad, 3)} N·m·s/rad between them give the first mode at "
-        f"{with_deviation(found.frequency_hz, found.frequency_std_hz)} Hz. Speed and shaft torque are within a "
-        f"tenth of those of the whole line up to {plain(found.accurate_to_hz, 1)} Hz; at the mode the shaft torque is "
-        f"{plain(PERCENT * found.gauge_error, 0)} % off."
+        f"Two masses for identification, at the propeller shaft: {rounded(masses.engine_kg_m2)} and "
+        f"{rounded(masses.propeller_kg_m2)} kg m² with {rounded(masses.stiffness_nm_rad / 1000.0, 3)} kN·m/rad and "
+        f"{rounded(masses.damping_nm_s_rad, 3)} N·m·s/rad between them give the first mode at "
+        f"{with_deviation(masses.frequency_hz, masses.frequency_std_hz)} Hz. Speed and shaft torque are within a "
+        f"tenth of those of the whole line up to {plain(masses.accurate_to_hz, 1)} Hz; at the mode the shaft torque is "
+        f"{plain(PERCENT * masses.gauge_error, 0)} % off."
     )
 
 
@@ -132,12 +148,12 @@ def _pair(value: float, std: float) -> str:
     return with_deviation(value, std) if std > 0.0 else rounded(value)
 
 
-def _found(row: "InertiaComparison | None") -> tuple[str, str]:
+def _identified(row: "InertiaComparison | None") -> tuple[str, str]:
     if row is None:
         return "–", "–"
     number = with_deviation(row.identified, row.identified_std)
     if not row.independent:
-        return number, TOLD
+        return number, ASSUMED
     return number, "–" if math.isnan(row.deviations) else plain(row.deviations, 1)
 
 

@@ -1,0 +1,45 @@
+"""Names of parameters, sentences and cells of tables as HTML."""
+
+import re
+
+from markupsafe import Markup, escape
+
+from shaftprint.report._symbols import is_symbol, name_parts
+from shaftprint.tables import Symbol, Table
+
+_SYMBOL = re.compile(r"\b(?:(?:[A-Za-z]|tau|omega)_[A-Za-z0-9]+|zeta)\b")
+_LETTERS = {"tau": "τ", "omega": "ω", "zeta": "ζ", "delta": "δ", "eta": "η", "rho": "ρ"}
+
+
+def cell_html(text: str, table: Table) -> Markup:
+    """Return a heading or cell of a table as HTML: a name of a parameter with its unit, a sentence, or plain text."""
+    if isinstance(text, Symbol):
+        name, bracket, unit = text.partition(" [")
+        return symbol_html(name) + escape(bracket + unit)
+    return sentence_html(text) if table.symbols else escape(text)
+
+
+def sentence_html(text: str) -> Markup:
+    """Return a sentence as HTML, symbols with an index or a Greek name set as such and +/- as ±, all else as it is."""
+    text = text.replace("+/-", "±")
+    parts, end = Markup(), 0
+    for match in _SYMBOL.finditer(text):
+        parts += escape(text[end : match.start()]) + symbol_html(match.group())
+        end = match.end()
+    return parts + escape(text[end:])
+
+
+def symbol_html(formula: str) -> Markup:
+    """Return a parameter name or formula as HTML: letters slanted, indices lowered; ordinary words stay as they are."""
+    parts = Markup()
+    for before, base, index in name_parts(formula):
+        parts += escape(before)
+        if not base:
+            continue
+        if not is_symbol(base, index):
+            parts += escape(base)
+            continue
+        parts += Markup("<i>{}</i>").format(_LETTERS.get(base, base))
+        if index:
+            parts += Markup("<sub>{}</sub>").format(index)
+    return parts

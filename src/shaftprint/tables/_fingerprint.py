@@ -1,0 +1,199 @@
+"""Tables of the fingerprint: parameters, combinations, physical values, margins, budget, fit."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from shaftprint.distributions import NORMAL_95
+from shaftprint.tables._numbers import decimals_of, interval, p_value_text, plain, rounded, unit_text, with_deviation
+from shaftprint.tables._table import MEANING, Column, Symbol, Table, numbers, texts
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint, Quality, Quantity
+    from shaftprint.identify import Identification
+    from shaftprint.identify.uncertainty import Budget
+
+PERCENT = 100.0
+# A share that is printed as 0 % says as much.
+SMALLEST_PERCENT = 0.5
+NO_TRUTH: Mapping[str, float] = {}
+INTERVAL_NOTE = (
+    "± is one standard deviation; it is left out where it does not tell what the interval tells. The 95 % interval is "
+    "that of the profile likelihood where there is one; an open end, marked with an asterisk, is a bound of the search "
+    "and not a result."
+)
+PHYSICAL_NOTE = (
+    "Standard deviations hold the scale of the torque gauge too, with the sign with which it enters; that of "
+    "K_Q holds the wander of the load. The difference is that from the vessel file."
+)
+BUDGET_NOTE = (
+    "Shares of the variance, to first order; they add up to 100 %. Noise of two outputs is correlated: each has half "
+    "of what they share, and a share is negative where their errors make up for each other."
+)
+
+
+def parameter_table(fingerprint: "Fingerprint", truth: Mapping[str, float] = NO_TRUTH) -> Table:
+    """Return the free parameters with intervals, beside the truth where it is known."""
+    return quantity_table("Identified parameters, normalised with the working point", fingerprint.parameters, truth)
+
+
+def combination_table(fingerprint: "Fingerprint", truth: Mapping[str, float] = NO_TRUTH) -> Table:
+    """Return the combinations of parameters that the test finds better than the parameters alone."""
+    return quantity_table("Combinations of parameters", fingerprint.combinations, truth)
+
+
+def physical_table(fingerprint: "Fingerprint", truth: Mapping[str, float] = NO_TRUTH) -> Table:
+    """Return the physical values beside those of the vessel file (torsional vibration calculation) and the truth."""
+    title = "Physical values beside those of the vessel file, at the propeller shaft unless the unit says otherwise"
+    return quantity_table(title, fingerprint.physical, truth, note=PHYSICAL_NOTE)
+
+
+def margin_table(fingerprint: "Fingerprint", truth: Mapping[str, float] = NO_TRUTH) -> Table:
+    """Return the stability margins with intervals, beside the truth where it is known."""
+    return quantity_table("Stability margins", fingerprint.margins, truth)
+
+
+def quantity_table(
+    title: str,
+    quantities: "Sequence[Quantity]",
+    truth: Mapping[str, float] = NO_TRUTH,
+    *,
+    note: str = INTERVAL_NOTE,
+) -> Table:
+    """Return quantities with intervals, beside the truth and the values of the vessel file where there are such.
+
+    Parameters
+    ----------
+    title
+        What the table shows.
+    quantities
+        Its rows.
+    truth
+        True values by name.
+    note
+        What a reader must know with it.
+    """
+    has_truth = any(quantity.name in truth for quantity in quantities)
+    has_expected = any(quantity.expected is not None for quantity in quantities)
+    columns = (*texts("quantity"), *numbers("value ± std", "95 % interval"))
+    columns += (*numbers("truth"), *texts("truth within")) * has_truth
+    columns += numbers("vessel file", "difference") * has_expected
+    rows = tuple(
+        (
+            Symbol(quantity.name),
+            _value_text(quantity) + (" (at its bound)" if quantity.at_bound else ""),
+            _interval_text(quantity),
+            *_truth_cells(quantity, truth) * has_truth,
+            *(expected_text(quantity), _difference(quantity)) * has_expected,
+            unit_text(quantity.unit),
+            quantity.meaning,
+        )
+        for quantity in quantities
+    )
+    return Table(title=title, columns=(*columns, *texts("unit"), MEANING), rows=rows, note=note)
+
+
+def _value_text(quantity: "Quantity") -> str:
+    """Return value and standard deviation; the value alone where only its interval tells how well it is known."""
+    std = quantity.stated_std
+    return rounded(quantity.value) if std is None else with_deviation(quantity.value, std)
+
+
+def limits(quantity: "Quantity") -> tuple[float, float]:
+    """Return the 95 % interval of a quantity: the profile's, or else that of its standard deviation."""
+    if quantity.interval_95 is not None:
+        return quantity.interval_95
+    return quantity.value - NORMAL_95 * quantity.std, quantity.value + NORMAL_95 * quantity.std
+
+
+def _interval_text(quantity: "Quantity") -> str:
+    lower, upper = limits(quantity)
+    if not (math.isfinite(lower) and math.isfinite(upper)):
+        return "not known"
+    text = interval(lower, upper, quantity.std)
+    open_low, open_high = quantity.interval_open
+    if open_low:
+        text = text.replace(" to ", "* to ", 1)
+    return f"{text}*" if open_high else text
+
+
+def _truth_cells(quantity: "Quantity", truth: Mapping[str, float]) -> tuple[str, str]:
+    true = truth.get(quantity.name, math.nan)
+    lower, upper = limits(quantity)
+    inside = "–" if math.isnan(true) else "yes" if lower <= true <= upper else "no"
+    return plain(true, decimals_of(true, quantity.std)), inside
+
+
+def expected_text(quantity: "Quantity") -> str:
+    """Return the value of the vessel file with its standard deviation, where there are such."""
+    if quantity.expected is None:
+        return "–"
+    if not quantity.expected_std:
+        return rounded(quantity.expected)
+    return with_deviation(quantity.expected, quantity.expected_std)
+
+
+def _difference(quantity: "Quantity") -> str:
+    if not quantity.expected:
+        return "–"
+    return f"{plain(PERCENT * (quantity.value / quantity.expected - 1.0), 1)} %"
+
+
+def truth_of_combinations(identification: "Identification", truth: Mapping[str, float]) -> dict[str, float]:
+    """Return the true value of each combination of the structure; held parameters count as true.
+
+    Combinations of parameters whose truth is not known are left out.
+    """
+    held = {p.name: p.value if p.held else math.nan for p in identification.structure.parameters}
+    true_values = held | dict(truth)
+    values = {c.name: float(c.of(true_values)) for c in identification.structure.combinations}  # type: ignore[arg-type]
+    return {name: value for name, value in values.items() if math.isfinite(value)}
+
+
+def budget_table(budget: "Budget") -> Table:
+    """Return standard deviation and shares of all sources for every number whose uncertainty is known."""
+    rows = tuple(
+        (
+            Symbol(row.name),
+            f"{plain(row.std, decimals_of(row.value, row.std))} {unit_text(row.unit)}".strip(),
+            *(_share(PERCENT * row.shares.get(source, 0.0)) for source in budget.sources),
+        )
+        for row in budget.rows
+        if row.shares
+    )
+    sources = (Column(Symbol(source), number=True) for source in budget.sources)
+    return Table(
+        title="Uncertainty budget",
+        columns=(*texts("quantity"), *numbers("one std"), *sources),
+        rows=rows,
+        note=BUDGET_NOTE,
+    )
+
+
+def _share(percent: float) -> str:
+    return "–" if abs(percent) < SMALLEST_PERCENT else f"{plain(percent, 0)} %"
+
+
+def fit_table(fingerprint: "Fingerprint") -> Table:
+    """Return FitPercent of each output beside that of a model without error, which only the noise is in the way of."""
+    quality = fingerprint.quality
+    rows = tuple(
+        (Symbol(name), f"{plain(value, 2)} %", f"{plain(quality.fit_ceiling[name], 2)} %")
+        for name, value in quality.fit_percent.items()
+    )
+    return Table(
+        title="FitPercent (thesis eq. 2.41)",
+        columns=(*texts("output"), *numbers("FitPercent", "a perfect model, on average")),
+        rows=rows,
+        note=(
+            "A fitted model follows some of the noise, so it may come out a little above a perfect one. "
+            f"{_chi_square(quality)}{quality.starts_at_optimum} of {quality.starts} starts reached the result."
+        ),
+    )
+
+
+def _chi_square(quality: "Quality") -> str:
+    if quality.chi_square is None:
+        return ""
+    chance = "" if quality.p_value is None else f", p-value {p_value_text(quality.p_value)}"
+    return f"Chi-square {plain(quality.chi_square, 1)} for {quality.degrees_of_freedom} degrees of freedom{chance}; "

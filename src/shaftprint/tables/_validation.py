@@ -1,0 +1,113 @@
+"""Tables of a validation: what a model misses of records that it has not seen, and the numbers of steps."""
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from shaftprint.tables._numbers import p_value_text, plain, rounded
+from shaftprint.tables._table import Symbol, Table, numbers, texts
+from shaftprint.units import MILLI
+
+if TYPE_CHECKING:
+    from shaftprint.validation import ExcerptComparison, Misfit, RemainingDelay, StepNumber, Validation
+
+PERCENT = 100.0
+
+
+def misfit_table(validation: "Validation") -> Table:
+    """Return what the model misses of every excerpt and output beyond noise, and the delay that is left."""
+    rows = tuple(
+        _misfit_row(comparison, misfit, delay)
+        for comparison in validation.comparisons
+        for misfit, delay in zip(comparison.misfits, comparison.delays, strict=True)
+    )
+    allowed = f"{PERCENT * validation.settings.largest_error:g} %"
+    coverage = f"{PERCENT * validation.settings.coverage:g} % interval"
+    return Table(
+        title=f"What {validation.model.name} misses of records that it has not seen",
+        columns=(
+            *texts("excerpt", "output"),
+            *numbers("beyond noise", coverage, "p", "FitPercent", "right model", "delay left [ms]"),
+            *texts("outcome"),
+        ),
+        rows=rows,
+        note=f"Shares of the motion in the excerpt. It passes where the interval lies below {allowed}, and fails where "
+        "it lies above.",
+    )
+
+
+def _misfit_row(comparison: "ExcerptComparison", misfit: "Misfit", delay: "RemainingDelay") -> tuple[str, ...]:
+    low, high = (PERCENT * end for end in misfit.error_interval)
+    return (
+        excerpt_name(comparison),
+        Symbol(misfit.output),
+        f"{plain(PERCENT * misfit.error, 1)} %",
+        f"{plain(low, 1)} to {plain(high, 1)} %",
+        p_value_text(misfit.p_value),
+        f"{plain(misfit.fit_percent, 1)} %",
+        f"{plain(misfit.fit_ceiling, 1)} %",
+        "not found" if math.isnan(delay.delay_s) else _milliseconds(delay),
+        misfit.outcome + (" (identified from it)" if comparison.excerpt.in_sample else ""),
+    )
+
+
+def _milliseconds(delay: "RemainingDelay") -> str:
+    return f"{plain(MILLI * delay.delay_s, 1)} ± {plain(MILLI * delay.std_s, 1)}"
+
+
+def excerpt_name(comparison: "ExcerptComparison") -> str:
+    """Return the name of an excerpt with its record."""
+    return f"{comparison.excerpt.record}, {comparison.excerpt.title}".replace(" -", " −")
+
+
+def models_table(validations: "Sequence[Validation]") -> Table:
+    """Return FitPercent and outcome of several models side by side, a row an excerpt."""
+    rows = [
+        (
+            excerpt_name(group[0]),
+            _of_outputs([misfit.fit_ceiling for misfit in group[0].misfits]),
+            *(_of_outputs([misfit.fit_percent for misfit in one.misfits]) for one in group),
+        )
+        for group in zip(*(validation.comparisons for validation in validations), strict=True)
+    ]
+    rows.append(("outcome", "", *(validation.outcome for validation in validations)))
+    names = [validation.model.name for validation in validations]
+    return Table(
+        title="FitPercent of speed / torque", columns=texts("excerpt", "right model", *names), rows=tuple(rows)
+    )
+
+
+def _of_outputs(percent: Sequence[float]) -> str:
+    return " / ".join(plain(value, 1) for value in percent)
+
+
+def step_number_table(validation: "Validation") -> Table:
+    """Return overshoot, rise and settling of every step, measured and by the model."""
+    rows = tuple(
+        (
+            excerpt_name(comparison),
+            Symbol(number.output),
+            f"{number.name} [{number.unit}]",
+            _with_std(number.measured, number.measured_std),
+            _with_std(number.expected, number.expected_std),
+            _agreement(number),
+        )
+        for comparison in validation.comparisons
+        for number in comparison.step_numbers
+        if not (math.isnan(number.measured) and math.isnan(number.expected))
+    )
+    return Table(
+        title="Numbers of the steps",
+        columns=texts("step", "output", "number", "measured ± noise", "model ± parameters", "agree"),
+        rows=rows,
+    )
+
+
+def _with_std(value: float, std: float) -> str:
+    if math.isnan(value):
+        return "not shown"
+    return rounded(value, 3) if math.isnan(std) else f"{rounded(value, 3)} ± {rounded(std, 2)}"
+
+
+def _agreement(number: "StepNumber") -> str:
+    return {True: "yes", False: "no", None: ""}[number.agrees]
