@@ -8,9 +8,8 @@ import pytest
 from shaftprint.campaign import Campaign, setpoint
 from shaftprint.errors import SignalError
 from shaftprint.signals import deviation
-from shaftprint.signals._compare import compare_speeds
-from shaftprint.signals._torque import expect_moving_torque
 from shaftprint.signals.excitation import expect_campaign, find_step_delays
+from shaftprint.signals.kinds import compare_speeds, expect_moving_torque
 from shaftprint.signals.levels import (
     SteadyStretch,
     calibrate,

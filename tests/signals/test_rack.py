@@ -7,7 +7,7 @@ import pytest
 
 from shaftprint.errors import SignalError
 from shaftprint.signals import inspect_channels, prepare_signals
-from shaftprint.signals._rack import rack_signal, read_rack
+from shaftprint.signals.kinds import rack_signal, read_rack
 from shaftprint.signals.levels import SteadyStretch
 from shaftprint.vessel import RackSensor, load_vessel
 

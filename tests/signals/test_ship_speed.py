@@ -8,7 +8,7 @@ import pytest
 from shaftprint.errors import SignalError
 from shaftprint.recording import Channel
 from shaftprint.signals._clock import Clock
-from shaftprint.signals._ship_speed import read_ship_speed, ship_speed_signal
+from shaftprint.signals.kinds import read_ship_speed, ship_speed_signal
 from shaftprint.signals.levels import SteadyStretch
 from shaftprint.vessel import ShipSpeedSensor
 

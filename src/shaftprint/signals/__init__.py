@@ -20,8 +20,6 @@ from shaftprint.signals._content import Content, content_of
 from shaftprint.signals._contradictions import contradictions
 from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._inspect import ChannelReport, PulseReport, inspect_channels
-from shaftprint.signals._kind import ChannelKind
-from shaftprint.signals._kinds import KINDS
 from shaftprint.signals._prepare import find_tests, prepare_signals
 from shaftprint.signals._signals import (
     ChannelSignal,
@@ -37,6 +35,7 @@ from shaftprint.signals._signals import (
     WorkingPoint,
 )
 from shaftprint.signals.excitation import FoundTest, common_shift_s, proposed_campaign
+from shaftprint.signals.kinds import KINDS, ChannelKind
 from shaftprint.signals.levels import deviation
 
 __all__ = [

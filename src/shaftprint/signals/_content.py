@@ -9,8 +9,8 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, blocks
 from shaftprint.signals._gaps import joined
-from shaftprint.signals._pick_up import read_pick_up
 from shaftprint.signals.conditioning import Grid, conditioned, fault_limits
+from shaftprint.signals.kinds import read_pick_up
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel

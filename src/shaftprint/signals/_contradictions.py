@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.signals._compare import LARGEST_DIFFERENCE
 from shaftprint.signals._inspect import ChannelReport, PulseReport
+from shaftprint.signals.kinds import LARGEST_DIFFERENCE
 
 if TYPE_CHECKING:
     from shaftprint.vessel import SpeedSensor, Vessel

@@ -10,17 +10,15 @@ from shaftprint.errors import SignalError
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, Counts, blocks
 from shaftprint.signals._clock import clock_of
 from shaftprint.signals._gaps import Gap, clock_gaps
-from shaftprint.signals._kinds import find_sources
-from shaftprint.signals._pick_up import numbered_strips, pulse_gaps, pulse_repairs
 from shaftprint.signals._signals import Repair, Role
-from shaftprint.signals._torque import judge_saturation
 from shaftprint.signals.conditioning import FaultLimits, Patcher, flagged
+from shaftprint.signals.kinds import find_sources, judge_saturation, numbered_strips, pulse_gaps, pulse_repairs
 from shaftprint.signals.pulses import find_edges, pulse_levels
 from shaftprint.vessel import SpeedSensor
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel, Recording
-    from shaftprint.signals._kind import Source
+    from shaftprint.signals.kinds import Source
     from shaftprint.vessel import Vessel
 
 _ORDER = (Role.RESPONSE, Role.EXCITATION, Role.SIDE)

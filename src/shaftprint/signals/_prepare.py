@@ -10,16 +10,19 @@ from shaftprint.errors import SignalError
 from shaftprint.reasons import Reason
 from shaftprint.signals._channels import find_channel
 from shaftprint.signals._clock import Mode, clock_of, common_clock
-from shaftprint.signals._compare import compare_speeds
 from shaftprint.signals._gaps import Coverage
-from shaftprint.signals._kind import Source, SteadyState
-from shaftprint.signals._kinds import find_sources
 from shaftprint.signals._rates import expect_one_rate
 from shaftprint.signals._readings import Readings, logger_channels, read_all
-from shaftprint.signals._set_point import read_voltage
 from shaftprint.signals._signals import ChannelSignal, SetPointCalibration, Signals
-from shaftprint.signals._torque import expect_moving_torque
 from shaftprint.signals.excitation import FoundTest, expect_campaign, find_step_delays, found_tests, left_out
+from shaftprint.signals.kinds import (
+    Source,
+    SteadyState,
+    compare_speeds,
+    expect_moving_torque,
+    find_sources,
+    read_voltage,
+)
 from shaftprint.signals.levels import (
     DcScale,
     calibrate,

@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import SignalError
 from shaftprint.signals._gaps import Coverage, Gap, within
-from shaftprint.signals._pick_up import PickUp
 from shaftprint.signals._signals import Repair, Role
 from shaftprint.signals.conditioning import Reading
+from shaftprint.signals.kinds import PickUp
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
     from shaftprint.recording import Channel
     from shaftprint.signals._clock import Clock
-    from shaftprint.signals._kind import Source
+    from shaftprint.signals.kinds import Source
 
 # One thread computes while the other waits for the file; more would only queue for the file.
 _THREADS = 2

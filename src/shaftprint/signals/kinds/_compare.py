@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.errors import SignalError
-from shaftprint.signals._pick_up import PickUp
+from shaftprint.signals.kinds._pick_up import PickUp
 
 if TYPE_CHECKING:
     from shaftprint.vessel import Vessel

@@ -10,9 +10,9 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign import Campaign, Sine
 from shaftprint.errors import SignalError
 from shaftprint.signals._gaps import EVERYTHING, Coverage
-from shaftprint.signals._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals._signals import ChannelSignal, Repair
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
+from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.vessel import ShaftTorqueSensor
 
 if TYPE_CHECKING:

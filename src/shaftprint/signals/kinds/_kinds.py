@@ -4,16 +4,16 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from shaftprint.signals._pick_up import Speed
-from shaftprint.signals._pitch import PitchSetPoint
-from shaftprint.signals._rack import Rack
-from shaftprint.signals._set_point import SetPoint
-from shaftprint.signals._ship_speed import ShipSpeed
-from shaftprint.signals._torque import ShaftTorque
+from shaftprint.signals.kinds._pick_up import Speed
+from shaftprint.signals.kinds._pitch import PitchSetPoint
+from shaftprint.signals.kinds._rack import Rack
+from shaftprint.signals.kinds._set_point import SetPoint
+from shaftprint.signals.kinds._ship_speed import ShipSpeed
+from shaftprint.signals.kinds._torque import ShaftTorque
 
 if TYPE_CHECKING:
     from shaftprint.recording import Recording
-    from shaftprint.signals._kind import ChannelKind, Source
+    from shaftprint.signals.kinds._kind import ChannelKind, Source
     from shaftprint.vessel import Vessel
 
 KINDS: "Mapping[str, ChannelKind[Any]]" = MappingProxyType(

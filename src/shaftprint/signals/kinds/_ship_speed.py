@@ -12,9 +12,9 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import blocks, time_of
 from shaftprint.signals._gaps import Gap, clock_gaps, joined, runs_of
-from shaftprint.signals._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals._signals import ChannelSignal, Role
 from shaftprint.signals.conditioning import Reading
+from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.levels import SteadyStretch, mean_of_stretches
 from shaftprint.vessel import ShipSpeedSensor
 

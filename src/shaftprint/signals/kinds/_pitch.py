@@ -6,10 +6,10 @@ import numpy as np
 
 from shaftprint.arrays import frozen_float
 from shaftprint.errors import SignalError
-from shaftprint.signals._kind import ChannelKind, Source, SteadyState
-from shaftprint.signals._set_point import read_voltage
 from shaftprint.signals._signals import ExcitationSignal, Role
 from shaftprint.signals.conditioning import FaultLimits, Reading, fault_limits
+from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
+from shaftprint.signals.kinds._set_point import read_voltage
 from shaftprint.vessel import PitchSetPointSensor
 
 if TYPE_CHECKING:

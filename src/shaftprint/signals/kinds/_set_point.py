@@ -3,9 +3,9 @@
 from typing import TYPE_CHECKING
 
 from shaftprint.arrays import frozen_float
-from shaftprint.signals._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals._signals import ExcitationSignal, Role
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
+from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import SetPointSensor
 
