@@ -113,7 +113,7 @@ def test_parameters_of_other_names_stay_apart_and_those_of_one_name_are_one(make
     assert [p.name for p in found.parameters] == ["K_p1", "K_i", "K_p2", "t_2"]
     assert found.values == pytest.approx([1.5, 4.2, 2.5, 0.13], rel=1e-6)
     assert found.value("K_p2") == pytest.approx(2.5, rel=1e-6)
-    assert found.own_values(1) == pytest.approx([2.5, 4.2, 0.13], rel=1e-6)
+    assert found.structure_values(1) == pytest.approx([2.5, 4.2, 0.13], rel=1e-6)
     assert [part.structure.name for part in found.experiments] == ["PI K_p1", "PI K_p2"]
     assert found.fit_percent == found.experiments[0].fit_percent
     assert found.experiments[1].fit_percent["M_s"] == pytest.approx(100.0, abs=1e-4)
@@ -191,8 +191,8 @@ def test_pick_ups_of_each_response_are_held_in_its_own_structure(make_response):
     found = identify_jointly(pairs, rng=rng())
     assert found.value("tau_dn") == pytest.approx(0.236, rel=1e-8)
     places = [core.names.index(name) for name in ("T_average", "t_pickup")]
-    assert found.own_values(0)[places] == pytest.approx([0.05, 0.05])
-    assert found.own_values(1)[places] == pytest.approx([0.08, 0.08])
+    assert found.structure_values(0)[places] == pytest.approx([0.05, 0.05])
+    assert found.structure_values(1)[places] == pytest.approx([0.08, 0.08])
 
 
 # ---- channels ----

@@ -130,10 +130,10 @@ def test_a_joint_fit_is_stable_in_every_experiment(make_response):
     pairs = [(own, make_response(own, truth, noise=0.2)), (loud, make_response(loud, truth, noise=0.5))]
     settings = Settings(starts=8, stability="during")
     found = identify_jointly(pairs, rng=np.random.default_rng(3), settings=settings)
-    assert all(is_stable(part.structure, found.own_values(i)) for i, part in enumerate(found.experiments))
+    assert all(is_stable(part.structure, found.structure_values(i)) for i, part in enumerate(found.experiments))
     free = identify_jointly(pairs, rng=np.random.default_rng(3), settings=Settings(starts=8, stability="ignored"))
     assert free.cost < 1e-9 < found.cost
-    assert not is_stable(loud, free.own_values(1))
+    assert not is_stable(loud, free.structure_values(1))
 
 
 def test_stable_models_are_told_for_many_rows(make_response):

@@ -11,7 +11,7 @@ from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError, SignalError
 from shaftprint.identify import Settings, Unweighted, assess, bootstrap, identify, identify_jointly, profile_intervals
-from shaftprint.identify.search import Given
+from shaftprint.identify.search import GivenStarts
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain import identify_chirp, record_from_arrays, spectrum_of, spectrum_term
 from shaftprint.time_domain._bands import bands_of
@@ -199,7 +199,7 @@ def test_intervals_and_tests_are_right_over_repeats(make_record):
     clean = spectrum_of(make_record(1115.0, 1670.0), "n_set", ("n", "M_s"))
     cl4, rng, repeats = structure("CL4"), np.random.default_rng(21), 200
     truth = np.array([TRUTH[p.name] for p in cl4.free])
-    at_truth = Settings(draw=Given(truth[None]), starts=1)
+    at_truth = Settings(draw=GivenStarts(truth[None]), starts=1)
 
     def drawn(name):
         root = np.sqrt(0.5 * spectral_density(clean.frequency_hz, *NOISE[name]))

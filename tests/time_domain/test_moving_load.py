@@ -48,7 +48,7 @@ def test_a_load_that_moves_is_found_and_leaves_nothing(line, record):
     # what is shown is torque, with its square and the load that was found
     shown = free.model(line.vector({}))
     assert shown[:, list(line.outputs).index("M_s")] == pytest.approx(moved.outputs["M_s"], abs=1e-8)
-    assert np.allclose(free.left(line.vector({})), 0.0, atol=1e-8)
+    assert np.allclose(free.residuals(line.vector({})), 0.0, atol=1e-8)
 
 
 def test_noise_of_the_speed_is_as_large_in_torque_whatever_the_speed(line, record):
@@ -61,9 +61,9 @@ def test_noise_of_the_speed_is_as_large_in_torque_whatever_the_speed(line, recor
     own = line.vector({})
     torque = list(line.outputs).index("M_s")
     plain = output_error(line, noisy)
-    left = replace(plain, moving_load=True).left(own)[:, torque]
+    left = replace(plain, moving_load=True).residuals(own)[:, torque]
     # what is left of the other noise is 2 n d, whose root mean square is 0.15 times that of 2 d, over 2^0.5
-    assert np.std(plain.left(own)[:, torque] - 2.0 * noise) == pytest.approx(0.15 * 0.006 / 2.0, rel=0.15)
+    assert np.std(plain.residuals(own)[:, torque] - 2.0 * noise) == pytest.approx(0.15 * 0.006 / 2.0, rel=0.15)
     assert np.std(left - 2.0 * noise) < 0.3 * 0.15 * 0.006 / 2.0
 
 

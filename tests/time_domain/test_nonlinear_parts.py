@@ -10,10 +10,10 @@ from shaftprint.campaign import Campaign
 from shaftprint.catalogue import limited
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Estimate
-from shaftprint.identify.search import Given
+from shaftprint.identify.search import GivenStarts
 from shaftprint.signals import SetPointCalibration, Signals, WorkingPoint
 from shaftprint.time_domain import NonlinearSettings, limit_numbers, record_from_arrays, structure_for, without_orders
-from shaftprint.time_domain.nonlinear import SomeDrawn, limited_sines, sharpened
+from shaftprint.time_domain.nonlinear import SomeDrawn, limited_sines, with_exact_jumps
 from shaftprint.vessel import load_vessel
 
 POINT = WorkingPoint(
@@ -55,7 +55,7 @@ def test_a_jump_is_a_jump_again(at_s):
     drive = rung_step(time, at_s, -0.4)
     assert drive.min() < -0.41
     record = record_from_arrays("St1", {"n_set": drive}, {"n": np.zeros(time.size)}, rate_hz=200.0)
-    sharp = sharpened(record, staircase(), rate_hz=400.0)
+    sharp = with_exact_jumps(record, staircase(), rate_hz=400.0)
     grid = (np.arange(sharp.drive["n_set"].size) - sharp.margin) / 400.0
     found = sharp.drive["n_set"]
     near = np.abs(grid - at_s) < 0.08
@@ -74,9 +74,9 @@ def test_where_nothing_jumps_the_drive_stays(vessel):
     drive = 0.1 * np.sin(0.5 * time)
     record = record_from_arrays("C1", {"n_set": drive}, {"n": np.zeros(time.size)}, rate_hz=200.0)
     quiet = staircase().model_copy(update={"staircases": ()})
-    assert np.allclose(sharpened(record, quiet, rate_hz=200.0).drive["n_set"], drive)
+    assert np.allclose(with_exact_jumps(record, quiet, rate_hz=200.0).drive["n_set"], drive)
     still = replace(record, drive={"n_set": np.zeros(time.size)})
-    assert not np.any(sharpened(still, staircase(), rate_hz=200.0).drive["n_set"])
+    assert not np.any(with_exact_jumps(still, staircase(), rate_hz=200.0).drive["n_set"])
 
 
 def test_orders_of_the_shaft_leave_the_torque_and_slow_motion_stays(vessel):
@@ -154,7 +154,7 @@ def test_starts_are_drawn_in_some_directions_only_and_wide_ranges_by_their_logar
     # one start in each of forty cells: ten a decade, and half below the middle
     assert [int(np.sum((starts[1:, 1] >= a) & (starts[1:, 1] < 10.0 * a))) for a in (0.1, 1.0, 10.0, 100.0)] == [10] * 4
     assert int(np.sum(starts[1:, 2] < 2.0)) == 20
-    given = Given(np.array([[1.0], [5.0]]))
+    given = GivenStarts(np.array([[1.0], [5.0]]))
     assert given.starts(np.zeros(1), np.full(1, 2.0), 3, np.random.default_rng(1)).tolist() == [[1.0], [2.0], [1.0]]
 
 

@@ -176,7 +176,7 @@ def test_simulation_that_runs_away_costs_much_but_finitely(lag):
     with pytest.raises(IdentificationError, match="runs away"):
         term.model(np.array([1.0, 0.055]))
     with pytest.raises(IdentificationError, match="runs away"):
-        term.judged(np.array([1.0, 0.055]), 0)
+        term.assessed(np.array([1.0, 0.055]), 0)
     with pytest.raises(IdentificationError, match="runs away"):
         term.redrawn(np.array([1.0, 0.055]), 2, np.random.default_rng(1))
 
@@ -423,7 +423,7 @@ def test_all_machinery_of_a_fit_takes_mixed_terms(lag, mixed):
     spread = bootstrap(found, count=60, rng=np.random.default_rng(3))
     for estimate in found.parameters:
         assert spread.estimates[estimate.name].std == pytest.approx(estimate.std, rel=0.3)
-    np.testing.assert_array_equal(found.own_values(2), found.values)
+    np.testing.assert_array_equal(found.structure_values(2), found.values)
 
 
 def test_uncertainty_is_told_by_term(mixed):

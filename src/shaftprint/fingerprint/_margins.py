@@ -32,7 +32,7 @@ def margin_quantities(
     if margins is None:
         return ()
     if stated is None:
-        values = identification.own_values()
+        values = identification.structure_values()
         stated = budget(identification, margin_numbers(identification.structure, values))
     std = {row.name: row.std for row in stated.rows}
     quantities = []

@@ -59,7 +59,7 @@ def physical_numbers(
 ) -> tuple[PhysicalNumber, ...]:
     """Return the physical values that a fit gives, as numbers that follow from its parameters by their roles."""
     structure = identification.structure
-    named = structure.named(identification.own_values())
+    named = structure.named(identification.structure_values())
     slope = next((parameter for parameter in structure.free if parameter.role == ShipRole.LOAD_SLOPE), None)
     return (
         *_physical_forms(structure, named, working_point, vessel),

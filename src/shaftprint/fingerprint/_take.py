@@ -78,7 +78,7 @@ def take_fingerprint(
     """
     if now.tzinfo is None:
         raise FingerprintError("now: expected a time with time zone, such as datetime.now(UTC), found one without.")
-    values = identification.own_values()
+    values = identification.structure_values()
     margins = margin_numbers(identification.structure, values)
     rack = signals.channels.get("X")
     rack_share = 0.0 if rack is None else rack.reference_std / rack.reference

@@ -86,11 +86,11 @@ def _taken_for_granted(found: Fitted, test: GovernorTest, signals: Signals, vess
     drive_hz = term.record.drive_rate_hz
     inertia = 1.0 + vessel.inertia_upstream_std_kg_m2 / vessel.inertia_upstream_kg_m2
     torque = 1.0 + point.shaft_torque_std_nm / point.shaft_torque_nm
-    left = term.left(own)
+    left = term.residuals(own)
     moved = [test.with_inertia(inertia), test.with_torque(torque)]
-    changes = [_with_record(term, one, drive_hz).left(own) - left for one in moved]
+    changes = [_with_record(term, one, drive_hz).residuals(own) - left for one in moved]
     sloped = {**found.values, Symbol.ENGINE_SPEED_SLOPE: SLOPE_STD}
-    changes.append(term.left(np.array([sloped[name] for name in term.whole.names])) - left)
+    changes.append(term.residuals(np.array([sloped[name] for name in term.whole.names])) - left)
     # a rate limit turns at whole steps of the simulation: half as long ones move the rate by as much as noise does
     finer = replace(term, record=test.record(drive_hz=2.0 * drive_hz))
     changes.append(term.predicted(own) - finer.predicted(own))

@@ -14,15 +14,14 @@ time                s       of the recording
 from shaftprint.time_domain._decimator import Decimator
 from shaftprint.time_domain._identify_chirp import identify_chirp, spectrum_term
 from shaftprint.time_domain._identify_in_time import TimeSettings, identify_in_time, output_error, with_noise_at
-from shaftprint.time_domain._known_start import KnownStart
 from shaftprint.time_domain._noise_model import NoiseModel, estimate_noise, white_noise
-from shaftprint.time_domain._output_error import OutputError
+from shaftprint.time_domain._output_error import OutputError, RecordRepeats
 from shaftprint.time_domain._record import Record, record_from_arrays
 from shaftprint.time_domain._record_fit import RecordFit
-from shaftprint.time_domain._record_repeats import RecordRepeats
 from shaftprint.time_domain._signal_records import records_of
 from shaftprint.time_domain._simulator import ExactDelays, Simulator
 from shaftprint.time_domain._simulator import on_record as simulated_on
+from shaftprint.time_domain._span import qr_reduced
 from shaftprint.time_domain._spectrum import Spectrum, spectrum_of
 from shaftprint.time_domain._spectrum_term import FittedSpectrum, SpectrumRepeats, SpectrumTerm
 from shaftprint.time_domain._whiteness import whiteness_p_value
@@ -49,7 +48,6 @@ __all__ = [
     "FittedSpectrum",
     "Jump",
     "JumpStretch",
-    "KnownStart",
     "LimitNumber",
     "LimitedModel",
     "NoiseModel",
@@ -73,6 +71,7 @@ __all__ = [
     "jumps_in",
     "limit_numbers",
     "output_error",
+    "qr_reduced",
     "record_from_arrays",
     "records_of",
     "simulated_on",

@@ -9,7 +9,7 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, MaximumLikelihood, Settings, identify, identify_jointly
 from shaftprint.identify.fit import Cluster, with_sensor
 from shaftprint.identify.likelihood import with_load
-from shaftprint.identify.search import Given
+from shaftprint.identify.search import GivenStarts
 from shaftprint.models import Integrator, Structure, free_responses
 from shaftprint.time_domain._nodes import Nodes
 from shaftprint.time_domain._record import Record
@@ -84,7 +84,7 @@ def identify_chirp(
     term = spectrum_term(structure, spectrum, transients=transients, drift=drift)
     near = _followed(coarse)
     theta = np.stack([_sharpened(coarse, term, cluster) for cluster in near])
-    found = identify_jointly([term], rng=rng, settings=replace(settings, draw=Given(theta), starts=len(theta)))
+    found = identify_jointly([term], rng=rng, settings=replace(settings, draw=GivenStarts(theta), starts=len(theta)))
     return replace(found, settings=settings, clusters=_counted(found, coarse, near))
 
 

@@ -19,10 +19,10 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify import Identification, Settings, identify_jointly
 from shaftprint.identify.fit import with_sensor
 from shaftprint.identify.likelihood import Term, with_load
+from shaftprint.identify.search import GivenStarts
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain._input_response import noise_of
-from shaftprint.time_domain._known_start import KnownStart
 from shaftprint.time_domain._noise_model import LONGEST_S, estimate_noise, white_noise
 from shaftprint.time_domain._nuisance import usual_drift_degree
 from shaftprint.time_domain._output_error import OutputError
@@ -127,7 +127,7 @@ def with_noise_at(term: OutputError, values: FloatArray, *, longest_memory_s: fl
     IdentificationError
         If the simulation runs away there, or nothing is left.
     """
-    left = noise_of(term.left(values), term.record)
+    left = noise_of(term.residuals(values), term.record)
     order = round(longest_memory_s * term.record.rate_hz)
     return term.with_noise(Whitening(noise=estimate_noise(left, term.record.stretches, max_order=order)))
 
@@ -203,7 +203,7 @@ def _with_states(found: Identification) -> Identification:
     for term, part in zip(found.objective.terms, found.parts, strict=True):
         if isinstance(term, OutputError) and term.initial_states and isinstance(part, RecordFit):
             covariance = found.covariance[np.ix_(term.columns, term.columns)]
-            part = replace(part, initial_states=term.started_from(term.own(found.values), covariance))
+            part = replace(part, initial_states=term.started_from(term.structure_values(found.values), covariance))
         parts.append(part)
     return replace(found, parts=tuple(parts))
 
@@ -256,4 +256,4 @@ def _from(parts: Sequence[Part], first: Mapping[str, float], settings: Settings)
     """Return the settings with the known values as their first start."""
     free = {p.name: p.value for structure in map(_structure, parts) for p in structure.free}
     place = np.array([first.get(name, value) for name, value in free.items()])
-    return replace(settings, draw=KnownStart(place, settings.draw))
+    return replace(settings, draw=GivenStarts(place[None], settings.draw))

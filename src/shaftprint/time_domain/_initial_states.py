@@ -7,6 +7,7 @@ without offset and drift, their covariance is ``(E E^T)^-1 + D C D^T`` with ``D 
 whose variables separate, 1973).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,12 @@ from shaftprint.models import Structure
 from shaftprint.simulation import equilibrium
 from shaftprint.time_domain._nuisance import without
 from shaftprint.time_domain._record import Record
+
+# Most steps towards initial states, and the share of their size below which one is the last: the first is exact where
+# the outputs depend on them linearly.
+STATE_STEPS, SMALL_STEP = 5, 1e-6
+# Change of a state over which its effect is taken.
+STATE_CHANGE = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -39,6 +46,42 @@ class InitialStates:
         """What the equations of the structure call the states."""
         inputs = {name: float(self.record.drive[name][0]) for name in self.structure.inputs}
         return equilibrium(self.structure, self.own, inputs).state_names
+
+
+def best_states(
+    simulated: Callable[[FloatArray], FloatArray | None],
+    whitened: Callable[[FloatArray], FloatArray],
+    *,
+    data: FloatArray,
+    first: FloatArray,
+) -> tuple[FloatArray, FloatArray] | None:
+    """Return the states that explain a record best, and their effects; None where the simulation runs away.
+
+    Parameters
+    ----------
+    simulated
+        From states, shape (states,), to outputs, shape (1, samples, outputs); None where the simulation runs away.
+    whitened
+        From rows of outputs, shape (rows, samples, outputs), to whitened ones without offset and drift, shape (rows,
+        length).
+    data
+        Measured outputs, whitened and without offset and drift, shape (length,).
+    first
+        States to begin with, shape (states,).
+    """
+    states, effects = first, np.zeros(0)
+    for _ in range(STATE_STEPS):
+        steps = STATE_CHANGE * np.eye(states.size)
+        moved = [simulated(states + step) for step in (np.zeros(states.size), *steps)]
+        if any(run is None for run in moved):
+            return None
+        runs = np.concatenate([run for run in moved if run is not None])
+        effects = (runs[1:] - runs[0]) / STATE_CHANGE
+        change, *_ = np.linalg.lstsq(whitened(effects).T, data - whitened(runs[:1])[0], rcond=1e-9)
+        states = states + change
+        if np.abs(change).max(initial=0.0) <= SMALL_STEP * np.abs(states).max(initial=0.0):
+            break
+    return states, effects
 
 
 def state_estimates(

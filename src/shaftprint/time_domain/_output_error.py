@@ -3,7 +3,7 @@
 With the filter ``W`` that makes the noise white, measured ``y``, simulated ``f(theta)`` and the columns ``B`` of
 offset, drift and, where asked for, initial states, the cost is ``min_c |W (y - f - B c)|^2 / 2`` (output error: Ljung,
 System Identification: Theory for the User, second edition, sections 4.2 and 7.4, with a fixed noise model). The rows of
-a record are turned so that only ``1 + free`` of them are not zero: 50 starts of a long record fit into memory.
+a record are QR-reduced to ``1 + free`` columns: 50 starts of a long record fit into memory.
 """
 
 from collections.abc import Sequence
@@ -11,41 +11,48 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray, frozen_float
+from shaftprint.arrays import BoolArray, FloatArray, IntArray, frozen_float
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Estimate
-from shaftprint.identify.likelihood import LineTest, Repeats, Term, TermTest
-from shaftprint.models import Structure
-from shaftprint.time_domain._at_once import at_once
+from shaftprint.identify.likelihood import LineTest, Repeats, TermTest, WhitenedTerm
 from shaftprint.time_domain._flexible_model import FlexibleModel
-from shaftprint.time_domain._initial_states import InitialStates, state_estimates
+from shaftprint.time_domain._initial_states import InitialStates, best_states, state_estimates
 from shaftprint.time_domain._input_response import excited
 from shaftprint.time_domain._moving_load import load_columns, with_square, without_square
 from shaftprint.time_domain._noise_model import LONGEST_S
 from shaftprint.time_domain._nuisance import drift_columns, orthonormal, without
 from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._record_fit import RecordFit, record_fit
-from shaftprint.time_domain._record_repeats import RecordRepeats
-from shaftprint.time_domain._simulator import Simulator, on_record
-from shaftprint.time_domain._span import Span
-from shaftprint.time_domain._turned import turned
+from shaftprint.time_domain._simulator import Simulator, in_parallel, on_record
+from shaftprint.time_domain._span import Span, qr_reduced
 from shaftprint.time_domain._whitening import Whitening
 
 # Cost of a simulation that runs away, over that of no model at all.
 AWAY = 1e12
-# Most steps towards initial states, and the share of their size below which one is the last: the first is exact where
-# the outputs depend on them linearly.
-STATE_STEPS, SMALL_STEP = 5, 1e-6
-# Change of a state over which its effect is taken.
-STATE_CHANGE = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class OutputError(Term):
+class RecordRepeats(Repeats):
+    """Simulated repeats of a record: the noise of each is made anew whenever it is needed."""
+
+    model: FloatArray
+    """Whitened outputs without noise, shape (used samples * outputs,)."""
+    seeds: IntArray
+    """Seed of the noise of each repeat, shape (repeats,)."""
+
+    def chosen(self, repeats: IntArray | slice) -> "RecordRepeats":
+        """Return some of the repeats."""
+        return replace(self, seeds=self.seeds[repeats])
+
+    def data(self, repeat: int) -> FloatArray:
+        """Return the whitened outputs of a repeat, shape (used samples * outputs,)."""
+        return self.model + np.random.default_rng(int(self.seeds[repeat])).standard_normal(self.model.size)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class OutputError(WhitenedTerm):
     """A structure and a record to fit it to, with the colour of its noise."""
 
-    structure: Structure
-    """The structure at the record's working point, with its held and free parameters."""
     record: Record
     """The data."""
     whitening: Whitening
@@ -63,14 +70,6 @@ class OutputError(Term):
     takes the square of the speed: the torque is compared without that square."""
     longest_memory_s: float = LONGEST_S
     """Longest memory of the noise that is tried [s]."""
-    held: FloatArray
-    """Values of the structure's parameters; the free ones are replaced, shape (structure's parameters,)."""
-    free: tuple[int, ...]
-    """Places of the free parameters among the structure's."""
-    places: tuple[int, ...]
-    """Places of the same among all parameters of the objective."""
-    columns: tuple[int, ...]
-    """Places of the same among the free parameters of the objective."""
     measured: FloatArray = field(init=False, repr=False)
     """Whitened outputs, shape (used samples * outputs,)."""
     drifts: FloatArray = field(init=False, repr=False)
@@ -92,43 +91,16 @@ class OutputError(Term):
         return int(self.measured.size - self.drifts.shape[0])
 
     @property
-    def row_count(self) -> int:
-        """Number of rows after they have been turned."""
-        return 1 + len(self.free)
-
-    @property
-    def is_likelihood(self) -> bool:
-        """Whether residuals are weighted by their noise: always."""
-        return True
-
-    @property
-    def least_deviation(self) -> float:
-        """Infinite: noise of records is never small in every datum."""
-        return np.inf
-
-    @property
-    def cost_of_nothing(self) -> float:
+    def null_cost(self) -> float:
         """Half the square sum of the whitened outputs, offset and drift apart."""
         return 0.5 * float(np.sum(without(self.measured, self.drifts) ** 2))
-
-    def placed(self, names: Sequence[str], free: Sequence[str]) -> "OutputError":
-        """Return the term as part of an objective of these parameters."""
-        return replace(
-            self,
-            places=tuple(names.index(p.name) for p in self.structure.free),
-            columns=tuple(free.index(p.name) for p in self.structure.free),
-        )
-
-    def with_floor(self, floor: float) -> "OutputError":
-        """Return the term itself."""
-        return self
 
     def with_noise(self, whitening: Whitening) -> "OutputError":
         """Return the term with another noise."""
         return replace(self, whitening=whitening)
 
     def table(self, theta: FloatArray, repeats: Repeats | None = None) -> FloatArray:
-        """Return turned residuals and derivatives, a simulation a start, shape (starts, 1 + free, 1 + free)."""
+        """Return QR-reduced residuals and derivatives, a simulation a start, shape (starts, 1 + free, 1 + free)."""
         found = np.zeros((theta.shape[0], self.row_count, self.row_count))
         own = self.complete(theta)
 
@@ -136,11 +108,11 @@ class OutputError(Term):
             data = repeats.data(start) if isinstance(repeats, RecordRepeats) else self.measured
             rows = self._rows(own[start], data)
             if rows is None:
-                found[start, 0, 0] = np.sqrt(2.0 * AWAY * max(self.cost_of_nothing, 1.0))
+                found[start, 0, 0] = np.sqrt(2.0 * AWAY * max(self.null_cost, 1.0))
             else:
-                found[start] = turned(rows[0])
+                found[start] = qr_reduced(rows[0])
 
-        at_once(fill, theta.shape[0])
+        in_parallel(fill, theta.shape[0])
         return found
 
     def evaluable(self, theta: FloatArray) -> BoolArray:
@@ -151,17 +123,12 @@ class OutputError(Term):
         def fill(start: int) -> None:
             found[start] = self._simulated(own[start], ()) is not None
 
-        at_once(fill, theta.shape[0])
+        in_parallel(fill, theta.shape[0])
         return found
 
-    def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
-        """Return the turned derivatives; noise and curvature of the model are independent, so both are the same."""
-        rows = self.table(theta[None, :])[0, 1:]
-        return rows, rows
-
-    def judged(self, values: FloatArray, number: int) -> tuple[RecordFit, TermTest]:
+    def assessed(self, values: FloatArray, number: int) -> tuple[RecordFit, TermTest]:
         """Return FitPercent and whitened residuals, and how much of these the inputs still explain."""
-        own = self.own(values)
+        own = self.structure_values(values)
         start, simulated = self._evaluated(own)
         rows, basis = self._projected(simulated, start, self.measured)
         part = record_fit(
@@ -199,7 +166,7 @@ class OutputError(Term):
 
     def redrawn(self, values: FloatArray, count: int, rng: np.random.Generator) -> RecordRepeats:
         """Return repeats with noise of the same colour."""
-        _, simulated = self._evaluated(self.own(values))
+        _, simulated = self._evaluated(self.structure_values(values))
         return RecordRepeats(model=self._white(simulated[:1])[0], seeds=rng.integers(0, 2**62, size=count))
 
     def model(self, own: FloatArray) -> FloatArray:
@@ -218,7 +185,7 @@ class OutputError(Term):
         start, simulated = self._evaluated(own)
         return self._completed(simulated[0], start)
 
-    def left(self, own: FloatArray) -> FloatArray:
+    def residuals(self, own: FloatArray) -> FloatArray:
         """Return what the model leaves of the outputs as they are compared; see ``model``."""
         return self._compared(self._outputs()) - self._compared(self.model(own))
 
@@ -276,22 +243,18 @@ class OutputError(Term):
         simulated = self._simulated(own, wanted, None if start is None else start.values)
         return None if simulated is None else (start, simulated)
 
-    def _start(self, own: FloatArray, data: FloatArray) -> InitialStates | None:
+    def _start(self, values: FloatArray, data: FloatArray) -> InitialStates | None:
         """Return the best states at the start; None where the simulation runs away."""
-        states = self.simulator.rest(self.structure, own, self.record)
-        for _ in range(STATE_STEPS):
-            steps = STATE_CHANGE * np.eye(states.size)
-            moved = [self._simulated(own, (), states + step) for step in (np.zeros(states.size), *steps)]
-            if any(m is None for m in moved):
-                return None
-            runs = np.concatenate([m for m in moved if m is not None])
-            effects = (runs[1:] - runs[0]) / STATE_CHANGE
-            rows = without(self._white(effects), self.drifts)
-            shares, *_ = np.linalg.lstsq(rows.T, without(data - self._white(runs[:1])[0], self.drifts), rcond=1e-9)
-            states = states + shares
-            if np.abs(shares).max(initial=0.0) <= SMALL_STEP * np.abs(states).max(initial=0.0):
-                break
-        return InitialStates(structure=self.structure, record=self.record, own=own, values=states, effects=effects)
+        estimate = best_states(
+            lambda states: self._simulated(values, (), states),
+            lambda rows: without(self._white(rows), self.drifts),
+            data=without(data, self.drifts),
+            first=self.simulator.rest(self.structure, values, self.record),
+        )
+        if estimate is None:
+            return None
+        states, effects = estimate
+        return InitialStates(structure=self.structure, record=self.record, own=values, values=states, effects=effects)
 
     def _completed(self, simulated: FloatArray, start: InitialStates | None) -> FloatArray:
         """Return a simulation with its best offset and drift as the record shows it, shape (samples, outputs)."""

@@ -1,6 +1,8 @@
 """What a structure does during a record, with derivatives, on the record's grid."""
 
-from collections.abc import Sequence
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -76,6 +78,20 @@ class ExactDelays:
     def rest(self, structure: Structure, values: FloatArray, record: Record) -> FloatArray:
         """Return the states of steady running at the first sample of the drive, shape (states,)."""
         return equilibrium(structure, values, {n: float(record.drive[n][0]) for n in structure.inputs}).states
+
+
+def in_parallel(work: Callable[[int], None], count: int) -> None:
+    """Do a piece of work for every number from 0 on, as many at a time as there are processors.
+
+    Compiled kernels and products of matrices leave the interpreter free. The first is done alone: what it has to
+    compile is compiled once.
+    """
+    if count:
+        work(0)
+    if count > 1:
+        with ThreadPoolExecutor(min(count - 1, os.cpu_count() or 1)) as pool:
+            # the list raises what a piece of work has raised
+            list(pool.map(work, range(1, count)))
 
 
 def on_record(

@@ -41,3 +41,11 @@ class Span:
     def shares(self, target: FloatArray) -> FloatArray:
         """Return the weights of the rows whose sum is nearest to a vector, shape (rows,)."""
         return np.asarray(self.turn @ (self.turn.T @ (self.rows @ target)))
+
+
+def qr_reduced(rows: FloatArray) -> FloatArray:
+    """Return rows with the same products with each other, but no longer than many, shape (rows, rows)."""
+    if rows.shape[1] < rows.shape[0]:
+        return np.pad(rows, ((0, 0), (0, rows.shape[0] - rows.shape[1])))
+    triangle: FloatArray = np.linalg.qr(rows.T, mode="r")  # type: ignore[assignment]
+    return triangle.T

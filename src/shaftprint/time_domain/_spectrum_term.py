@@ -73,8 +73,6 @@ class FittedSpectrum(FittedTerm):
 class SpectrumTerm(Term):
     """A structure and the excited lines of a record to fit it to."""
 
-    structure: Structure
-    """The structure with its held and free parameters."""
     spectrum: Spectrum
     """The data."""
     shapes: Structure | None
@@ -87,14 +85,6 @@ class SpectrumTerm(Term):
     """Where the free responses are evaluated."""
     weights: ComplexArray
     """``W`` with ``W^H W`` twice the inverse of the noise, shape (outputs, outputs, lines): real parts count one."""
-    held: FloatArray
-    """Values of the structure's parameters; the free ones are replaced, shape (structure's parameters,)."""
-    free: tuple[int, ...]
-    """Places of the free parameters among the structure's."""
-    places: tuple[int, ...]
-    """Places of the free parameters among all parameters of the objective."""
-    columns: tuple[int, ...]
-    """Places of the same among the free parameters of the objective."""
 
     @property
     def name(self) -> str:
@@ -124,19 +114,9 @@ class SpectrumTerm(Term):
         return float(np.sqrt(np.min(noise / np.maximum(there, TINY))))
 
     @property
-    def cost_of_nothing(self) -> float:
+    def null_cost(self) -> float:
         """Half the square sum of the weighted lines."""
         return 0.5 * float(np.sum(np.abs(self._weighted(self.spectrum.outputs)) ** 2))
-
-    def placed(self, names: Sequence[str], free: Sequence[str]) -> "SpectrumTerm":
-        """Return the term as part of an objective."""
-        own = [p.name for p in self.structure.parameters]
-        wanted = [own[i] for i in self.free]
-        return replace(
-            self,
-            places=tuple(names.index(name) for name in wanted),
-            columns=tuple(free.index(name) for name in wanted),
-        )
 
     def with_floor(self, floor: float) -> "SpectrumTerm":
         """Return the term with a share of each line's value added to the noise."""
@@ -172,10 +152,10 @@ class SpectrumTerm(Term):
             rows -= np.linalg.solve(gram, across @ rows.T).T @ across
         return rows, rows
 
-    def judged(self, values: FloatArray, number: int) -> tuple[FittedSpectrum, TermTest]:
+    def assessed(self, values: FloatArray, number: int) -> tuple[FittedSpectrum, TermTest]:
         """Return FitPercent over time, and how much of the input is left in the residuals of each band."""
         spectrum = self.spectrum
-        table, left = self._projected(self.own(values), spectrum.outputs)
+        table, left = self._projected(self.structure_values(values), spectrum.outputs)
         whitened = _complex(table[0]).reshape(spectrum.outputs.shape) / np.sqrt(2.0)
         inside = 2.0 * np.sum(np.abs(left) ** 2, axis=1)
         noise = 2.0 * np.sum(np.diagonal(spectrum.noise, axis1=1, axis2=2).real, axis=0)
@@ -195,7 +175,9 @@ class SpectrumTerm(Term):
         roots = np.linalg.cholesky(spectrum.noise)
         parts = rng.standard_normal((2, count, *spectrum.outputs.T.shape)) / np.sqrt(2.0)
         noise = np.einsum("lab,klb->kal", roots, parts[0] + 1j * parts[1])
-        return SpectrumRepeats(outputs=self.structure.response(self.own(values), self.s) * spectrum.source + noise)
+        return SpectrumRepeats(
+            outputs=self.structure.response(self.structure_values(values), self.s) * spectrum.source + noise
+        )
 
     def _projected(self, values: FloatArray, outputs: ComplexArray) -> tuple[FloatArray, ComplexArray]:
         """Return the table of one set of parameters, (1 + free, rows), and the residuals without weights."""

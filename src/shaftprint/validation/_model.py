@@ -78,7 +78,7 @@ def identified_model(identification: Identification, *, used: Collection[str] = 
     return Model(
         name=structure.name,
         structure=structure,
-        values=identification.own_values(),
+        values=identification.structure_values(),
         covariance=frozen_float(np.where(lost[:, None] | lost[None, :], 0.0, covariance)),
         used=tuple(dict.fromkeys([*_seen(identification), *used])),
         not_known=tuple(p.name for p, gone in zip(structure.free, lost, strict=True) if gone),

@@ -125,7 +125,7 @@ def _imitation(
     except IdentificationError:
         # more free parameters than data: without its priors the larger structure cannot be fitted
         return None
-    whole = found.objective.cost_of_nothing
+    whole = found.objective.null_cost
     return found.values[list(found.objective.free)] if found.cost < SAME_RESPONSE * whole else None
 
 

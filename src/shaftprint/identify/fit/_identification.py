@@ -198,7 +198,7 @@ class Identification:
     @property
     def margins(self) -> Margins | None:
         """Stability margins, found anew at each call; None for a structure without feedback."""
-        return None if self.structure.loop is None else margins(self.structure, self.own_values())
+        return None if self.structure.loop is None else margins(self.structure, self.structure_values())
 
     @property
     def is_likelihood(self) -> bool:
@@ -249,11 +249,11 @@ class Identification:
 
     def model(self, frequency_hz: FloatArray) -> ComplexArray:
         """Return the fitted response, shape (channels, frequencies); of a joint fit's first structure."""
-        return self.structure.response(self.own_values(), 2j * np.pi * frequency_hz)
+        return self.structure.response(self.structure_values(), 2j * np.pi * frequency_hz)
 
-    def own_values(self, experiment: int = 0) -> FloatArray:
+    def structure_values(self, experiment: int = 0) -> FloatArray:
         """Return all parameters of one part's structure, in that structure's order, shape (parameters,)."""
-        return self.objective.terms[experiment].own(self.values)
+        return self.objective.terms[experiment].structure_values(self.values)
 
     @property
     def _first_response(self) -> FittedResponse:

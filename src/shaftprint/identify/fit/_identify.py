@@ -131,7 +131,7 @@ def _identified(
     descent = search(objective, settings, rng)
     sharp = bool(descent.converged[np.argmin(descent.cost)])
     clusters, winner = _judged(objective, _clustered(objective, descent), settings, sharp=sharp)
-    judged = [term.judged(winner.values, number) for number, term in enumerate(objective.terms)]
+    judged = [term.assessed(winner.values, number) for number, term in enumerate(objective.terms)]
     return Identification(
         parts=tuple(part for part, _ in judged),
         objective=objective,
@@ -164,7 +164,7 @@ def _clustered(objective: Objective, descent: Descent) -> list[tuple[FloatArray,
     """Return parameters, cost and number of starts of each distinct optimum, lowest cost first."""
     order = np.argsort(descent.cost, kind="stable")
     theta, cost = descent.theta[order], descent.cost[order]
-    nothing = objective.cost_of_nothing
+    nothing = objective.null_cost
     width = objective.upper - objective.lower
     found: list[tuple[FloatArray, float, int]] = []
     while cost.size:

@@ -107,7 +107,7 @@ def _distance(identification: Identification, cost: FloatArray) -> FloatArray:
     if identification.is_likelihood:
         return 2.0 * (cost - own)
     # what is left of data without noise is rounding, not a ratio
-    floor = 1e-12 * 2.0 * identification.objective.cost_of_nothing
+    floor = 1e-12 * 2.0 * identification.objective.null_cost
     return np.asarray(identification.data_count * np.log((cost + floor) / (own + floor)))
 
 

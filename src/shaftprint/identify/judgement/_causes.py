@@ -46,7 +46,7 @@ def causes_of(experiment: Experiment, values: FloatArray) -> tuple[Cause, ...]:
         All parameters of the objective, shape (parameters,).
     """
     structure, s = experiment.structure, experiment.s
-    model = structure.response(experiment.own(values), s, factors=experiment.factors)
+    model = structure.response(experiment.structure_values(values), s, factors=experiment.factors)
     return (
         *_held_parameters(experiment, values),
         *_sensors(structure, model, s),
@@ -60,7 +60,7 @@ def _held_parameters(experiment: Experiment, values: FloatArray) -> Iterator[Cau
     held = [parameter for parameter in structure.parameters if parameter.held]
     if not held:
         return
-    own, names = experiment.own(values), [parameter.name for parameter in held]
+    own, names = experiment.structure_values(values), [parameter.name for parameter in held]
     _, slopes = structure.gradient(own, experiment.s, names, factors=experiment.factors)
     for parameter, slope in zip(held, slopes, strict=True):
         at = number(parameter.value, parameter.unit)

@@ -73,7 +73,7 @@ def _standing_out(identification: Identification, places: list[int]) -> str:
 def _squares(identification: Identification) -> FloatArray:
     """Return the squared deviation of each channel at each line over its variance, shape (channels, lines)."""
     response = identification.response
-    values, s = identification.own_values(), 1j * response.omega_rad_s
+    values, s = identification.structure_values(), 1j * response.omega_rad_s
     gap = channels_of(response) - identification.structure.response(
         values, s, factors=load_factors(identification.structure, response)
     )

@@ -113,7 +113,7 @@ def _misfit(identification: Identification) -> tuple[FloatArray, FloatArray]:
     parts, slopes = [], []
     for experiment, part in zip(objective.experiments, identification.experiments, strict=True):
         _, gradient = experiment.structure.gradient(
-            experiment.own(identification.values), experiment.s, factors=experiment.factors
+            experiment.structure_values(identification.values), experiment.s, factors=experiment.factors
         )
         own = np.zeros((part.whitened.size, len(objective.free)))
         own[:, list(experiment.columns)] = np.array([_whitened(experiment, slope) for slope in gradient]).T

@@ -10,7 +10,7 @@ from shaftprint.identify.likelihood._load_factors import load_factors, with_load
 from shaftprint.identify.likelihood._objective import Objective, Redrawn
 from shaftprint.identify.likelihood._prior import Prior
 from shaftprint.identify.likelihood._tails import estimated_tails, student_tails
-from shaftprint.identify.likelihood._term import FittedTerm, Repeats, Term, TermTest
+from shaftprint.identify.likelihood._term import FittedTerm, Repeats, Term, TermTest, WhitenedTerm
 from shaftprint.identify.likelihood._term_check import CheckKind, TermCheck
 from shaftprint.identify.likelihood._weighting import MaximumLikelihood, StudentT, Unweighted, Weighting
 from shaftprint.identify.likelihood._wishart import estimated_shapes
@@ -35,6 +35,7 @@ __all__ = [
     "TermTest",
     "Unweighted",
     "Weighting",
+    "WhitenedTerm",
     "build_joint_objective",
     "build_objective",
     "channel_names",

@@ -6,7 +6,7 @@ where that was estimated the residuals of a line are shortened (``Tails``); unwe
 output weights only.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,7 +19,6 @@ from shaftprint.identify.likelihood._term import Repeats, Term, TermTest
 from shaftprint.identify.likelihood._tested_lines import tested_lines
 from shaftprint.identify.likelihood._weighting import Weighting
 from shaftprint.identify.likelihood._wishart import estimated_shapes
-from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 
 
@@ -47,8 +46,6 @@ AS_MEASURED = ResponseRepeats(measured=None, weights=None)
 class Experiment(Term):
     """A structure and a response to fit it to."""
 
-    structure: Structure
-    """The structure with its held and free parameters."""
     response: FrequencyResponse
     """The data, of the structure's outputs."""
     fitted: BoolArray
@@ -71,14 +68,6 @@ class Experiment(Term):
     """How much lines far from the model count."""
     elements: tuple[tuple[int, int, FloatArray], ...]
     """Row, column and elements of ``-W``, shape (lines,), where they are not all zero; those of the diagonal first."""
-    held: FloatArray
-    """Values of the structure's parameters; the free ones are replaced, shape (structure's parameters,)."""
-    free: tuple[int, ...]
-    """Places of the free parameters among the structure's."""
-    places: tuple[int, ...]
-    """Places of the same among all parameters of the objective."""
-    columns: tuple[int, ...]
-    """Places of the same among the free parameters of the objective."""
 
     @property
     def name(self) -> str:
@@ -101,17 +90,9 @@ class Experiment(Term):
         return self.weighting.is_likelihood
 
     @property
-    def cost_of_nothing(self) -> float:
+    def null_cost(self) -> float:
         """Half the square sum of the weighted data."""
         return 0.5 * float(np.sum((self.weights @ self.data[:, :, None]) ** 2))
-
-    def placed(self, names: Sequence[str], free: Sequence[str]) -> "Experiment":
-        """Return the experiment as part of an objective of these parameters."""
-        return replace(
-            self,
-            places=tuple(names.index(p.name) for p in self.structure.free),
-            columns=tuple(free.index(p.name) for p in self.structure.free),
-        )
 
     def table(self, theta: FloatArray, repeats: Repeats | None = None) -> FloatArray:
         """Return residuals, those of one channel's real or imaginary part side by side, and their derivatives."""
@@ -160,7 +141,7 @@ class Experiment(Term):
 
     def model(self, values: FloatArray) -> ComplexArray:
         """Return the response of the fitted lines for all parameters of the objective, shape (channels, lines)."""
-        return self.structure.response(self.own(values), self.s, factors=self.factors)
+        return self.structure.response(self.structure_values(values), self.s, factors=self.factors)
 
     def with_floor(self, floor: float) -> "Experiment":
         """Return the experiment with a share of each value added to its covariance, as an independent deviation."""
@@ -170,7 +151,7 @@ class Experiment(Term):
         weights = self.weighting.matrices(self.response, covariance)
         return replace(self, covariance=covariance, weights=weights, elements=elements_of(weights))
 
-    def judged(self, values: FloatArray, number: int) -> tuple[FittedResponse, TermTest]:
+    def assessed(self, values: FloatArray, number: int) -> tuple[FittedResponse, TermTest]:
         """Return FitPercent, whitened residuals, and the squared distance of each line."""
         model = self.model(values)
         gap = self.data - np.concatenate([model.real, model.imag]).T

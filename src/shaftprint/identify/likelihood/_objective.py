@@ -103,9 +103,9 @@ class Objective:
         return sum(term.data_count for term in self.terms)
 
     @property
-    def cost_of_nothing(self) -> float:
+    def null_cost(self) -> float:
         """Half the square sum of the residuals of a model that gives zero."""
-        return sum(term.cost_of_nothing for term in self.terms)
+        return sum(term.null_cost for term in self.terms)
 
     def complete(self, theta: FloatArray) -> FloatArray:
         """Return all parameters, shape (..., parameters), from the free ones, shape (..., free)."""
@@ -118,7 +118,7 @@ class Objective:
         """Return every parameter of every structure by name, tied ones included, from values (..., parameters)."""
         found: dict[str, FloatArray] = {}
         for term in self.terms[::-1]:
-            found |= term.structure.named(term.own(values))
+            found |= term.structure.named(term.structure_values(values))
         return found
 
     def stable(self, values: FloatArray) -> BoolArray:

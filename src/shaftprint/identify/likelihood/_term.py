@@ -7,7 +7,7 @@ and whatever another room makes.
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
@@ -75,10 +75,9 @@ class TermTest:
     """Its parts."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Term(ABC):
     """One part of the likelihood: residuals whose half square sum is its negative logarithm, up to a constant."""
-
-    __slots__ = ()
 
     structure: Structure
     """The structure with its held and free parameters."""
@@ -118,18 +117,8 @@ class Term(ABC):
 
     @property
     @abstractmethod
-    def cost_of_nothing(self) -> float:
+    def null_cost(self) -> float:
         """Half the square sum of the residuals of a model that gives zero."""
-
-    @abstractmethod
-    def placed(self, names: Sequence[str], free: Sequence[str]) -> Self:
-        """Return the term as part of an objective.
-
-        Parameters
-        ----------
-        names, free
-            Names of all parameters and of the free parameters of the objective.
-        """
 
     @abstractmethod
     def with_floor(self, floor: float) -> Self:
@@ -171,7 +160,7 @@ class Term(ABC):
         """
 
     @abstractmethod
-    def judged(self, values: FloatArray, number: int) -> tuple[FittedTerm, TermTest]:
+    def assessed(self, values: FloatArray, number: int) -> tuple[FittedTerm, TermTest]:
         """Return how well the data are explained.
 
         Parameters
@@ -199,6 +188,20 @@ class Term(ABC):
             If the data cannot be drawn anew.
         """
 
+    def placed(self, names: Sequence[str], free: Sequence[str]) -> Self:
+        """Return the term as part of an objective.
+
+        Parameters
+        ----------
+        names, free
+            Names of all parameters and of the free parameters of the objective.
+        """
+        return replace(
+            self,
+            places=tuple(names.index(p.name) for p in self.structure.free),
+            columns=tuple(free.index(p.name) for p in self.structure.free),
+        )
+
     def complete(self, theta: FloatArray) -> FloatArray:
         """Return all parameters of the structure, shape (..., parameters), from its free ones, shape (..., free)."""
         values = np.empty((*theta.shape[:-1], self.held.size))
@@ -206,10 +209,40 @@ class Term(ABC):
         values[..., self.free] = theta
         return values
 
-    def own(self, values: FloatArray) -> FloatArray:
+    def structure_values(self, values: FloatArray) -> FloatArray:
         """Return the parameters of the structure, shape (..., parameters), from those of the objective."""
         return self.complete(values[..., self.places])
 
     def stable(self, values: FloatArray) -> BoolArray:
         """Return whether the model is stable, shape (rows,), for parameters of the objective (rows, parameters)."""
-        return stable_rows(self.structure, self.own(values))
+        return stable_rows(self.structure, self.structure_values(values))
+
+
+class WhitenedTerm(Term):
+    """Samples in time, divided by noise of a known colour; their rows are as few as they can be, ``1 + free``."""
+
+    __slots__ = ()
+
+    @property
+    def row_count(self) -> int:
+        """Number of rows of ``sensitivity``."""
+        return 1 + len(self.free)
+
+    @property
+    def is_likelihood(self) -> bool:
+        """Whether residuals are weighted by their noise: always."""
+        return True
+
+    @property
+    def least_deviation(self) -> float:
+        """Infinite: the noise of samples in time is never small in every one."""
+        return np.inf
+
+    def with_floor(self, floor: float) -> Self:
+        """Return the term itself."""
+        return self
+
+    def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
+        """Return the derivatives; noise and curvature of the model are independent, so both are the same."""
+        rows = self.table(theta[None, :])[0, 1:]
+        return rows, rows

@@ -9,14 +9,14 @@ from shaftprint.identify.search._settings import Settings, Stability
 from shaftprint.identify.search._spread import spread
 from shaftprint.identify.search._stability import stable_models
 from shaftprint.identify.search._stability_border import beside_border
-from shaftprint.identify.search._starts import Draw, Given, LatinHypercube, Uniform
+from shaftprint.identify.search._starts import Draw, GivenStarts, LatinHypercube, Uniform
 
 __all__ = [
     "LARGEST_DAMPING",
     "Conditional",
     "Descent",
     "Draw",
-    "Given",
+    "GivenStarts",
     "LatinHypercube",
     "Settings",
     "Stability",

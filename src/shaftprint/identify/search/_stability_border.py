@@ -73,7 +73,7 @@ class _Border:
             if structure.loop is None:
                 continue
             loop = replace(structure, outputs={"L": structure.loop}, input="u", inputs=("u",), combinations=())
-            distance = np.abs(1.0 + loop.response(experiment.own(values), 1j * SWEEP_RAD_S)[0])
+            distance = np.abs(1.0 + loop.response(experiment.structure_values(values), 1j * SWEEP_RAD_S)[0])
             place = int(np.argmin(distance))
             if distance[place] < least:
                 least, nearest = distance[place], cls(objective, number, loop, float(SWEEP_RAD_S[place]))
@@ -121,7 +121,7 @@ class _Border:
     def _gap(self, trial: FloatArray) -> tuple[complex, ComplexArray]:
         """Return ``1 + L`` and its derivatives to the free parameters and to the logarithm of the frequency."""
         experiment = self.objective.terms[self.number]
-        own = experiment.own(self.objective.complete(trial[:-1]))
+        own = experiment.structure_values(self.objective.complete(trial[:-1]))
         s = 1j * np.exp(trial[-1] + np.array([0.0, STEP, -STEP]))
         stacked = self.loop.stacked(own, s)[:, 0]
         slopes = np.zeros(trial.size, dtype=np.complex128)

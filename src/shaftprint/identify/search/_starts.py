@@ -32,6 +32,24 @@ class LatinHypercube(Draw):
         return lower + (cells + rng.random((count, lower.size))) / count * (upper - lower)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class GivenStarts(Draw):
+    """Starts that are given, from the first on again where more are asked for; or others behind them."""
+
+    values: FloatArray
+    """Start values, shape (starts, parameters)."""
+    others: Draw | None = None
+    """How further starts are drawn."""
+
+    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
+        """Return the given starts within the bounds, and what is missing of the count."""
+        first = np.clip(self.values, lower, upper)
+        missing = count - first.shape[0]
+        if self.others is None or missing <= 0:
+            return np.asarray(first[np.arange(count) % first.shape[0]])
+        return np.concatenate([first, self.others.starts(lower, upper, missing, rng)])
+
+
 @dataclass(frozen=True, slots=True)
 class Uniform(Draw):
     """Independent uniform draws: the thesis' random starts (section 5.1)."""
@@ -39,15 +57,3 @@ class Uniform(Draw):
     def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
         """Return independent uniform starts."""
         return lower + rng.random((count, lower.size)) * (upper - lower)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Given(Draw):
-    """Starts that are all given."""
-
-    values: FloatArray
-    """Free parameters, shape (starts, free)."""
-
-    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
-        """Return them within the bounds, from the first on again where more are asked for."""
-        return np.asarray(np.clip(self.values, lower, upper)[np.arange(count) % self.values.shape[0]])

@@ -99,7 +99,7 @@ def response_band(
     s = 2j * np.pi * frequency
     middle = spread.structure.response(spread.values, s)
     rows = identification.objective.complete(repeats.values)
-    drawn = spread.structure.response(identification.objective.terms[experiment].own(rows), s)
+    drawn = spread.structure.response(identification.objective.terms[experiment].structure_values(rows), s)
     magnitude = _middle_share(decibel(np.abs(drawn)) - decibel(np.abs(middle)), coverage)
     return _band(coverage, frequency, middle, magnitude, _middle_share(np.degrees(np.angle(drawn / middle)), coverage))
 
@@ -157,7 +157,7 @@ def step_band(
         lower, upper = value - half, value + half
     else:
         rows = identification.objective.complete(repeats.values)
-        own = identification.objective.terms[experiment].own(rows)
+        own = identification.objective.terms[experiment].structure_values(rows)
         lower, upper = _middle_share(np.stack([step_response(spread.structure, row, time)[0] for row in own]), coverage)
     return StepBand(
         coverage=coverage,

@@ -61,7 +61,7 @@ def spread_of(identification: Identification, experiment: int = 0) -> ParameterS
     own = list(one.columns)
     return ParameterSpread(
         structure=one.structure,
-        values=one.own(identification.values),
+        values=one.structure_values(identification.values),
         covariance=covariance[np.ix_(own, own)],
         unknown=information.unknown[own],
         scale=information.scale[own],

@@ -9,12 +9,12 @@ from shaftprint.arrays import BoolArray, FloatArray, frozen_float
 from shaftprint.catalogue import Symbol
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import fit_percent
-from shaftprint.identify.likelihood import FittedTerm, LineTest, Repeats, Term, TermCheck, TermTest
+from shaftprint.identify.likelihood import FittedTerm, LineTest, Repeats, TermCheck, TermTest, WhitenedTerm
 from shaftprint.limits._candidates import IDLE
 from shaftprint.limits.prediction._noise_colour import Innovations, innovations
 from shaftprint.limits.prediction._set_point import GovernorRecord
 from shaftprint.models import Structure
-from shaftprint.time_domain import ExactDelays, Record, simulated_on
+from shaftprint.time_domain import ExactDelays, Record, qr_reduced, simulated_on
 
 # Longest step of the simulation [s].
 LONGEST_STEP_S = 0.01
@@ -61,23 +61,13 @@ class PredictedTorque(FittedTerm):
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class PredictionError(Term):
+class PredictionError(WhitenedTerm):
     """A governor with some free limits, and the test that it is fitted to."""
 
-    structure: Structure
-    """The structure; what is not free has the values in ``held``."""
     whole: Structure
     """The same with everything free: one compiled simulation serves all limits."""
     record: GovernorRecord
     """The data."""
-    held: FloatArray
-    """Values of all parameters; the free ones are replaced, shape (parameters,)."""
-    free: tuple[int, ...]
-    """Places of the free parameters among the structure's."""
-    places: tuple[int, ...]
-    """Places of the same among all parameters of the objective."""
-    columns: tuple[int, ...]
-    """Places of the same among the free parameters of the objective."""
     scale: float = 1.0
     """Standard deviation of the innovations, by which they are divided."""
 
@@ -121,40 +111,13 @@ class PredictionError(Term):
         return int(np.count_nonzero(self.record.used))
 
     @property
-    def row_count(self) -> int:
-        """Number of rows of a sensitivity: they are made as short as they can be."""
-        return 1 + len(self.free)
-
-    @property
-    def is_likelihood(self) -> bool:
-        """Whether residuals are weighted by their noise: always."""
-        return True
-
-    @property
-    def least_deviation(self) -> float:
-        """Infinite: the noise of a torque is never small in every sample."""
-        return np.inf
-
-    @property
-    def cost_of_nothing(self) -> float:
+    def null_cost(self) -> float:
         """Half the square sum of the innovations of the measured torque itself."""
         return 0.5 * innovations(self._measured, self.record.used).squares / self.scale**2
 
     @property
     def _measured(self) -> FloatArray:
         return np.asarray(self.record.outputs[OUTPUT])
-
-    def placed(self, names: Sequence[str], free: Sequence[str]) -> "PredictionError":
-        """Return the term as part of an objective of these parameters."""
-        return replace(
-            self,
-            places=tuple(names.index(p.name) for p in self.structure.free),
-            columns=tuple(free.index(p.name) for p in self.structure.free),
-        )
-
-    def with_floor(self, floor: float) -> "PredictionError":
-        """Return the term itself."""
-        return self
 
     def with_scale_at(self, own: FloatArray) -> "PredictionError":
         """Return the term with the innovations of some parameters as its unit.
@@ -179,7 +142,7 @@ class PredictionError(Term):
         simulated = self._simulated(own, ())
         return np.full(self.record.samples, np.inf) if simulated is None else simulated[0]
 
-    def left(self, own: FloatArray) -> FloatArray:
+    def residuals(self, own: FloatArray) -> FloatArray:
         """Return what the prediction leaves of the measured torque over the load, shape (samples,)."""
         return np.asarray(self._measured - self.predicted(own))
 
@@ -192,29 +155,23 @@ class PredictionError(Term):
         return np.concatenate([found.values[None], found.filtered(-simulated[1:])]) / self.scale
 
     def table(self, theta: FloatArray, repeats: Repeats | None = None) -> FloatArray:
-        """Return turned innovations and derivatives, shape (starts, 1 + free, 1 + free)."""
+        """Return QR-reduced innovations and derivatives, shape (starts, 1 + free, 1 + free)."""
         found = np.zeros((theta.shape[0], self.row_count, self.row_count))
         for start, own in enumerate(self.complete(theta)):
             rows = self.rows(own)
             if rows is None:
                 found[start, 0, 0] = np.sqrt(2.0 * AWAY)
             else:
-                triangle: FloatArray = np.linalg.qr(rows.T, mode="r")  # type: ignore[assignment]
-                found[start] = triangle.T
+                found[start] = qr_reduced(rows)
         return found
 
     def evaluable(self, theta: FloatArray) -> BoolArray:
         """Return whether the simulation of each start stays within bounds, shape (starts,)."""
         return np.array([self._simulated(own, ()) is not None for own in self.complete(theta)])
 
-    def sensitivity(self, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
-        """Return the turned derivatives; information and variance of the slope are the same."""
-        rows = self.table(theta[None, :])[0, 1:]
-        return rows, rows
-
-    def judged(self, values: FloatArray, number: int) -> tuple[PredictedTorque, TermTest]:
+    def assessed(self, values: FloatArray, number: int) -> tuple[PredictedTorque, TermTest]:
         """Return FitPercent; whether the innovations are small has no meaning, for they are the unit."""
-        own = self.own(values)
+        own = self.structure_values(values)
         simulated, found = self._simulated(own, ()), self.innovations(own)
         if simulated is None or found is None:
             raise IdentificationError(

@@ -1,7 +1,7 @@
 """Lines with limits: from small signals and large in one likelihood to the levels of the limits."""
 
 from shaftprint.time_domain.nonlinear._covariance import with_scatter_of_blocks
-from shaftprint.time_domain.nonlinear._drive import Jump, jumps_in, sharpened, with_jumps
+from shaftprint.time_domain.nonlinear._drive import Jump, jumps_in, with_exact_jumps, with_jumps
 from shaftprint.time_domain.nonlinear._fit import NonlinearFit, identify_nonlinear
 from shaftprint.time_domain.nonlinear._jump_resonance import JumpStretch, jump_stretches, without_jumps
 from shaftprint.time_domain.nonlinear._limited_sines import limited_sines
@@ -25,8 +25,8 @@ __all__ = [
     "jumps_in",
     "limit_numbers",
     "limited_sines",
-    "sharpened",
     "structure_for",
+    "with_exact_jumps",
     "with_jumps",
     "with_scatter_of_blocks",
     "without_jumps",

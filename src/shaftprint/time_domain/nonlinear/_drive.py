@@ -34,7 +34,7 @@ NEAR_S = 0.5
 LEAST_JUMP = 1e-3
 
 
-def sharpened(record: Record, campaign: Campaign, *, rate_hz: float = DRIVE_RATE_HZ) -> Record:
+def with_exact_jumps(record: Record, campaign: Campaign, *, rate_hz: float = DRIVE_RATE_HZ) -> Record:
     """Return a record whose drive jumps where the campaign's staircases do, on a grid of about a rate.
 
     Parameters

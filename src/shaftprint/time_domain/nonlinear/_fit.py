@@ -22,7 +22,7 @@ from shaftprint.time_domain._record import Record
 from shaftprint.time_domain._signal_records import records_of
 from shaftprint.time_domain._simulator import ExactDelays
 from shaftprint.time_domain.nonlinear._covariance import with_scatter_of_blocks
-from shaftprint.time_domain.nonlinear._drive import sharpened
+from shaftprint.time_domain.nonlinear._drive import with_exact_jumps
 from shaftprint.time_domain.nonlinear._jump_resonance import JumpStretch, jump_stretches, without_jumps
 from shaftprint.time_domain.nonlinear._limited_sines import limited_sines
 from shaftprint.time_domain.nonlinear._numbers import LimitNumber, limit_numbers
@@ -190,7 +190,7 @@ class _Task:
 
     def _records(self, names: Sequence[str], rate_hz: float, drive_hz: float) -> list[Record]:
         found = records_of(self.signals, self.campaign, names, rate_hz=rate_hz, settled=True) if names else ()
-        return [sharpened(record, self.campaign, rate_hz=drive_hz) for record in found]
+        return [with_exact_jumps(record, self.campaign, rate_hz=drive_hz) for record in found]
 
     def _renewed(self, parts: Sequence[Part], values: Mapping[str, float]) -> list[Part]:
         """Return the parts, records with the noise that is left at some values, and without what noise decides."""

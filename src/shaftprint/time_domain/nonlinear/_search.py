@@ -9,7 +9,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.identify import Identification, LatinHypercube, Prior, Settings, identify_jointly
 from shaftprint.identify.likelihood import Term
-from shaftprint.identify.search import Draw, Given
+from shaftprint.identify.search import Draw, GivenStarts
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.time_domain.nonlinear._settings import NonlinearSettings
@@ -75,7 +75,9 @@ def from_these(
 ) -> Identification:
     """Return the fit from given starts, shape (starts, free)."""
     return identify_jointly(
-        parts, rng=rng, settings=_settings(settings, priors, Given(starts), (starts.shape[0], settings.max_iterations))
+        parts,
+        rng=rng,
+        settings=_settings(settings, priors, GivenStarts(starts), (starts.shape[0], settings.max_iterations)),
     )
 
 
