@@ -23,7 +23,7 @@ ReasonKind: TypeAlias = Literal[
     "not unique",
     "lines left out",
 ]
-"""What is in doubt. Which numbers hang on it says the table of the room ``identify``."""
+"""What is in doubt. Which numbers depend on it says the table of the room ``identify``."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

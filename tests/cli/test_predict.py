@@ -40,7 +40,7 @@ def test_with_g_alone_the_delay_in_the_loop_is_not_known(run):
     given = (*GIVEN, *(f"--value={name}={value}" for name, value in truth.items()), "--prior", "g=0+-0.1")
     alone = run("predict", *given)
     rows, with_tvc = table(alone), table(run("predict", *given, "--prior", "tau_up=1.016+-0.02"))
-    assert "g stays what was known beforehand, 0 +/- 0.1" in alone.output
+    assert "g stays at its prior, 0 +/- 0.1" in alone.output
     assert rows["t_d"][3].startswith("0.000* to ")
     assert float(rows["t_d"][2]) > 2.0 * float(with_tvc["t_d"][2])
     assert float(rows["K_p / K_i"][2]) == pytest.approx(float(with_tvc["K_p / K_i"][2]), rel=0.1)

@@ -15,7 +15,7 @@ def test_the_verdict_comes_first(run, demo):
     assert lines[2].startswith("  * Trusted: ")
     assert "k_q" in lines[2]
     assert lines[3].startswith("  * Not trusted: ")
-    assert "The loop has little to spare: a gain margin of 1." in shown
+    assert "The stability margins are small: a gain margin of 1." in shown
     assert "Verdict: trustworthy" in result.output
 
 

@@ -1,4 +1,4 @@
-"""By-number verdicts: what hangs on a reason, what stays usable, and which reason comes first."""
+"""By-number verdicts: what depends on a reason, what stays usable, and which reason comes first."""
 
 from dataclasses import replace
 from typing import get_args
@@ -9,7 +9,7 @@ import pytest
 from shaftprint.catalogue import ShipRole, structure
 from shaftprint.identify import Prior, Settings, assess, identify, profile
 from shaftprint.identify.fit import Estimate
-from shaftprint.identify.judgement import HANGING, by_weight, hangs_on
+from shaftprint.identify.judgement import AFFECTED, by_weight, depends_on
 from shaftprint.reasons import Reason, ReasonKind
 
 LINES_HZ = np.geomspace(0.0044, 3.4, 24)
@@ -39,7 +39,7 @@ def gauge(make_response):
 
 
 def test_every_kind_of_reason_has_its_row():
-    assert set(HANGING) == set(get_args(ReasonKind))
+    assert set(AFFECTED) == set(get_args(ReasonKind))
 
 
 @pytest.mark.slow
@@ -52,7 +52,7 @@ def test_what_does_not_hang_on_the_scale_of_the_gauge_stays_usable(gauge):
     verdict = assess(fitted(), reasons=(scale,))
     assert verdict.trustworthy
     assert {"k_q", "t_d + t_sp", "tau_dn"} <= set(verdict.trusted)
-    assert verdict.not_trusted["K_p / K_i"] == "it hangs on the scale of the torque gauge"
+    assert verdict.not_trusted["K_p / K_i"] == "it depends on the scale of the torque gauge"
     assert verdict.reasons == (scale,)
     assert verdict.reason == "Part of the numbers can be trusted. The scale is in doubt."
 
@@ -72,10 +72,10 @@ def test_the_weightiest_reason_comes_first():
     assert by_weight((small, large, small)) == (large, small)
 
 
-def test_an_unknown_number_hangs_on_everything():
+def test_an_unknown_number_depends_on_everything():
     """A number of an own structure is not in the table: nobody can say what it is made of."""
     own = Estimate(name="own", unit="-", value=1.0, std=0.1)
-    assert all(hangs_on(own, kind) for kind in HANGING if HANGING[kind][0])
+    assert all(depends_on(own, kind) for kind in AFFECTED if AFFECTED[kind][0])
 
 
 @pytest.mark.parametrize(
@@ -94,7 +94,7 @@ def test_an_unknown_number_hangs_on_everything():
 def test_a_wrong_scale_of_the_gauge_reaches_what_is_made_of_newton_metres(role, unit, in_doubt):
     """A gauge that shows everything 3 % too large: ratios of what it shows stay as they are."""
     number = Estimate(name="any name", unit=unit, value=1.0, std=0.1, role=role)
-    assert hangs_on(number, "gauge scale") == in_doubt
+    assert depends_on(number, "gauge scale") == in_doubt
 
 
 def test_a_prior_that_is_pulled_is_named(gauge):

@@ -60,7 +60,7 @@ def test_a_cause_that_is_not_of_first_order_has_no_size(data):
     found = suspects_of(cl4(changed(data, {"n": lambda s: np.exp(-0.1 * s)})))
     assert found[0].words == "the speed pick-up comes late"
     assert found[0].rough
-    assert found[0].sentence.endswith("% of the misfit would go if the speed pick-up comes late.")
+    assert found[0].sentence.endswith("% of the misfit would disappear if the speed pick-up comes late.")
 
 
 def test_a_late_set_point_is_the_first_suspect(data):

@@ -135,7 +135,9 @@ def test_a_wrong_structure_is_refused_with_where_it_fails_and_a_hint(draw):
     assert verdict.reason.startswith("The structure CL4 does not explain the data within their noise (chi-square ")
     assert "p < 1e-12); the misfit is largest" in verdict.reason
     assert verdict.suspects[0].words == "the speed pick-up comes late"
-    assert verdict.sentences[1].endswith("% of the misfit would go if the speed pick-up comes late (by about 0.03 s).")
+    assert verdict.sentences[1].endswith(
+        "% of the misfit would disappear if the speed pick-up comes late (by about 0.03 s)."
+    )
     assert verdict.trusted == ()
 
 
@@ -216,7 +218,7 @@ def test_a_small_margin_is_a_caution(draw):
     verdict = assess(fitted(draw(LITTLE)))
     assert verdict.trustworthy
     assert verdict.loop == "small"
-    assert verdict.cautions == ("The loop has little to spare: a gain margin of 1.60, where 2 is the least.",)
+    assert verdict.cautions == ("The stability margins are small: a gain margin of 1.60, where 2 is the least.",)
     assert verdict.reason.endswith("the loop is stable with small margins.")
     strict = Requirements(gain_margin=1.2, phase_margin_deg=80.0, delay_margin_share=5.0)
     caution = assess(fitted(draw(LITTLE)), requirements=strict).cautions[0]
@@ -272,7 +274,7 @@ def test_a_fit_that_is_too_good_says_that_the_noise_is_overrated(draw, make_resp
     response = make_response("CL4", AMPLE, noise=0.01, **DENSE)
     verdict = assess(fitted(response))
     assert verdict.trustworthy
-    assert any(s.startswith("The fit is better than the noise lets one expect (p = 1)") for s in verdict.cautions)
+    assert any(s.startswith("The fit is better than the noise allows (p = 1)") for s in verdict.cautions)
 
 
 def test_a_joint_fit_has_one_verdict(draw):

@@ -58,7 +58,7 @@ def test_words_say_who_was_behind_and_how_well_that_is_known():
     assert "at 430 s and ran 30.0 ± 2.0 ppm slow. The 2 minutes that were compared scatter 1.05" in words
     assert "known worse than to 1.6 ms" in words
     assert words.endswith(
-        "The result does not hang on it: it moves none of set point, speed and torque against the others."
+        "The result does not depend on it: it moves none of set point, speed and torque against the others."
     )
     words = clock_sentences(ENGINE, NONE)
     assert words.startswith("X was logged by engine.nc")

@@ -125,7 +125,7 @@ def test_seven_of_sixteen_numbers_are_worth_a_look(fingerprint):
 def test_there_is_no_room_to_spare_where_the_scale_of_the_gauge_is_in_doubt(fingerprint):
     """Times 2 in the vessel file: the gain margin 1.6 becomes 2.04, and must not be called fine."""
     scale = Reason(kind="gauge scale", sentence="The scale of the torque gauge is in doubt.", where="M_s")
-    doubt = "it hangs on the scale of the torque gauge"
+    doubt = "it depends on the scale of the torque gauge"
     found = with_verdict(
         fingerprint, trustworthy=True, loop="ample", not_trusted={"gain margin": doubt, "I_dn": doubt}, reasons=(scale,)
     )
@@ -133,4 +133,4 @@ def test_there_is_no_room_to_spare_where_the_scale_of_the_gauge_is_in_doubt(fing
     assert told[USABLE].state == "look"
     assert "The scale of the torque gauge is in doubt." in told[USABLE].sentence
     assert told[HUNTING].state == told[INERTIA].state == "open"
-    assert told[HUNTING].sentence.startswith("It cannot be told: it hangs on the scale of the torque gauge.")
+    assert told[HUNTING].sentence.startswith("It cannot be told: it depends on the scale of the torque gauge.")

@@ -17,7 +17,7 @@ from each other):
 =============== ======================================================================================================
 folder          what happens there
 =============== ======================================================================================================
-``likelihood``  what a fit minimises: terms, weights, tails, earlier knowledge
+``likelihood``  what a fit minimises: terms, weights, tails, priors
 ``search``      how the lowest cost is found: settings, starts, descent within bounds
 ``fit``         the verb and what it found: values, covariance, test of fit, other optima, scans
 ``uncertainty`` how far a number can be trusted: profile intervals, repeats, bands, the budget

@@ -105,7 +105,7 @@ def state_estimates(
     slopes, covariance
         Whitened derivatives to the free parameters, shape (free, length), and the covariance of these, shape (free,
         free); the parameters are taken to be known where they are not given. One of infinite variance leaves the states
-        that hang on it unknown.
+        that depend on it unknown.
     """
     beside = without(effects, drifts)
     known = PseudoInverse.of(beside)

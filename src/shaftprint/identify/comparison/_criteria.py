@@ -11,7 +11,7 @@ FPE         V (N + k) / (N - k) with V the mean squared residual (Akaike, Fittin
             1969): what V would be on new data
 =========== ===========================================================================================================
 
-N counts two data for a complex value. A parameter known beforehand counts in k as far as the data had to find it:
+N counts two data for a complex value. A parameter with a prior counts in k as far as the data had to find it:
 ``k = free - trace(A_known A^-1)`` with ``A_known`` the part of the information ``A`` that the priors give.
 """
 

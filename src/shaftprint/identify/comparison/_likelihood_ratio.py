@@ -100,7 +100,7 @@ def _no_law(small: Identification, large: Identification, nested: Nesting) -> st
     own = {p.name for p in small.structure.free}
     known = [name for name in large.settings.priors if name not in own]
     if known:
-        return f"something is known beforehand of {', '.join(known)}"
+        return f"there is a prior for {', '.join(known)}"
     if len(nested.at_bound) > 1 or own & set(nested.at_bound):
         return f"{', '.join(nested.at_bound)} stand at a bound in {small.structure.name}"
     return ""
@@ -109,7 +109,7 @@ def _no_law(small: Identification, large: Identification, nested: Nesting) -> st
 def _at_most(large: Identification, nested: Nesting, statistic: float) -> float:
     """Return an upper bound of the p-value; 1 where none is known.
 
-    A chi-square with a degree of freedom more for every bound exceeds the statistic, and what is known beforehand only
+    A chi-square with a degree of freedom more for every bound exceeds the statistic, and a prior only
     holds it down. Where a parameter is meaningless the statistic is the largest of as many as it has values that make a
     difference; no response has a thousand of them.
     """

@@ -1,6 +1,6 @@
 """May the numbers of a fit be used, which of them, and why not: the verdict and the sentences that give its reasons."""
 
-from shaftprint.identify.judgement._affected_numbers import HANGING, by_weight, hangs_on
+from shaftprint.identify.judgement._affected_numbers import AFFECTED, by_weight, depends_on
 from shaftprint.identify.judgement._misfit import explained, misfit_words, worst_lines
 from shaftprint.identify.judgement._number_precision import doubts_of
 from shaftprint.identify.judgement._phrases import listed, number, probability, spans
@@ -10,16 +10,16 @@ from shaftprint.identify.judgement._suspects import Suspect, suspects_of
 from shaftprint.identify.judgement._verdict import Verdict, assess
 
 __all__ = [
-    "HANGING",
+    "AFFECTED",
     "Requirements",
     "SearchReport",
     "Suspect",
     "Verdict",
     "assess",
     "by_weight",
+    "depends_on",
     "doubts_of",
     "explained",
-    "hangs_on",
     "listed",
     "misfit_words",
     "number",

@@ -1,4 +1,4 @@
-"""Which numbers hang on which reason: the one table, by what a number is made of.
+"""Which numbers depend on which reason: the one table, by what a number is made of.
 
 A gauge that shows everything by a factor too large leaves the normalised torque as it is, but not the inertia upstream:
 that is known in kg m2 and divided by the torque that the gauge shows. All that is told apart with its help (gains,
@@ -17,20 +17,20 @@ ALL: frozenset[Basis] = frozenset(get_args(Basis))
 
 WHOLE = "the fit as a whole is not trustworthy"
 
-HANGING: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
-    "recording clock": (ALL, "it hangs on the clock of the recording"),
-    "channel clock": (ALL, "it hangs on clocks of the channels that run alike"),
-    "clipping": (ALL - {"speed"}, "it hangs on a torque that is cut off"),
+AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
+    "recording clock": (ALL, "it depends on the clock of the recording"),
+    "channel clock": (ALL, "it depends on the clocks of the channels running alike"),
+    "clipping": (ALL - {"speed"}, "it depends on a torque that is clipped"),
     "gauge steadiness": (
         ALL - {"speed", "set point", "delay"},
-        "it hangs on a torque gauge and a load that stay the same during the test",
+        "it depends on a torque gauge and a load that stay the same during the test",
     ),
-    "gauge scale": (frozenset(("torque", "governor")), "it hangs on the scale of the torque gauge"),
-    "set-point shape": (ALL - {"speed"}, "it hangs on a set point that was not recorded as it was"),
-    "set-point scale": (ALL - {"speed"}, "it hangs on the scale of the set point"),
-    "gauge latency": (ALL - {"speed", "set point"}, "it hangs on the latency of the torque gauge"),
-    "prior": (ALL - {"speed", "set point"}, "it hangs on what was known before the test, which the data contradict"),
-    "gear ratio": (frozenset(("torque", "governor")), "it hangs on the gear ratio"),
+    "gauge scale": (frozenset(("torque", "governor")), "it depends on the scale of the torque gauge"),
+    "set-point shape": (ALL - {"speed"}, "it depends on a set point that was not recorded as it was"),
+    "set-point scale": (ALL - {"speed"}, "it depends on the scale of the set point"),
+    "gauge latency": (ALL - {"speed", "set point"}, "it depends on the latency of the torque gauge"),
+    "prior": (ALL - {"speed", "set point"}, "it depends on a prior that the data contradict"),
+    "gear ratio": (frozenset(("torque", "governor")), "it depends on the gear ratio"),
     "too few data": (ALL, WHOLE),
     "gap": (ALL, WHOLE),
     "misfit": (ALL, WHOLE),
@@ -40,9 +40,9 @@ HANGING: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
     "unstable": (ALL, WHOLE),
     "not unique": (ALL, WHOLE),
 }
-"""For each kind of reason, the most important first: what hangs on it, and why, as a clause."""
+"""For each kind of reason, the most important first: what depends on it, and why, as a clause."""
 
-WEIGHT = {kind: place for place, kind in enumerate(HANGING)}
+WEIGHT = {kind: place for place, kind in enumerate(AFFECTED)}
 
 
 def by_weight(reasons: Sequence[Reason]) -> tuple[Reason, ...]:
@@ -59,12 +59,12 @@ def basis_of(number: Estimate) -> frozenset[Basis]:
     return number.role.basis | {"torque"} if in_newton_metres else number.role.basis
 
 
-def hangs_on(number: Estimate, kind: ReasonKind) -> bool:
-    """Return whether a number hangs on what a reason of some kind calls in question."""
-    affected, _ = HANGING[kind]
+def depends_on(number: Estimate, kind: ReasonKind) -> bool:
+    """Return whether a number depends on what a reason of some kind calls in question."""
+    affected, _ = AFFECTED[kind]
     return bool(basis_of(number) & affected)
 
 
 def clause_of(number: Estimate, reasons: Sequence[Reason]) -> str:
-    """Return why a number may not be trusted, by the first of the reasons that it hangs on; empty where by none."""
-    return next((HANGING[reason.kind][1] for reason in reasons if hangs_on(number, reason.kind)), "")
+    """Return why a number may not be trusted, by the first of the reasons that it depends on; empty where by none."""
+    return next((AFFECTED[reason.kind][1] for reason in reasons if depends_on(number, reason.kind)), "")

@@ -37,8 +37,8 @@ def _small_margins(evidence: Evidence) -> list[str]:
     if degrees < needs.phase_margin_deg:
         small.append(f"a phase margin of {degrees:.0f} deg, where {needs.phase_margin_deg:g} is the least")
     if margins.delay_margin_s < needs.delay_margin_share * delay:
-        small.append(f"a delay margin of {margins.delay_margin_s:.2g} s beside a delay of {delay:.2g} s in the loop")
-    return [f"The loop has little to spare: {listed(small)}."]
+        small.append(f"a delay margin of {margins.delay_margin_s:.2g} s for a delay of {delay:.2g} s in the loop")
+    return [f"The stability margins are small: {listed(small)}."]
 
 
 def _perhaps_unstable(evidence: Evidence) -> list[str]:
@@ -71,7 +71,7 @@ def _too_good(evidence: Evidence) -> list[str]:
     if p_value is None or p_value <= TOO_GOOD or math.isinf(evidence.identification.chi_square):
         return []
     return [
-        f"The fit is better than the noise lets one expect ({probability(p_value)}): the covariance of the data is too "
+        f"The fit is better than the noise allows ({probability(p_value)}): the covariance of the data is too "
         "large, and so are the standard deviations."
     ]
 

@@ -27,7 +27,7 @@ KINDS: dict[Role | None, ReasonKind] = {
 
 
 def contradicted_priors(identification: Identification) -> tuple[Reason, ...]:
-    """Return a reason for each parameter that the data pull from what was known of it by more than 3.5 deviations."""
+    """Return a reason for each parameter that the data pull from what was assumed of it by more than 3.5 deviations."""
     return tuple(_pulled(identification))
 
 
@@ -38,24 +38,26 @@ def _pulled(identification: Identification) -> Iterator[Reason]:
         if estimate.name in priors:
             prior = priors[estimate.name]
             spread = np.sqrt(max(prior.std**2 - estimate.std**2, (LEAST_SHARE * prior.std) ** 2))
-            known = f"{number(prior.mean, estimate.unit)} +/- {number(prior.std, estimate.unit, digits=2)}"
+            assumed = (
+                f"the prior is {number(prior.mean, estimate.unit)} +/- {number(prior.std, estimate.unit, digits=2)}"
+            )
             distance = abs(estimate.value - prior.mean) / spread
         elif estimate.role in NOMINAL and estimate.std > 0.0:
-            known = number(NOMINAL[estimate.role], estimate.unit)
+            assumed = f"the nominal value is {number(NOMINAL[estimate.role], estimate.unit)}"
             distance = abs(estimate.value - NOMINAL[estimate.role]) / estimate.std
         else:
             continue
         if distance > PULLED:
-            yield _reason(estimate, meanings[estimate.name], known, float(distance))
+            yield _reason(estimate, meanings[estimate.name], assumed, float(distance))
 
 
-def _reason(estimate: Estimate, meaning: str, known: str, distance: float) -> Reason:
+def _reason(estimate: Estimate, meaning: str, assumed: str, distance: float) -> Reason:
     return Reason(
         kind=KINDS.get(estimate.role, "prior"),
         where=estimate.name,
         sentence=(
-            f"The data contradict what was known of {estimate.name} ({meaning}): {known} was expected, "
-            f"{number(estimate.value, estimate.unit)} +/- {number(estimate.std, estimate.unit, digits=2)} is the "
-            f"compromise, {distance:.1f} standard deviations away; check it in the vessel file, and what else moves it."
+            f"The data contradict what is assumed of {estimate.name} ({meaning}): {assumed}, the estimate is "
+            f"{number(estimate.value, estimate.unit)} +/- {number(estimate.std, estimate.unit, digits=2)}, "
+            f"{distance:.1f} standard deviations away; check the vessel file, and what else moves the estimate."
         ),
     )

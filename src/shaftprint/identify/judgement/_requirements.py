@@ -38,7 +38,7 @@ class Requirements:
     """A number is trusted where its standard deviation is at most this share of its value, or of the width between its
     bounds where it may have either sign."""
     largest_prior_share: float = 0.7
-    """A number with a larger share of the standard deviation that it had before the test is assumed, not found: at 0.7
+    """A number with a larger share of the standard deviation that it had before the test is mostly its prior: at 0.7
     half of what is known of it, counted in reciprocal variances, is from before."""
 
     def __post_init__(self) -> None:

@@ -51,7 +51,7 @@ class Suspect:
         """The suspicion in words, with its size where that can be told."""
         share = 100.0 * min(self.share, 1.0)
         size = "" if self.rough else f" (by about {number(self.estimate, self.unit, digits=2)})"
-        return f"A hint: {share:.0f} % of the misfit would go if {self.words}{size}."
+        return f"A hint: {share:.0f} % of the misfit would disappear if {self.words}{size}."
 
 
 def suspects_of(identification: Identification, *, rejected: float = REJECTED) -> tuple[Suspect, ...]:

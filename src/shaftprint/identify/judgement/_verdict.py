@@ -9,7 +9,7 @@ contradicts of the vessel file, and what it asks of the fit itself, where the fi
 3. Is no unstable model better, and is the optimum the only one?
 4. Is the identified loop stable?
 
-A number is trusted where it hangs on none of the reasons and is itself known well enough. What is yes but close is a
+A number is trusted where it depends on none of the reasons and is itself known well enough. What is yes but close is a
 caution, such as a small margin.
 """
 

@@ -1,4 +1,4 @@
-"""What a fit minimises: lines, records and earlier knowledge as terms of one likelihood, with their weights."""
+"""What a fit minimises: lines, records and priors as terms of one likelihood, with their weights."""
 
 from shaftprint.identify.likelihood._build_objective import Source, build_joint_objective, build_objective
 from shaftprint.identify.likelihood._experiment import Experiment, ResponseRepeats

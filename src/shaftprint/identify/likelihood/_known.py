@@ -139,4 +139,4 @@ PRIORS: Mapping[Role, Callable[[_Test], Prior | None]] = {
     ShipRole.SET_POINT_LATENCY: _Test.set_point_latency,
     ShipRole.RACK_LATENCY: _Test.rack_latency,
 }
-"""What a vessel file knows beforehand, by role."""
+"""Priors of a vessel file, by role."""

@@ -1,4 +1,4 @@
-"""What a fit minimises: weighted residuals of all terms, and rows for what is known beforehand.
+"""What a fit minimises: weighted residuals of all terms, and rows for priors.
 
 The cost is half the sum of squares of all residuals. For maximum likelihood it is the negative log-likelihood, up to a
 constant, of all terms together, frequency responses and records in time: they are independent of each other, and

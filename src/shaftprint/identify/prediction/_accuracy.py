@@ -44,7 +44,7 @@ class Accuracy:
     groups: tuple[Group, ...]
     """Parameters that the test cannot separate, the worst first."""
     priors: Mapping[str, Prior]
-    """What was taken as known beforehand, by name of the parameter."""
+    """Priors, by name of the parameter."""
 
     @property
     def correlation(self) -> FloatArray:
@@ -97,7 +97,7 @@ class Accuracy:
     def _nothing_new(self) -> list[str]:
         std = {e.name: e.std for e in self.parameters}
         return [
-            f"{name} stays what was known beforehand, {prior.mean:g} +/- {prior.std:g}: the test says little about it."
+            f"{name} stays at its prior, {prior.mean:g} +/- {prior.std:g}: the test says little about it."
             for name, prior in self.priors.items()
             if std[name] > NOTHING_NEW * prior.std
         ]
@@ -142,7 +142,7 @@ def predict_accuracy(
     values
         Assumed parameter values by name; the structure's own where not given.
     priors
-        What is known of free parameters beforehand, by name.
+        Priors of free parameters by name.
     combinations
         Combinations to report besides those of the structure.
     lines

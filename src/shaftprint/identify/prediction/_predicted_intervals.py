@@ -47,7 +47,7 @@ def predict_intervals(
     values
         Assumed parameter values by name; the structure's own where not given.
     priors
-        What is known of free parameters beforehand, by name.
+        Priors of free parameters by name.
 
     Raises
     ------

@@ -18,7 +18,7 @@ class Settings:
     weighting: Weighting = field(default_factory=MaximumLikelihood)
     """How lines and outputs are weighed."""
     priors: Mapping[str, Prior] = field(default_factory=dict)
-    """What is known of parameters beforehand; it counts in the uncertainty."""
+    """Priors of parameters; they count in the uncertainty."""
     regularisation: Mapping[str, Prior] = field(default_factory=dict)
     """A pull towards values that is not knowledge: it does not count in the uncertainty."""
     starts: int = 50

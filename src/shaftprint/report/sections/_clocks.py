@@ -46,7 +46,7 @@ def _rest(found: "Alignment") -> str:
 
 def _influence(found: "ClockInfluence") -> str:
     if not found.moved:
-        return "The result does not hang on it: it moves none of set point, speed and torque against the others."
+        return "The result does not depend on it: it moves none of set point, speed and torque against the others."
     outputs, degrees = _listed(found.moved), math.degrees(found.phase_rad)
     words = (
         f"An error of that size turns the phase of {outputs} over the set point by {rounded(degrees, 2)}° at "

@@ -6,7 +6,7 @@ from shaftprint.report.sections._sections import Inputs, Picture, Section
 from shaftprint.tables import budget_table
 
 OPENING = (
-    "Every estimate hangs on the noise of the measured lines and on what was known beforehand: the torsional vibration "
+    "Every estimate depends on the noise of the measured lines and on its prior: the torsional vibration "
     "calculation (TVC), the accuracy of the torque gauge, the latency of its telemetry, and the slope g of the engine. "
     "More lines or longer ones lower the share of the noise only."
 )

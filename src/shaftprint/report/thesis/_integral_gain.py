@@ -148,7 +148,7 @@ def integral_gain_words(gain: IntegralGain) -> str:
         f"alike: the gauge-aware structure finds {with_deviation(gain.gauge_aware, gain.gauge_aware_std)}. The set "
         f"point reaches the governor {set_point_ms} ms late and the pick-up shows the speed {pick_up_ms} ms late. Both "
         "delays lie outside the loop and add to the error that is measured: "
-        f"k_q / ((k_q - g) / (v K_i) + t_sp + t_pickup) = {rounded(gain.seen, 3)} is to be seen. FitPercent hangs on "
+        f"k_q / ((k_q - g) / (v K_i) + t_sp + t_pickup) = {rounded(gain.seen, 3)} is to be seen. FitPercent depends on "
         f"the set point: at {gain.slowest_line} the error is {plain(PERCENT * gain.slowest_error, 1)} % of it. With "
         f"the set point off by {plain(PERCENT * gain.off_share, 2)} % the same fits reach {_range(off_percent, 3)} % "
         f"instead of {_range(percent, 3)} %, with K_i of {_range(off, 3)}: that four values are alike does not prove "

@@ -84,7 +84,7 @@ def identify_nonlinear(
     linear
         Fit of GAUGE-CLOSED to the sines, to start from; made if not given.
     priors
-        What is known beforehand; by default what the vessel file knows.
+        Priors; by default those of the vessel file.
     settings
         How to search.
 

@@ -17,7 +17,7 @@ class NonlinearSettings:
     """
 
     starts: int = 50
-    """Number of starts; the first is what is known beforehand."""
+    """Number of starts; the first is the linear fit with what is known of the limits."""
     first_iterations: int = 4
     """Limit of iterations of each of them."""
     better: int = 12
