@@ -61,9 +61,11 @@ def compare_structures(
     expect_comparable(structures)
     fits: list[Identification] = []
     failed: dict[str, str] = {}
-    for structure, own in zip(structures, rng.spawn(len(structures)), strict=True):
+    for structure, generator in zip(structures, rng.spawn(len(structures)), strict=True):
         try:
-            fits.append(identify(structure, response, rng=own, settings=_settings_of(structure, settings), lines=lines))
+            fits.append(
+                identify(structure, response, rng=generator, settings=_settings_of(structure, settings), lines=lines)
+            )
         except IdentificationError as reason:
             failed[structure.name] = str(reason)
     if not fits:
@@ -102,9 +104,9 @@ def compare_fits(
         Candidate(
             identification=fit,
             criteria=criteria_of(fit),
-            hold_out=_hold_out(fit, folds, own) if folds else None,
+            hold_out=_hold_out(fit, folds, hold_out) if folds else None,
         )
-        for fit, own in zip(fits, left_out, strict=True)
+        for fit, hold_out in zip(fits, left_out, strict=True)
     ]
     candidates.sort(key=lambda candidate: candidate.criteria.bic)
     reasons = dict(failed or {})
@@ -193,10 +195,10 @@ def _hold_out(fit: Identification, folds: int, rng: np.random.Generator) -> Hold
 def _ratios(fits: Sequence[Identification], rng: np.random.Generator, draws: int) -> tuple[LikelihoodRatio, ...]:
     """Return the tests of all pairs of which one holds the other, the smaller structures first."""
     ordered = sorted(fits, key=lambda fit: len(fit.parameters))
-    found = []
+    ratios = []
     for i, small in enumerate(ordered):
         for large in ordered[i + 1 :]:
             nested = nesting(small, large, rng=rng)
             if nested is not None:
-                found.append(likelihood_ratio(small, large, nested, rng=rng, draws=draws))
-    return tuple(found)
+                ratios.append(likelihood_ratio(small, large, nested, rng=rng, draws=draws))
+    return tuple(ratios)

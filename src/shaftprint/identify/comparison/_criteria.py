@@ -46,8 +46,8 @@ class Criteria:
     @property
     def aicc(self) -> float:
         """Akaike's criterion for few data."""
-        k, left = self.parameters, self.data - self.parameters - 1.0
-        return self.aic + 2.0 * k * (k + 1.0) / left if left > 0.0 else float(np.nan)
+        k, spare = self.parameters, self.data - self.parameters - 1.0
+        return self.aic + 2.0 * k * (k + 1.0) / spare if spare > 0.0 else float(np.nan)
 
     @property
     def bic(self) -> float:
@@ -83,11 +83,11 @@ def _parameters(identification: Identification) -> float:
     if rows == 0:
         return float(theta.size)
     _, slopes = objective.residuals(theta[None, :])
-    known = slopes[0, :, -rows:]
+    prior_slopes = slopes[0, :, -rows:]
     information = slopes[0] @ slopes[0].T
     scale = np.sqrt(np.diag(information))
     scale[scale == 0.0] = 1.0
     values, vectors = np.linalg.eigh(information / np.outer(scale, scale))
     kept = values > RANK_TOLERANCE * values[-1]
-    inner = (vectors[:, kept] / np.sqrt(values[kept])).T @ (known / scale[:, None])
+    inner = (vectors[:, kept] / np.sqrt(values[kept])).T @ (prior_slopes / scale[:, None])
     return theta.size - float(np.sum(inner**2))

@@ -52,24 +52,24 @@ def hold_out(identification: Identification, *, folds: int, rng: np.random.Gener
     count = min(folds, len(names))
     square = expected = 0.0
     for fold in range(count):
-        left = names[fold::count]
-        rest = [name for name in names if name not in left]
-        error, spread = _of_fold(identification, rest, left, rng)
+        held_out = names[fold::count]
+        kept = [name for name in names if name not in held_out]
+        error, spread = _of_fold(identification, kept, held_out, rng)
         square, expected = square + error, expected + spread
     data = identification.data_count
     return HoldOut(square=square / data, expected=1.0 + expected / data, folds=count)
 
 
 def _of_fold(
-    identification: Identification, rest: list[str], left: list[str], rng: np.random.Generator
+    identification: Identification, kept: list[str], held_out: list[str], rng: np.random.Generator
 ) -> tuple[float, float]:
     """Return the squared error of some lines, and the part of it that the fit's uncertainty is expected to add."""
     structure, response = identification.structure, identification.response
     try:
-        fit = identify(structure, response, rng=rng, settings=identification.settings, lines=rest)
+        fit = identify(structure, response, rng=rng, settings=identification.settings, lines=kept)
     except IdentificationError as reason:
-        raise IdentificationError(f"structure {structure.name} without {', '.join(left)}: {reason}") from None
-    part = response.of_lines(*left)
+        raise IdentificationError(f"structure {structure.name} without {', '.join(held_out)}: {reason}") from None
+    part = response.of_lines(*held_out)
     model, slopes = fit.structure.gradient(fit.values, 1j * part.omega_rad_s, factors=load_factors(fit.structure, part))
     root = np.asarray(np.linalg.cholesky(part.covariance), dtype=np.float64)
     error = _whitened(root, channels_of(part) - model)

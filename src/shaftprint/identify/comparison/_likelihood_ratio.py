@@ -97,11 +97,11 @@ def _no_law(small: Identification, large: Identification, nested: Nesting) -> st
         return f"{', '.join(nested.meaningless)} means nothing in {small.structure.name}"
     if nested.extra == 0:
         return "the data find no parameter more"
-    own = {p.name for p in small.structure.free}
-    known = [name for name in large.settings.priors if name not in own]
-    if known:
-        return f"there is a prior for {', '.join(known)}"
-    if len(nested.at_bound) > 1 or own & set(nested.at_bound):
+    small_names = {p.name for p in small.structure.free}
+    with_prior = [name for name in large.settings.priors if name not in small_names]
+    if with_prior:
+        return f"there is a prior for {', '.join(with_prior)}"
+    if len(nested.at_bound) > 1 or small_names & set(nested.at_bound):
         return f"{', '.join(nested.at_bound)} stand at a bound in {small.structure.name}"
     return ""
 
@@ -115,8 +115,8 @@ def _at_most(large: Identification, nested: Nesting, statistic: float) -> float:
     """
     if not isinstance(large.settings.weighting, MaximumLikelihood):
         return 1.0
-    known = sum(1 for name in large.settings.priors if name in {p.name for p in large.objective.free_parameters})
-    freedom = nested.extra + len(nested.at_bound) + len(nested.meaningless) + known
+    priors = sum(1 for name in large.settings.priors if name in {p.name for p in large.objective.free_parameters})
+    freedom = nested.extra + len(nested.at_bound) + len(nested.meaningless) + priors
     if freedom == 0:
         return 1.0
     tail = chi_square_tail(statistic, freedom)
@@ -137,14 +137,14 @@ def _drawn(
     luck = rng.standard_normal((draws, len(small.objective.parameters) + len(large.objective.parameters)))
     names = list(dict.fromkeys((*small.objective.names, *large.objective.names)))
     noise = {name: luck[:, i] for i, name in enumerate(names)}
-    own = small.values[list(small.objective.free)]
+    theta = small.values[list(small.objective.free)]
     few = refit(
         small,
         responses,
-        prior_means=_prior_means(small, own, noise, own=set(noise)),
+        prior_means=_prior_means(small, theta, noise, small_names=set(noise)),
         covariances=covariances if estimated else None,
     ).cost
-    means = _prior_means(large, nested.values, noise, own=set(small.objective.names))
+    means = _prior_means(large, nested.values, noise, small_names=set(small.objective.names))
     starts = _starts(large, nested)
     many = refit(
         large,
@@ -157,15 +157,17 @@ def _drawn(
     return np.maximum(_deviance(small, few) - _deviance(large, lowest), 0.0)
 
 
-def _prior_means(fit: Identification, theta: FloatArray, noise: dict[str, FloatArray], own: set[str]) -> FloatArray:
+def _prior_means(
+    fit: Identification, theta: FloatArray, noise: dict[str, FloatArray], small_names: set[str]
+) -> FloatArray:
     """Return prior means drawn about the values of the smaller structure, where it has the parameter."""
     objective = fit.objective
     draws = next(iter(noise.values())).size
     means = np.tile(objective.prior_rows[:, 1], (draws, 1))
-    for row, (place, _, weight) in enumerate(objective.prior_rows):
-        name = objective.free_parameters[int(place)].name
-        if objective.prior_counts[row] and name in own:
-            means[:, row] = theta[int(place)] + noise[name] / weight
+    for row, (column, _, weight) in enumerate(objective.prior_rows):
+        name = objective.free_parameters[int(column)].name
+        if objective.prior_counts[row] and name in small_names:
+            means[:, row] = theta[int(column)] + noise[name] / weight
     return means
 
 
@@ -175,16 +177,16 @@ def _starts(large: Identification, nested: Nesting) -> FloatArray:
     Shape (places, free).
     """
     objective = large.objective
-    own = large.values[list(objective.free)]
+    optimum = large.values[list(objective.free)]
     lower, upper = objective.lower, objective.upper
     names = [p.name for p in objective.free_parameters]
     loose = [names.index(name) for name in nested.meaningless]
     held = [names.index(name) for name in nested.at_bound]
-    found = np.stack([own, nested.values])
+    starts = np.stack([optimum, nested.values])
     if not loose and not held:
-        return found
+        return starts
     places = np.tile(nested.values, (PLACES, 1))
     places[:, loose] = spread(PLACES, lower, upper)[:, loose]
     inside = OFF_BOUND * (upper - lower)
     places[:, held] = np.clip(places, lower + inside, upper - inside)[:, held]
-    return np.concatenate([found, places])
+    return np.concatenate([starts, places])

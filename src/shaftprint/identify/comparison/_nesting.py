@@ -69,20 +69,22 @@ def nesting(small: Identification, large: Identification, *, rng: np.random.Gene
     """
     if len(small.parameters) >= len(large.parameters):
         return None
-    found = _imitation(small, large, small.values, rng)
-    if found is None or any(_imitation(small, large, beside, rng) is None for beside in _places_beside(small)):
+    imitation = _imitation(small, large, small.values, rng)
+    if imitation is None or any(
+        _imitation(small, large, neighbour, rng) is None for neighbour in _places_beside(small)
+    ):
         return None
     objective = large.objective
     parameters = objective.free_parameters
-    at_bound = np.minimum(found - objective.lower, objective.upper - found) < AT_BOUND * (
+    at_bound = np.minimum(imitation - objective.lower, objective.upper - imitation) < AT_BOUND * (
         objective.upper - objective.lower
     )
-    own = large.values[list(objective.free)]
-    lost = _lost(objective, found, own)
+    optimum = large.values[list(objective.free)]
+    lost = _lost(objective, imitation, optimum)
     # at a special place, such as a bound, fewer parameters have influence than elsewhere
-    rank = max(_rank(objective, own), _rank(objective, found))
+    rank = max(_rank(objective, optimum), _rank(objective, imitation))
     return Nesting(
-        values=frozen_float(found),
+        values=frozen_float(imitation),
         extra=max(rank - _rank(small.objective, small.values[list(small.objective.free)]), 0),
         at_bound=tuple(p.name for p, there in zip(parameters, at_bound, strict=True) if there),
         meaningless=tuple(p.name for p, gone in zip(parameters, lost, strict=True) if gone),
@@ -106,9 +108,9 @@ def response_of(identification: Identification, values: FloatArray) -> Frequency
 
 def _places_beside(small: Identification) -> list[FloatArray]:
     objective = small.objective
-    own = small.values[list(objective.free)]
+    optimum = small.values[list(objective.free)]
     middle = 0.5 * (objective.lower + objective.upper)
-    return [objective.complete(own + share * (middle - own)) for share in BESIDE]
+    return [objective.complete(optimum + share * (middle - optimum)) for share in BESIDE]
 
 
 def _imitation(
@@ -121,12 +123,12 @@ def _imitation(
     data = response_of(small, values)
     names = [name for name, fitted in zip(data.lines, small.fitted, strict=True) if fitted]
     try:
-        found = identify(large.structure, data, rng=rng, settings=neutral, lines=names)
+        fit = identify(large.structure, data, rng=rng, settings=neutral, lines=names)
     except IdentificationError:
         # more free parameters than data: without its priors the larger structure cannot be fitted
         return None
-    whole = found.objective.null_cost
-    return found.values[list(found.objective.free)] if found.cost < SAME_RESPONSE * whole else None
+    null_cost = fit.objective.null_cost
+    return fit.values[list(fit.objective.free)] if fit.cost < SAME_RESPONSE * null_cost else None
 
 
 def _slopes(objective: Objective, theta: FloatArray) -> FloatArray:
@@ -145,8 +147,8 @@ def _rank(objective: Objective, theta: FloatArray) -> int:
     return int(np.sum(sizes > RANK_TOLERANCE * sizes[0]))
 
 
-def _lost(objective: Objective, theta: FloatArray, own: FloatArray) -> FloatArray:
+def _lost(objective: Objective, theta: FloatArray, optimum: FloatArray) -> FloatArray:
     """Return which parameters have influence at the larger structure's own optimum but none at the imitation."""
     here = np.linalg.norm(_slopes(objective, theta), axis=1)
-    there = np.linalg.norm(_slopes(objective, own), axis=1)
+    there = np.linalg.norm(_slopes(objective, optimum), axis=1)
     return np.asarray(here < RANK_TOLERANCE * there)

@@ -79,17 +79,17 @@ def _ratio(ratio: LikelihoodRatio) -> str:
 
 def _predicting(candidates: Sequence[Candidate]) -> list[str]:
     """Return who predicts left-out lines best, in units of the noise variance."""
-    told = [(c, c.hold_out) for c in candidates if c.hold_out is not None]
-    if len(told) < 2:
+    tested = [(c, c.hold_out) for c in candidates if c.hold_out is not None]
+    if len(tested) < 2:
         return []
-    ordered = sorted(told, key=lambda pair: pair[1].square)
+    ordered = sorted(tested, key=lambda pair: pair[1].square)
     words = ", ".join(f"{f.square:.3g} by {c.name} ({f.expected:.3g} expected)" for c, f in ordered)
-    found = [
+    lines = [
         f"Lines left out of the fit are predicted with a mean squared error, over their noise variance, of {words}."
     ]
     if ordered[0][0] is not candidates[0]:
-        found.append(
+        lines.append(
             f"{ordered[0][0].name} predicts left-out lines better than {candidates[0].name}, which BIC prefers: "
             "the data do not decide between them."
         )
-    return found
+    return lines

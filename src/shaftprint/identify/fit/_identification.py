@@ -146,10 +146,10 @@ class Identification:
     @property
     def parameters(self) -> tuple[Estimate, ...]:
         """Every free parameter with its standard deviation."""
-        found = []
-        for i, (place, parameter) in enumerate(zip(self.objective.free, self.objective.free_parameters, strict=True)):
-            value = float(self.values[place])
-            found.append(
+        estimates = []
+        for i, (column, parameter) in enumerate(zip(self.objective.free, self.objective.free_parameters, strict=True)):
+            value = float(self.values[column])
+            estimates.append(
                 Estimate(
                     name=parameter.name,
                     unit=parameter.unit,
@@ -159,7 +159,7 @@ class Identification:
                     role=parameter.role,
                 )
             )
-        return tuple(found)
+        return tuple(estimates)
 
     @property
     def by_role(self) -> dict[Role, float]:
@@ -237,14 +237,14 @@ class Identification:
         slopes = np.zeros(len(places))
         with np.errstate(divide="ignore", invalid="ignore"):
             value = float(of(self._named(self.values)))
-            for i, place in enumerate(places):
-                width = 1e-6 * max(abs(self.values[place]), 1e-3)
+            for i, column in enumerate(places):
+                width = 1e-6 * max(abs(self.values[column]), 1e-3)
                 ahead, behind = self.values.copy(), self.values.copy()
-                ahead[place] += width
-                behind[place] -= width
+                ahead[column] += width
+                behind[column] -= width
                 slopes[i] = (of(self._named(ahead)) - of(self._named(behind))) / (2.0 * width)
-        known = np.isfinite(value) and bool(np.all(np.isfinite(slopes)))
-        variance = variance_along(self.objective, self.values[places], slopes) if known else np.inf
+        finite = np.isfinite(value) and bool(np.all(np.isfinite(slopes)))
+        variance = variance_along(self.objective, self.values[places], slopes) if finite else np.inf
         return Estimate(name=name, unit=unit, value=value, std=float(np.sqrt(variance)))
 
     def model(self, frequency_hz: FloatArray) -> ComplexArray:

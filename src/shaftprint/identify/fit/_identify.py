@@ -131,15 +131,15 @@ def _identified(
     descent = search(objective, settings, rng)
     sharp = bool(descent.converged[np.argmin(descent.cost)])
     clusters, winner = _judged(objective, _clustered(objective, descent), settings, sharp=sharp)
-    judged = [term.assessed(winner.values, number) for number, term in enumerate(objective.terms)]
+    parts_and_tests = [term.assessed(winner.values, number) for number, term in enumerate(objective.terms)]
     return Identification(
-        parts=tuple(part for part, _ in judged),
+        parts=tuple(part for part, _ in parts_and_tests),
         objective=objective,
         settings=settings,
         values=winner.values,
         covariance=frozen_float(estimate_covariance(objective, winner.values[list(objective.free)])),
         cost=winner.cost,
-        fit_test=tested_fit(objective, winner.values, [test for _, test in judged]),
+        fit_test=tested_fit(objective, winner.values, [test for _, test in parts_and_tests]),
         clusters=clusters,
     )
 
@@ -166,18 +166,18 @@ def _clustered(objective: Objective, descent: Descent) -> list[tuple[FloatArray,
     theta, cost = descent.theta[order], descent.cost[order]
     nothing = objective.null_cost
     width = objective.upper - objective.lower
-    found: list[tuple[FloatArray, float, int]] = []
+    clusters: list[tuple[FloatArray, float, int]] = []
     while cost.size:
         close = cost - cost[0] <= SAME_COST * cost[0] + SAME_COST_OF_NOTHING * nothing
         close &= np.all(np.abs(theta - theta[0]) <= SAME_PLACE * width, axis=1)
         close[0] = True
-        found.append((theta[0], float(cost[0]), int(close.sum())))
+        clusters.append((theta[0], float(cost[0]), int(close.sum())))
         theta, cost = theta[~close], cost[~close]
-    return found
+    return clusters
 
 
 def _judged(
-    objective: Objective, found: list[tuple[FloatArray, float, int]], settings: Settings, *, sharp: bool
+    objective: Objective, optima: list[tuple[FloatArray, float, int]], settings: Settings, *, sharp: bool
 ) -> tuple[tuple[Cluster, ...], Cluster]:
     """Return all optima and the winner: the lowest cost that is stable, polished to the last digit.
 
@@ -185,16 +185,16 @@ def _judged(
     """
     clusters: list[Cluster] = []
     winner: Cluster | None = None
-    for theta, cost, starts in found:
+    for theta, cost, starts in optima:
         if winner is not None:
             values = frozen_float(objective.complete(theta))
             clusters.append(Cluster(values=values, cost=cost, starts=starts, stable=None))
             continue
-        place, lowest = theta, cost
+        best, lowest = theta, cost
         if clusters or not sharp:
             polished = polish(objective, theta, settings)
-            place, lowest = polished.theta[0], float(polished.cost[0])
-        values = frozen_float(objective.complete(place))
+            best, lowest = polished.theta[0], float(polished.cost[0])
+        values = frozen_float(objective.complete(best))
         stable = bool(objective.stable(values[None, :])[0])
         cluster = Cluster(values=values, cost=lowest, starts=starts, stable=stable)
         clusters.append(cluster)

@@ -54,8 +54,8 @@ def is_passed_over(optimum: Optimum) -> bool:
 def optima_of(identification: Identification) -> tuple[Optimum, ...]:
     """Return the result and the distinct optima beside it, lowest cost first."""
     values, cost, starts = _led_to_their_end(identification)
-    own = identification.values
-    order = np.lexsort((cost, ~np.all(values == own, axis=1)))
+    result = identification.values
+    order = np.lexsort((cost, ~np.all(values == result, axis=1)))
     values, cost, starts = values[order], cost[order], starts[order]
     distance = _distance(identification, cost)
     kept: list[int] = []
@@ -103,12 +103,12 @@ def _led_to_their_end(identification: Identification) -> tuple[FloatArray, Float
 
 def _distance(identification: Identification, cost: FloatArray) -> FloatArray:
     """Return the deviance of each cost above that of the result."""
-    own = identification.cost
+    result_cost = identification.cost
     if identification.is_likelihood:
-        return 2.0 * (cost - own)
+        return 2.0 * (cost - result_cost)
     # what is left of data without noise is rounding, not a ratio
     floor = 1e-12 * 2.0 * identification.objective.null_cost
-    return np.asarray(identification.data_count * np.log((cost + floor) / (own + floor)))
+    return np.asarray(identification.data_count * np.log((cost + floor) / (result_cost + floor)))
 
 
 def _same(identification: Identification, values: FloatArray, distance: FloatArray) -> bool:
@@ -139,4 +139,4 @@ def _connected(identification: Identification, values: FloatArray, distance: Flo
 def _at_bound(identification: Identification, values: FloatArray) -> tuple[str, ...]:
     objective = identification.objective
     there = zip(objective.free, objective.free_parameters, strict=True)
-    return tuple(p.name for place, p in there if values[place] in (p.lower, p.upper))
+    return tuple(p.name for column, p in there if values[column] in (p.lower, p.upper))

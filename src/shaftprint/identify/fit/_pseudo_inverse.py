@@ -30,9 +30,9 @@ class PseudoInverse:
         scale = np.sqrt(np.diag(information))
         scale[scale == 0.0] = 1.0
         values, vectors = np.linalg.eigh(information / np.outer(scale, scale))
-        known = values > RANK_TOLERANCE * values[-1]
-        inverse = (vectors[:, known] / values[known]) @ vectors[:, known].T / np.outer(scale, scale)
-        return cls(inverse=inverse, unknown=vectors[:, ~known], scale=scale)
+        informed = values > RANK_TOLERANCE * values[-1]
+        inverse = (vectors[:, informed] / values[informed]) @ vectors[:, informed].T / np.outer(scale, scale)
+        return cls(inverse=inverse, unknown=vectors[:, ~informed], scale=scale)
 
     @property
     def lost(self) -> BoolArray:

@@ -108,30 +108,32 @@ def refit_redrawn(identification: Identification, redrawn: Redrawn, theta: Float
     objective = identification.objective
     limit = identification.settings.max_iterations
     blocks = [slice(i, i + BLOCK) for i in range(0, theta.shape[0], BLOCK)]
-    found = [_descended(objective, redrawn.chosen(block), theta[block], limit) for block in blocks]
+    refits = [_descended(objective, redrawn.chosen(block), theta[block], limit) for block in blocks]
     return Refits(
         names=tuple(p.name for p in objective.free_parameters),
-        values=frozen_float(np.concatenate([descent.theta for descent in found])),
-        cost=frozen_float(np.concatenate([descent.cost for descent in found])),
-        converged=frozen_bool(np.concatenate([descent.converged for descent in found])),
+        values=frozen_float(np.concatenate([descent.theta for descent in refits])),
+        cost=frozen_float(np.concatenate([descent.cost for descent in refits])),
+        converged=frozen_bool(np.concatenate([descent.converged for descent in refits])),
     )
 
 
 def _measured(objective: Objective, responses: ArrayLike | Sequence[ArrayLike]) -> tuple[ComplexArray, ...]:
     """Return the fitted lines of every experiment's responses."""
-    given = _an_experiment_each("responses", objective, responses)
-    found = tuple(_of_experiment(e, values) for e, values in zip(objective.experiments, given, strict=True))
-    repeats = [measured.shape[0] for measured in found]
+    arrays = _an_experiment_each("responses", objective, responses)
+    responses_of = tuple(_of_experiment(e, values) for e, values in zip(objective.experiments, arrays, strict=True))
+    repeats = [measured.shape[0] for measured in responses_of]
     if len(set(repeats)) > 1:
         raise IdentificationError(
             f"responses: expected the same number of repeats of every experiment, found {', '.join(map(str, repeats))}."
         )
-    return found
+    return responses_of
 
 
-def _an_experiment_each(name: str, objective: Objective, given: ArrayLike | Sequence[ArrayLike]) -> list[ArrayLike]:
+def _an_experiment_each(
+    name: str, objective: Objective, one_or_all: ArrayLike | Sequence[ArrayLike]
+) -> list[ArrayLike]:
     count = len(objective.experiments)
-    arrays = [cast("ArrayLike", given)] if count == 1 else list(cast("Sequence[ArrayLike]", given))
+    arrays = [cast("ArrayLike", one_or_all)] if count == 1 else list(cast("Sequence[ArrayLike]", one_or_all))
     if len(arrays) != count:
         raise IdentificationError(f"{name}: expected {count} arrays, one an experiment, found {len(arrays)}.")
     return arrays
@@ -143,16 +145,16 @@ def _weights(
     """Return the weights of every experiment's fitted lines in every repeat."""
     if covariances is None:
         return (None,) * len(objective.experiments)
-    given = _an_experiment_each("covariances", objective, covariances)
-    found = []
-    for experiment, values in zip(objective.experiments, given, strict=True):
+    arrays = _an_experiment_each("covariances", objective, covariances)
+    weights = []
+    for experiment, values in zip(objective.experiments, arrays, strict=True):
         covariance = np.asarray(values, dtype=np.float64)
         size = experiment.data.shape[1]
         expected = (repeats, experiment.fitted.size, size, size)
         if covariance.shape != expected:
             raise IdentificationError(f"covariances: expected shape {expected}, found {covariance.shape}.")
-        found.append(experiment.weighting.matrices(experiment.response, covariance[:, experiment.fitted]))
-    return tuple(found)
+        weights.append(experiment.weighting.matrices(experiment.response, covariance[:, experiment.fitted]))
+    return tuple(weights)
 
 
 def _of_experiment(experiment: Experiment, responses: ArrayLike) -> ComplexArray:
@@ -171,11 +173,13 @@ def _of_experiment(experiment: Experiment, responses: ArrayLike) -> ComplexArray
 
 
 def _prior_means(objective: Objective, prior_means: ArrayLike | None, repeats: int) -> FloatArray:
-    own = objective.prior_rows[:, 1]
-    means = np.broadcast_to(own, (repeats, own.size)) if prior_means is None else np.asarray(prior_means, dtype=float)
-    if means.shape != (repeats, own.size) or not np.all(np.isfinite(means)):
+    stated = objective.prior_rows[:, 1]
+    means = (
+        np.broadcast_to(stated, (repeats, stated.size)) if prior_means is None else np.asarray(prior_means, dtype=float)
+    )
+    if means.shape != (repeats, stated.size) or not np.all(np.isfinite(means)):
         raise IdentificationError(
-            f"prior_means: expected finite values of shape ({repeats} repeats, {own.size} prior rows), found shape "
+            f"prior_means: expected finite values of shape ({repeats} repeats, {stated.size} prior rows), found shape "
             f"{means.shape}."
         )
     return means
@@ -183,12 +187,12 @@ def _prior_means(objective: Objective, prior_means: ArrayLike | None, repeats: i
 
 def _starts(identification: Identification, start: ArrayLike | None, *, repeats: int) -> FloatArray:
     free = identification.values[list(identification.objective.free)]
-    given = free if start is None else np.asarray(start, dtype=np.float64)
-    if given.shape not in (free.shape, (repeats, free.size)):
+    starts = free if start is None else np.asarray(start, dtype=np.float64)
+    if starts.shape not in (free.shape, (repeats, free.size)):
         raise IdentificationError(
-            f"start: expected {free.size} values, or {repeats} rows of them, one a repeat, found shape {given.shape}."
+            f"start: expected {free.size} values, or {repeats} rows of them, one a repeat, found shape {starts.shape}."
         )
-    return np.broadcast_to(given, (repeats, free.size))
+    return np.broadcast_to(starts, (repeats, free.size))
 
 
 def _descended(objective: Objective, redrawn: Redrawn, theta: FloatArray, limit: int) -> Descent:

@@ -107,13 +107,13 @@ def scan(identification: Identification, parameter: str, *, grid: ArrayLike | No
             f"{', '.join(names)}; free another with free_between()."
         )
     conditional = Conditional.of(objective, names.index(parameter))
-    found = identification.clusters[:KNOWN]
-    known = np.array([cluster.values for cluster in found])[:, list(objective.free)]
+    clusters = identification.clusters[:KNOWN]
+    optima = np.array([cluster.values for cluster in clusters])[:, list(objective.free)]
     if grid is None:
-        at, theta, cost = _refined(conditional, known, starts)
+        at, theta, cost = _refined(conditional, optima, starts)
     else:
         at = _checked(objective, parameter, grid)
-        theta, cost = conditional.lowest(at, known, starts=starts)
+        theta, cost = conditional.lowest(at, optima, starts=starts)
     return Scan(
         parameter=objective.free_parameters[conditional.held],
         grid=frozen_float(at),
@@ -169,8 +169,8 @@ def _free_names(objective: Objective) -> tuple[str, ...]:
 
 def _checked(objective: Objective, parameter: str, grid: ArrayLike) -> FloatArray:
     at = np.asarray(grid, dtype=np.float64)
-    place = _free_names(objective).index(parameter)
-    lower, upper = objective.lower[place], objective.upper[place]
+    column = _free_names(objective).index(parameter)
+    lower, upper = objective.lower[column], objective.upper[column]
     inside = at.ndim == 1 and at.size > 0 and bool(np.all((at >= lower) & (at <= upper)))
     if not inside or not np.all(np.diff(at) > 0.0):
         raise IdentificationError(
@@ -179,27 +179,29 @@ def _checked(objective: Objective, parameter: str, grid: ArrayLike) -> FloatArra
     return at
 
 
-def _refined(conditional: Conditional, known: FloatArray, starts: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _refined(conditional: Conditional, optima: FloatArray, starts: int) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return values from bound to bound, their optima and costs: finer where a cubic does not follow the curve."""
-    place = conditional.held
-    at = np.linspace(conditional.objective.lower[place], conditional.objective.upper[place], FIRST_POINTS)
-    theta, cost = conditional.lowest(at, known, starts=starts)
+    column = conditional.held
+    at = np.linspace(conditional.objective.lower[column], conditional.objective.upper[column], FIRST_POINTS)
+    theta, cost = conditional.lowest(at, optima, starts=starts)
     open_ends = np.ones(at.size - 1, dtype=np.bool_)
     for _ in range(LEVELS):
-        left = np.flatnonzero(open_ends)
-        if left.size == 0:
+        lower_ends = np.flatnonzero(open_ends)
+        if lower_ends.size == 0:
             break
-        slope, width = conditional.slope(theta), np.diff(at)[left]
-        predicted = 0.5 * (cost[left] + cost[left + 1]) + width * (slope[left] - slope[left + 1]) / 8.0
-        middle = 0.5 * (at[left] + at[left + 1])
-        between, lowest = conditional.between(middle, theta[left], theta[left + 1])
+        slope, width = conditional.slope(theta), np.diff(at)[lower_ends]
+        predicted = (
+            0.5 * (cost[lower_ends] + cost[lower_ends + 1]) + width * (slope[lower_ends] - slope[lower_ends + 1]) / 8.0
+        )
+        middle = 0.5 * (at[lower_ends] + at[lower_ends + 1])
+        between, lowest = conditional.between(middle, theta[lower_ends], theta[lower_ends + 1])
         height = float(np.ptp(np.concatenate([cost, lowest])))
         rough = np.abs(lowest - predicted) > RESOLVED * height
         open_ends = np.repeat(False, at.size - 1)
-        open_ends[left] = rough
-        open_ends = np.insert(open_ends, left + 1, rough)
-        at, cost = np.insert(at, left + 1, middle), np.insert(cost, left + 1, lowest)
-        theta = np.insert(theta, left + 1, between, axis=0)
+        open_ends[lower_ends] = rough
+        open_ends = np.insert(open_ends, lower_ends + 1, rough)
+        at, cost = np.insert(at, lower_ends + 1, middle), np.insert(cost, lower_ends + 1, lowest)
+        theta = np.insert(theta, lower_ends + 1, between, axis=0)
     theta, cost = conditional.carried(theta, cost)
     return at, theta, cost
 
@@ -224,10 +226,10 @@ def _minima(conditional: Conditional, at: FloatArray, theta: FloatArray, cost: F
         max_iterations=POLISH_ITERATIONS,
     )
     width = objective.upper[held] - objective.lower[held]
-    found: list[Minimum] = []
+    minima: list[Minimum] = []
     for row in np.argsort(descent.cost, kind="stable"):
         value = float(descent.theta[row, held])
-        if all(abs(value - other.value) > SAME_PLACE * width for other in found):
+        if all(abs(value - other.value) > SAME_PLACE * width for other in minima):
             values = frozen_float(objective.complete(descent.theta[row]))
-            found.append(Minimum(value=value, cost=float(descent.cost[row]), values=values))
-    return tuple(found)
+            minima.append(Minimum(value=value, cost=float(descent.cost[row]), values=values))
+    return tuple(minima)

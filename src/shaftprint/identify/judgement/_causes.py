@@ -60,8 +60,8 @@ def _held_parameters(experiment: Experiment, values: FloatArray) -> Iterator[Cau
     held = [parameter for parameter in structure.parameters if parameter.held]
     if not held:
         return
-    own, names = experiment.structure_values(values), [parameter.name for parameter in held]
-    _, slopes = structure.gradient(own, experiment.s, names, factors=experiment.factors)
+    structure_values, names = experiment.structure_values(values), [parameter.name for parameter in held]
+    _, slopes = structure.gradient(structure_values, experiment.s, names, factors=experiment.factors)
     for parameter, slope in zip(held, slopes, strict=True):
         at = number(parameter.value, parameter.unit)
         yield Cause(words=f"{parameter.name} ({parameter.meaning}) is not {at}", unit=parameter.unit, effect=slope)
@@ -69,17 +69,17 @@ def _held_parameters(experiment: Experiment, values: FloatArray) -> Iterator[Cau
 
 def _sensors(structure: Structure, model: ComplexArray, s: ComplexArray) -> Iterator[Cause]:
     """Yield what may be wrong with the sensor of each output and input."""
-    for place, names in enumerate((tuple(structure.outputs), structure.inputs)):
+    for side, names in enumerate((tuple(structure.outputs), structure.inputs)):
         for name in names:
-            belongs = np.array([channel[place] == name for channel in structure.channels])[:, None]
-            if place == 1 and len(structure.channels) == len(names):
+            belongs = np.array([channel[side] == name for channel in structure.channels])[:, None]
+            if side == 1 and len(structure.channels) == len(names):
                 # one output for each input: a wrong input looks like a wrong output
                 continue
-            sensor, own = SENSORS.get(name, name), np.where(belongs, model, 0.0)
-            yield Cause(words=f"{sensor} comes late", unit="s", effect=-s * own, one_sided=True)
+            sensor, affected = SENSORS.get(name, name), np.where(belongs, model, 0.0)
+            yield Cause(words=f"{sensor} comes late", unit="s", effect=-s * affected, one_sided=True)
             wrong = WRONG_SCALE.get(name, f"{sensor} has a wrong scale")
-            yield Cause(words=wrong, unit="-", effect=own)
-            yield Cause(words=f"{sensor} smooths fast changes", unit="s2", effect=s * s * own, one_sided=True)
+            yield Cause(words=wrong, unit="-", effect=affected)
+            yield Cause(words=f"{sensor} smooths fast changes", unit="s2", effect=s * s * affected, one_sided=True)
 
 
 def _physics(structure: Structure, model: ComplexArray, s: ComplexArray) -> Iterator[Cause]:
@@ -112,18 +112,18 @@ UPSTREAM = "there is inertia between engine and torque gauge"
 LAG = "there is more delay or lag in the loop"
 
 
-def _only(model: ComplexArray, place: int, effect: ComplexArray) -> ComplexArray:
-    found = np.zeros_like(model)
-    found[place] = effect
-    return found
+def _only(model: ComplexArray, channel: int, effect: ComplexArray) -> ComplexArray:
+    change_of_model = np.zeros_like(model)
+    change_of_model[channel] = effect
+    return change_of_model
 
 
 def _in_loop(structure: Structure, model: ComplexArray, speed: ComplexArray, change: ComplexArray) -> ComplexArray:
     """Return what a relative change of the loop gain does to speed, torque and rack."""
-    found = np.zeros_like(model)
-    for place, channel in enumerate(structure.channels):
+    change_of_model = np.zeros_like(model)
+    for row, channel in enumerate(structure.channels):
         if channel in (("n", "n_set"), ("M_s", "n_set")):
-            found[place] = model[place] * (1.0 - speed) * change
+            change_of_model[row] = model[row] * (1.0 - speed) * change
         elif channel == ("X", "n_set"):
-            found[place] = -model[place] * speed * change
-    return found
+            change_of_model[row] = -model[row] * speed * change
+    return change_of_model

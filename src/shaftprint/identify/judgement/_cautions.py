@@ -59,10 +59,10 @@ def _beyond_the_lines(evidence: Evidence) -> list[str]:
     outside = [c for c in crossings_rad_s(evidence.identification) if not omega[0] <= c <= omega[-1]]
     if not outside:
         return []
-    told = listed([f"{crossing:.2g}" for crossing in outside])
+    frequencies = listed([f"{crossing:.2g}" for crossing in outside])
     return [
-        f"The margins are extrapolated: the loop gain passes 1 or -1 at {told} rad/s, and the good lines reach from "
-        f"{omega[0]:.2g} to {omega[-1]:.2g} rad/s."
+        f"The margins are extrapolated: the loop gain passes 1 or -1 at {frequencies} rad/s, and the good lines reach "
+        f"from {omega[0]:.2g} to {omega[-1]:.2g} rad/s."
     ]
 
 

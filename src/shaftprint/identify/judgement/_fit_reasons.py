@@ -16,17 +16,17 @@ def too_few_good_data(evidence: Evidence) -> str:
     count = len(fit.parameters) - len(fit.settings.priors)
     wanted = needs.data_per_parameter * count
     lines = sum(experiment.s.size for experiment in fit.objective.experiments)
-    asked = f"for {count} parameters that the data must find at least {wanted:.0f} are wanted"
+    need = f"for {count} parameters that the data must find at least {wanted:.0f} are wanted"
     if fit.objective.others and evidence.good_data >= wanted:
         return ""
     if fit.data_count < wanted:
-        return f"There are too few lines: {lines} lines give {fit.data_count} numbers, {asked}; measure more lines."
+        return f"There are too few lines: {lines} lines give {fit.data_count} numbers, {need}; measure more lines."
     if evidence.good_data >= wanted:
         return ""
     return (
         f"The data are too noisy: of {lines} lines {evidence.good_lines or 'none'} are known to better than "
         f"{100.0 * needs.largest_line_std:.0f} % in some output, which gives {evidence.good_data} good numbers, "
-        f"{asked}; measure longer, or with a larger amplitude."
+        f"{need}; measure longer, or with a larger amplitude."
     )
 
 
@@ -58,10 +58,10 @@ def not_explained(evidence: Evidence) -> str:
             for output, value in fit.fit_percent.items()
         )
         return f"The structure {name} does not explain the data: FitPercent of {percent}."
-    whole = "" if fit.p_value is None else f", {probability(fit.p_value)}"
+    p_value = "" if fit.p_value is None else f", {probability(fit.p_value)}"
     return (
         f"The structure {name} does not explain the data within their noise (chi-square {fit.chi_square:.0f} for "
-        f"{fit.degrees_of_freedom} degrees of freedom{whole}); {misfit_words(fit)}."
+        f"{fit.degrees_of_freedom} degrees of freedom{p_value}); {misfit_words(fit)}."
     )
 
 

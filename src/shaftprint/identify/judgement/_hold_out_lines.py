@@ -53,8 +53,8 @@ def _usable(experiment: Experiment, requirements: Requirements) -> list[str]:
     half = noise.shape[0] // 2
     share = np.sqrt(noise[:half] + noise[half:]) / np.abs(channels_of(response))
     good = np.any(share <= requirements.largest_line_std, axis=0)
-    left = response.used & ~experiment.fitted & good
-    return [name for name, one in zip(response.lines, left, strict=True) if one]
+    held_out = response.used & ~experiment.fitted & good
+    return [name for name, one in zip(response.lines, held_out, strict=True) if one]
 
 
 def _rise(identification: Identification, experiment: Experiment, names: list[str]) -> float:

@@ -28,13 +28,13 @@ def good_channels(
         return good
     names = [name for name, fitted in zip(experiment.response.lines, experiment.fitted, strict=True) if fitted]
     limit = requirements.lowest_line_snr_db
-    given = [i for i, channel in enumerate(signal_to_noise.channels) if channel in experiment.response.inputs]
-    for place, name in enumerate(names):
+    inputs = [i for i, channel in enumerate(signal_to_noise.channels) if channel in experiment.response.inputs]
+    for line, name in enumerate(names):
         if name not in signal_to_noise.lines:
             continue
         ratios = signal_to_noise.local_db[signal_to_noise.lines.index(name)]
-        if np.any(ratios[given] < limit) or np.all(np.delete(ratios, given) < limit):
-            good[:, place] = False
+        if np.any(ratios[inputs] < limit) or np.all(np.delete(ratios, inputs) < limit):
+            good[:, line] = False
     return good
 
 
@@ -51,8 +51,8 @@ def crossings_rad_s(identification: Identification) -> tuple[float, ...]:
     margins = identification.margins
     if margins is None:
         return ()
-    found = (margins.phase_margin_rad_s, margins.gain_margin_rad_s)
-    return tuple(omega for omega in found if np.isfinite(omega))
+    crossings = (margins.phase_margin_rad_s, margins.gain_margin_rad_s)
+    return tuple(omega for omega in crossings if np.isfinite(omega))
 
 
 def gap_at_crossing(

@@ -32,8 +32,8 @@ def explained(identification: Identification, *, rejected: float = REJECTED) -> 
             for part in identification.parts
             for percent, ceiling in zip(part.fit_percent.values(), part.fit_ceiling.values(), strict=True)
         )
-    whole = identification.p_value
-    return (whole is None or whole >= rejected) and not worst_lines(identification, rejected=rejected)
+    p_value = identification.p_value
+    return (p_value is None or p_value >= rejected) and not worst_lines(identification, rejected=rejected)
 
 
 def worst_lines(identification: Identification, *, rejected: float = REJECTED) -> tuple[str, ...]:

@@ -24,14 +24,14 @@ def spans(names: Collection[str], order: Sequence[str]) -> str:
     """Return names in their order, three or more neighbours by their ends: ``S1, S3 to S5 and S9``."""
     places = sorted(order.index(name) for name in names)
     runs: list[list[int]] = []
-    for place in places:
-        if runs and place == runs[-1][-1] + 1:
-            runs[-1].append(place)
+    for index in places:
+        if runs and index == runs[-1][-1] + 1:
+            runs[-1].append(index)
         else:
-            runs.append([place])
+            runs.append([index])
     words: list[str] = []
     for run in runs:
-        words += [f"{order[run[0]]} to {order[run[-1]]}"] if len(run) > 2 else [order[place] for place in run]
+        words += [f"{order[run[0]]} to {order[run[-1]]}"] if len(run) > 2 else [order[index] for index in run]
     return listed(words)
 
 

@@ -24,7 +24,7 @@ def search_words(identification: Identification, optima: tuple[Optimum, ...]) ->
 
 def _reached(optima: tuple[Optimum, ...]) -> str:
     total = sum(o.starts for o in optima)
-    own = sum(o.starts for o in optima if o.connected)
+    reached = sum(o.starts for o in optima if o.connected)
     valley = ", which is a valley: see what the data cannot tell apart" if sum(o.connected for o in optima) > 1 else ""
     others = [o for o in optima if not o.connected]
     if not others:
@@ -32,7 +32,7 @@ def _reached(optima: tuple[Optimum, ...]) -> str:
     shown = ", ".join(f"cost {o.cost:.4g} ({_starts(o.starts)})" for o in others[:NAMED])
     more = f" and {len(others) - NAMED} more" if len(others) > NAMED else ""
     return (
-        f"{own} of {total} starts reached the optimum of cost {optima[0].cost:.4g}{valley}; the others ended in "
+        f"{reached} of {total} starts reached the optimum of cost {optima[0].cost:.4g}{valley}; the others ended in "
         f"{len(others)} more: {shown}{more}."
     )
 
@@ -43,13 +43,13 @@ def _starts(count: int) -> str:
 
 def wrong_basin_words(optima: tuple[Optimum, ...]) -> list[str]:
     """Return that another optimum attracted more starts than the result, where one did."""
-    own = sum(o.starts for o in optima if o.connected)
+    reached = sum(o.starts for o in optima if o.connected)
     busiest = max(optima, key=lambda o: o.starts)
-    if busiest.connected or busiest.starts <= own:
+    if busiest.connected or busiest.starts <= reached:
         return []
     return [
         f"An optimum of cost {busiest.cost:.4g} attracted {_starts(busiest.starts)}, more than the best one with "
-        f"{own}: a search from few starts would have ended there."
+        f"{reached}: a search from few starts would have ended there."
     ]
 
 
@@ -72,14 +72,14 @@ def rival_words(identification: Identification, rival: Optimum) -> str:
     free = list(objective.free)
     apart = np.abs(rival.values - identification.values)[free] / (objective.upper - objective.lower)
     most = [int(i) for i in np.argsort(-apart)[:NAMED] if apart[i] > SAME_PLACE]
-    told = [
+    differences = [
         f"{p.name} = {number(float(rival.values[free[i]]), p.unit)} instead of "
         f"{number(float(identification.values[free[i]]), p.unit)}"
         for i, p in ((i, objective.free_parameters[i]) for i in most)
     ]
     return (
-        f"The result is not unique: another optimum, with {listed(told)}, lies only {rival.distance:.2g} of deviance "
-        f"higher, within the 95 % limit of {WITHIN:.2f}."
+        f"The result is not unique: another optimum, with {listed(differences)}, lies only {rival.distance:.2g} of "
+        f"deviance higher, within the 95 % limit of {WITHIN:.2f}."
     )
 
 

@@ -70,35 +70,35 @@ def suspects_of(identification: Identification, *, rejected: float = REJECTED) -
     spare = misfit.size - basis.shape[1]
     causes = _gathered(identification)
     beyond = float(misfit @ misfit) - spare
-    found: list[Suspect] = []
-    while len(found) < MOST and causes:
+    suspects: list[Suspect] = []
+    while len(suspects) < MOST and causes:
         directions = np.array([direction for _, direction in causes])
         sizes = np.linalg.norm(directions, axis=1)
-        beside = directions - (directions @ basis) @ basis.T
-        left = np.linalg.norm(beside, axis=1)
-        left[left < OWN * sizes] = np.inf
-        pulls = beside @ misfit / left
+        across = directions - (directions @ basis) @ basis.T
+        lengths = np.linalg.norm(across, axis=1)
+        lengths[lengths < OWN * sizes] = np.inf
+        pulls = across @ misfit / lengths
         backward = np.array([cause.one_sided for cause, _ in causes]) & (pulls < 0.0)
         falls = np.where(backward, 0.0, pulls**2)
         if falls.max() < max(LEAST_SHARE * beyond, LEAST_FALL):
             break
         best = int(np.flatnonzero(falls >= NEARLY * falls.max())[0])
         cause, _ = causes.pop(best)
-        estimate = float(pulls[best] / left[best])
-        found.append(
+        estimate = float(pulls[best] / lengths[best])
+        suspects.append(
             Suspect(
                 words=cause.words,
                 estimate=estimate,
-                std=float(1.0 / left[best]),
+                std=float(1.0 / lengths[best]),
                 unit=cause.unit,
                 share=float(falls[best] / beyond),
                 rough=_changes(identification, cause, estimate) > FIRST_ORDER,
             )
         )
-        along = beside[best] / left[best]
+        along = across[best] / lengths[best]
         misfit = misfit - (along @ misfit) * along
         basis = np.column_stack([basis, along])
-    return tuple(found)
+    return tuple(suspects)
 
 
 def _changes(identification: Identification, cause: Cause, size: float) -> float:
@@ -115,18 +115,18 @@ def _misfit(identification: Identification) -> tuple[FloatArray, FloatArray]:
         _, gradient = experiment.structure.gradient(
             experiment.structure_values(identification.values), experiment.s, factors=experiment.factors
         )
-        own = np.zeros((part.whitened.size, len(objective.free)))
-        own[:, list(experiment.columns)] = np.array([_whitened(experiment, slope) for slope in gradient]).T
+        part_slopes = np.zeros((part.whitened.size, len(objective.free)))
+        part_slopes[:, list(experiment.columns)] = np.array([_whitened(experiment, slope) for slope in gradient]).T
         parts.append(part.whitened.ravel())
-        slopes.append(own)
+        slopes.append(part_slopes)
     theta = identification.values[list(objective.free)]
-    for place, mean, weight in objective.prior_rows:
-        parts.append(np.array([(mean - theta[int(place)]) * weight]))
-        slopes.append(weight * np.eye(theta.size)[[int(place)]])
+    for column, mean, weight in objective.prior_rows:
+        parts.append(np.array([(mean - theta[int(column)]) * weight]))
+        slopes.append(weight * np.eye(theta.size)[[int(column)]])
     residuals, table = np.concatenate(parts), np.concatenate(slopes)
     scale = np.linalg.norm(table, axis=0)
-    left, sizes, _ = np.linalg.svd(table / np.where(scale > 0.0, scale, 1.0), full_matrices=False)
-    basis = left[:, sizes > OWN * sizes[0]]
+    vectors, sizes, _ = np.linalg.svd(table / np.where(scale > 0.0, scale, 1.0), full_matrices=False)
+    basis = vectors[:, sizes > OWN * sizes[0]]
     return residuals - basis @ (basis.T @ residuals), basis
 
 
@@ -135,14 +135,14 @@ def _gathered(identification: Identification) -> list[tuple[Cause, FloatArray]]:
     objective = identification.objective
     sizes = [part.whitened.size for part in identification.experiments]
     total = sum(sizes) + objective.prior_rows.shape[0]
-    found: dict[str, tuple[Cause, FloatArray]] = {}
+    causes: dict[str, tuple[Cause, FloatArray]] = {}
     first = 0
     for experiment, size in zip(objective.experiments, sizes, strict=True):
         for cause in causes_of(experiment, identification.values):
-            _, direction = found.setdefault(cause.words, (cause, np.zeros(total)))
+            _, direction = causes.setdefault(cause.words, (cause, np.zeros(total)))
             direction[first : first + size] = _whitened(experiment, cause.effect)
         first += size
-    return [(cause, direction) for cause, direction in found.values() if direction.any()]
+    return [(cause, direction) for cause, direction in causes.values() if direction.any()]
 
 
 def _whitened(experiment: Experiment, channels: ComplexArray) -> FloatArray:

@@ -132,8 +132,8 @@ def assess(
         )
     )
     numbers = (*identification.parameters, *identification.combinations, *further)
-    own = doubts_of(identification, numbers, evidence.profile, evidence.requirements)
-    doubts = {number.name: clause_of(number, every) or own.get(number.name, "") for number in numbers}
+    imprecise = doubts_of(identification, numbers, evidence.profile, evidence.requirements)
+    doubts = {number.name: clause_of(number, every) or imprecise.get(number.name, "") for number in numbers}
     trusted = tuple(name for name, doubt in doubts.items() if not doubt)
     not_trusted = {name: doubt for name, doubt in doubts.items() if doubt}
     usable = bool(trusted) and not of_fit
@@ -147,7 +147,7 @@ def assess(
                 (
                     headline,
                     *(reason.sentence for reason in every),
-                    *_lists(trusted, not_trusted, whole=not usable and bool(of_fit)),
+                    *_lists(trusted, not_trusted, rejected=not usable and bool(of_fit)),
                     *cautions,
                     *(f"Assumed: {assumption}" for assumption in assumptions),
                 )
@@ -198,12 +198,12 @@ def _why_trusted(evidence: Evidence) -> str:
     fit = evidence.identification
     p_value = fit.p_value
     explains = "within what the noise allows" if p_value is None else f"within their noise ({probability(p_value)})"
-    rest = (
+    uniqueness = (
         " and the optimum is the only one"
         if evidence.loop is None
         else f", the optimum is the only one, and the loop is stable with {evidence.loop} margins"
     )
-    return f"The fit can be trusted: {fit.objective.name} explains {_data_words(evidence)} {explains}{rest}."
+    return f"The fit can be trusted: {fit.objective.name} explains {_data_words(evidence)} {explains}{uniqueness}."
 
 
 def _data_words(evidence: Evidence) -> str:
@@ -221,9 +221,9 @@ def _data_words(evidence: Evidence) -> str:
     return listed(words)
 
 
-def _lists(trusted: tuple[str, ...], not_trusted: Mapping[str, str], *, whole: bool) -> list[str]:
+def _lists(trusted: tuple[str, ...], not_trusted: Mapping[str, str], *, rejected: bool) -> list[str]:
     """Return which numbers are trusted and which are not; nothing where the fit as a whole is not."""
-    if whole or not trusted:
+    if rejected or not trusted:
         return []
     return [f"Trusted: {listed(trusted)}.", *([f"Not trusted: {_worded(not_trusted)}."] if not_trusted else [])]
 

@@ -28,24 +28,24 @@ def build_experiment(
     IdentificationError
         If input or outputs differ or a line is not in the response.
     """
-    taken = _of_structure(structure, response)
-    fitted = _fitted_lines(taken, lines)
-    measured = channels_of(taken)[:, fitted]
-    covariance = taken.covariance[fitted]
-    weights = weighting.matrices(taken, covariance)
+    reduced = _of_structure(structure, response)
+    fitted = _fitted_lines(reduced, lines)
+    measured = channels_of(reduced)[:, fitted]
+    covariance = reduced.covariance[fitted]
+    weights = weighting.matrices(reduced, covariance)
     free = tuple(i for i, p in enumerate(structure.parameters) if not p.held)
     return Experiment(
         structure=structure,
-        response=taken,
+        response=reduced,
         fitted=fitted,
-        s=np.asarray(1j * taken.omega_rad_s[fitted], dtype=np.complex128),
-        factors=load_factors(structure, taken, fitted),
+        s=np.asarray(1j * reduced.omega_rad_s[fitted], dtype=np.complex128),
+        factors=load_factors(structure, reduced, fitted),
         data=np.concatenate([measured.real, measured.imag]).T,
         measured=measured,
         covariance=covariance,
         weighting=weighting,
         weights=weights,
-        tails=weighting.tails(taken.degrees_of_freedom[fitted], covariance.shape[1]),
+        tails=weighting.tails(reduced.degrees_of_freedom[fitted], covariance.shape[1]),
         elements=elements_of(weights),
         held=structure.vector({}),
         free=free,

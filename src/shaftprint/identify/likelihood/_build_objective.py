@@ -75,7 +75,7 @@ def build_joint_objective(
         )
     names = [p.name for p in parameters]
     free = [p.name for p in parameters if not p.held]
-    known = [*priors.items(), *regularisation.items()]
+    priors_and_regularisation = [*priors.items(), *regularisation.items()]
     objective = Objective(
         parameters=parameters,
         terms=tuple(term.placed(names, free) for term in terms),
@@ -84,14 +84,14 @@ def build_joint_objective(
         held=np.array([p.value for p in parameters]),
         free=tuple(i for i, p in enumerate(parameters) if not p.held),
     )
-    _expect_solvable(objective, [name for name, _ in known])
-    rows = [[free.index(name), prior.mean, 1.0 / prior.std] for name, prior in known]
+    _expect_solvable(objective, [name for name, _ in priors_and_regularisation])
+    rows = [[free.index(name), prior.mean, 1.0 / prior.std] for name, prior in priors_and_regularisation]
     return replace(objective, prior_rows=np.array(rows).reshape(-1, 3))
 
 
-def _expect_solvable(objective: Objective, known: Sequence[str]) -> None:
+def _expect_solvable(objective: Objective, with_prior: Sequence[str]) -> None:
     names = [p.name for p in objective.free_parameters]
-    unknown = [name for name in known if name not in names]
+    unknown = [name for name in with_prior if name not in names]
     if unknown:
         raise IdentificationError(
             f"prior of {', '.join(unknown)}: structure {objective.name} has the free parameters {', '.join(names)}."
@@ -106,7 +106,7 @@ def _expect_solvable(objective: Objective, known: Sequence[str]) -> None:
         raise IdentificationError(
             f"structure {objective.name} has no free parameter: free one with free_between(), or compare its response."
         )
-    if objective.data_count + len(known) < len(names):
+    if objective.data_count + len(with_prior) < len(names):
         lines = sum(e.s.size for e in objective.experiments)
         raise IdentificationError(
             f"structure {objective.name} has {len(names)} free parameters, the response {objective.data_count} usable "

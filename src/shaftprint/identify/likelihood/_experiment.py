@@ -129,8 +129,8 @@ class Experiment(Term):
     def noise_covariance(self) -> FloatArray:
         """Covariance of the data without the factor that makes it right as a weight, shape (lines, size, size)."""
         size = self.data.shape[1]
-        known = np.isinf(self.freedom)
-        share = np.where(known, 1.0, excess_freedom(self.freedom, size) / np.where(known, 1.0, self.freedom))
+        exact = np.isinf(self.freedom)
+        share = np.where(exact, 1.0, excess_freedom(self.freedom, size) / np.where(exact, 1.0, self.freedom))
         return share[:, None, None] * self.covariance
 
     @property
@@ -169,7 +169,7 @@ class Experiment(Term):
             },
             whitened=frozen_float(whitened),
         )
-        lines = [name for name, taken in zip(self.response.lines, self.fitted, strict=True) if taken]
+        lines = [name for name, fitted in zip(self.response.lines, self.fitted, strict=True) if fitted]
         return part, tested_lines(whitened, self.freedom, lines, number)
 
     def drawn(self, values: FloatArray, count: int, rng: np.random.Generator) -> tuple[ComplexArray, FloatArray]:
@@ -226,8 +226,8 @@ def elements_of(weights: FloatArray) -> tuple[tuple[int, int, FloatArray], ...]:
     size = weights.shape[-1]
     pairs = [(i, i) for i in range(size)]
     pairs += [(i, j) for i in range(size) for j in range(size) if i != j and weights[..., i, j].any()]
-    found = ((i, j, -weights[..., i, j]) for i, j in pairs)
-    return tuple((i, j, w if w.ndim == 1 else w[:, None]) for i, j, w in found)
+    elements = ((i, j, -weights[..., i, j]) for i, j in pairs)
+    return tuple((i, j, w if w.ndim == 1 else w[:, None]) for i, j, w in elements)
 
 
 def _weighted(stacked: ComplexArray, elements: tuple[tuple[int, int, FloatArray], ...]) -> FloatArray:

@@ -92,10 +92,10 @@ class Objective:
     @property
     def combinations(self) -> tuple[Combination, ...]:
         """The combinations that the structures name, each once."""
-        found: dict[str, Combination] = {}
+        combinations: dict[str, Combination] = {}
         for combination in (c for term in self.terms for c in term.structure.combinations):
-            found.setdefault(combination.name, combination)
-        return tuple(found.values())
+            combinations.setdefault(combination.name, combination)
+        return tuple(combinations.values())
 
     @property
     def data_count(self) -> int:
@@ -116,10 +116,10 @@ class Objective:
 
     def named(self, values: FloatArray) -> dict[str, FloatArray]:
         """Return every parameter of every structure by name, tied ones included, from values (..., parameters)."""
-        found: dict[str, FloatArray] = {}
+        values_by_name: dict[str, FloatArray] = {}
         for term in self.terms[::-1]:
-            found |= term.structure.named(term.structure_values(values))
-        return found
+            values_by_name |= term.structure.named(term.structure_values(values))
+        return values_by_name
 
     def stable(self, values: FloatArray) -> BoolArray:
         """Return whether the models of all terms are stable, shape (rows,), for parameters (rows, parameters)."""
@@ -176,12 +176,12 @@ class Objective:
 
     def sensitivity_to(self, term: Term, theta: FloatArray, *, expected: bool) -> tuple[FloatArray, FloatArray]:
         """Return the sensitivity of one term, with a row for every free parameter."""
-        found = []
-        for own in term.sensitivity(theta[list(term.columns)], expected=expected):
-            spread = np.zeros((theta.size, own.shape[1]))
-            spread[list(term.columns)] = own
-            found.append(spread)
-        return found[0], found[1]
+        sensitivities = []
+        for rows_of_term in term.sensitivity(theta[list(term.columns)], expected=expected):
+            spread = np.zeros((theta.size, rows_of_term.shape[1]))
+            spread[list(term.columns)] = rows_of_term
+            sensitivities.append(spread)
+        return sensitivities[0], sensitivities[1]
 
     def _part(self, number: int, theta: FloatArray, redrawn: Redrawn | None) -> FloatArray:
         """Return residuals of one term and below them their derivatives to all free parameters."""
@@ -189,9 +189,9 @@ class Objective:
         repeats = None if redrawn is None else redrawn.repeats[number]
         if term.columns == tuple(range(theta.shape[1])):
             return term.table(theta, repeats)
-        own = term.table(theta[:, term.columns], repeats)
-        table = np.zeros((theta.shape[0], 1 + theta.shape[1], own.shape[2]))
-        table[:, [0, *(1 + column for column in term.columns)]] = own
+        part = term.table(theta[:, term.columns], repeats)
+        table = np.zeros((theta.shape[0], 1 + theta.shape[1], part.shape[2]))
+        table[:, [0, *(1 + column for column in term.columns)]] = part
         return table
 
     def _prior_part(self, theta: FloatArray, means: FloatArray) -> FloatArray:

@@ -93,11 +93,11 @@ class Tails:
         if self.averaged:
             size = residuals.shape[1]
             limit = size + BAD_LINE * np.sqrt(2.0 * size)
-            left = np.minimum((1.0 + limit * self.bend) / (1.0 + x), 1.0)
-            return np.asarray(np.sqrt(self.information * left)[:, None, None, :] * slopes)
+            weight_along = np.minimum((1.0 + limit * self.bend) / (1.0 + x), 1.0)
+            return np.asarray(np.sqrt(self.information * weight_along)[:, None, None, :] * slopes)
         weight = np.sqrt(self.gain / (1.0 + x))
-        beside = np.sqrt(np.maximum(1.0 - x, 0.0) / (1.0 + x)) - 1.0
-        share = np.divide(beside, squares, out=np.zeros_like(squares), where=squares > 0.0)
+        across = np.sqrt(np.maximum(1.0 - x, 0.0) / (1.0 + x)) - 1.0
+        share = np.divide(across, squares, out=np.zeros_like(squares), where=squares > 0.0)
         along = np.einsum("smf,skmf->skf", residuals, slopes)
         return np.asarray(
             weight[:, None, None, :] * (slopes + (share[:, None, :] * along)[:, :, None, :] * residuals[:, None])
@@ -158,13 +158,13 @@ def _averages(bend: FloatArray, excess: FloatArray, size: int) -> tuple[FloatArr
     # digits of 1 - u.
     x = 0.5 * (1.0 + nodes)
     log = 4.0 * np.log(x) / k
-    u, rest = np.exp(log), -np.expm1(log)
-    density = weights * x**3 * rest ** (channels - 1)
+    u, complement = np.exp(log), -np.expm1(log)
+    density = weights * x**3 * complement ** (channels - 1)
     density /= density.sum(axis=1, keepdims=True)
     share = bend[:, None] * finite
     # Slope of log(1 + bend d^2) / bend to d^2, over u.
-    slope = 1.0 / (u + share * rest)
-    squared = np.sum(density * slope**2 * rest, axis=1)
+    slope = 1.0 / (u + share * complement)
+    squared = np.sum(density * slope**2 * complement, axis=1)
     mean = np.sum(density * slope * (1.0 + (channels - 1) * u), axis=1)
     ratio = 0.5 * finite[:, 0] / (channels * k[:, 0])
     return ratio * (mean - share[:, 0] * squared), ratio * 0.5 * finite[:, 0] * squared

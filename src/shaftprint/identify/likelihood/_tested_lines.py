@@ -42,9 +42,9 @@ def tested_lines(whitened: FloatArray, freedom: FloatArray, names: Sequence[str]
 
 def _shares(squares: FloatArray, excess: FloatArray) -> FloatArray:
     """Return what each line adds to the sum."""
-    known = np.isinf(excess)
-    finite = np.where(known, 1.0, excess)
-    return np.where(known, squares, (finite + 2.0) * np.log1p(squares / finite))
+    exact = np.isinf(excess)
+    finite = np.where(exact, 1.0, excess)
+    return np.where(exact, squares, (finite + 2.0) * np.log1p(squares / finite))
 
 
 def _moments(excess: FloatArray, size: int) -> tuple[FloatArray, FloatArray]:

@@ -18,23 +18,23 @@ def united_parameters(structures: Sequence[Structure]) -> tuple[Parameter, ...]:
     IdentificationError
         If two structures describe a parameter differently.
     """
-    found: dict[str, tuple[Parameter, Structure]] = {}
+    united: dict[str, tuple[Parameter, Structure]] = {}
     for structure in structures:
         for parameter in structure.parameters:
-            first, owner = found.setdefault(parameter.name, (parameter, structure))
+            first, owner = united.setdefault(parameter.name, (parameter, structure))
             if _described(first) != _described(parameter):
                 raise IdentificationError(
                     f"joint fit: parameter {first.name} is {_words(first)} in structure {owner.name} and "
                     f"{_words(parameter)} in {structure.name}; describe it alike, or give one of them another name."
                 )
     tied = {tie.name: structure for structure in structures for tie in structure.ties}
-    both = [name for name in tied if name in found]
+    both = [name for name in tied if name in united]
     if both:
         raise IdentificationError(
             f"joint fit: parameter {both[0]} is tied to others in structure {tied[both[0]].name} and a parameter of "
-            f"its own in {found[both[0]][1].name}; tie it in both, or give one of them another name."
+            f"its own in {united[both[0]][1].name}; tie it in both, or give one of them another name."
         )
-    return tuple(parameter for parameter, _ in found.values())
+    return tuple(parameter for parameter, _ in united.values())
 
 
 def _described(parameter: Parameter) -> tuple[object, ...]:

@@ -61,10 +61,10 @@ class Accuracy:
         IdentificationError
             If there is none of that name.
         """
-        found = {estimate.name: estimate for estimate in (*self.parameters, *self.combinations)}
-        if name not in found:
-            raise IdentificationError(f"accuracy of {self.objective.name}: {name} is not among {', '.join(found)}.")
-        return found[name]
+        estimates = {estimate.name: estimate for estimate in (*self.parameters, *self.combinations)}
+        if name not in estimates:
+            raise IdentificationError(f"accuracy of {self.objective.name}: {name} is not among {', '.join(estimates)}.")
+        return estimates[name]
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -79,20 +79,20 @@ class Accuracy:
     def _levels(self) -> list[str]:
         every = [e for e in (*self.parameters, *self.combinations) if e.value != 0.0]
         share = {e.name: e.std / abs(e.value) for e in every}
-        found = []
+        sentences = []
         below = 0.0
         for level in LEVELS:
             names = [name for name, part in share.items() if below < part <= level]
             if names:
-                found.append(f"Known to {100 * level:g} % or better: {', '.join(names)}.")
+                sentences.append(f"Known to {100 * level:g} % or better: {', '.join(names)}.")
             below = level
         poor = [name for name, part in share.items() if LEVELS[-1] < part < 1.0]
         lost = [name for name, part in share.items() if part >= 1.0]
         if poor:
-            found.append(f"Hardly known, worse than {100 * LEVELS[-1]:g} %: {', '.join(poor)}.")
+            sentences.append(f"Hardly known, worse than {100 * LEVELS[-1]:g} %: {', '.join(poor)}.")
         if lost:
-            found.append(f"Not known: {', '.join(lost)}.")
-        return found
+            sentences.append(f"Not known: {', '.join(lost)}.")
+        return sentences
 
     def _nothing_new(self) -> list[str]:
         std = {e.name: e.std for e in self.parameters}
@@ -103,7 +103,7 @@ class Accuracy:
         ]
 
     def _at_bounds(self) -> list[str]:
-        found = []
+        sentences = []
         for parameter, estimate in zip(self.objective.free_parameters, self.parameters, strict=True):
             reached = [
                 bound
@@ -114,12 +114,12 @@ class Accuracy:
                 if distance < estimate.std < np.inf
             ]
             if reached:
-                found.append(
+                sentences.append(
                     f"{estimate.name}: one standard deviation, {estimate.std:.2g}, reaches past the bound "
                     f"{' and '.join(f'{bound:g}' for bound in reached)}; its interval will end there, and these first-"
                     "order numbers are only a rough guide to it."
                 )
-        return found
+        return sentences
 
 
 def predict_accuracy(
@@ -243,8 +243,10 @@ def _derived(objective: Objective, theta: FloatArray, combination: Combination) 
     moves = np.diag(step)
     table = np.concatenate([theta[None, :], theta + moves, theta - moves])
     with np.errstate(all="ignore"):
-        found = np.broadcast_to(combination.of(objective.named(objective.complete(table))), table.shape[:1])
-        slopes = (found[1 : 1 + theta.size] - found[1 + theta.size :]) / (2.0 * step)
-    known = np.isfinite(found[0]) and bool(np.all(np.isfinite(slopes)))
-    variance = variance_along(objective, theta, slopes, expected=True) if known else np.inf
-    return Estimate(name=combination.name, unit=combination.unit, value=float(found[0]), std=float(np.sqrt(variance)))
+        values_of_rows = np.broadcast_to(combination.of(objective.named(objective.complete(table))), table.shape[:1])
+        slopes = (values_of_rows[1 : 1 + theta.size] - values_of_rows[1 + theta.size :]) / (2.0 * step)
+    finite = np.isfinite(values_of_rows[0]) and bool(np.all(np.isfinite(slopes)))
+    variance = variance_along(objective, theta, slopes, expected=True) if finite else np.inf
+    return Estimate(
+        name=combination.name, unit=combination.unit, value=float(values_of_rows[0]), std=float(np.sqrt(variance))
+    )

@@ -54,9 +54,9 @@ class CombinationSlopes:
         free = [structure.names.index(p.name) for p in structure.free]
         step = STEP * np.array([p.upper - p.lower for p in structure.free])
         table = np.repeat(null.table[:, None, :], 1 + 2 * len(free), axis=1)
-        for place, (column, width) in enumerate(zip(free, step, strict=True)):
-            table[:, 1 + place, column] += width
-            table[:, 1 + len(free) + place, column] -= width
+        for row, (column, width) in enumerate(zip(free, step, strict=True)):
+            table[:, 1 + row, column] += width
+            table[:, 1 + len(free) + row, column] -= width
         return cls(null, structure.named(table), 2.0 * step / null.scale)
 
     def gradient(self, of: Value) -> FloatArray:
@@ -103,12 +103,12 @@ class _Chosen:
     def _add(self, of: Value) -> bool:
         gradient = self.slopes.gradient(of)[0]
         gradient = gradient / np.linalg.norm(gradient)
-        rest = gradient - self.base @ (self.base.T @ gradient)
-        rest -= self.base @ (self.base.T @ rest)
-        length = float(np.linalg.norm(rest))
+        remainder = gradient - self.base @ (self.base.T @ gradient)
+        remainder -= self.base @ (self.base.T @ remainder)
+        length = float(np.linalg.norm(remainder))
         if not length > TOLERANCE:
             return False
-        self.base = np.column_stack([self.base, rest / length])
+        self.base = np.column_stack([self.base, remainder / length])
         return True
 
     @property
@@ -126,24 +126,24 @@ def found_combinations(null: NullSpace) -> tuple[tuple[Combination, ...], tuple[
     slopes = CombinationSlopes.of(null)
     lost = null.of_lost()
     singles = [p.name for p, is_lost in zip(null.structure.free, lost, strict=True) if not is_lost]
-    own = [c for c in null.structure.combinations if slopes.is_found(c.of) and not _is_of_singles(slopes, c, singles)]
-    chosen = _greedy(slopes, singles, own)
+    named = [c for c in null.structure.combinations if slopes.is_found(c.of) and not _is_of_singles(slopes, c, singles)]
+    chosen = _greedy(slopes, singles, named)
     if chosen.is_complete:
-        return tuple(chosen.taken), tuple(c for c in own if c not in chosen.taken)
+        return tuple(chosen.taken), tuple(c for c in named if c not in chosen.taken)
     formulas = [*_short_formulas(slopes)]
-    found = [_combination(formula) for formula in formulas]
+    combinations = [_combination(formula) for formula in formulas]
     for divisor in (p.name for p, is_lost in zip(null.structure.free, lost, strict=True) if is_lost):
         quotients = [_combination(f) for f in (_over(formula, divisor) for formula in formulas) if f is not None]
         chosen = _greedy(slopes, singles, quotients)
         if chosen.is_complete:
             break
     else:
-        chosen = _greedy(slopes, singles, [*own, *found])
+        chosen = _greedy(slopes, singles, [*named, *combinations])
         if not chosen.is_complete:
-            chosen = _greedy(slopes, singles, [*own, *found, *map(_combination, _sums_of_products(slopes))])
+            chosen = _greedy(slopes, singles, [*named, *combinations, *map(_combination, _sums_of_products(slopes))])
     names = {c.name for c in chosen.taken}
-    pairs = [c for c, formula in zip(found, formulas, strict=True) if formula.cost[:3] == (2, 0, 0)]
-    others = {c.name: c for c in (*own, *pairs) if c.name not in names}
+    pairs = [c for c, formula in zip(combinations, formulas, strict=True) if formula.cost[:3] == (2, 0, 0)]
+    others = {c.name: c for c in (*named, *pairs) if c.name not in names}
     return tuple(chosen.taken), tuple(others.values())
 
 
@@ -179,16 +179,16 @@ def lost_terms(null: NullSpace) -> list[FormulaTerm]:
     """Return the terms that formulas are made of: lost parameters, and sums and differences with a lost one."""
     structure = null.structure
     lost = [p for p, is_lost in zip(structure.free, null.of_lost(), strict=True) if is_lost]
-    terms = {p.name: single(p.name, p.unit, order=place) for place, p in enumerate(structure.free)}
-    found = [terms[p.name] for p in lost]
+    terms = {p.name: single(p.name, p.unit, order=order) for order, p in enumerate(structure.free)}
+    lost_names = [terms[p.name] for p in lost]
     start = {p.name: np.asarray(p.value) for p in structure.parameters}
 
     def add(first: FormulaTerm, second: FormulaTerm) -> None:
         for sign in (1, -1):
-            term = sum_of(first, second, sign, order=len(structure.free) + len(found))
+            term = sum_of(first, second, sign, order=len(structure.free) + len(lost_names))
             if sign < 0 and float(term.of(start)) < 0.0:
                 term = sum_of(second, first, sign, order=term.order)
-            found.append(term)
+            lost_names.append(term)
 
     for one, other in combinations(structure.free, 2):
         if (one in lost or other in lost) and unit_of((one.unit, 1), ("-", 1)) == unit_of((other.unit, 1), ("-", 1)):
@@ -197,7 +197,7 @@ def lost_terms(null: NullSpace) -> list[FormulaTerm]:
         held = [q.value for q in structure.parameters if q.held and q.unit == p.unit and q.value != 0.0]
         for value in dict.fromkeys([*held, *([1.0] if p.unit == "-" else [])]):
             add(number(value, p.unit), terms[p.name])
-    return found
+    return lost_names
 
 
 def _short_formulas(slopes: CombinationSlopes) -> list[ParameterFormula]:
@@ -206,14 +206,14 @@ def _short_formulas(slopes: CombinationSlopes) -> list[ParameterFormula]:
     gradients = [slopes.gradient(term.of) for term in terms]
     at = [(slopes.projected(g), float(np.linalg.norm(g))) for g in gradients]
     usable = [i for i, (u, size) in enumerate(at) if np.isfinite(size) and size > 0.0 and np.isfinite(u).all()]
-    known = [i for i in usable if np.linalg.norm(at[i][0]) < TOLERANCE * at[i][1]]
-    rest = [i for i in usable if i not in known]
-    found = [ParameterFormula(factors=((terms[i], 1),)) for i in known]
-    if rest:
-        kept = [terms[i] for i in rest]
-        table, size = np.stack([at[i][0] for i in rest]), np.array([at[i][1] for i in rest])
-        found += [*_pairs(kept, table, size), *_triples(kept, table, size)]
-    return sorted(found, key=lambda formula: formula.cost)
+    constant = [i for i in usable if np.linalg.norm(at[i][0]) < TOLERANCE * at[i][1]]
+    varying = [i for i in usable if i not in constant]
+    formulas = [ParameterFormula(factors=((terms[i], 1),)) for i in constant]
+    if varying:
+        kept = [terms[i] for i in varying]
+        table, size = np.stack([at[i][0] for i in varying]), np.array([at[i][1] for i in varying])
+        formulas += [*_pairs(kept, table, size), *_triples(kept, table, size)]
+    return sorted(formulas, key=lambda formula: formula.cost)
 
 
 def _pairs(terms: Sequence[FormulaTerm], table: FloatArray, size: FloatArray) -> Iterator[ParameterFormula]:
@@ -248,11 +248,11 @@ def _sums_of_products(slopes: CombinationSlopes) -> list[ParameterFormula]:
     rests += [((t, a), (o, b)) for t, o in combinations(singles, 2) for a, b in product((-1, 1), repeat=2)]
     alone = {term.name: slopes.projected(slopes.gradient(term.of)) for term in singles}
     none = np.zeros_like(next(iter(alone.values())))
-    table = np.stack([sum((power * alone[term.name] for term, power in rest), none) for rest in rests])
-    found = []
+    table = np.stack([sum((power * alone[term.name] for term, power in factors), none) for factors in rests])
+    formulas = []
     for (first, second), sign in product(combinations(products, 2), (1, -1)):
         term = sum_of(first, second, sign, order=first.order)
         slope = slopes.gradient(term.of)
         near = np.linalg.norm(table + slopes.projected(slope), axis=1) < TOLERANCE * np.linalg.norm(slope)
-        found += [ParameterFormula(factors=((term, 1), *rests[place])) for place in np.flatnonzero(near)]
-    return sorted(found, key=lambda formula: formula.cost)
+        formulas += [ParameterFormula(factors=((term, 1), *rests[index])) for index in np.flatnonzero(near)]
+    return sorted(formulas, key=lambda formula: formula.cost)

@@ -60,9 +60,9 @@ class ParameterFormula:
 
     def of(self, values: Mapping[str, FloatArray]) -> FloatArray:
         """Return its value from the parameters' values."""
-        (first, power), *rest = self.factors
+        (first, power), *others = self.factors
         product: FloatArray = first.of(values) ** float(power)
-        for term, power in rest:
+        for term, power in others:
             product = product * term.of(values) ** float(power)
         return product
 
@@ -129,11 +129,11 @@ def unit_of(*powers: tuple[str, int]) -> str:
 def _parsed(unit: str) -> dict[str, int]:
     """Return the powers of the unit names in a unit such as ``N m s/rad`` or ``kg m2``."""
     above, _, below = unit.partition("/")
-    found: Counter[str] = Counter()
+    powers: Counter[str] = Counter()
     for text, sign in ((above, 1), (below, -1)):
         for name, power in re.findall(r"([^\W\d]+|%|°)(\d*)", text):
-            found[name] += sign * int(power or 1)
-    return {name: power for name, power in found.items() if name != "rad"}
+            powers[name] += sign * int(power or 1)
+    return {name: power for name, power in powers.items() if name != "rad"}
 
 
 def _unit_power(name: str, power: int) -> str:

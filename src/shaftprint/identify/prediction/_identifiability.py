@@ -49,20 +49,20 @@ class Identifiability:
     @property
     def sentences(self) -> tuple[str, ...]:
         """What can be found, what cannot, and what would have to be known."""
-        found = [self._found()]
+        lines = [self._found()]
         if self.also:
-            found.append(
+            lines.append(
                 f"{_and([c.name for c in self.also])} {'follow' if len(self.also) > 1 else 'follows'} from these."
             )
         if self.lost:
             silent = [d for d in self.directions if len(d.parameters) == 1]
             moving = [d for d in self.directions if len(d.parameters) > 1]
-            found += [f"{d.sentence}." for d in silent]
+            lines += [f"{d.sentence}." for d in silent]
             hidden = [name for name in self.lost if all(name not in d.parameters for d in silent)]
             if hidden:
-                found.append(f"{_and(hidden)} cannot be found on their own: {'; '.join(d.sentence for d in moving)}.")
-                found.append(_way_out(moving))
-        return tuple(found)
+                lines.append(f"{_and(hidden)} cannot be found on their own: {'; '.join(d.sentence for d in moving)}.")
+                lines.append(_way_out(moving))
+        return tuple(lines)
 
     @property
     def text(self) -> str:
@@ -80,8 +80,8 @@ class Identifiability:
             noun = "combination" if self.unnamed == 1 else "combinations"
             names.append(f"{self.unnamed} {noun} of {_and(self.lost)} without a short formula")
         numbers = "1 number" if self.rank == 1 else f"{self.rank} numbers"
-        given = "1 free parameter" if free == 1 else f"{free} free parameters"
-        return f"{start} {numbers} for the {given} of {self.structure.name}: {', '.join(names) or 'nothing'}."
+        count = "1 free parameter" if free == 1 else f"{free} free parameters"
+        return f"{start} {numbers} for the {count} of {self.structure.name}: {', '.join(names) or 'nothing'}."
 
 
 def identifiability(

@@ -40,8 +40,8 @@ class Group:
         start = f"With these lines {_and(self.names)} cannot be separated ({how})"
         if not self.known:
             return f"{start}."
-        known = [f"{e.name} is known to {100.0 * _share(e):.2g} %" for e in self.known]
-        return f"{start}; {_and(known)}."
+        known_numbers = [f"{e.name} is known to {100.0 * _share(e):.2g} %" for e in self.known]
+        return f"{start}; {_and(known_numbers)}."
 
 
 def inseparable_groups(
@@ -74,7 +74,7 @@ def inseparable_groups(
         for i, j in sorted(combinations(usable, 2), key=lambda pair: -abs(correlation[pair]))
         if abs(correlation[i, j]) >= CORRELATED and max(share[i], share[j]) >= POOR
     ]
-    found = []
+    groups = []
     for members in _connected(len(parameters), strong):
         inside = [(i, j) for i, j in strong if i in members]
         offered = [
@@ -83,14 +83,14 @@ def inseparable_groups(
             if (best := _best(objective, parameters[i].name, parameters[j].name, named, estimate)) is not None
             and BETTER * _share(best) < min(share[i], share[j])
         ]
-        found.append(
+        groups.append(
             Group(
                 names=tuple(parameters[i].name for i in members),
                 correlation=float(correlation[inside[0]]),
                 known=_not_following(offered, len(parameters)),
             )
         )
-    return tuple(found)
+    return tuple(groups)
 
 
 def _connected(count: int, edges: Sequence[tuple[int, int]]) -> list[list[int]]:
@@ -99,18 +99,18 @@ def _connected(count: int, edges: Sequence[tuple[int, int]]) -> list[list[int]]:
     for i, j in edges:
         group = [group[i] if label == group[j] else label for label in group]
     labels = dict.fromkeys(group[i] for i, _ in edges)
-    return [[place for place, label in enumerate(group) if label == wanted] for wanted in labels]
+    return [[index for index, label in enumerate(group) if label == wanted] for wanted in labels]
 
 
 def _not_following(offered: Sequence[tuple[Estimate, int, int]], count: int) -> tuple[Estimate, ...]:
     """Return the best known of what is offered, without those that tie two parameters which others tie already."""
     group = list(range(count))
-    found = []
+    estimates = []
     for estimate, i, j in sorted(offered, key=lambda offer: _share(offer[0])):
         if group[i] != group[j]:
             group = [group[i] if label == group[j] else label for label in group]
-            found.append(estimate)
-    return tuple(found)
+            estimates.append(estimate)
+    return tuple(estimates)
 
 
 def _best(
@@ -131,7 +131,7 @@ def _share(estimate: Estimate) -> float:
 def _together(objective: Objective, first: str, second: str, named: Sequence[Combination]) -> list[Combination]:
     """Return what might be known of two parameters together: named combinations, sums, products, quotients."""
     values = objective.named(objective.held)
-    own = [c for c in named if not any(c.is_defined_by(_without(values, name)) for name in (first, second))]
+    defined = [c for c in named if not any(c.is_defined_by(_without(values, name)) for name in (first, second))]
     one, other = (_term(objective, name, order) for order, name in enumerate((first, second)))
     formulas = [ParameterFormula(factors=((one, 1), (other, power))) for power in (1, -1)]
     if one.unit == other.unit:
@@ -139,7 +139,7 @@ def _together(objective: Objective, first: str, second: str, named: Sequence[Com
     for mine, others in combinations(_lateness(objective), 2):
         if {first, second} <= {*mine[1], *others[1]}:
             formulas.append(ParameterFormula(factors=((sum_of(mine[0], others[0], 1, order=2), 1),)))
-    return [*own, *(Combination(name=f.name, unit=f.unit, of=f.of, meaning=MEANING) for f in formulas)]
+    return [*defined, *(Combination(name=f.name, unit=f.unit, of=f.of, meaning=MEANING) for f in formulas)]
 
 
 def _without(values: dict[str, FloatArray], name: str) -> dict[str, FloatArray]:
@@ -155,14 +155,14 @@ def _lateness(objective: Objective) -> list[tuple[FormulaTerm, tuple[str, ...]]]
 
     A lag ``omega_n^2 / (s^2 + 2 zeta omega_n s + omega_n^2)`` is ``1 - 2 zeta / omega_n s`` for small ``s``.
     """
-    found: dict[str, tuple[FormulaTerm, tuple[str, ...]]] = {}
+    terms: dict[str, tuple[FormulaTerm, tuple[str, ...]]] = {}
     for block in (block for term in objective.terms for block in term.structure.blocks):
         if isinstance(block, Delay):
-            found.setdefault(block.time.name, (_time(block.time), (block.time.name,)))
+            terms.setdefault(block.time.name, (_time(block.time), (block.time.name,)))
         if isinstance(block, SecondOrderLag):
             omega_n, zeta = block.frequency.name, block.damping.name
-            found.setdefault(omega_n, (_lag_time(omega_n, zeta), (omega_n, zeta)))
-    return list(found.values())
+            terms.setdefault(omega_n, (_lag_time(omega_n, zeta), (omega_n, zeta)))
+    return list(terms.values())
 
 
 def _time(parameter: Parameter) -> FormulaTerm:

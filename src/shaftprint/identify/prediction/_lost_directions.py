@@ -33,19 +33,19 @@ def directions_of(null: NullSpace, outputs: Sequence[str]) -> tuple[Direction, .
     defaults = null_directions(null.structure, outputs, null.structure.vector({}))
     slopes = CombinationSlopes.of(null)
     terms = lost_terms(null)
-    found = []
+    directions = []
     for support in _supports(null):
         along = _along(null.basis, null.scale, support)
         first = _along(defaults[1][None], defaults[0][None], support)[0]
-        moving = [names[place] for place in support]
-        found.append(
+        moving = [names[column] for column in support]
+        directions.append(
             Direction(
                 parameters=tuple(moving),
                 sentence=_sentence(slopes, terms, moving, along, outputs),
                 at_default=dict(zip(moving, first[list(support)].tolist(), strict=True)),
             )
         )
-    return tuple(found)
+    return tuple(directions)
 
 
 def _supports(null: NullSpace) -> list[tuple[int, ...]]:
@@ -53,19 +53,19 @@ def _supports(null: NullSpace) -> list[tuple[int, ...]]:
     count, basis = null.basis.shape[2], null.basis[0]
     lost = np.flatnonzero(null.of_lost()).tolist()
     chosen: list[tuple[int, ...]] = []
-    taken = np.empty((count, 0))
+    chosen_rows = np.empty((count, 0))
     for size in range(1, len(lost) + 1):
         for support in combinations(lost, size):
             if len(chosen) == count:
                 return chosen
-            if any(set(known) <= set(support) for known in chosen):
+            if any(set(smaller) <= set(support) for smaller in chosen):
                 continue
             outside = np.delete(basis, support, axis=0)
             _, singular, right = np.linalg.svd(np.vstack([outside, np.zeros((count, count))]))
             if singular[-1] > TOLERANCE:
                 continue
-            if np.linalg.matrix_rank(np.column_stack([taken, right[-1]]), tol=TOLERANCE) > taken.shape[1]:
-                taken = np.column_stack([taken, right[-1]])
+            if np.linalg.matrix_rank(np.column_stack([chosen_rows, right[-1]]), tol=TOLERANCE) > chosen_rows.shape[1]:
+                chosen_rows = np.column_stack([chosen_rows, right[-1]])
                 chosen.append(support)
     return chosen
 
@@ -77,9 +77,9 @@ def _along(basis: FloatArray, scale: FloatArray, support: tuple[int, ...]) -> Fl
         outside = np.delete(directions, support, axis=0)
         _, _, right = np.linalg.svd(np.vstack([outside, np.zeros((directions.shape[1],) * 2)]))
         moves.append(directions @ right[-1] * unit)
-    found = np.array(moves)
-    found[:, [place for place in range(found.shape[1]) if place not in support]] = 0.0
-    return found
+    reduced = np.array(moves)
+    reduced[:, [column for column in range(reduced.shape[1]) if column not in support]] = 0.0
+    return reduced
 
 
 def _sentence(
@@ -92,7 +92,7 @@ def _sentence(
     structure = slopes.null.structure
     if len(moving) == 1:
         return f"{moving[0]} does not show in {_and(outputs)}"
-    singles = {p.name: place for place, p in enumerate(structure.free)}
+    singles = {p.name: column for column, p in enumerate(structure.free)}
     amounts = along[:, [singles[name] for name in moving]]
     if len({structure.free[singles[name]].unit for name in moving}) == 1 and _is_steady(amounts / amounts[:, :1]):
         share = amounts[0] / amounts[0, 0]
@@ -117,10 +117,10 @@ def _as_factors(
         moved: dict[str, float] = {}
         kept: list[str] = []
         for name in moving:
-            found = _steady_term(terms, changes, name, changes[reference])
-            if found is None:
+            steady = _steady_term(terms, changes, name, changes[reference])
+            if steady is None:
                 break
-            term, factor = found
+            term, factor = steady
             if factor:
                 moved[term] = factor
             elif term not in kept:
@@ -139,9 +139,9 @@ def _steady_term(
             continue
         with np.errstate(all="ignore"):
             power = changes[term.name] / reference
-        for whole in (1.0, -1.0, 0.0):
-            if np.all(np.abs(power - whole) < TOLERANCE):
-                return term.name, whole
+        for exponent in (1.0, -1.0, 0.0):
+            if np.all(np.abs(power - exponent) < TOLERANCE):
+                return term.name, exponent
     return None
 
 

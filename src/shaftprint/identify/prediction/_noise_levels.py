@@ -71,13 +71,13 @@ class NoiseLevels:
         wanted, stated = np.log(np.asarray(frequency_hz, dtype=np.float64)), np.log(self.frequency_hz)
         level = np.diagonal(self.density, axis1=1, axis2=2).real
         root = np.exp(0.5 * np.stack([np.interp(wanted, stated, np.log(column)) for column in level.T], axis=1))
-        own = np.sqrt(level)
-        shape = self.density / (own[:, :, None] * own[:, None, :])
-        found = np.empty((wanted.size, *shape.shape[1:]), dtype=np.complex128)
+        deviation = np.sqrt(level)
+        shape = self.density / (deviation[:, :, None] * deviation[:, None, :])
+        interpolated = np.empty((wanted.size, *shape.shape[1:]), dtype=np.complex128)
         for i, j in np.ndindex(*shape.shape[1:]):
-            found[:, i, j] = np.interp(wanted, stated, shape[:, i, j].real)
-            found[:, i, j] += 1j * np.interp(wanted, stated, shape[:, i, j].imag)
-        return found * root[:, :, None] * root[:, None, :]
+            interpolated[:, i, j] = np.interp(wanted, stated, shape[:, i, j].real)
+            interpolated[:, i, j] += 1j * np.interp(wanted, stated, shape[:, i, j].imag)
+        return interpolated * root[:, :, None] * root[:, None, :]
 
     def of_outputs(self, *names: str) -> "NoiseLevels":
         """Return the levels of some of the outputs.
@@ -120,7 +120,7 @@ def noise_levels(response: FrequencyResponse, campaign: "Campaign", *, set_point
         )
     sines = {sine.name: sine for sine in campaign.sines}
     places = np.flatnonzero(response.used)
-    unknown = [response.lines[place] for place in places if response.lines[place] not in sines]
+    unknown = [response.lines[index] for index in places if response.lines[index] not in sines]
     if unknown:
         raise IdentificationError(
             f"noise levels: campaign {campaign.name} has no sine {', '.join(unknown)}; give the campaign that the "
@@ -128,10 +128,10 @@ def noise_levels(response: FrequencyResponse, campaign: "Campaign", *, set_point
         )
     size = len(response.outputs)
     density = np.empty((places.size, size, size), dtype=np.complex128)
-    for row, place in enumerate(places):
-        sine = sines[response.lines[place]]
+    for row, index in enumerate(places):
+        sine = sines[response.lines[index]]
         amplitude = set_point_per_v * sine.amplitude_v
-        spread = response.covariance[place]
+        spread = response.covariance[index]
         same = spread[:size, :size] + spread[size:, size:]
         crossed = spread[size:, :size] - spread[:size, size:]
         density[row] = (same + 1j * crossed) * (0.5 * sine.window_s * amplitude**2)
@@ -168,12 +168,12 @@ def stated_noise(
     IdentificationError
         If the table makes no sense.
     """
-    own = np.sqrt(np.asarray(densities, dtype=np.float64))
+    deviation = np.sqrt(np.asarray(densities, dtype=np.float64))
     shape = np.tile(np.eye(2, dtype=np.complex128), (len(frequency_hz), 1, 1))
     shape[:, 0, 1], shape[:, 1, 0] = coherences, np.conj(coherences)
     return NoiseLevels(
         frequency_hz=np.asarray(frequency_hz, dtype=np.float64),
-        density=shape * own[:, :, None] * own[:, None, :],
+        density=shape * deviation[:, :, None] * deviation[:, None, :],
         outputs=("n", "M_s"),
         set_point_per_v=set_point_per_v,
     )

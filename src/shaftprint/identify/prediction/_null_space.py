@@ -67,15 +67,15 @@ def null_space(structure: Structure, outputs: Sequence[str], rng: np.random.Gene
     if not structure.free:
         raise StructureError(f"structure {structure.name} has no free parameter: free one with free_between().")
     table = np.stack([_random_point(structure, rng) for _ in range(POINTS)])
-    found = [null_directions(structure, outputs, values) for values in table]
+    null_spaces = [null_directions(structure, outputs, values) for values in table]
     # At an exceptional point more is lost than elsewhere.
-    fewest = min(directions.shape[1] for _, directions in found)
-    kept = [place for place, (_, directions) in enumerate(found) if directions.shape[1] == fewest]
+    fewest = min(directions.shape[1] for _, directions in null_spaces)
+    kept = [row for row, (_, directions) in enumerate(null_spaces) if directions.shape[1] == fewest]
     return NullSpace(
         structure=structure,
         table=table[kept],
-        scale=np.stack([found[place][0] for place in kept]),
-        basis=np.stack([found[place][1] for place in kept]),
+        scale=np.stack([null_spaces[row][0] for row in kept]),
+        basis=np.stack([null_spaces[row][1] for row in kept]),
     )
 
 
@@ -109,7 +109,7 @@ def _relative_sensitivity(structure: Structure, outputs: Sequence[str], values: 
     with np.errstate(all="ignore"):
         response, gradient = structure.gradient(values, 1j * OMEGA_RAD_S)
         relative = gradient / response
-    wanted = [place for place, (output, _) in enumerate(structure.channels) if output in outputs]
+    wanted = [row for row, (output, _) in enumerate(structure.channels) if output in outputs]
     table = relative[:, wanted].reshape(len(structure.free), -1).T
     rows: ComplexArray = table[np.isfinite(table).all(axis=1)]
     if _is_numerical(structure):

@@ -125,5 +125,5 @@ def _real(covariance: np.ndarray) -> FloatArray:
     """Return the covariance of [Re, Im] of circular complex noise, shape (lines, 2 outputs, 2 outputs)."""
     upper = np.concatenate([covariance.real, -covariance.imag], axis=2)
     lower = np.concatenate([covariance.imag, covariance.real], axis=2)
-    found: FloatArray = 0.5 * np.concatenate([upper, lower], axis=1)
-    return found
+    table: FloatArray = 0.5 * np.concatenate([upper, lower], axis=1)
+    return table

@@ -40,9 +40,9 @@ def bounded_least_squares(columns: FloatArray, aim: FloatArray, lower: FloatArra
     at_low = np.zeros(right.shape, dtype=np.bool_)
     at_high = at_low.copy()
     for count in range(PASSES):
-        found = _beside(matrix, right, np.where(at_low, low, high), at_low | at_high)
-        slope = (matrix @ found[:, :, None])[:, :, 0] - right
-        below, above = ~at_low & (found < low), ~at_high & (found > high)
+        solution = _beside(matrix, right, np.where(at_low, low, high), at_low | at_high)
+        slope = (matrix @ solution[:, :, None])[:, :, 0] - right
+        below, above = ~at_low & (solution < low), ~at_high & (solution > high)
         back = (at_low & (slope < -slack)) | (at_high & (slope > slack))
         change = below | above | back
         if not change.any():
@@ -50,15 +50,15 @@ def bounded_least_squares(columns: FloatArray, aim: FloatArray, lower: FloatArra
         if count >= SINGLE_AFTER:
             change &= np.cumsum(change, axis=1) == 1
         at_low, at_high = (at_low & ~change) | (below & change), (at_high & ~change) | (above & change)
-    inside = np.clip(found / scale, lower, upper)
+    inside = np.clip(solution / scale, lower, upper)
     return np.where(at_low, lower, np.where(at_high, upper, inside))
 
 
 def _beside(matrix: FloatArray, right: FloatArray, bound: FloatArray, held: BoolArray) -> FloatArray:
     """Return the best unknowns of every problem with some of them held on a bound."""
     put = np.where(held, bound, 0.0)
-    rest = np.where(held, put, right - (matrix @ put[:, :, None])[:, :, 0])
+    reduced = np.where(held, put, right - (matrix @ put[:, :, None])[:, :, 0])
     system = np.where(held[:, :, None] | held[:, None, :], 0.0, matrix)
     rows, size, _ = system.shape
     system.reshape(rows, -1)[:, :: size + 1][held] = 1.0
-    return np.asarray(np.linalg.solve(system, rest[:, :, None])[:, :, 0])
+    return np.asarray(np.linalg.solve(system, reduced[:, :, None])[:, :, 0])

@@ -49,14 +49,14 @@ class Conditional:
         """Places of the parameters that must be searched."""
         return tuple(i for i in self.others if i not in self.closed)
 
-    def lowest(self, at: FloatArray, known: FloatArray, *, starts: int) -> tuple[FloatArray, FloatArray]:
+    def lowest(self, at: FloatArray, optima: FloatArray, *, starts: int) -> tuple[FloatArray, FloatArray]:
         """Return the best free parameters of every value, shape (values, free), and their cost, shape (values,).
 
         Parameters
         ----------
         at
             Values of the held parameter, shape (values,).
-        known
+        optima
             Free parameters from which each value is tried too, shape (known, free).
         starts
             Number of starts besides.
@@ -64,7 +64,7 @@ class Conditional:
         lower, upper = self.objective.lower, self.objective.upper
         if not self.searched:
             return self._solved_at(at)
-        places = np.concatenate([spread(starts, lower, upper), known])
+        places = np.concatenate([spread(starts, lower, upper), optima])
         return self.carried(*self._best_of(at, np.repeat(places[None], at.size, axis=0)))
 
     def between(self, at: FloatArray, left: FloatArray, right: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -126,7 +126,7 @@ class Conditional:
 
     def _solved(self, theta: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the rows with the closed-form parameters at their best, and the cost."""
-        found, cost = theta.copy(), np.empty(theta.shape[0])
+        solved, cost = theta.copy(), np.empty(theta.shape[0])
         closed = list(self.closed)
         for first in range(0, theta.shape[0], BLOCK):
             rows = slice(first, first + BLOCK)
@@ -135,21 +135,21 @@ class Conditional:
             aim = np.einsum("rc,rcn->rn", theta[rows][:, closed], columns) - residuals
             bounds = self.objective.lower[closed], self.objective.upper[closed]
             best = bounded_least_squares(columns, aim, *bounds)
-            left = aim - np.einsum("rc,rcn->rn", best, columns)
-            found[rows, closed], cost[rows] = best, 0.5 * np.vecdot(left, left)
-        return found, cost
+            remainder = aim - np.einsum("rc,rcn->rn", best, columns)
+            solved[rows, closed], cost[rows] = best, 0.5 * np.vecdot(remainder, remainder)
+        return solved, cost
 
     def _descended(self, theta: FloatArray, tolerance: float) -> tuple[FloatArray, FloatArray]:
         """Return where the rows end when all but the held parameter are searched, and the cost there."""
-        found, cost = theta.copy(), np.empty(theta.shape[0])
+        ends, cost = theta.copy(), np.empty(theta.shape[0])
         others = list(self.others)
         for first in range(0, theta.shape[0], BLOCK):
             part = theta[first : first + BLOCK]
 
             def residuals(trial: FloatArray, rows: IntArray, part: FloatArray = part) -> tuple[FloatArray, FloatArray]:
-                whole = part[rows]
-                whole[:, others] = trial
-                r, slopes = self.objective.residuals(whole)
+                full_part = part[rows]
+                full_part[:, others] = trial
+                r, slopes = self.objective.residuals(full_part)
                 return r, slopes[:, others]
 
             descent = descend(
@@ -160,6 +160,6 @@ class Conditional:
                 tolerance=tolerance,
                 max_iterations=ITERATIONS,
             )
-            found[first : first + BLOCK, others] = descent.theta
+            ends[first : first + BLOCK, others] = descent.theta
             cost[first : first + BLOCK] = descent.cost
-        return found, cost
+        return ends, cost

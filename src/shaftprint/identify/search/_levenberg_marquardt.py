@@ -245,9 +245,15 @@ def _held_step(
     if passes <= SINGLE_PASSES:
         change &= np.cumsum(change, axis=1) == 1
     low, high = (low & ~(back_up & change)) | (below & change), (high & ~(back_down & change)) | (above & change)
-    left = ~settled
-    step[left], settled[left] = _held_step(
-        damped[left], gradient[left], to_lower[left], to_upper[left], low[left], high[left], passes - 1
+    open_rows = ~settled
+    step[open_rows], settled[open_rows] = _held_step(
+        damped[open_rows],
+        gradient[open_rows],
+        to_lower[open_rows],
+        to_upper[open_rows],
+        low[open_rows],
+        high[open_rows],
+        passes - 1,
     )
     return step, settled
 

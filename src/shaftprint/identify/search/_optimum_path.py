@@ -44,8 +44,8 @@ def highest_between(objective: Objective, one: FloatArray, others: FloatArray) -
         slope = direction[rows] / stray[rows, None]
         return np.concatenate([r, hold[:, None]], axis=1), np.concatenate([jacobian, slope[:, :, None]], axis=2)
 
-    found = descend(
+    path = descend(
         residuals, start, objective.lower, objective.upper, tolerance=TOLERANCE, max_iterations=ITERATIONS
     ).theta
-    r, _ = objective.residuals(found)
+    r, _ = objective.residuals(path)
     return np.asarray((0.5 * np.vecdot(r, r)).reshape(-1, STATIONS).max(axis=1))

@@ -49,11 +49,11 @@ def search(objective: Objective, settings: Settings, rng: np.random.Generator) -
     """
     allowed = stable_models(objective) if settings.stability == "during" else None
     start = _starts(objective, settings, rng, allowed)
-    found = _descended(objective, start, settings, allowed)
+    descent = _descended(objective, start, settings, allowed)
     floors = tuple(_floors(objective))
     if floors:
-        found = _lower(found, _in_steps(objective, start, floors, settings, allowed))
-    return found if allowed is None else _lower(found, beside_border(objective, found, settings, allowed))
+        descent = _lower(descent, _in_steps(objective, start, floors, settings, allowed))
+    return descent if allowed is None else _lower(descent, beside_border(objective, descent, settings, allowed))
 
 
 def polish(objective: Objective, theta: FloatArray, settings: Settings) -> Descent:
@@ -147,10 +147,10 @@ def _in_steps(
     for floor in floors[1:]:
         theta = _descended(_with_floor(objective, floor), theta, settings, allowed).theta
     last = _descended(objective, theta, settings, allowed)
-    found = replace(first, cost=np.full(first.cost.size, np.inf))
+    descent = replace(first, cost=np.full(first.cost.size, np.inf))
     for name in ("theta", "cost", "converged", "refused"):
-        getattr(found, name)[best] = getattr(last, name)
-    return found
+        getattr(descent, name)[best] = getattr(last, name)
+    return descent
 
 
 def _with_floor(objective: Objective, floor: float) -> Objective:

@@ -29,12 +29,12 @@ TOLERANCE = 1e-9
 STEPS_INSIDE = np.geomspace(1e-12, 0.1, 45)
 
 
-def beside_border(objective: Objective, found: Descent, settings: Settings, allowed: Allowed) -> Descent:
+def beside_border(objective: Objective, descent: Descent, settings: Settings, allowed: Allowed) -> Descent:
     """Return the starts that were stopped at the border of stability at the lowest cost beside it.
 
     Parameters
     ----------
-    found
+    descent
         Where the starts of a search ended, all of them stable models.
     allowed
         Tells which models are stable.
@@ -43,15 +43,15 @@ def beside_border(objective: Objective, found: Descent, settings: Settings, allo
     -------
         The same, with an infinite cost where nothing was found.
     """
-    theta, cost = found.theta.copy(), np.full(found.cost.size, np.inf)
-    stopped = np.flatnonzero(found.refused)
-    for row in stopped[np.argsort(found.cost[stopped], kind="stable")][:CHOSEN]:
-        border = _Border.nearest(objective, found.theta[row])
-        inside = None if border is None else border.lowest(found.theta[row], settings, allowed)
+    theta, cost = descent.theta.copy(), np.full(descent.cost.size, np.inf)
+    stopped = np.flatnonzero(descent.refused)
+    for row in stopped[np.argsort(descent.cost[stopped], kind="stable")][:CHOSEN]:
+        border = _Border.nearest(objective, descent.theta[row])
+        inside = None if border is None else border.lowest(descent.theta[row], settings, allowed)
         if inside is not None:
             residuals, _ = objective.residuals(inside[None, :])
             theta[row], cost[row] = inside, 0.5 * float(residuals[0] @ residuals[0])
-    return replace(found, theta=theta, cost=cost)
+    return replace(descent, theta=theta, cost=cost)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -74,9 +74,9 @@ class _Border:
                 continue
             loop = replace(structure, outputs={"L": structure.loop}, input="u", inputs=("u",), combinations=())
             distance = np.abs(1.0 + loop.response(experiment.structure_values(values), 1j * SWEEP_RAD_S)[0])
-            place = int(np.argmin(distance))
-            if distance[place] < least:
-                least, nearest = distance[place], cls(objective, number, loop, float(SWEEP_RAD_S[place]))
+            index = int(np.argmin(distance))
+            if distance[index] < least:
+                least, nearest = distance[index], cls(objective, number, loop, float(SWEEP_RAD_S[index]))
         return nearest
 
     def lowest(self, theta: FloatArray, settings: Settings, allowed: Allowed) -> FloatArray | None:
@@ -121,9 +121,9 @@ class _Border:
     def _gap(self, trial: FloatArray) -> tuple[complex, ComplexArray]:
         """Return ``1 + L`` and its derivatives to the free parameters and to the logarithm of the frequency."""
         experiment = self.objective.terms[self.number]
-        own = experiment.structure_values(self.objective.complete(trial[:-1]))
+        values = experiment.structure_values(self.objective.complete(trial[:-1]))
         s = 1j * np.exp(trial[-1] + np.array([0.0, STEP, -STEP]))
-        stacked = self.loop.stacked(own, s)[:, 0]
+        stacked = self.loop.stacked(values, s)[:, 0]
         slopes = np.zeros(trial.size, dtype=np.complex128)
         slopes[list(experiment.columns)] = stacked[1:, 0]
         slopes[-1] = (stacked[0, 1] - stacked[0, 2]) / (2.0 * STEP)

@@ -157,8 +157,10 @@ def step_band(
         lower, upper = value - half, value + half
     else:
         rows = identification.objective.complete(repeats.values)
-        own = identification.objective.terms[experiment].structure_values(rows)
-        lower, upper = _middle_share(np.stack([step_response(spread.structure, row, time)[0] for row in own]), coverage)
+        structure_rows = identification.objective.terms[experiment].structure_values(rows)
+        lower, upper = _middle_share(
+            np.stack([step_response(spread.structure, row, time)[0] for row in structure_rows]), coverage
+        )
     return StepBand(
         coverage=coverage,
         time_s=frozen_float(time),

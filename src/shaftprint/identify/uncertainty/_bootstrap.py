@@ -83,15 +83,15 @@ def bootstrap(
     repeats = tuple(term.redrawn(identification.values, count, rng) for term in objective.terms)
     redrawn = Redrawn(repeats=repeats, prior_means=_prior_means(identification, count, rng))
     free = identification.values[list(objective.free)]
-    found = refit_redrawn(identification, redrawn, np.broadcast_to(free, (count, free.size)))
-    settled = found.values[found.converged]
+    refits = refit_redrawn(identification, redrawn, np.broadcast_to(free, (count, free.size)))
+    settled = refits.values[refits.converged]
     if settled.shape[0] < FEWEST:
         raise IdentificationError(
             f"bootstrap of {objective.name}: expected two fits or more that settle, found {settled.shape[0]} of "
             f"{count}; allow more iterations, or hold a parameter that the test does not know."
         )
     return Bootstrap(
-        names=found.names,
+        names=refits.names,
         values=frozen_float(settled),
         failed_share=1.0 - settled.shape[0] / count,
         estimates=_estimates(identification, numbers, settled),
@@ -102,10 +102,10 @@ def _prior_means(identification: Identification, count: int, rng: np.random.Gene
     """Return means of the prior rows, shape (repeats, rows): drawn around the fitted value where they are knowledge."""
     objective = identification.objective
     free = identification.values[list(objective.free)]
-    index, own, inverse_std = objective.prior_rows.T
+    index, means, inverse_std = objective.prior_rows.T
     counts = objective.prior_counts == 1.0
-    noise = rng.standard_normal((count, own.size)) / inverse_std
-    return np.asarray(np.where(counts, free[index.astype(int)] + noise, own))
+    noise = rng.standard_normal((count, means.size)) / inverse_std
+    return np.asarray(np.where(counts, free[index.astype(int)] + noise, means))
 
 
 def _estimates(
@@ -115,15 +115,15 @@ def _estimates(
     combinations = (*objective.combinations, *numbers)
     best = identification.values[list(objective.free)]
     units = [*(p.unit for p in objective.free_parameters), *(c.unit for c in combinations)]
-    found = {}
-    for place, (name, unit) in enumerate(zip(all_numbers(objective, numbers), units, strict=True)):
-        asked = Numbers(objective, combinations, np.full(settled.shape[0], place))
-        values = asked.values(settled)
-        value = float(asked.chosen(np.zeros(1, dtype=np.int64)).values(best[None, :])[0])
+    estimates = {}
+    for index, (name, unit) in enumerate(zip(all_numbers(objective, numbers), units, strict=True)):
+        number = Numbers(objective, combinations, np.full(settled.shape[0], index))
+        values = number.values(settled)
+        value = float(number.chosen(np.zeros(1, dtype=np.int64)).values(best[None, :])[0])
         if not (np.isfinite(value) and np.isfinite(values).all()):
             continue
         low, high = (float(end) for end in np.percentile(values, TAILS_PERCENT))
-        found[name] = BootstrapEstimate(
+        estimates[name] = BootstrapEstimate(
             name=name,
             unit=unit,
             value=value,
@@ -132,4 +132,4 @@ def _estimates(
             percentile_95=(low, high),
             basic_95=(2.0 * value - high, 2.0 * value - low),
         )
-    return found
+    return estimates

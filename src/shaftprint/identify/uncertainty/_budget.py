@@ -97,7 +97,7 @@ def budget(
     values, slopes = every.values(table), every.slopes(table, curvature)
     moved = propagation(identification, shifts)
     named = [*((p.name, p.unit) for p in parameters), *((c.name, c.unit) for c in combinations)]
-    found = tuple(
+    budget_rows = tuple(
         BudgetRow(
             name=name,
             unit=unit,
@@ -107,4 +107,4 @@ def budget(
         for i, (name, unit) in enumerate(named)
     )
     more = (name for changes in direct.values() for name in changes)
-    return Budget(sources=tuple(dict.fromkeys([*moved.noise, *moved.effects, *more])), rows=found)
+    return Budget(sources=tuple(dict.fromkeys([*moved.noise, *moved.effects, *more])), rows=budget_rows)

@@ -143,8 +143,8 @@ class _Climb:
     def further_starts(self, ends: Ends) -> tuple[IntArray, FloatArray]:
         """Return the rows whose number lies further at the end of another row, and the parameters there."""
         count = self.side.size
-        asked, candidate = (part.ravel() for part in np.indices((count, count)))
-        values = self.numbers.chosen(asked).values(ends.theta[candidate]).reshape(count, count)
+        interval, candidate = (part.ravel() for part in np.indices((count, count)))
+        values = self.numbers.chosen(interval).values(ends.theta[candidate]).reshape(count, count)
         reach = np.where(self._allows(ends) & np.isfinite(values), self.side[:, None] * values, -np.inf)
         best = np.argmax(reach, axis=1)
         gain = reach[np.arange(count), best] - self.side * ends.value
@@ -162,12 +162,12 @@ class _Climb:
     def better(self, ends: Ends, rows: IntArray, theta: FloatArray) -> Ends:
         """Return the ends with those of some rows that lie further when climbed to from other parameters."""
         again = self.ends_from(rows, theta)
-        found, value, is_open = ends.theta.copy(), ends.value.copy(), ends.is_open.copy()
+        points, value, is_open = ends.theta.copy(), ends.value.copy(), ends.is_open.copy()
         further = self.side[rows] * (again.value - value[rows]) > 0.0
         places = rows[further]
-        found[places], value[places] = again.theta[further], again.value[further]
+        points[places], value[places] = again.theta[further], again.value[further]
         is_open[places] = again.is_open[further]
-        return Ends(theta=found, value=value, is_open=is_open)
+        return Ends(theta=points, value=value, is_open=is_open)
 
     def _allows(self, ends: Ends) -> BoolArray:
         """Return whether the rise of the cost of each row allows the end of each, shape (rows, rows)."""
@@ -245,17 +245,17 @@ class _Position:
 
     def advance(self, numbers: Numbers, trial: FloatArray, step: _Step) -> None:
         """Go to the trials that lie further or nearer to the contour; damp the other rows."""
-        asked = numbers.chosen(self.rows)
+        numbers_of_rows = numbers.chosen(self.rows)
         cost, gradient, hessian = _parabola(numbers.objective, trial)
-        value = self.side * asked.values(trial)
+        value = self.side * numbers_of_rows.values(trial)
         excess = np.maximum(cost, self.limit) - np.maximum(self.cost, self.limit)
-        slope = self.side[:, None] * asked.slopes(trial, _diagonal(hessian))
-        known = np.isfinite(value) & np.isfinite(slope).all(axis=1)
-        moved = np.where(known, value, self.value) - self.value
+        slope = self.side[:, None] * numbers_of_rows.slopes(trial, _diagonal(hessian))
+        finite = np.isfinite(value) & np.isfinite(slope).all(axis=1)
+        moved = np.where(finite, value, self.value) - self.value
         # Where the parabola never comes down to the contour, or bounds leave the number no way, the cost decides; a
         # step that takes it to its bound inside the contour is good.
         good = np.where(step.pull > 0.0, step.pull * moved > PENALTY * excess, cost < self.cost)
-        good = known & np.where(step.stuck & (moved > 0.0), cost <= self.limit, good)
+        good = finite & np.where(step.stuck & (moved > 0.0), cost <= self.limit, good)
         damping = np.where(good, RELIEF * self.damping, np.maximum(self.damping, FIRST_DAMPING) * self.growth)
         self.damping = np.maximum(damping, LEAST_DAMPING)
         self.growth = np.where(good, 1.0, 2.0 * self.growth)
@@ -342,8 +342,8 @@ def _step_beside(
         gradient = np.where(held, -put, free_gradient)
         system = np.where(held[:, :, None] | held[:, None, :], 0.0, damped)
         _diagonal(system)[held] = 1.0
-    found = np.linalg.solve(system, np.concatenate([slope[:, :, None], gradient[:, :, None]], axis=2))
-    along, down = found[:, :, 0], found[:, :, 1]
+    solution = np.linalg.solve(system, np.concatenate([slope[:, :, None], gradient[:, :, None]], axis=2))
+    along, down = solution[:, :, 0], solution[:, :, 1]
     reach = np.vecdot(slope, along)
     fall = np.vecdot(free_gradient, down)
     room = at.limit - base + 0.5 * fall

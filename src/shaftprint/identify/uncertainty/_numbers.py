@@ -40,12 +40,12 @@ class Numbers:
         """
         free = theta.shape[1]
         parameter = self.of_row < free
-        found = np.empty(self.of_row.size)
-        found[parameter] = theta[parameter, self.of_row[parameter]]
+        values = np.empty(self.of_row.size)
+        values[parameter] = theta[parameter, self.of_row[parameter]]
         for number in np.unique(self.of_row[~parameter]):
             rows = np.flatnonzero(self.of_row == number)
-            found[rows] = self._combination(int(number) - free, theta[rows])
-        return found
+            values[rows] = self._combination(int(number) - free, theta[rows])
+        return values
 
     def slopes(self, theta: FloatArray, curvature: FloatArray) -> FloatArray:
         """Return the derivatives of each row's number to the free parameters, shape (rows, free).
@@ -57,10 +57,10 @@ class Numbers:
         """
         free = theta.shape[1]
         parameter = np.flatnonzero(self.of_row < free)
-        found = np.zeros_like(theta)
-        found[parameter, self.of_row[parameter]] = 1.0
+        slopes = np.zeros_like(theta)
+        slopes[parameter, self.of_row[parameter]] = 1.0
         if parameter.size == self.of_row.size:
-            return found
+            return slopes
         width = STEP_OF_WIDTH * (self.objective.upper - self.objective.lower)
         with np.errstate(divide="ignore"):
             step = np.minimum(STEP / np.sqrt(curvature), width)
@@ -70,14 +70,14 @@ class Numbers:
             ahead = self._combination(int(number) - free, (theta[rows] + moves).reshape(-1, free))
             behind = self._combination(int(number) - free, (theta[rows] - moves).reshape(-1, free))
             with np.errstate(invalid="ignore"):
-                found[rows] = (ahead - behind).reshape(free, -1).T / (2.0 * step[rows])
-        return found
+                slopes[rows] = (ahead - behind).reshape(free, -1).T / (2.0 * step[rows])
+        return slopes
 
-    def _combination(self, place: int, theta: FloatArray) -> FloatArray:
+    def _combination(self, index: int, theta: FloatArray) -> FloatArray:
         """Return one of the combinations at many parameter sets, shape (sets,)."""
         named = self.objective.named(self.objective.complete(theta))
         with np.errstate(all="ignore"):
-            return np.broadcast_to(self.combinations[place].of(named), theta.shape[:1])
+            return np.broadcast_to(self.combinations[index].of(named), theta.shape[:1])
 
 
 def all_numbers(objective: Objective, more: Sequence[Combination] = ()) -> tuple[str, ...]:

@@ -41,8 +41,8 @@ class ParameterSpread:
         variance = np.einsum("i...,ij,j...->...", slopes, self.covariance, slopes)
         scaled = slopes / self.scale.reshape(-1, *(1,) * (slopes.ndim - 1))
         along = np.linalg.norm(np.tensordot(self.unknown, scaled, axes=(0, 0)), axis=0)
-        known = along <= LOST_SHARE * np.linalg.norm(scaled, axis=0)
-        return np.sqrt(np.where(known, np.maximum(variance, 0.0), np.nan))
+        informed = along <= LOST_SHARE * np.linalg.norm(scaled, axis=0)
+        return np.sqrt(np.where(informed, np.maximum(variance, 0.0), np.nan))
 
 
 def spread_of(identification: Identification, experiment: int = 0) -> ParameterSpread:
@@ -58,11 +58,11 @@ def spread_of(identification: Identification, experiment: int = 0) -> ParameterS
         raise IdentificationError(f"experiment {experiment}: expected a number from 0 to {len(objective.terms) - 1}.")
     one = objective.terms[experiment]
     covariance, information = known_covariance(objective, identification.values[list(objective.free)])
-    own = list(one.columns)
+    columns = list(one.columns)
     return ParameterSpread(
         structure=one.structure,
         values=one.structure_values(identification.values),
-        covariance=covariance[np.ix_(own, own)],
-        unknown=information.unknown[own],
-        scale=information.scale[own],
+        covariance=covariance[np.ix_(columns, columns)],
+        unknown=information.unknown[columns],
+        scale=information.scale[columns],
     )

@@ -67,11 +67,11 @@ def other_optima(identification: Identification) -> FloatArray:
     width = objective.upper - objective.lower
     kept = [identification.values[free]]
     for cluster in identification.clusters:
-        place = cluster.values[free]
-        new = all(np.any(np.abs(place - one) > SAME_PLACE * width) for one in kept)
+        optimum = cluster.values[free]
+        new = all(np.any(np.abs(optimum - one) > SAME_PLACE * width) for one in kept)
         allowed = 0.0 <= cluster.cost - identification.cost <= MOST_RISE
         if new and allowed and cluster.stable is not False:
-            kept.append(place)
+            kept.append(optimum)
     return np.array(kept[1 : 1 + MOST_OPTIMA]).reshape(-1, len(free))
 
 
@@ -111,20 +111,22 @@ def profile(identification: Identification, numbers: Sequence[Combination] = ())
     at_best = np.broadcast_to(best, (len(names), best.size))
     slopes = every.slopes(at_best, np.zeros_like(at_best))
     finite = np.flatnonzero(np.isfinite(every.values(at_best)) & np.isfinite(slopes).all(axis=1))
-    asked = every.chosen(np.repeat(finite, 2))
+    numbers_of_ends = every.chosen(np.repeat(finite, 2))
     side = np.tile([-1.0, 1.0], finite.size)
     distance = np.full(side.size, profile_distance(identification))
-    ends = furthest(asked, best, side, distance, optima=other_optima(identification))
-    found = {name: Interval(name=name, lower=-np.inf, upper=np.inf, lower_open=True, upper_open=True) for name in names}
-    for i, place in enumerate(finite):
-        found[names[place]] = Interval(
-            name=names[place],
+    ends = furthest(numbers_of_ends, best, side, distance, optima=other_optima(identification))
+    intervals = {
+        name: Interval(name=name, lower=-np.inf, upper=np.inf, lower_open=True, upper_open=True) for name in names
+    }
+    for i, column in enumerate(finite):
+        intervals[names[column]] = Interval(
+            name=names[column],
             lower=float(ends.value[2 * i]),
             upper=float(ends.value[2 * i + 1]),
             lower_open=bool(ends.is_open[2 * i]),
             upper_open=bool(ends.is_open[2 * i + 1]),
         )
-    return Profile(intervals=found, points=frozen_float(objective.complete(ends.theta)))
+    return Profile(intervals=intervals, points=frozen_float(objective.complete(ends.theta)))
 
 
 def expect_likelihood(identification: Identification) -> None:

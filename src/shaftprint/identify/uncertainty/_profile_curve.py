@@ -78,9 +78,9 @@ def profile_curve(identification: Identification, number: str | Combination, *, 
         raise IdentificationError(f"profile curve: {name} is infinite at the estimate; it has no profile.")
     side = np.repeat([-1.0, 1.0], points // 2)
     steps = np.linspace(0.0, REACH * profile_distance(identification), points // 2 + 1)[1:]
-    asked = Numbers(objective, combinations, np.full(side.size, len(names) - 1 - names[::-1].index(name)))
+    numbers_of_points = Numbers(objective, combinations, np.full(side.size, len(names) - 1 - names[::-1].index(name)))
     best = identification.values[list(objective.free)]
-    ends = furthest(asked, best, side, np.tile(steps, 2), optima=other_optima(identification))
+    ends = furthest(numbers_of_points, best, side, np.tile(steps, 2), optima=other_optima(identification))
     # Of the points that a bound stopped only the first of each side is one: the others are the same.
     repeated = ends.is_open & np.roll(ends.is_open, 1) & (np.roll(side, 1) == side)
     theta = np.concatenate([best[None, :], ends.theta[~repeated]])

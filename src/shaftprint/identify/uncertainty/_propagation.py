@@ -48,11 +48,11 @@ class Propagation:
         """
         if not np.all(np.isfinite(slopes)) or not self.information.knows(slopes):
             return {}
-        found = {name: float(slopes @ part @ slopes) for name, part in self.noise.items()}
+        parts = {name: float(slopes @ part @ slopes) for name, part in self.noise.items()}
         for name in dict.fromkeys([*self.effects, *direct]):
             through = float(slopes @ self.effects[name]) if name in self.effects else 0.0
-            found[name] = (through + direct.get(name, 0.0)) ** 2
-        return found
+            parts[name] = (through + direct.get(name, 0.0)) ** 2
+        return parts
 
 
 def propagation(identification: Identification, shifts: Mapping[str, Mapping[str, float]] = NO_SHIFTS) -> Propagation:
@@ -71,9 +71,9 @@ def propagation(identification: Identification, shifts: Mapping[str, Mapping[str
     noise: dict[str, FloatArray] = {}
     first = 0
     for term in objective.terms:
-        own = information.inverse @ rows[:, first : first + term.row_count]
+        pull = information.inverse @ rows[:, first : first + term.row_count]
         first += term.row_count
-        for name, part in _noise_parts(term, own).items():
+        for name, part in _noise_parts(term, pull).items():
             noise[name] = noise[name] + part if name in noise else part
     names = [parameter.name for parameter in objective.free_parameters]
     further = {source: np.array([moves.get(name, 0.0) for name in names]) for source, moves in shifts.items()}
