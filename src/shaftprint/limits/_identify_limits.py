@@ -66,21 +66,21 @@ def identify_limits(
     say = progress or _silent
     test = governor_test(signals, campaign, vessel)
     units = Units.of(signals, vessel)
-    whole = whole_governor()
+    governor = whole_governor()
     priors = {
         Symbol.SET_POINT_SCALE: Prior(1.0, max(signals.dc_scale_std / signals.dc_scale, 1e-4)),
         Symbol.SET_POINT_OFFSET: Prior(0.0, _offset_std(signals)),
     }
     say("Looking for limits")
-    search = Search.of(whole, test, campaign, drive_hz=COARSE_HZ, full=units.full, priors=priors)
-    here, rest = search.run()
+    search = Search.of(governor, test, campaign, drive_hz=COARSE_HZ, full=units.full, priors=priors)
+    here, scanned = search.run()
     say("Fitting the limits")
     test = with_messages(test, here.messages)
-    best = fitted(whole, test.record(), here.values, here.kinds, priors=priors, messages=here.messages)
+    best = fitted(governor, test.record(), here.values, here.kinds, priors=priors, messages=here.messages)
     say("Finding the intervals")
     spread = spread_of(best, test, signals, vessel)
     numbers, gains = numbers_of(best, spread, units), _gains(search, here)
-    not_seen = _not_seen(here, rest, search.messages(here), units)
+    not_seen = _not_seen(here, scanned, search.messages(here), units)
     quantum = quantum_of(best, test, campaign)
     if quantum is not None and quantum.acts:
         numbers, gains = (*numbers, quantum_number(quantum, units)), {**gains, Kind.QUANTUM: quantum.gain}
@@ -119,15 +119,15 @@ def _gains(search: Search, here: Fitted) -> Mapping[Kind, float]:
     """Return what each limit brings to the others; a single one needs no further fit."""
     if len(here.kinds) == 1:
         return {here.kinds[0]: schwarz(search.linear()) - schwarz(here)}
-    found = {kind: schwarz(search.without(here, kind)) - schwarz(here) for kind in here.kinds}
-    return dict(sorted(found.items(), key=lambda pair: -pair[1]))
+    gains = {kind: schwarz(search.without(here, kind)) - schwarz(here) for kind in here.kinds}
+    return dict(sorted(gains.items(), key=lambda pair: -pair[1]))
 
 
-def _not_seen(here: Fitted, rest: Sequence[Scanned], messages: Messages | None, units: Units) -> Mapping[Kind, str]:
+def _not_seen(here: Fitted, scanned: Sequence[Scanned], messages: Messages | None, units: Units) -> Mapping[Kind, str]:
     """Return up to which level each limit that does not act is excluded."""
-    found = {}
+    excluded = {}
     for candidate in CANDIDATES:
-        tried = [one for one in rest if one.candidate.kind is candidate.kind]
+        tried = [one for one in scanned if one.candidate.kind is candidate.kind]
         if candidate.kind in here.kinds or not tried:
             continue
         level = None
@@ -136,10 +136,10 @@ def _not_seen(here: Fitted, rest: Sequence[Scanned], messages: Messages | None, 
             if max(one.gain for one in tried if one.start[candidate.level] == value) > -EXCLUDED:
                 break
             level = value
-        found[candidate.kind] = exclusion(candidate, level, units)
+        excluded[candidate.kind] = exclusion(candidate, level, units)
     if Kind.HELD not in here.kinds:
-        found[Kind.HELD] = messages_exclusion(None if messages is None else messages.excluded_beyond(EXCLUDED))
-    return found
+        excluded[Kind.HELD] = messages_exclusion(None if messages is None else messages.excluded_beyond(EXCLUDED))
+    return excluded
 
 
 def _silent(what: str) -> None:

@@ -26,11 +26,11 @@ def limit_hints(harmonics: Harmonics, failed_steps: Sequence[str] | None = None)
     failed_steps
         Steps that a model identified from the sines does not predict; None where no model was held against them.
     """
-    found = _third_harmonics(harmonics)
+    sentences = _third_harmonics(harmonics)
     hints = []
-    if found:
+    if sentences:
         hints.append(
-            f"Third harmonics stand out of the noise ({'; '.join(found)} of the line): a limit or a deadband acts "
+            f"Third harmonics stand out of the noise ({'; '.join(sentences)} of the line): a limit or a deadband acts "
             "there, which a propeller does not do."
         )
     if failed_steps:
@@ -46,8 +46,8 @@ def limit_hints(harmonics: Harmonics, failed_steps: Sequence[str] | None = None)
 
 def _third_harmonics(harmonics: Harmonics) -> list[str]:
     """Return the third harmonics that are above the noise, in words."""
-    place = harmonics.orders.index(THIRD)
-    amplitude, std = harmonics.amplitude[:, :, place], harmonics.standard_deviation[:, :, place]
+    row = harmonics.orders.index(THIRD)
+    amplitude, std = harmonics.amplitude[:, :, row], harmonics.standard_deviation[:, :, row]
     with np.errstate(divide="ignore", invalid="ignore"):
         share = amplitude / harmonics.fundamental
         seen = (0.5 * (amplitude / std) ** 2 > LEAST_POWER) & (share > LEAST_SHARE)

@@ -82,8 +82,8 @@ def quantum_of(best: Fitted, test: GovernorTest, campaign: Campaign) -> Quantum 
     spacing = 1.0 / (PER_COUNT * rounding.span)
     counts = np.arange(1.0 / COARSEST, 1.0 / FINEST, spacing)
     likely = sorted((rounding.first_harmonic(1.0 / count) for count in counts.tolist()), reverse=True)[:PEAKS]
-    beside = np.linspace(-0.6, 0.6, BESIDE) * spacing
-    tried = [(1.0 / (1.0 / step + off), phase) for _, step, phase in likely for off in beside.tolist()]
+    offsets = np.linspace(-0.6, 0.6, BESIDE) * spacing
+    tried = [(1.0 / (1.0 / step + off), phase) for _, step, phase in likely for off in offsets.tolist()]
     gains = [rounding.best_phase(step, phase, PHASES) for step, phase in tried]
     gain, step, phase = max(gains)
     rivals = [other for other, at, _ in gains if abs(at / step - 1.0) > RIVAL]
@@ -162,8 +162,8 @@ class _Rounding:
         """Return the gain of rounding to a step, the step, and the phase that gains most."""
         phases = phase + step * np.linspace(-0.5, 0.5, count, endpoint=False)
         rounded = phases[:, None] + step * np.round((self.set_point - phases[:, None]) / step)
-        left = self.innovations.values[:, None] + self.changes(rounded - self.set_point)
-        squares = np.einsum("ij,ij->j", left, left)
+        residuals = self.innovations.values[:, None] + self.changes(rounded - self.set_point)
+        squares = np.einsum("ij,ij->j", residuals, residuals)
         best = int(np.argmin(squares))
         gain = self.innovations.count * math.log(self.innovations.squares / float(squares[best]))
         return gain, step, float(phases[best])
@@ -175,8 +175,8 @@ class _Rounding:
         normal, gradient = columns.T @ columns, columns.T @ self.innovations.values
         amplitude: FloatArray = np.asarray(-np.linalg.solve(normal, gradient), dtype=np.float64)
         squares, count = self.innovations.squares, self.innovations.count
-        left = max(squares + float(gradient @ amplitude), 1e-12 * squares)
-        return amplitude, normal * (count / squares), count * math.log(squares / left)
+        remaining = max(squares + float(gradient @ amplitude), 1e-12 * squares)
+        return amplitude, normal * (count / squares), count * math.log(squares / remaining)
 
     def changes(self, waves: FloatArray) -> FloatArray:
         """Return the changes of the innovations with changes of the set point, shape (innovations, waves)."""
@@ -188,16 +188,16 @@ class _Rounding:
 
 def _transfer(best: Fitted, record: GovernorRecord) -> ComplexArray:
     """Return the small-signal response of the torque over the load to the set point, shape (frequencies,)."""
-    whole = best.term.whole
+    governor = best.term.whole
     values: Mapping[str, float] = {
-        **values_without_limits(whole),
+        **values_without_limits(governor),
         **{name: best.values[name] for name in GOVERNOR},
     }
     s = 2j * np.pi * np.fft.rfftfreq(record.samples, 1.0 / record.rate_hz)
     # blocks have no value at zero, where they may have a pole
     s[0] = 1e-9j
-    channel = whole.channels.index(("y", "n_set"))
-    return np.asarray(whole.response(whole.vector(values), s)[channel])
+    channel = governor.channels.index(("y", "n_set"))
+    return np.asarray(governor.response(governor.vector(values), s)[channel])
 
 
 def _std(rounding: _Rounding, gain: float, step: float, phase: float, finest: float) -> float:

@@ -46,28 +46,28 @@ class LevelScatter:
 
     def std(self, name: str) -> float:
         """Return the standard deviation of a parameter, all of it."""
-        place = self.names.index(name)
-        return float(np.hypot(self.noise[place], self.systematic[place]))
+        row = self.names.index(name)
+        return float(np.hypot(self.noise[row], self.systematic[row]))
 
 
-def spread_of(found: Fitted, test: GovernorTest, signals: Signals, vessel: Vessel) -> LevelScatter:
+def spread_of(fit: Fitted, test: GovernorTest, signals: Signals, vessel: Vessel) -> LevelScatter:
     """Return the standard deviations of a governor's parameters."""
-    term, own = found.term, found.own
-    rows = term.rows(own)
+    term, values = fit.term, fit.own
+    rows = term.rows(values)
     if rows is None:
         raise IdentificationError(f"{term.name}: the simulation runs away where it was fitted.")
     slopes = rows[1:]
     names = tuple(p.name for p in term.structure.free)
-    known = found.known
+    priors = fit.known
     nothing = np.linalg.norm(slopes, axis=1) == 0.0
     size = np.where(nothing, 1.0, np.linalg.norm(slopes, axis=1))
-    information = (slopes @ slopes.T + np.diag(known**2)) / np.outer(size, size)
+    information = (slopes @ slopes.T + np.diag(priors**2)) / np.outer(size, size)
     inverse = np.linalg.pinv(information, hermitian=True) / np.outer(size, size)
     block = max(round(BLOCK_S * term.record.rate_hz), 1)
     sums = np.add.reduceat(slopes * rows[0], np.arange(0, rows.shape[1], block), axis=1)
-    scatter = np.sqrt(np.maximum(np.diag(inverse @ (sums @ sums.T + np.diag(known**2)) @ inverse), 0.0))
+    scatter = np.sqrt(np.maximum(np.diag(inverse @ (sums @ sums.T + np.diag(priors**2)) @ inverse), 0.0))
     model = np.sqrt(np.maximum(np.diag(inverse), 0.0))
-    follows = np.array([inverse @ (slopes @ change) for change in _taken_for_granted(found, test, signals, vessel)])
+    follows = np.array([inverse @ (slopes @ change) for change in _taken_for_granted(fit, test, signals, vessel)])
     return LevelScatter(
         names=names,
         noise=np.where(nothing, np.inf, np.maximum(scatter, model)),
@@ -76,24 +76,24 @@ def spread_of(found: Fitted, test: GovernorTest, signals: Signals, vessel: Vesse
     )
 
 
-def _taken_for_granted(found: Fitted, test: GovernorTest, signals: Signals, vessel: Vessel) -> Sequence[FloatArray]:
+def _taken_for_granted(fit: Fitted, test: GovernorTest, signals: Signals, vessel: Vessel) -> Sequence[FloatArray]:
     """Return the change of the innovations with each thing that the fit takes for granted, at its deviation."""
-    term, own = found.term, found.own
-    now = term.innovations(own)
+    term, values = fit.term, fit.own
+    now = term.innovations(values)
     if now is None:
         return []
     point = signals.working_point
     drive_hz = term.record.drive_rate_hz
     inertia = 1.0 + vessel.inertia_upstream_std_kg_m2 / vessel.inertia_upstream_kg_m2
     torque = 1.0 + point.shaft_torque_std_nm / point.shaft_torque_nm
-    left = term.residuals(own)
+    residuals = term.residuals(values)
     moved = [test.with_inertia(inertia), test.with_torque(torque)]
-    changes = [_with_record(term, one, drive_hz).residuals(own) - left for one in moved]
-    sloped = {**found.values, Symbol.ENGINE_SPEED_SLOPE: SLOPE_STD}
-    changes.append(term.residuals(np.array([sloped[name] for name in term.whole.names])) - left)
+    changes = [_with_record(term, one, drive_hz).residuals(values) - residuals for one in moved]
+    sloped = {**fit.values, Symbol.ENGINE_SPEED_SLOPE: SLOPE_STD}
+    changes.append(term.residuals(np.array([sloped[name] for name in term.whole.names])) - residuals)
     # a rate limit turns at whole steps of the simulation: half as long ones move the rate by as much as noise does
     finer = replace(term, record=test.record(drive_hz=2.0 * drive_hz))
-    changes.append(term.predicted(own) - finer.predicted(own))
+    changes.append(term.predicted(values) - finer.predicted(values))
     return [now.filtered(change[None])[0] / term.scale for change in changes]
 
 
@@ -115,25 +115,25 @@ class LevelInterval:
     """Whether the data set no upper end."""
 
 
-def profile_interval(found: Fitted, spread: LevelScatter, name: str) -> LevelInterval:
+def profile_interval(fit: Fitted, spread: LevelScatter, name: str) -> LevelInterval:
     """Return the profile-likelihood interval of one parameter, widened by scatter and by what was taken for granted."""
-    place = spread.names.index(name)
-    parameter = next(p for p in found.term.structure.free if p.name == name)
+    row = spread.names.index(name)
+    parameter = next(p for p in fit.term.structure.free if p.name == name)
     # the likelihood is that of the noise model: its ends are further out by as much as the scatter is larger
-    reach = NORMAL_95 * float(spread.noise[place] / spread.model[place])
-    value = found.values[name]
+    reach = NORMAL_95 * float(spread.noise[row] / spread.model[row])
+    value = fit.values[name]
     ends, is_open = [], []
     for side, bound in ((-1.0, parameter.lower), (1.0, parameter.upper)):
-        end, free = _end(found, name, value, side * spread.model[place], reach, bound)
+        end, free = _end(fit, name, value, side * spread.model[row], reach, bound)
         noise = end - value
-        ends.append(value + side * float(np.hypot(noise, NORMAL_95 * spread.systematic[place])))
+        ends.append(value + side * float(np.hypot(noise, NORMAL_95 * spread.systematic[row])))
         is_open.append(free)
     return LevelInterval(lower=ends[0], upper=ends[1], lower_open=is_open[0], upper_open=is_open[1])
 
 
-def _end(found: Fitted, name: str, value: float, std: float, reach: float, bound: float) -> tuple[float, bool]:
+def _end(fit: Fitted, name: str, value: float, std: float, reach: float, bound: float) -> tuple[float, bool]:
     """Return where the root of twice the rise of the cost is ``reach``, and whether the bound comes first."""
-    distance: Callable[[float], float] = _distance(found, name)
+    distance: Callable[[float], float] = _distance(fit, name)
     far = reach * std
     for _ in range(MOST_STEPS):
         at = value + far
@@ -151,20 +151,20 @@ def _end(found: Fitted, name: str, value: float, std: float, reach: float, bound
     return value + far, False
 
 
-def _distance(found: Fitted, name: str) -> Callable[[float], float]:
-    base = found.log_squares
+def _distance(fit: Fitted, name: str) -> Callable[[float], float]:
+    base = fit.log_squares
 
     def distance(at: float) -> float:
-        values: Mapping[str, float] = {**found.values, name: at}
+        values: Mapping[str, float] = {**fit.values, name: at}
         there = fitted(
-            found.term.whole,
-            found.term.record,
+            fit.term.whole,
+            fit.term.record,
             values,
-            found.kinds,
-            priors=found.priors,
+            fit.kinds,
+            priors=fit.priors,
             iterations=PROFILE_ITERATIONS,
             held=(name,),
-            messages=found.messages,
+            messages=fit.messages,
         )
         return float(np.sqrt(max(there.log_squares - base, 0.0)))
 

@@ -60,13 +60,13 @@ class LineBands:
         line = np.arange(count, dtype=np.float64)
         scaled = self.weight_factor[:, None, None] * self.noise
         size = scaled.shape[-1]
-        found = np.empty((count, size, size), dtype=np.complex128)
+        covariance = np.empty((count, size, size), dtype=np.complex128)
         for i in range(size):
             for j in range(size):
-                found[:, i, j] = np.interp(line, self.middle, scaled[:, i, j].real)
+                covariance[:, i, j] = np.interp(line, self.middle, scaled[:, i, j].real)
                 if i != j:
-                    found[:, i, j] += 1j * np.interp(line, self.middle, scaled[:, i, j].imag)
-        return found
+                    covariance[:, i, j] += 1j * np.interp(line, self.middle, scaled[:, i, j].imag)
+        return covariance
 
 
 def bands_of(source: ComplexArray, outputs: ComplexArray) -> LineBands:
@@ -91,9 +91,9 @@ def bands_of(source: ComplexArray, outputs: ComplexArray) -> LineBands:
     seen = np.moveaxis(outputs[:, places], 0, 2) * there[:, :, None]
     shares = basis.conj().swapaxes(1, 2) @ seen
     last = upper[:, -1, -1]
-    left = seen - basis @ shares
+    remainder = seen - basis @ shares
     power = np.sum(np.abs(seen) ** 2, axis=1)
-    squares = left.swapaxes(1, 2) @ left.conj() + (ROUNDING**2 * power)[:, :, None] * np.eye(len(outputs))
+    squares = remainder.swapaxes(1, 2) @ remainder.conj() + (ROUNDING**2 * power)[:, :, None] * np.eye(len(outputs))
     samples = (there.sum(axis=1) - 2 * ORDERS).astype(np.float64)
     near = np.abs(np.subtract.outer(np.arange(len(places)), np.arange(len(places)))) <= REACH
     together = near @ samples

@@ -46,9 +46,9 @@ class Decimator:
         half = self.half
         if half == 0:
             return np.ones(1)
-        place = np.arange(-half, half + 1)
-        window = np.i0(0.1102 * (ATTENUATION_DB - 8.7) * np.sqrt(1.0 - (place / (half + 1.0)) ** 2))
-        taps = np.sinc((PASS_SHARE + STOP_SHARE) / self.every * place) * window
+        sample = np.arange(-half, half + 1)
+        window = np.i0(0.1102 * (ATTENUATION_DB - 8.7) * np.sqrt(1.0 - (sample / (half + 1.0)) ** 2))
+        taps = np.sinc((PASS_SHARE + STOP_SHARE) / self.every * sample) * window
         return np.asarray(taps / taps.sum())
 
     def filtered(self, values: FloatArray) -> FloatArray:
@@ -70,19 +70,19 @@ class Decimator:
         if self.every == 1:
             return values
         count = max((values.shape[0] - 2 * self.half - 1) // self.every + 1, 0)
-        whole = count - count % TOGETHER
-        found = np.empty((count, values.shape[1]))
-        self._multiplied(values, found[:whole].reshape(whole // TOGETHER, TOGETHER, values.shape[1]))
-        self._multiplied(values[whole * self.every :], found[whole:][None])
-        return found
+        blocks_end = count - count % TOGETHER
+        samples = np.empty((count, values.shape[1]))
+        self._multiplied(values, samples[:blocks_end].reshape(blocks_end // TOGETHER, TOGETHER, values.shape[1]))
+        self._multiplied(values[blocks_end * self.every :], samples[blocks_end:][None])
+        return samples
 
-    def _multiplied(self, values: FloatArray, found: FloatArray) -> None:
+    def _multiplied(self, values: FloatArray, blocks: FloatArray) -> None:
         """Write new samples into blocks of the same length, shape (blocks, new samples of one, channels)."""
-        size, taps = found.shape[1], self.taps
-        if not found.size:
+        size, taps = blocks.shape[1], self.taps
+        if not blocks.size:
             return
         weights = np.zeros((size, (size - 1) * self.every + taps.size))
         for row in range(size):
             weights[row, row * self.every : row * self.every + taps.size] = taps
         windows = sliding_window_view(values, weights.shape[1], axis=0)[:: size * self.every]
-        np.matmul(weights, windows[: found.shape[0]].swapaxes(1, 2), out=found)
+        np.matmul(weights, windows[: blocks.shape[0]].swapaxes(1, 2), out=blocks)

@@ -66,16 +66,16 @@ def _centred(simulated: FloatArray) -> FloatArray:
 def _lagged(record: Record, rows: FloatArray) -> FloatArray:
     """Return rows, shape (rows, samples), as they are and behind first-order lags."""
     rate = record.rate_hz
-    found = [rows]
+    lagged = [rows]
     for lag_s in np.geomspace(2.0 / rate, max(LONGEST_SHARE * record.samples, 4.0) / rate, LAGS):
         pole = np.exp(-1.0 / (rate * lag_s))
-        found.append(lfilter([1.0 - pole], [1.0, -pole], rows, zi=pole * rows[:, :1])[0])
-    return np.concatenate(found)
+        lagged.append(lfilter([1.0 - pole], [1.0, -pole], rows, zi=pole * rows[:, :1])[0])
+    return np.concatenate(lagged)
 
 
 def _on_each(rows: FloatArray, outputs: int) -> FloatArray:
     """Return every row, shape (rows, samples), on every output alone: (rows outputs, samples, outputs)."""
-    found = np.zeros((outputs, *rows.shape, outputs))
+    directions = np.zeros((outputs, *rows.shape, outputs))
     for output in range(outputs):
-        found[output, :, :, output] = rows
-    return found.reshape(-1, rows.shape[1], outputs)
+        directions[output, :, :, output] = rows
+    return directions.reshape(-1, rows.shape[1], outputs)

@@ -88,8 +88,8 @@ class FlexibleModel:
         if flexible.p_value > CHANCE:
             return plain
         most = followed >= FOLLOWED**2 * plain
-        beside = np.minimum(self._unexplained, plain) if np.any(most) else plain
-        return np.asarray(np.where(most, beside, plain - followed))
+        unexplained = np.minimum(self._unexplained, plain) if np.any(most) else plain
+        return np.asarray(np.where(most, unexplained, plain - followed))
 
     @cached_property
     def checks(self) -> tuple[TermCheck, ...]:
@@ -103,8 +103,8 @@ class FlexibleModel:
             "halves": self.slopes * half[:, None],
             "flexible": self._directions,
         }
-        found = [self._check(kind, directions, self._fitted) for kind, directions in groups.items()]
-        return (*found, self._check("other data", self.slopes, self.nuisance))
+        checks = [self._check(kind, directions, self._fitted) for kind, directions in groups.items()]
+        return (*checks, self._check("other data", self.slopes, self.nuisance))
 
     @cached_property
     def _unexplained(self) -> FloatArray:
@@ -115,9 +115,9 @@ class FlexibleModel:
         them: the one that gives the poles still holds the mode that they explain.
         """
         noise = self._noise_beside(self._directions, self._noise)
-        span, rest = self._beside(self._directions, noise)
+        span, unexplained = self._beside(self._directions, noise)
         every, used = np.concatenate([self._fitted, self._directions]), self.record.used
-        return np.asarray(np.mean(rest[used] ** 2, axis=0) + self._energy(every, span.turn) / used.sum())
+        return np.asarray(np.mean(unexplained[used] ** 2, axis=0) + self._energy(every, span.turn) / used.sum())
 
     @cached_property
     def _noise(self) -> NoiseModel:
@@ -126,9 +126,9 @@ class FlexibleModel:
 
     def _noise_beside(self, directions: FloatArray, weight: NoiseModel | None) -> NoiseModel:
         """Return the noise of what directions leave under the weight of another noise."""
-        span, rest = self._beside(directions, weight)
+        span, unexplained = self._beside(directions, weight)
         size = int(self.record.used.sum()) * len(self.names)
-        right_in_size = np.sqrt(size / max(size - span.rank, 1)) * rest
+        right_in_size = np.sqrt(size / max(size - span.rank, 1)) * unexplained
         order = round(self.longest_memory_s * self.record.rate_hz)
         return estimate_noise(right_in_size, self.record.stretches, max_order=order)
 
@@ -165,15 +165,15 @@ class FlexibleModel:
 
     def _check(self, kind: CheckKind, directions: FloatArray, fitted: FloatArray) -> TermCheck:
         """Return how much of the residuals lies along directions, beside what was fitted."""
-        found = self._difference(directions, fitted)
+        difference = self._difference(directions, fitted)
         level = np.sqrt(self.power / np.maximum(self._motion, np.finfo(np.float64).tiny))
-        largest = int(np.argmax(found.size / level))
+        largest = int(np.argmax(difference.size / level))
         return TermCheck(
             kind=kind,
             output=self.names[largest],
-            share=float(found.size[largest]),
+            share=float(difference.size[largest]),
             noise=float(level[largest]),
-            p_value=found.p_value,
+            p_value=difference.p_value,
         )
 
     def _difference(self, directions: FloatArray, fitted: FloatArray) -> "_Difference":
@@ -183,11 +183,11 @@ class FlexibleModel:
             _flat(white(values, self.record.stretches)) for values in (self.residuals[None], fitted, directions)
         )
         basis = orthonormal(basis)
-        rest = without(target[0], basis)
+        unexplained = without(target[0], basis)
         span = Span.of(without(rows, basis))
-        shares, explained = span.shares(rest), span.explained(rest)
-        spare = rest.size - len(basis) - span.rank - self._noise.coefficients.size
-        beyond = max(float(rest @ rest) - explained, 0.0) / max(spare, 1)
+        shares, explained = span.shares(unexplained), span.explained(unexplained)
+        spare = unexplained.size - len(basis) - span.rank - self._noise.coefficients.size
+        beyond = max(float(unexplained @ unexplained) - explained, 0.0) / max(spare, 1)
         enough = spare > 0 and span.rank > 0 and beyond > 0.0
         return _Difference(
             size=self._sizes(directions, np.sqrt(beyond) * span.turn, shares, fitted),
@@ -208,9 +208,9 @@ class FlexibleModel:
         """
         used = self.record.used
         basis = orthonormal(_flat(fitted[:, used]))
-        beside = without(_flat(directions[:, used]), basis).reshape(len(directions), -1, len(self.names))
+        across = without(_flat(directions[:, used]), basis).reshape(len(directions), -1, len(self.names))
         square, chance = (
-            np.asarray(np.sum(np.tensordot(weights.T, beside, axes=1) ** 2, axis=(0, 1)))
+            np.asarray(np.sum(np.tensordot(weights.T, across, axes=1) ** 2, axis=(0, 1)))
             for weights in (shares[:, None], turn)
         )
         motion = used.sum() * np.where(self._motion > 0.0, self._motion, np.inf)

@@ -84,8 +84,8 @@ def identify_chirp(
     term = spectrum_term(structure, spectrum, transients=transients, drift=drift)
     near = _followed(coarse)
     theta = np.stack([_sharpened(coarse, term, cluster) for cluster in near])
-    found = identify_jointly([term], rng=rng, settings=replace(settings, draw=GivenStarts(theta), starts=len(theta)))
-    return replace(found, settings=settings, clusters=_counted(found, coarse, near))
+    fit = identify_jointly([term], rng=rng, settings=replace(settings, draw=GivenStarts(theta), starts=len(theta)))
+    return replace(fit, settings=settings, clusters=_counted(fit, coarse, near))
 
 
 def spectrum_term(
@@ -128,8 +128,8 @@ def _followed(coarse: Identification) -> list[Cluster]:
     limit = COST_FACTOR * coarse.clusters[0].cost + COST_ABOVE
     lowest, *others = coarse.clusters
     won = [c for c in others if np.array_equal(c.values, coarse.values)]
-    beside = [c for c in others if c not in won and c.starts > 1 and c.cost <= limit]
-    return [lowest, *won, *beside][:FOLLOWED]
+    rivals = [c for c in others if c not in won and c.starts > 1 and c.cost <= limit]
+    return [lowest, *won, *rivals][:FOLLOWED]
 
 
 def _sharpened(coarse: Identification, term: SpectrumTerm, cluster: Cluster) -> FloatArray:
@@ -158,12 +158,12 @@ def _sharpened(coarse: Identification, term: SpectrumTerm, cluster: Cluster) -> 
     return theta
 
 
-def _counted(found: Identification, coarse: Identification, near: list[Cluster]) -> tuple[Cluster, ...]:
+def _counted(fit: Identification, coarse: Identification, near: list[Cluster]) -> tuple[Cluster, ...]:
     """Return the optima at all lines with the number of starts that reached them in bands."""
     free = list(coarse.objective.free)
     width = coarse.objective.upper - coarse.objective.lower
-    counts = [0] * len(found.clusters)
+    counts = [0] * len(fit.clusters)
     for cluster in near:
-        apart = [np.max(np.abs((c.values - cluster.values)[free]) / width) for c in found.clusters]
+        apart = [np.max(np.abs((c.values - cluster.values)[free]) / width) for c in fit.clusters]
         counts[int(np.argmin(apart))] += cluster.starts
-    return tuple(replace(cluster, starts=max(count, 1)) for cluster, count in zip(found.clusters, counts, strict=True))
+    return tuple(replace(cluster, starts=max(count, 1)) for cluster, count in zip(fit.clusters, counts, strict=True))

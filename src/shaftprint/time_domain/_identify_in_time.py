@@ -93,11 +93,11 @@ def output_error(structure: Structure, record: Record, *, settings: TimeSettings
             f"record {record.name} from {', '.join(record.inputs)} to {', '.join(record.outputs)}: choose a structure "
             "with these channels."
         )
-    own = with_load(with_sensor(structure, record), record.load)
-    outputs = np.stack([record.outputs[name] for name in own.outputs], axis=1)
-    free = tuple(i for i, p in enumerate(own.parameters) if not p.held)
+    equipped = with_load(with_sensor(structure, record), record.load)
+    outputs = np.stack([record.outputs[name] for name in equipped.outputs], axis=1)
+    free = tuple(i for i, p in enumerate(equipped.parameters) if not p.held)
     return OutputError(
-        structure=own,
+        structure=equipped,
         record=record,
         whitening=Whitening(noise=white_noise(outputs - outputs[record.used].mean(axis=0), record.stretches)),
         simulator=chosen.simulator,
@@ -105,7 +105,7 @@ def output_error(structure: Structure, record: Record, *, settings: TimeSettings
         anew_after_s=chosen.anew_after_s,
         initial_states=chosen.initial_states,
         longest_memory_s=chosen.longest_memory_s,
-        held=own.vector({}),
+        held=equipped.vector({}),
         free=free,
         places=free,
         columns=tuple(range(len(free))),
@@ -127,9 +127,9 @@ def with_noise_at(term: OutputError, values: FloatArray, *, longest_memory_s: fl
     IdentificationError
         If the simulation runs away there, or nothing is left.
     """
-    left = noise_of(term.residuals(values), term.record)
+    noise = noise_of(term.residuals(values), term.record)
     order = round(longest_memory_s * term.record.rate_hz)
-    return term.with_noise(Whitening(noise=estimate_noise(left, term.record.stretches, max_order=order)))
+    return term.with_noise(Whitening(noise=estimate_noise(noise, term.record.stretches, max_order=order)))
 
 
 @refusing_none(IdentificationError)
@@ -186,9 +186,9 @@ def _expect_known_slope(parts: Sequence[Part]) -> None:
         If it is free in such a record and in no other data.
     """
     slopes = [next((p.name for p in _structure(part).free if p.role == ShipRole.LOAD_SLOPE), "") for part in parts]
-    asked = [part for part, slope in zip(parts, slopes, strict=True) if slope]
-    moving = [part for part in asked if isinstance(part, OutputError) and part.moving_load]
-    if moving and len(moving) == len(asked):
+    with_slope = [part for part, slope in zip(parts, slopes, strict=True) if slope]
+    moving = [part for part in with_slope if isinstance(part, OutputError) and part.moving_load]
+    if moving and len(moving) == len(with_slope):
         slope = next(filter(None, slopes))
         raise IdentificationError(
             f"{moving[0].name}: a load that may move takes the torque that another {slope} would give, so that the "
@@ -197,15 +197,15 @@ def _expect_known_slope(parts: Sequence[Part]) -> None:
         )
 
 
-def _with_states(found: Identification) -> Identification:
+def _with_states(fit: Identification) -> Identification:
     """Return a fit whose initial states have deviations that hold those of the parameters too."""
     parts = []
-    for term, part in zip(found.objective.terms, found.parts, strict=True):
+    for term, part in zip(fit.objective.terms, fit.parts, strict=True):
         if isinstance(term, OutputError) and term.initial_states and isinstance(part, RecordFit):
-            covariance = found.covariance[np.ix_(term.columns, term.columns)]
-            part = replace(part, initial_states=term.started_from(term.structure_values(found.values), covariance))
+            covariance = fit.covariance[np.ix_(term.columns, term.columns)]
+            part = replace(part, initial_states=term.started_from(term.structure_values(fit.values), covariance))
         parts.append(part)
-    return replace(found, parts=tuple(parts))
+    return replace(fit, parts=tuple(parts))
 
 
 def _term(pair: Source, how: TimeSettings) -> Part:
@@ -227,17 +227,17 @@ def _start(
     responses = [part for part in parts if not isinstance(part, OutputError)]
     if not responses:
         return _values(identify_jointly(parts, rng=rng, settings=settings))
-    known = {p.name for structure in map(_structure, responses) for p in structure.free}
+    names = {p.name for structure in map(_structure, responses) for p in structure.free}
     narrower = replace(
         settings,
-        priors={name: prior for name, prior in settings.priors.items() if name in known},
-        regularisation={name: prior for name, prior in settings.regularisation.items() if name in known},
+        priors={name: prior for name, prior in settings.priors.items() if name in names},
+        regularisation={name: prior for name, prior in settings.regularisation.items() if name in names},
     )
     return _values(identify_jointly(responses, rng=rng, settings=narrower))
 
 
-def _values(found: Identification) -> dict[str, float]:
-    return {p.name: p.value for p in found.parameters}
+def _values(fit: Identification) -> dict[str, float]:
+    return {p.name: p.value for p in fit.parameters}
 
 
 def _structure(part: Part) -> Structure:
@@ -248,12 +248,12 @@ def _renewed(part: Part, first: Mapping[str, float], how: TimeSettings) -> Part:
     """Return a record's term with the noise at some values; what else there is stays as it is."""
     if not isinstance(part, OutputError):
         return part
-    own = {p.name: first.get(p.name, p.value) for p in part.structure.free}
-    return with_noise_at(part, part.structure.vector(own), longest_memory_s=how.longest_memory_s)
+    free = {p.name: first.get(p.name, p.value) for p in part.structure.free}
+    return with_noise_at(part, part.structure.vector(free), longest_memory_s=how.longest_memory_s)
 
 
 def _from(parts: Sequence[Part], first: Mapping[str, float], settings: Settings) -> Settings:
     """Return the settings with the known values as their first start."""
     free = {p.name: p.value for structure in map(_structure, parts) for p in structure.free}
-    place = np.array([first.get(name, value) for name, value in free.items()])
-    return replace(settings, draw=GivenStarts(place[None], settings.draw))
+    values = np.array([first.get(name, value) for name, value in free.items()])
+    return replace(settings, draw=GivenStarts(values[None], settings.draw))

@@ -107,15 +107,15 @@ def state_estimates(
         free); the parameters are taken to be known where they are not given. One of infinite variance leaves the states
         that depend on it unknown.
     """
-    beside = without(effects, drifts)
-    known = PseudoInverse.of(beside)
-    variance = np.diag(known.inverse).copy()
+    without_drifts = without(effects, drifts)
+    inverse = PseudoInverse.of(without_drifts)
+    variance = np.diag(inverse.inverse).copy()
     if slopes is not None and covariance is not None:
-        change = known.inverse @ beside @ slopes.T
+        change = inverse.inverse @ without_drifts @ slopes.T
         finite = np.isfinite(np.diag(covariance))
         variance += np.einsum("si,ij,sj->s", change[:, finite], covariance[np.ix_(finite, finite)], change[:, finite])
         variance[np.any(change[:, ~finite] != 0.0, axis=1)] = np.inf
-    variance[known.lost] = np.inf
+    variance[inverse.lost] = np.inf
     return tuple(
         Estimate(name=name, unit="", value=float(value), std=float(np.sqrt(spread)))
         for name, value, spread in zip(start.names, start.values, variance, strict=True)

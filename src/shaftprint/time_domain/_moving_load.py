@@ -46,14 +46,14 @@ def load_columns(record: Record, outputs: tuple[str, ...]) -> FloatArray:
 def without_square(simulated: FloatArray, outputs: tuple[str, ...], load: float) -> FloatArray:
     """Return outputs and derivatives with the torque less ``load n^2``, shape (1 + wanted, samples, outputs)."""
     speed, torque = outputs.index(SPEED), outputs.index(TORQUE)
-    found = simulated.copy()
-    found[0, :, torque] -= load * simulated[0, :, speed] ** 2
-    found[1:, :, torque] -= 2.0 * load * simulated[0, :, speed] * simulated[1:, :, speed]
-    return found
+    linear = simulated.copy()
+    linear[0, :, torque] -= load * simulated[0, :, speed] ** 2
+    linear[1:, :, torque] -= 2.0 * load * simulated[0, :, speed] * simulated[1:, :, speed]
+    return linear
 
 
 def with_square(values: FloatArray, outputs: tuple[str, ...], load: float) -> FloatArray:
     """Return outputs with the torque that ``without_square`` took off, shape (samples, outputs)."""
-    found = values.copy()
-    found[:, outputs.index(TORQUE)] += load * values[:, outputs.index(SPEED)] ** 2
-    return found
+    squared = values.copy()
+    squared[:, outputs.index(TORQUE)] += load * values[:, outputs.index(SPEED)] ** 2
+    return squared

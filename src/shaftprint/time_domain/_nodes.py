@@ -50,11 +50,11 @@ class Nodes:
 
     def at_lines(self, values: ComplexArray) -> ComplexArray:
         """Return functions at all lines, shape (..., lines), from their values at ``s``."""
-        found = np.empty((*values.shape[:-1], self.lines), dtype=np.complex128)
-        found[..., : self.exact] = values[..., : self.exact]
+        lines = np.empty((*values.shape[:-1], self.lines), dtype=np.complex128)
+        lines[..., : self.exact] = values[..., : self.exact]
         nodes = values[..., self.exact :]
         if nodes.shape[-1]:
             neighbours = np.stack([nodes[..., i : nodes.shape[-1] - 3 + i] for i in range(4)], axis=-1)
             between = (neighbours @ self.shares).reshape(*values.shape[:-1], -1)
-            found[..., self.exact :] = between[..., : self.lines - self.exact]
-        return found
+            lines[..., self.exact :] = between[..., : self.lines - self.exact]
+        return lines

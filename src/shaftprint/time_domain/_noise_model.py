@@ -66,11 +66,11 @@ class NoiseModel:
 
     def driven(self, innovations: FloatArray) -> FloatArray:
         """Return what innovations give that follow each other from rest, both of shape (rows, samples, outputs)."""
-        found = innovations.copy()
-        for place in range(1, found.shape[1]):
-            past = found[:, max(place - self.order, 0) : place][:, ::-1]
-            found[:, place] += np.einsum("rpj,pij->ri", past, self.coefficients[: past.shape[1]])
-        return found
+        noise = innovations.copy()
+        for sample in range(1, noise.shape[1]):
+            past = noise[:, max(sample - self.order, 0) : sample][:, ::-1]
+            noise[:, sample] += np.einsum("rpj,pij->ri", past, self.coefficients[: past.shape[1]])
+        return noise
 
     def spectrum(self, frequency_hz: FloatArray, rate_hz: float) -> ComplexArray:
         """Return the two-sided power spectral density [1/Hz], shape (frequencies, outputs, outputs)."""
@@ -146,11 +146,11 @@ def estimate_noise(residuals: FloatArray, stretches: Sequence[slice], *, max_ord
 def _autocovariances(kept: Sequence[FloatArray], highest: int, count: int) -> FloatArray:
     """Return the mean of ``e_{t+k} e_t^T`` within stretches, over all samples: such lags are those of stable noise."""
     outputs = kept[0].shape[1]
-    found = np.zeros((highest + 1, outputs, outputs))
+    lags = np.zeros((highest + 1, outputs, outputs))
     for part in kept:
         for lag in range(min(highest, part.shape[0] - 1) + 1):
-            found[lag] += part[lag:].T @ part[: part.shape[0] - lag]
-    return found / count
+            lags[lag] += part[lag:].T @ part[: part.shape[0] - lag]
+    return lags / count
 
 
 def _whittle(lags: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
@@ -158,7 +158,7 @@ def _whittle(lags: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
     outputs = lags.shape[1]
     forward = backward = np.zeros((0, outputs, outputs))
     ahead = behind = lags[0]
-    found = [(forward, ahead)]
+    fits = [(forward, ahead)]
     for order in range(1, lags.shape[0]):
         gap = lags[order] - sum((a @ lags[order - 1 - k] for k, a in enumerate(forward)), np.zeros_like(ahead))
         last, first = gap @ np.linalg.inv(behind), gap.T @ np.linalg.inv(ahead)
@@ -167,8 +167,8 @@ def _whittle(lags: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
         backward = np.concatenate([backward - first @ old[::-1], first[None]])
         ahead, behind = ahead - last @ gap.T, behind - first @ gap
         ahead, behind = 0.5 * (ahead + ahead.T), 0.5 * (behind + behind.T)
-        found.append((forward, ahead))
-    return found
+        fits.append((forward, ahead))
+    return fits
 
 
 def _least_squares(kept: Sequence[FloatArray], order: int) -> tuple[FloatArray, FloatArray] | None:

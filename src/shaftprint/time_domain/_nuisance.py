@@ -49,11 +49,11 @@ def drift_columns(record: Record, outputs: int, degree: int, *, anew_after_s: fl
             pieces.append([stretch.start, stretch.stop])
     columns = np.zeros((len(pieces), degree + 1, outputs, record.samples, outputs))
     for number, (begin, end) in enumerate(pieces):
-        place = np.linspace(-1.0, 1.0, end - begin) if end - begin > 1 else np.zeros(1)
+        position = np.linspace(-1.0, 1.0, end - begin) if end - begin > 1 else np.zeros(1)
         for power in range(degree + 1):
             for output in range(outputs):
                 columns[number, power, output, begin:end, output] = np.polynomial.legendre.legval(
-                    place, np.eye(degree + 1)[power]
+                    position, np.eye(degree + 1)[power]
                 )
     return columns.reshape(-1, record.samples, outputs)
 

@@ -101,35 +101,35 @@ class OutputError(WhitenedTerm):
 
     def table(self, theta: FloatArray, repeats: Repeats | None = None) -> FloatArray:
         """Return QR-reduced residuals and derivatives, a simulation a start, shape (starts, 1 + free, 1 + free)."""
-        found = np.zeros((theta.shape[0], self.row_count, self.row_count))
-        own = self.complete(theta)
+        table = np.zeros((theta.shape[0], self.row_count, self.row_count))
+        values = self.complete(theta)
 
         def fill(start: int) -> None:
             data = repeats.data(start) if isinstance(repeats, RecordRepeats) else self.measured
-            rows = self._rows(own[start], data)
+            rows = self._rows(values[start], data)
             if rows is None:
-                found[start, 0, 0] = np.sqrt(2.0 * AWAY * max(self.null_cost, 1.0))
+                table[start, 0, 0] = np.sqrt(2.0 * AWAY * max(self.null_cost, 1.0))
             else:
-                found[start] = qr_reduced(rows[0])
+                table[start] = qr_reduced(rows[0])
 
         in_parallel(fill, theta.shape[0])
-        return found
+        return table
 
     def evaluable(self, theta: FloatArray) -> BoolArray:
         """Return whether the simulation of each start stays within bounds, shape (starts,)."""
-        found = np.zeros(theta.shape[0], dtype=np.bool_)
-        own = self.complete(theta)
+        finite = np.zeros(theta.shape[0], dtype=np.bool_)
+        values = self.complete(theta)
 
         def fill(start: int) -> None:
-            found[start] = self._simulated(own[start], ()) is not None
+            finite[start] = self._simulated(values[start], ()) is not None
 
         in_parallel(fill, theta.shape[0])
-        return found
+        return finite
 
     def assessed(self, values: FloatArray, number: int) -> tuple[RecordFit, TermTest]:
         """Return FitPercent and whitened residuals, and how much of these the inputs still explain."""
-        own = self.structure_values(values)
-        start, simulated = self._evaluated(own)
+        structure_values = self.structure_values(values)
+        start, simulated = self._evaluated(structure_values)
         rows, basis = self._projected(simulated, start, self.measured)
         part = record_fit(
             self.structure,
@@ -148,17 +148,17 @@ class OutputError(WhitenedTerm):
             chi_square=test[0], count=test[1], mean=float(test[1]), variance=2.0 * test[1], lines=(line,)
         )
 
-    def started_from(self, own: FloatArray, covariance: FloatArray) -> tuple[Estimate, ...]:
+    def started_from(self, values: FloatArray, covariance: FloatArray) -> tuple[Estimate, ...]:
         """Return the states at the start with their standard deviations; none where they are not estimated.
 
         Parameters
         ----------
-        own
+        values
             All parameters of the structure, shape (parameters,).
         covariance
             Covariance of the free ones, shape (free, free).
         """
-        start, simulated = self._evaluated(own)
+        start, simulated = self._evaluated(values)
         if start is None:
             return ()
         slopes = self._white(simulated[1:])
@@ -169,12 +169,12 @@ class OutputError(WhitenedTerm):
         _, simulated = self._evaluated(self.structure_values(values))
         return RecordRepeats(model=self._white(simulated[:1])[0], seeds=rng.integers(0, 2**62, size=count))
 
-    def model(self, own: FloatArray) -> FloatArray:
+    def model(self, values: FloatArray) -> FloatArray:
         """Return simulated outputs with their best offset, drift and initial states, shape (samples, outputs).
 
         Parameters
         ----------
-        own
+        values
             All parameters of the structure, shape (parameters,).
 
         Raises
@@ -182,28 +182,28 @@ class OutputError(WhitenedTerm):
         IdentificationError
             If the simulation runs away.
         """
-        start, simulated = self._evaluated(own)
+        start, simulated = self._evaluated(values)
         return self._completed(simulated[0], start)
 
-    def residuals(self, own: FloatArray) -> FloatArray:
+    def residuals(self, values: FloatArray) -> FloatArray:
         """Return what the model leaves of the outputs as they are compared; see ``model``."""
-        return self._compared(self._outputs()) - self._compared(self.model(own))
+        return self._compared(self._outputs()) - self._compared(self.model(values))
 
-    def rows(self, own: FloatArray) -> FloatArray | None:
+    def rows(self, values: FloatArray) -> FloatArray | None:
         """Return whitened residuals and their derivatives, shape (1 + free, used samples * outputs).
 
         None where the simulation runs away.
         """
-        found = self._rows(own, self.measured)
-        return None if found is None else found[0]
+        rows_and_basis = self._rows(values, self.measured)
+        return None if rows_and_basis is None else rows_and_basis[0]
 
-    def _rows(self, own: FloatArray, data: FloatArray) -> tuple[FloatArray, FloatArray] | None:
+    def _rows(self, values: FloatArray, data: FloatArray) -> tuple[FloatArray, FloatArray] | None:
         """Return whitened residuals with their derivatives, and the orthonormal basis beside which they are.
 
         None where the simulation runs away.
         """
-        found = self._run(own, data)
-        return None if found is None else self._projected(found[1], found[0], data)
+        run = self._run(values, data)
+        return None if run is None else self._projected(run[1], run[0], data)
 
     def _projected(
         self, simulated: FloatArray, start: InitialStates | None, data: FloatArray
@@ -218,7 +218,7 @@ class OutputError(WhitenedTerm):
         rows[1:] *= -1.0
         return without(rows, basis), basis
 
-    def _evaluated(self, own: FloatArray) -> tuple[InitialStates | None, FloatArray]:
+    def _evaluated(self, values: FloatArray) -> tuple[InitialStates | None, FloatArray]:
         """Return initial states and the simulation from them with its derivatives, for the data of the record.
 
         Raises
@@ -226,21 +226,21 @@ class OutputError(WhitenedTerm):
         IdentificationError
             If the simulation runs away.
         """
-        found = self._run(own, self.measured)
-        if found is None:
+        run = self._run(values, self.measured)
+        if run is None:
             raise IdentificationError(
                 f"{self.name}: the simulation of {self.structure.name} runs away at these parameters; narrow the "
                 "bounds, or start from a fit to a frequency response."
             )
-        return found
+        return run
 
-    def _run(self, own: FloatArray, data: FloatArray) -> tuple[InitialStates | None, FloatArray] | None:
+    def _run(self, values: FloatArray, data: FloatArray) -> tuple[InitialStates | None, FloatArray] | None:
         """Return initial states where they are estimated, and the simulation from them; None where it runs away."""
-        start = self._start(own, data) if self.initial_states else None
+        start = self._start(values, data) if self.initial_states else None
         if self.initial_states and start is None:
             return None
-        wanted = [self.structure.names[place] for place in self.free]
-        simulated = self._simulated(own, wanted, None if start is None else start.values)
+        wanted = [self.structure.names[column] for column in self.free]
+        simulated = self._simulated(values, wanted, None if start is None else start.values)
         return None if simulated is None else (start, simulated)
 
     def _start(self, values: FloatArray, data: FloatArray) -> InitialStates | None:
@@ -258,15 +258,15 @@ class OutputError(WhitenedTerm):
 
     def _completed(self, simulated: FloatArray, start: InitialStates | None) -> FloatArray:
         """Return a simulation with its best offset and drift as the record shows it, shape (samples, outputs)."""
-        columns, found = self._columns(), simulated
+        columns, completed = self._columns(), simulated
         if columns.size:
             gap = self.measured - self._white(simulated[None])[0]
             if start is not None:
                 # the last step towards the states was small, but drifts and states may have moved against each other
                 columns = np.concatenate([columns, start.effects])
             shares, *_ = np.linalg.lstsq(self._white(columns).T, gap, rcond=1e-9)
-            found = found + np.tensordot(shares, columns, axes=1)
-        return with_square(found, self._names, self.record.load) if self.moving_load else np.asarray(found)
+            completed = completed + np.tensordot(shares, columns, axes=1)
+        return with_square(completed, self._names, self.record.load) if self.moving_load else np.asarray(completed)
 
     def _flexible(self, simulated: FloatArray, start: InitialStates | None) -> FlexibleModel:
         """Return what is more flexible than the structure, to judge it by."""
@@ -288,12 +288,12 @@ class OutputError(WhitenedTerm):
         return without_square(values[None], self._names, self.record.load)[0] if self.moving_load else values
 
     def _simulated(
-        self, own: FloatArray, wanted: Sequence[str], initial: FloatArray | None = None
+        self, values: FloatArray, wanted: Sequence[str], initial: FloatArray | None = None
     ) -> FloatArray | None:
-        found = on_record(self.simulator, self.structure, own, self.record, wanted, initial=initial)
-        if found is None or not self.moving_load:
-            return found
-        return without_square(found, self._names, self.record.load)
+        simulated = on_record(self.simulator, self.structure, values, self.record, wanted, initial=initial)
+        if simulated is None or not self.moving_load:
+            return simulated
+        return without_square(simulated, self._names, self.record.load)
 
     def _columns(self) -> FloatArray:
         """Return offsets, drifts and moving load, shape (columns, samples, outputs)."""

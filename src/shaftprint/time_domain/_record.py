@@ -158,14 +158,14 @@ def record_from_arrays(
             f"record {name}: expected a mark for each of {finite.size} samples, and finite outputs where it is true, "
             f"found shape {counted.shape} and {int(np.sum(~finite))} samples that are not finite."
         )
-    taken = {key: np.where(finite, row, 0.0) for key, row in rows.items()}
+    finite_rows = {key: np.where(finite, row, 0.0) for key, row in rows.items()}
     driven = {key: frozen_float(values) for key, values in inputs.items()}
     return Record(
         name=name,
         rate_hz=rate_hz,
         start_s=start_s,
         inputs=driven,
-        outputs={key: frozen_float(values) for key, values in taken.items()},
+        outputs={key: frozen_float(values) for key, values in finite_rows.items()},
         used=frozen_bool(counted),
         drive=driven,
         hold=hold,

@@ -52,8 +52,8 @@ class RecordFit(FittedTerm):
         """FitPercent that the noise allows, of each output: its noise is that beside a flexible model."""
         used, power = self.record.used, self.flexible.power
         return {
-            name: fit_ceiling(_complex(self.record.outputs[name][used]), np.full(int(used.sum()), power[place]))
-            for place, name in enumerate(self.structure.outputs)
+            name: fit_ceiling(_complex(self.record.outputs[name][used]), np.full(int(used.sum()), power[column]))
+            for column, name in enumerate(self.structure.outputs)
         }
 
     @property
@@ -82,15 +82,15 @@ def record_fit(
         Residuals of the used samples after the noise's filter, shape (used samples, outputs).
     """
     used = record.used
-    places = {name: place for place, name in enumerate(structure.outputs)}
+    columns = {name: column for column, name in enumerate(structure.outputs)}
     return RecordFit(
         structure=structure,
         record=record,
         noise=noise,
-        model={name: frozen_float(model[:, i]) for name, i in places.items()},
+        model={name: frozen_float(model[:, i]) for name, i in columns.items()},
         fit_percent={
             name: fit_percent(_complex(record.outputs[name][used]), _complex(model[used, i]))
-            for name, i in places.items()
+            for name, i in columns.items()
         },
         whitened=frozen_float(whitened),
         initial_states=initial_states,

@@ -60,19 +60,19 @@ def records_of(
         If an excitation or speed sensor is not known, the rates do not fit, the recording does not hold an excitation,
         or nothing of it is left.
     """
-    known = {excitation.name: excitation for excitation in campaign.excitations}
+    excitations = {excitation.name: excitation for excitation in campaign.excitations}
     groups = [(name,) if isinstance(name, str) else tuple(name) for name in names]
-    unknown = [name for group in groups for name in group if name not in known]
+    unknown = [name for group in groups for name in group if name not in excitations]
     if unknown or not all(groups):
         raise SignalError(
             f"campaign {campaign.name} has no excitation {', '.join(unknown) or 'in an empty group'}; it has "
-            f"{', '.join(known)}."
+            f"{', '.join(excitations)}."
         )
     if speed is not None and speed not in signals.speeds:
         raise SignalError(f"speed sensor {speed}: expected one of {', '.join(signals.speeds)}.")
     every = _every(signals.rate_hz, rate_hz)
     sensor = signals.engine_speed if speed is None else signals.speeds[speed]
-    return tuple(_record(signals, [known[n] for n in group], sensor, every, settled=settled) for group in groups)
+    return tuple(_record(signals, [excitations[n] for n in group], sensor, every, settled=settled) for group in groups)
 
 
 def _every(signals_hz: float, rate_hz: float) -> int:
@@ -141,13 +141,13 @@ def _record(
 
 def _settled(time_s: FloatArray, excitations: Sequence[Excitation]) -> BoolArray:
     """Return which samples lie in the settled whole periods of sines, or in other excitations."""
-    found = np.zeros(time_s.size, dtype=np.bool_)
+    settled = np.zeros(time_s.size, dtype=np.bool_)
     for excitation in excitations:
         begin, end = excitation.start_s, excitation.stop_s
         if isinstance(excitation, Sine):
             begin, end = excitation.settled_s, excitation.window_stop_s
-        found |= (time_s >= begin) & (time_s < end)
-    return found
+        settled |= (time_s >= begin) & (time_s < end)
+    return settled
 
 
 def _finite(decimator: Decimator, values: FloatArray) -> BoolArray:
@@ -172,8 +172,8 @@ def _repaired(signals: Signals, sensor: SpeedSignal, time_s: FloatArray, every: 
     for repair in signals.repairs:
         rate = sensor.pulse_rate_hz if repair.channel == sensor.channel else signals.rate_hz
         length = repair.count / rate
-        whole = repair.kind in ("dropout", "saturated") or length > every / signals.rate_hz
-        if repair.channel not in others and whole:
+        unusable = repair.kind in ("dropout", "saturated") or length > every / signals.rate_hz
+        if repair.channel not in others and unusable:
             lost |= (time_s > repair.time_s - reach) & (time_s < repair.time_s + length + reach)
     return lost
 

@@ -113,8 +113,8 @@ def on_record(
         except StructureError:
             # at the model's own values it was found to work: here there is no steady running to start from
             return None
-        found = np.empty((1 + len(wanted), record.samples, len(structure.outputs)))
-        for place, name in enumerate(structure.outputs):
-            found[0, :, place] = record.decimator.thinned(fine.outputs[name][:, None])[:, 0]
-            found[1:, :, place] = record.decimator.thinned(fine.derivatives[name].T).T
-    return found if np.all(np.abs(found[0]) < RUN_AWAY) and np.all(np.isfinite(found)) else None
+        simulated = np.empty((1 + len(wanted), record.samples, len(structure.outputs)))
+        for column, name in enumerate(structure.outputs):
+            simulated[0, :, column] = record.decimator.thinned(fine.outputs[name][:, None])[:, 0]
+            simulated[1:, :, column] = record.decimator.thinned(fine.derivatives[name].T).T
+    return simulated if np.all(np.abs(simulated[0]) < RUN_AWAY) and np.all(np.isfinite(simulated)) else None

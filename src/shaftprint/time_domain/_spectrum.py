@@ -95,8 +95,8 @@ def spectrum_of(
             f"{', '.join((*record.inputs, *record.outputs))}."
         )
     length = _fast_length(record.samples - 1)
-    whole = np.stack([record.inputs[input_name], *(_filled(record, name) for name in output_names)])
-    transformed = _transformed(whole[:, record.samples - 1 - length :])
+    channels = np.stack([record.inputs[input_name], *(_filled(record, name) for name in output_names)])
+    transformed = _transformed(channels[:, record.samples - 1 - length :])
     step = record.rate_hz / length
     first, stop = _borders(record, transformed[0], step, band_hz)
     lines = slice(first, stop)
@@ -122,20 +122,20 @@ def _fast_length(count: int) -> int:
     The first samples are left out for it, one in five hundred at most.
     """
     for length in range(count, max(count - count // SHORTENED, 1), -1):
-        rest = length
+        factor = length
         for prime in (2, 3, 5, 7, 11):
-            while rest % prime == 0:
-                rest //= prime
-        if rest == 1:
+            while factor % prime == 0:
+                factor //= prime
+        if factor == 1:
             return length
     return count
 
 
 def _transformed(values: FloatArray) -> ComplexArray:
     """Return the transforms over the time from the first sample to the last, by the trapezoidal rule."""
-    whole = values[:, :-1].copy()
-    whole[:, 0] = 0.5 * (values[:, 0] + values[:, -1])
-    return np.asarray(np.fft.rfft(whole, axis=1) / np.sqrt(whole.shape[1]))
+    periodic = values[:, :-1].copy()
+    periodic[:, 0] = 0.5 * (values[:, 0] + values[:, -1])
+    return np.asarray(np.fft.rfft(periodic, axis=1) / np.sqrt(periodic.shape[1]))
 
 
 def _filled(record: Record, name: str) -> FloatArray:
@@ -148,8 +148,8 @@ def _filled(record: Record, name: str) -> FloatArray:
             f"record {record.name}: expected a record without gaps, found {lost} of {record.samples} samples unused; "
             "cut the record beside the gap, or fit it in time."
         )
-    place = np.arange(record.samples)
-    return np.interp(place, place[record.used], record.outputs[name][record.used])
+    sample = np.arange(record.samples)
+    return np.interp(sample, sample[record.used], record.outputs[name][record.used])
 
 
 def _borders(

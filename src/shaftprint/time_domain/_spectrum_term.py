@@ -127,11 +127,11 @@ class SpectrumTerm(Term):
 
     def table(self, theta: FloatArray, repeats: Repeats | None = None) -> FloatArray:
         """Return weighted residuals and below them their derivatives, both without what free responses can follow."""
-        found = np.empty((theta.shape[0], 1 + theta.shape[1], 2 * self.spectrum.outputs.size))
+        table = np.empty((theta.shape[0], 1 + theta.shape[1], 2 * self.spectrum.outputs.size))
         for row, values in enumerate(self.complete(theta)):
             outputs = repeats.outputs[row] if isinstance(repeats, SpectrumRepeats) else self.spectrum.outputs
-            found[row] = self._projected(values, outputs)[0]
-        return found
+            table[row] = self._projected(values, outputs)[0]
+        return table
 
     def evaluable(self, theta: FloatArray) -> BoolArray:
         """Return true: a frequency response is finite for all parameters."""
@@ -155,16 +155,16 @@ class SpectrumTerm(Term):
     def assessed(self, values: FloatArray, number: int) -> tuple[FittedSpectrum, TermTest]:
         """Return FitPercent over time, and how much of the input is left in the residuals of each band."""
         spectrum = self.spectrum
-        table, left = self._projected(self.structure_values(values), spectrum.outputs)
+        table, residuals = self._projected(self.structure_values(values), spectrum.outputs)
         whitened = _complex(table[0]).reshape(spectrum.outputs.shape) / np.sqrt(2.0)
-        inside = 2.0 * np.sum(np.abs(left) ** 2, axis=1)
+        inside = 2.0 * np.sum(np.abs(residuals) ** 2, axis=1)
         noise = 2.0 * np.sum(np.diagonal(spectrum.noise, axis1=1, axis2=2).real, axis=0)
-        whole = np.sqrt(spectrum.outside + 2.0 * np.sum(np.abs(spectrum.outputs) ** 2, axis=1))
+        motion = np.sqrt(spectrum.outside + 2.0 * np.sum(np.abs(spectrum.outputs) ** 2, axis=1))
         fitted = FittedSpectrum(
             structure=self.structure,
             spectrum=spectrum,
-            fit_percent=_percents(spectrum.names, np.sqrt(inside + spectrum.outside) / whole),
-            fit_ceiling=_percents(spectrum.names, np.sqrt(noise + spectrum.outside) / whole),
+            fit_percent=_percents(spectrum.names, np.sqrt(inside + spectrum.outside) / motion),
+            fit_ceiling=_percents(spectrum.names, np.sqrt(noise + spectrum.outside) / motion),
             residuals=whitened,
         )
         return fitted, self._tested(whitened, number)
@@ -189,8 +189,8 @@ class SpectrumTerm(Term):
         across, length, gram = self._across(self.nodes.at_lines(shapes[0]))
         sizes = np.linalg.solve(gram, across @ _real(self._weighted(stacked[:1]))[0]) / length
         for channel in set(self.channels):
-            own = [j for j, c in enumerate(self.channels) if c == channel]
-            stacked[:, channel] -= self.nodes.at_lines(np.einsum("j,kjl->kl", sizes[own], shapes[:, own]))
+            columns = [j for j, c in enumerate(self.channels) if c == channel]
+            stacked[:, channel] -= self.nodes.at_lines(np.einsum("j,kjl->kl", sizes[columns], shapes[:, columns]))
         table = _real(self._weighted(stacked))
         table[1:] -= np.linalg.solve(gram, across @ table[1:].T).T @ across
         return table, stacked[0]
@@ -204,10 +204,10 @@ class SpectrumTerm(Term):
 
     def _weighted(self, lines: ComplexArray) -> ComplexArray:
         """Return ``W`` times lines of shape (..., outputs, lines)."""
-        found = np.empty_like(lines)
+        weighted = np.empty_like(lines)
         for i in range(lines.shape[-2]):
-            found[..., i, :] = sum(self.weights[i, j] * lines[..., j, :] for j in range(i + 1))
-        return found
+            weighted[..., i, :] = sum(self.weights[i, j] * lines[..., j, :] for j in range(i + 1))
+        return weighted
 
     def _tested(self, whitened: ComplexArray, number: int) -> TermTest:
         """Return the squared distances of the bands from the model, in the directions in which the input acts."""

@@ -50,7 +50,7 @@ class Whitening:
             Shape (rows, counted samples, outputs).
         """
         order, outputs = self.noise.order, self.noise.outputs
-        found = []
+        whitened = []
         for stretch in stretches:
             part = np.ascontiguousarray(values[:, stretch])
             out = np.empty_like(part)
@@ -60,8 +60,8 @@ class Whitening:
             out[:, :begin] = start.reshape(part.shape[0], begin, outputs)
             flat = part.shape[0], part.shape[1] * outputs
             predict(part.reshape(flat), self._rows, size, out.reshape(flat))
-            found.append(out)
-        return np.concatenate(found, axis=1)
+            whitened.append(out)
+        return np.concatenate(whitened, axis=1)
 
 
 @compiled(nogil=True, fastmath={"reassoc", "contract"})
@@ -70,11 +70,11 @@ def predict(flat, rows, begin: int, out) -> None:  # type: ignore[no-untyped-def
     outputs, length = rows.shape
     for k in range(flat.shape[0]):
         line = flat[k]
-        for place in range(begin, line.size, outputs):
-            window = line[place + outputs - length : place + outputs] if place + outputs >= length else line[:0]
+        for first in range(begin, line.size, outputs):
+            window = line[first + outputs - length : first + outputs] if first + outputs >= length else line[:0]
             for i in range(outputs):
                 total = 0.0
                 weights = rows[i]
                 for j in range(window.size):
                     total += weights[j] * window[j]
-                out[k, place + i] = total
+                out[k, first + i] = total

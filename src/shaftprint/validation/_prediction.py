@@ -92,8 +92,8 @@ def linear_prediction(
     stacked *= np.cos(0.5 * np.pi * np.clip((frequency[shown] - low) / (high - low), 0.0, 1.0)) ** 2
     spectrum = np.zeros((*stacked.shape[:-1], frequency.size), dtype=np.complex128)
     spectrum[..., shown] = stacked * np.fft.rfft(moved)[shown]
-    found = np.fft.irfft(spectrum, moved.size, axis=-1)[..., : set_point.size] + steady * first
-    return found[0], found[1:]
+    outputs = np.fft.irfft(spectrum, moved.size, axis=-1)[..., : set_point.size] + steady * first
+    return outputs[0], outputs[1:]
 
 
 def simulated_prediction(
@@ -126,10 +126,10 @@ def simulated_prediction(
 
 def with_square(output: FloatArray, slopes: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return a linear prediction with the rest of the propeller's quadratic law in the torque."""
-    whole, turned = output.copy(), slopes.copy()
-    whole[1] += output[0] ** 2
+    squared, turned = output.copy(), slopes.copy()
+    squared[1] += output[0] ** 2
     turned[:, 1] += 2.0 * output[0] * slopes[:, 0]
-    return whole, turned
+    return squared, turned
 
 
 def _places(structure: Structure) -> list[int]:

@@ -92,35 +92,35 @@ class Run:
 
     def excerpt(self, excerpt: Excerpt, margin: int = 0) -> slice:
         """Return the samples of the run that an excerpt takes, with a margin at either end."""
-        found = self.data.places(excerpt.start_s, excerpt.stop_s)
-        return slice(found.start - self.first - margin, found.stop - self.first + margin)
+        samples = self.data.places(excerpt.start_s, excerpt.stop_s)
+        return slice(samples.start - self.first - margin, samples.stop - self.first + margin)
 
     def compared(self, excerpt: Excerpt) -> list[tuple[Compared, Compared]]:
         """Return data and model of speed and of torque in an excerpt, raw and through the low-pass."""
         own, there = self.excerpt(excerpt), self.data.places(excerpt.start_s, excerpt.stop_s)
         # the median: a step spends most of its excerpt at the level that it ends at
         load = max(1.0 + float(np.median(self.data.smooth[1, there])), LEAST_LOAD)
-        found = []
+        pairs = []
         for measured, model, noise in (
             (self.data.raw, self.raw, self.data.raw_noise),
             (self.data.smooth, self.smooth, self.data.noise),
         ):
             like = noise.like(there.stop - there.start, load)
-            found.append(
+            pairs.append(
                 [
                     Compared(
                         output=output,
-                        place=place,
-                        measured=measured[place, there],
-                        model=model[place, own],
-                        slopes=self.slopes[:, place, own],
+                        place=row,
+                        measured=measured[row, there],
+                        model=model[row, own],
+                        slopes=self.slopes[:, row, own],
                         noise=like,
-                        offset_variance=load**2 * float(noise.offset_variance[place]),
+                        offset_variance=load**2 * float(noise.offset_variance[row]),
                     )
-                    for place, output in enumerate(OUTPUTS)
+                    for row, output in enumerate(OUTPUTS)
                 ]
             )
-        return list(zip(*found, strict=True))
+        return list(zip(*pairs, strict=True))
 
 
 def run_model(

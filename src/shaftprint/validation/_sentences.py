@@ -21,33 +21,33 @@ def outcome_sentences(
     model: Model, comparisons: Sequence[ExcerptComparison], settings: ValidationSettings, *, linear: bool
 ) -> tuple[str, ...]:
     """Return the verdict, the worst excerpts, and what the steps have in common."""
-    judged = [c for c in comparisons if not c.excerpt.in_sample]
-    if not judged:
+    out_of_sample = [c for c in comparisons if not c.excerpt.in_sample]
+    if not out_of_sample:
         return (f"Nothing is proved: {model.name} was identified from every record that it was held against.",)
     what = "The linear validation" if linear else "The validation"
-    failed = [c for c in judged if c.outcome == "fails"]
-    asked = f"{PERCENT * settings.largest_error:.0f} % of the motion"
+    failed = [c for c in out_of_sample if c.outcome == "fails"]
+    limit = f"{PERCENT * settings.largest_error:.0f} % of the motion"
     if failed:
         worst = sorted(failed, key=lambda c: -max(m.error_interval[0] for m in c.misfits))
         records = _listed([c.excerpt.record for c in failed])
         return (
-            f"{what} fails: {model.name} misses more than {asked} in {len(failed)} of {len(judged)} "
+            f"{what} fails: {model.name} misses more than {limit} in {len(failed)} of {len(out_of_sample)} "
             f"excerpts, of {records}.",
             *(_described(c) for c in worst[:_MOST]),
             *(_common_to_steps(failed) if linear else ()),
-            *_what_holds(judged),
+            *_what_holds(out_of_sample),
         )
-    undecided = [c for c in judged if c.outcome == "undecided"]
+    undecided = [c for c in out_of_sample if c.outcome == "undecided"]
     if undecided:
         return (
-            f"{what} does not fail, but noise hides whether it holds: {model.name} is within {asked} in "
-            f"{len(judged) - len(undecided)} of {len(judged)} excerpts; of "
+            f"{what} does not fail, but noise hides whether it holds: {model.name} is within {limit} in "
+            f"{len(out_of_sample) - len(undecided)} of {len(out_of_sample)} excerpts; of "
             f"{_listed([_place(c) for c in undecided[:_MOST]])}"
             f"{f' and {len(undecided) - _MOST} more' if len(undecided) > _MOST else ''} the data do not say.",
         )
     return (
-        f"{what} passes: {model.name} misses at most {asked} beyond noise in all {len(judged)} "
-        f"excerpts, the most {_worst_of_all(judged)}.",
+        f"{what} passes: {model.name} misses at most {limit} beyond noise in all {len(out_of_sample)} "
+        f"excerpts, the most {_worst_of_all(out_of_sample)}.",
     )
 
 
@@ -103,15 +103,15 @@ def _differs(comparison: ExcerptComparison, name: str) -> float:
     return 0.0
 
 
-def _what_holds(judged: Sequence[ExcerptComparison]) -> list[str]:
-    held = [c for c in judged if c.outcome == "passes"]
+def _what_holds(comparisons: Sequence[ExcerptComparison]) -> list[str]:
+    held = [c for c in comparisons if c.outcome == "passes"]
     if not held:
         return []
     return [f"It holds in {len(held)} excerpts: {_listed([_place(c) for c in held])}."]
 
 
-def _worst_of_all(judged: Sequence[ExcerptComparison]) -> str:
-    worst = max(judged, key=lambda c: max(m.error for m in c.misfits))
+def _worst_of_all(comparisons: Sequence[ExcerptComparison]) -> str:
+    worst = max(comparisons, key=lambda c: max(m.error for m in c.misfits))
     misfit = worst.misfits[int(np.argmax([m.error for m in worst.misfits]))]
     return f"{_error(misfit)} in {_place(worst)}"
 
@@ -127,33 +127,35 @@ def findings_of(
     """Return what the reader should know of how a validation was made."""
     total = sum(stretch.shape[1] for stretch in noise.stretches) / noise.rate_hz
     longest = noise.longest_s
-    found = [
+    findings = [
         f"noise is taken from {len(noise.stretches)} stretches in which the set point stands still, {total:.0f} s in "
         "all, for each excerpt from those of the nearest load"
     ]
     long = [_place(c) for c in comparisons if c.misfits[0].noise_pieces == 0]
     if long:
-        found.append(
+        findings.append(
             f"no quiet stretch is as long as {_listed(long)}: noise slower than {longest:.0f} s may pass for an error "
             "of the model there"
         )
     if quadratic_propeller:
-        found.append("the torque of the model follows the square of its speed, as that of a propeller in bollard pull")
+        findings.append(
+            "the torque of the model follows the square of its speed, as that of a propeller in bollard pull"
+        )
     elif linear:
-        found.append(
+        findings.append(
             "the torque of the model is linear in its speed, while that of a propeller goes with the square: at steps "
             "of the set point that is the larger part of what it misses"
         )
     if any(c.excerpt.kind != "chirp band" for c in comparisons):
-        found.append(
+        findings.append(
             "the line from voltage to speed was drawn through the levels of the staircases: how a step is made is new "
             "to the model, where it ends is not"
         )
     if not model.has_uncertainty:
-        found.append(f"nothing is stated about how well the parameters of {model.name} are known: they have no band")
+        findings.append(f"nothing is stated about how well the parameters of {model.name} are known: they have no band")
     if model.not_known:
-        found.append(f"the bands leave out {_listed(model.not_known)}, of which the data say nothing")
+        findings.append(f"the bands leave out {_listed(model.not_known)}, of which the data say nothing")
     seen = [c.excerpt.record for c in comparisons if c.excerpt.in_sample]
     if seen:
-        found.append(f"{model.name} was identified from {_listed(seen)}, which does not count")
-    return tuple(found)
+        findings.append(f"{model.name} was identified from {_listed(seen)}, which does not count")
+    return tuple(findings)

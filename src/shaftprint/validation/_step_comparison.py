@@ -80,23 +80,23 @@ def compare_steps(
     # few pieces of noise give a deviation that is itself not well known: Student's t instead of the normal distribution
     noise_reach = deviations(coverage, max(pieces.shape[0] - 1, 1))
     band = _band(smooth, time_s, covariance, settled_share, draws, rng)
-    found = []
-    for place, (name, unit) in enumerate(STEP_NUMBERS.items()):
-        reach = float(np.hypot(noise_reach * std[place], deviations(coverage) * band[place]))
-        apart = abs(float(measured[place] - expected[place]))
-        found.append(
+    numbers = []
+    for row, (name, unit) in enumerate(STEP_NUMBERS.items()):
+        reach = float(np.hypot(noise_reach * std[row], deviations(coverage) * band[row]))
+        apart = abs(float(measured[row] - expected[row]))
+        numbers.append(
             StepNumber(
                 output=smooth.output,
                 name=name,
                 unit=unit,
-                measured=float(measured[place]),
-                measured_std=float(std[place]),
-                expected=float(expected[place]),
-                expected_std=float(band[place]),
+                measured=float(measured[row]),
+                measured_std=float(std[row]),
+                expected=float(expected[row]),
+                expected_std=float(band[row]),
                 agrees=bool(apart <= reach) if np.isfinite(apart + reach) else None,
             )
         )
-    return tuple(found)
+    return tuple(numbers)
 
 
 def _moments(numbers: FloatArray) -> tuple[FloatArray, FloatArray]:

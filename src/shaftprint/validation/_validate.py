@@ -79,11 +79,11 @@ def validate(
     data = Data.of(signals, campaign, settings)
     comparisons: list[ExcerptComparison] = []
     for name in names:
-        own = [excerpt for excerpt in excerpts if excerpt.record == name]
-        if not own:
+        of_record = [excerpt for excerpt in excerpts if excerpt.record == name]
+        if not of_record:
             continue
-        run = run_model(chosen, data, own, settings, predict=predict, quadratic_propeller=quadratic_propeller)
-        comparisons += (_compared(excerpt, run, chosen, settings, rng) for excerpt in own)
+        run = run_model(chosen, data, of_record, settings, predict=predict, quadratic_propeller=quadratic_propeller)
+        comparisons += (_compared(excerpt, run, chosen, settings, rng) for excerpt in of_record)
     return Validation(
         model=chosen,
         settings=settings,
@@ -143,9 +143,9 @@ def _compared(
 
 
 def _delay(excerpt: Excerpt, run: Run, model: Model, smooth: Compared) -> RemainingDelay:
-    own = run.excerpt(excerpt)
+    samples = run.excerpt(excerpt)
     # the run goes on behind every record, but not before one that begins with the recording
-    margin = min(round(LONGEST_S * run.data.rate_hz), own.start, run.smooth.shape[1] - own.stop)
+    margin = min(round(LONGEST_S * run.data.rate_hz), samples.start, run.smooth.shape[1] - samples.stop)
     wide = run.excerpt(excerpt, margin)
     return remaining_delay(
         smooth.output,
@@ -201,5 +201,5 @@ def _traces(excerpt: Excerpt, run: Run, model: Model) -> ExcerptTraces:
 
 
 def _outcome(comparisons: Sequence[ExcerptComparison]) -> Outcome:
-    found = {comparison.outcome for comparison in comparisons if not comparison.excerpt.in_sample}
-    return "fails" if "fails" in found else "passes" if found == {"passes"} else "undecided"
+    outcomes = {comparison.outcome for comparison in comparisons if not comparison.excerpt.in_sample}
+    return "fails" if "fails" in outcomes else "passes" if outcomes == {"passes"} else "undecided"

@@ -44,8 +44,8 @@ class ExcerptComparison:
     @property
     def outcome(self) -> Outcome:
         """Fails if an output fails, passes if both pass."""
-        found = {misfit.outcome for misfit in self.misfits}
-        return "fails" if "fails" in found else "passes" if found == {"passes"} else "undecided"
+        outcomes = {misfit.outcome for misfit in self.misfits}
+        return "fails" if "fails" in outcomes else "passes" if outcomes == {"passes"} else "undecided"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -78,7 +78,7 @@ class Validation:
         KeyError
             If there is none.
         """
-        for found in self.comparisons:
-            if found.excerpt.record == record and found.excerpt.title.startswith(title):
-                return found
+        for comparison in self.comparisons:
+            if comparison.excerpt.record == record and comparison.excerpt.title.startswith(title):
+                return comparison
         raise KeyError(f"{record}, {title}")

@@ -78,13 +78,13 @@ def excerpts_of(
             f"campaign {campaign.name}: expected a chirp or staircase that the model was not identified from, found "
             f"none; it has {', '.join(there) or 'sines only'}."
         )
-    known = [name for name in records if name in used]
-    if known and not allow_in_sample:
+    in_sample = [name for name in records if name in used]
+    if in_sample and not allow_in_sample:
         raise ValidationError(
-            f"record {', '.join(known)}: the model was identified from it, so that it proves nothing; validate on "
+            f"record {', '.join(in_sample)}: the model was identified from it, so that it proves nothing; validate on "
             "another record, or allow records of the identification, which are then marked."
         )
-    found: list[Excerpt] = []
+    excerpts: list[Excerpt] = []
     for name in records:
         if name not in there:
             raise ValidationError(
@@ -93,8 +93,8 @@ def excerpts_of(
             )
         record = there[name]
         cut = _chirp(record, settings) if isinstance(record, Chirp) else _staircase(record, campaign, settings)
-        found += [replace(excerpt, in_sample=name in used) for excerpt in cut]
-    return tuple(found)
+        excerpts += [replace(excerpt, in_sample=name in used) for excerpt in cut]
+    return tuple(excerpts)
 
 
 def whole_excerpts(
@@ -110,7 +110,7 @@ def whole_excerpts(
     ValidationError
         If none is left.
     """
-    whole, lost = [], []
+    complete, lost = [], []
     gaps = Coverage(gaps=coverage.gaps)
     for excerpt in excerpts:
         reason = coverage.missing(excerpt.start_s, excerpt.stop_s) or gaps.missing(
@@ -119,15 +119,15 @@ def whole_excerpts(
         if reason:
             lost.append(f"{excerpt.record}, {excerpt.title}, was left out: {reason}")
         else:
-            whole.append(excerpt)
-    if not whole:
+            complete.append(excerpt)
+    if not complete:
         records = ", ".join(dict.fromkeys(excerpt.record for excerpt in excerpts))
         begin, end = min(e.start_s for e in excerpts), max(e.stop_s for e in excerpts)
         raise ValidationError(
             f"record {records}: expected it in the recording, from {begin:.1f} to {end:.1f} s, but "
             f"{lost[0].split(': ', 1)[1]}; check the start_s of the campaign file, or choose another record."
         )
-    return tuple(whole), tuple(lost)
+    return tuple(complete), tuple(lost)
 
 
 def _sweep(chirp: Chirp) -> float:
@@ -149,31 +149,31 @@ def _chirp(chirp: Chirp, settings: ValidationSettings) -> list[Excerpt]:
     bands += [(a, b, f"{a:g} to {b:g} rad/s") for a, b in pairwise(edges)]
     bands.append((edges[-1], math.inf, f"above {edges[-1]:g} rad/s"))
     bands.append((low, high, f"about {0.5 * (low + high):g} rad/s"))
-    found = []
+    excerpts = []
     ends = sorted((chirp.start_frequency_hz, chirp.stop_frequency_hz))
     slowest, fastest = (2.0 * math.pi * end for end in ends)
     for lower, upper, title in bands:
         a, b = max(lower, slowest), min(upper, fastest)
         if a < b:
             start, stop = sorted((_passes(chirp, a), _passes(chirp, b)))
-            found.append(Excerpt(record=chirp.name, kind="chirp band", title=title, start_s=start, stop_s=stop))
-    return found
+            excerpts.append(Excerpt(record=chirp.name, kind="chirp band", title=title, start_s=start, stop_s=stop))
+    return excerpts
 
 
 def _staircase(stairs: Staircase, campaign: Campaign, settings: ValidationSettings) -> list[Excerpt]:
     """Return a staircase whole and step by step; the first level is a step too where it is not that before."""
-    found = [
+    excerpts = [
         Excerpt(
             record=stairs.name, kind="staircase", title="whole staircase", start_s=stairs.start_s, stop_s=stairs.stop_s
         )
     ]
     after = min(settings.zoom_after_s, stairs.dwell_s - settings.zoom_before_s)
     levels = (campaign.offset_v, *stairs.levels_v)
-    for place, (before_v, after_v) in enumerate(pairwise(levels)):
-        at = stairs.start_s + place * stairs.dwell_s
+    for step, (before_v, after_v) in enumerate(pairwise(levels)):
+        at = stairs.start_s + step * stairs.dwell_s
         if before_v == after_v:
             continue
-        found.append(
+        excerpts.append(
             Excerpt(
                 record=stairs.name,
                 kind="step",
@@ -183,4 +183,4 @@ def _staircase(stairs: Staircase, campaign: Campaign, settings: ValidationSettin
                 step_s=at,
             )
         )
-    return found
+    return excerpts

@@ -144,9 +144,9 @@ class GovernorTest:
 
     def _from(self, values: FloatArray, time_s: FloatArray) -> FloatArray:
         """Return a signal at some times, steady before the first test."""
-        found = np.interp(time_s, self.time_s, values)
+        interpolated = np.interp(time_s, self.time_s, values)
         stands = time_s < self.begin_s + BEFORE_S - LAST_S
-        return np.where(stands, found[stands].mean() if stands.any() else found, found)
+        return np.where(stands, interpolated[stands].mean() if stands.any() else interpolated, interpolated)
 
 
 def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> GovernorTest:
@@ -170,13 +170,13 @@ def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> Gover
     point = signals.working_point
     speed = deviation(signals.engine_speed.speed_rev_s, point.engine_speed_rev_s)
     torque = deviation(signals.shaft_torque_nm, point.shaft_torque_nm)
-    asked = deviation(signals.set_point_rev_s, point.engine_speed_rev_s)
-    lost = ~(np.isfinite(speed) & np.isfinite(torque) & np.isfinite(asked))
-    beside, settled = round(BESIDE_S * signals.rate_hz), round(SETTLED_S * signals.rate_hz)
-    lost = _within(lost | _within(speed < SLOW, beside, beside), 0, settled)
+    set_point = deviation(signals.set_point_rev_s, point.engine_speed_rev_s)
+    lost = ~(np.isfinite(speed) & np.isfinite(torque) & np.isfinite(set_point))
+    margin, settled = round(BESIDE_S * signals.rate_hz), round(SETTLED_S * signals.rate_hz)
+    lost = _within(lost | _within(speed < SLOW, margin, margin), 0, settled)
     curve = np.array(full_load_shape(vessel, point))
-    asked = _filled(time, asked)
-    jumps = jumps_in(time, asked, campaign)
+    set_point = _filled(time, set_point)
+    jumps = jumps_in(time, set_point, campaign)
     on_time = np.zeros(len(jumps))
     normalisation = Normalisation(
         engine_speed_rev_s=point.engine_speed_rev_s,
@@ -186,7 +186,7 @@ def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> Gover
     return GovernorTest(
         name=signals.recording_name,
         time_s=frozen_float(time),
-        without_jumps=frozen_float(with_jumps(time, asked, jumps) - sum_of_jumps(time, jumps, on_time)),
+        without_jumps=frozen_float(with_jumps(time, set_point, jumps) - sum_of_jumps(time, jumps, on_time)),
         jumps=jumps,
         late_s=frozen_float(on_time),
         speed=frozen_float(_filled(time, speed)),

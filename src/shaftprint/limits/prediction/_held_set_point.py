@@ -80,26 +80,28 @@ class Messages:
         return None if last + 1 >= self.cycle_s.size else float(self.cycle_s[last + 1])
 
 
-def messages_of(term: PredictionError, own: FloatArray, test: GovernorTest, known: FloatArray) -> Messages | None:
+def messages_of(
+    term: PredictionError, values: FloatArray, test: GovernorTest, information: FloatArray
+) -> Messages | None:
     """Return the delays of the jumps, to first order from those of a test, and the cycles that explain them.
 
     Parameters
     ----------
-    term, own
+    term, values
         Likelihood and parameters of a governor, on the record of the test.
     test
         The test, with the jumps as late as they were thought to be.
-    known
+    information
         One over the prior deviation of each free parameter, shape (free,).
 
     Returns
     -------
     None where too few jumps are seen, or the simulation runs away.
     """
-    rows, now = term.rows(own), term.innovations(own)
+    rows, now = term.rows(values), term.innovations(values)
     if rows is None or now is None:
         return None
-    changes = _change_by_jump(term, own, test)
+    changes = _change_by_jump(term, values, test)
     columns = now.filtered(-changes) / term.scale
     precision = np.einsum("ij,ij->i", columns, columns)
     std = np.hypot(1.0 / np.sqrt(np.maximum(precision, 1e-12)), LEAST_STD_S)
@@ -109,7 +111,7 @@ def messages_of(term: PredictionError, own: FloatArray, test: GovernorTest, know
     free = rows.shape[0] - 1
     slopes = np.concatenate([rows[1:], columns[seen]])
     normal = slopes @ slopes.T
-    normal[np.diag_indices(free)] += known**2
+    normal[np.diag_indices(free)] += information**2
     covariance = np.linalg.pinv(normal, hermitian=True)
     step = -covariance @ (slopes @ rows[0])
     moved = test.late_s.copy()
@@ -161,12 +163,12 @@ def _answered(term: PredictionError, test: GovernorTest) -> BoolArray:
     return np.array([bool(where.any() and used[where].all()) for where in answers], dtype=np.bool_)
 
 
-def _change_by_jump(term: PredictionError, own: FloatArray, test: GovernorTest) -> FloatArray:
+def _change_by_jump(term: PredictionError, values: FloatArray, test: GovernorTest) -> FloatArray:
     """Return the change of the predicted torque with the delay of each jump [1/s], shape (jumps, samples)."""
     drive_hz = term.record.drive_rate_hz
     later = replace(test, late_s=frozen_float(test.late_s + TRIED_S)).record(drive_hz=drive_hz)
-    before = term.predicted(own)
-    change = (replace(term, record=later).predicted(own) - before) / TRIED_S
+    before = term.predicted(values)
+    change = (replace(term, record=later).predicted(values) - before) / TRIED_S
     begins = np.array([jump.at_s for jump in test.jumps])
     ends = np.append(begins[1:], np.inf)
     time = term.record.time_s

@@ -119,7 +119,7 @@ class PredictionError(WhitenedTerm):
     def _measured(self) -> FloatArray:
         return np.asarray(self.record.outputs[OUTPUT])
 
-    def with_scale_at(self, own: FloatArray) -> "PredictionError":
+    def with_scale_at(self, values: FloatArray) -> "PredictionError":
         """Return the term with the innovations of some parameters as its unit.
 
         Raises
@@ -127,53 +127,53 @@ class PredictionError(WhitenedTerm):
         IdentificationError
             If the simulation runs away there.
         """
-        found = self.innovations(own)
-        if found is None:
+        at_values = self.innovations(values)
+        if at_values is None:
             raise IdentificationError(f"{self.name}: the simulation of {self.structure.name} runs away.")
-        return replace(self, scale=float(np.sqrt(found.squares / found.count)))
+        return replace(self, scale=float(np.sqrt(at_values.squares / at_values.count)))
 
-    def innovations(self, own: FloatArray) -> Innovations | None:
+    def innovations(self, values: FloatArray) -> Innovations | None:
         """Return the innovations at all parameters of the structure; None where the simulation runs away."""
-        simulated = self._simulated(own, ())
+        simulated = self._simulated(values, ())
         return None if simulated is None else innovations(self._measured - simulated[0], self.record.used)
 
-    def predicted(self, own: FloatArray) -> FloatArray:
+    def predicted(self, values: FloatArray) -> FloatArray:
         """Return the predicted torque over the load, shape (samples,); infinite where the simulation runs away."""
-        simulated = self._simulated(own, ())
+        simulated = self._simulated(values, ())
         return np.full(self.record.samples, np.inf) if simulated is None else simulated[0]
 
-    def residuals(self, own: FloatArray) -> FloatArray:
+    def residuals(self, values: FloatArray) -> FloatArray:
         """Return what the prediction leaves of the measured torque over the load, shape (samples,)."""
-        return np.asarray(self._measured - self.predicted(own))
+        return np.asarray(self._measured - self.predicted(values))
 
-    def rows(self, own: FloatArray) -> FloatArray | None:
+    def rows(self, values: FloatArray) -> FloatArray | None:
         """Return innovations over their deviation and below them their derivatives, shape (1 + free, innovations)."""
-        simulated = self._simulated(own, [self.whole.names[place] for place in self.free])
+        simulated = self._simulated(values, [self.whole.names[column] for column in self.free])
         if simulated is None:
             return None
-        found = innovations(self._measured - simulated[0], self.record.used)
-        return np.concatenate([found.values[None], found.filtered(-simulated[1:])]) / self.scale
+        at_values = innovations(self._measured - simulated[0], self.record.used)
+        return np.concatenate([at_values.values[None], at_values.filtered(-simulated[1:])]) / self.scale
 
     def table(self, theta: FloatArray, repeats: Repeats | None = None) -> FloatArray:
         """Return QR-reduced innovations and derivatives, shape (starts, 1 + free, 1 + free)."""
-        found = np.zeros((theta.shape[0], self.row_count, self.row_count))
-        for start, own in enumerate(self.complete(theta)):
-            rows = self.rows(own)
+        table = np.zeros((theta.shape[0], self.row_count, self.row_count))
+        for start, values in enumerate(self.complete(theta)):
+            rows = self.rows(values)
             if rows is None:
-                found[start, 0, 0] = np.sqrt(2.0 * AWAY)
+                table[start, 0, 0] = np.sqrt(2.0 * AWAY)
             else:
-                found[start] = qr_reduced(rows)
-        return found
+                table[start] = qr_reduced(rows)
+        return table
 
     def evaluable(self, theta: FloatArray) -> BoolArray:
         """Return whether the simulation of each start stays within bounds, shape (starts,)."""
-        return np.array([self._simulated(own, ()) is not None for own in self.complete(theta)])
+        return np.array([self._simulated(values, ()) is not None for values in self.complete(theta)])
 
     def assessed(self, values: FloatArray, number: int) -> tuple[PredictedTorque, TermTest]:
         """Return FitPercent; whether the innovations are small has no meaning, for they are the unit."""
-        own = self.structure_values(values)
-        simulated, found = self._simulated(own, ()), self.innovations(own)
-        if simulated is None or found is None:
+        structure_values = self.structure_values(values)
+        simulated, at_values = self._simulated(structure_values, ()), self.innovations(structure_values)
+        if simulated is None or at_values is None:
             raise IdentificationError(
                 f"{self.name}: the simulation of {self.structure.name} runs away at the parameters that were found."
             )
@@ -185,8 +185,8 @@ class PredictionError(WhitenedTerm):
             predicted=frozen_float(simulated[0]),
             fit_percent={OUTPUT: fit_percent(*pair)},
         )
-        count = found.count
-        distance = found.squares / self.scale**2
+        count = at_values.count
+        distance = at_values.squares / self.scale**2
         line = LineTest(
             experiment=number, name=self.record.name, distance=distance, data_count=count, excess=float(np.inf)
         )
@@ -196,33 +196,33 @@ class PredictionError(WhitenedTerm):
         """Refuse: the speed that drives the governor holds the noise that would have to be drawn anew."""
         raise IdentificationError(f"{self.name}: repeats of a governor on its measured speed cannot be drawn.")
 
-    def _simulated(self, own: FloatArray, wanted: Sequence[str]) -> FloatArray | None:
+    def _simulated(self, values: FloatArray, wanted: Sequence[str]) -> FloatArray | None:
         """Return prediction and derivatives, shape (1 + wanted, samples); None where it runs away."""
         inside = [name for name in wanted if name != RATE]
-        found = simulated_on(EXACT, self.whole, own, self._record_at(own), inside)
-        if found is None or len(inside) == len(wanted):
-            return None if found is None else found[:, :, 0]
-        change = self._change_with_rate(own)
-        return None if change is None else np.insert(found[:, :, 0], 1 + list(wanted).index(RATE), change, axis=0)
+        simulated = simulated_on(EXACT, self.whole, values, self._record_at(values), inside)
+        if simulated is None or len(inside) == len(wanted):
+            return None if simulated is None else simulated[:, :, 0]
+        change = self._change_with_rate(values)
+        return None if change is None else np.insert(simulated[:, :, 0], 1 + list(wanted).index(RATE), change, axis=0)
 
-    def _record_at(self, own: FloatArray) -> Record:
+    def _record_at(self, values: FloatArray) -> Record:
         """Return the record with the set point as its limited rate leaves it."""
-        rate = float(own[self.whole.names.index(RATE)])
+        rate = float(values[self.whole.names.index(RATE)])
         if rate >= IDLE[RATE]:
             return self.record
         # the rate is that of the demand, which is the recorded set point times its scale
-        limited = self.record.set_point_at(rate / float(own[self.whole.names.index(Symbol.SET_POINT_SCALE)]))
+        limited = self.record.set_point_at(rate / float(values[self.whole.names.index(Symbol.SET_POINT_SCALE)]))
         return replace(self.record, drive={**self.record.drive, "n_set": limited})
 
-    def _change_with_rate(self, own: FloatArray) -> FloatArray | None:
+    def _change_with_rate(self, values: FloatArray) -> FloatArray | None:
         """Return the change of the prediction with the rate of the set point, shape (samples,): no equation has it."""
-        place = self.whole.names.index(RATE)
+        column = self.whole.names.index(RATE)
         ends = []
         for side in (-1.0, 1.0):
-            moved = own.copy()
-            moved[place] *= 1.0 + side * RATE_STEP
-            found = simulated_on(EXACT, self.whole, moved, self._record_at(moved), ())
-            if found is None:
+            moved = values.copy()
+            moved[column] *= 1.0 + side * RATE_STEP
+            simulated = simulated_on(EXACT, self.whole, moved, self._record_at(moved), ())
+            if simulated is None:
                 return None
-            ends.append(found[0, :, 0])
-        return np.asarray((ends[1] - ends[0]) / (2.0 * RATE_STEP * own[place]))
+            ends.append(simulated[0, :, 0])
+        return np.asarray((ends[1] - ends[0]) / (2.0 * RATE_STEP * values[column]))

@@ -28,31 +28,31 @@ BLOCK_S = 4.0
 Clusters: TypeAlias = Callable[[OutputError], IntArray]
 
 
-def with_scatter_of_blocks(found: Identification) -> Identification:
+def with_scatter_of_blocks(fit: Identification) -> Identification:
     """Return a fit with standard deviations from the scatter of its slopes, where these are larger.
 
     Correlations stay those of the noise model.
     """
-    scatter = np.maximum(_scatter(found, _blocks), _scatter(found, _windows))
-    std = np.sqrt(np.diag(found.covariance))
+    scatter = np.maximum(_scatter(fit, _blocks), _scatter(fit, _windows))
+    std = np.sqrt(np.diag(fit.covariance))
     with np.errstate(divide="ignore", invalid="ignore"):
         factor = np.where(np.isfinite(std) & (std > 0.0), np.maximum(scatter / std, 1.0), 1.0)
-    return replace(found, covariance=frozen_float(found.covariance * np.outer(factor, factor)))
+    return replace(fit, covariance=frozen_float(fit.covariance * np.outer(factor, factor)))
 
 
-def _scatter(found: Identification, clusters: Clusters) -> FloatArray:
+def _scatter(fit: Identification, clusters: Clusters) -> FloatArray:
     """Return standard deviations of the free parameters from the scatter of slopes by cluster, shape (free,)."""
-    objective = found.objective
-    theta = found.values[list(objective.free)]
+    objective = fit.objective
+    theta = fit.values[list(objective.free)]
     rows, noise = objective.sensitivity(theta, expected=False)
     variance = noise @ noise.T
     for term in objective.terms:
         if isinstance(term, OutputError):
-            own, _ = objective.sensitivity_to(term, theta, expected=False)
+            rows_of_term, _ = objective.sensitivity_to(term, theta, expected=False)
             sums = _cluster_slopes(term, theta[list(term.columns)], clusters(term))
             slopes = np.zeros((theta.size, sums.shape[1]))
             slopes[list(term.columns)] = sums
-            variance = variance - own @ own.T + slopes @ slopes.T
+            variance = variance - rows_of_term @ rows_of_term.T + slopes @ slopes.T
     # the records may say nothing at all of a parameter, as of the integrator's way back from a limit that none met
     inverse = PseudoInverse.of(rows).inverse
     return np.asarray(np.sqrt(np.maximum(np.diag(inverse @ variance @ inverse), 0.0)))

@@ -44,14 +44,14 @@ def with_exact_jumps(record: Record, campaign: Campaign, *, rate_hz: float = DRI
     """
     every = max(round(rate_hz / record.rate_hz), 1)
     first_s = record.start_s - record.margin / record.drive_rate_hz
-    own = first_s + record.drive_time_s
+    drive_time = first_s + record.drive_time_s
     margin = Decimator(every=every).half
     count = (record.samples - 1) * every + 1 + 2 * margin
     time = record.start_s + (np.arange(count) - margin) / (record.rate_hz * every)
     drive = {}
     for name, values in record.drive.items():
-        fine = np.interp(time, own, values)
-        for near_s in _jumps(campaign, own[0], own[-1]):
+        fine = np.interp(time, drive_time, values)
+        for near_s in _jumps(campaign, drive_time[0], drive_time[-1]):
             fine = _restored(time, fine, near_s)
         drive[name] = frozen_float(fine)
     return replace(record, drive=drive, every=every)
@@ -113,18 +113,18 @@ def _jumps(campaign: Campaign, begin_s: float, end_s: float) -> Iterator[float]:
 def _jump_near(time_s: FloatArray, drive: FloatArray, near_s: float) -> Jump | None:
     """Return the jump near a time; None where there is hardly one."""
     around = np.flatnonzero(np.abs(time_s - near_s) <= NEAR_S)
-    place = around[0] + int(np.argmax(np.abs(np.diff(drive[around]))))
+    largest = around[0] + int(np.argmax(np.abs(np.diff(drive[around]))))
     before, after = (
-        float(np.mean(drive[np.abs(time_s - time_s[place] - side * (RINGING_S + 0.5 * LEVEL_S)) <= 0.5 * LEVEL_S]))
+        float(np.mean(drive[np.abs(time_s - time_s[largest] - side * (RINGING_S + 0.5 * LEVEL_S)) <= 0.5 * LEVEL_S]))
         for side in (-1.0, 1.0)
     )
     if abs(after - before) < LEAST_JUMP:
         return None
-    inside = np.abs(time_s - time_s[place]) <= RINGING_S
+    inside = np.abs(time_s - time_s[largest]) <= RINGING_S
     # where the share of the way that is left adds up to is where the jump lies
-    left = (after - drive[inside]) / (after - before)
+    remaining = (after - drive[inside]) / (after - before)
     step_s = time_s[1] - time_s[0]
-    at_s = float(time_s[inside][0] - 0.5 * step_s + step_s * np.sum(left))
+    at_s = float(time_s[inside][0] - 0.5 * step_s + step_s * np.sum(remaining))
     return Jump(inside, at_s, before, after)
 
 

@@ -101,30 +101,32 @@ def identify_nonlinear(
         raise IdentificationError(
             f"campaign {campaign.name}: expected a staircase or a chirp, which limits show in, found none."
         )
-    known = priors_from_vessel(model.structure, vessel, signals.working_point, mode=signals.mode)
-    known = {name: prior for name, prior in (known if priors is None else priors).items() if _is_free(model, name)}
+    all_priors = priors_from_vessel(model.structure, vessel, signals.working_point, mode=signals.mode)
+    all_priors = {
+        name: prior for name, prior in (all_priors if priors is None else priors).items() if _is_free(model, name)
+    }
     response = estimate_response(signals, campaign)
     quiet = without_orders(signals, vessel)
-    first = linear or _linear(_small(model.structure), response, known, rng)
+    first = linear or _linear(_small(model.structure), response, all_priors, rng)
     start = {p.name: p.value for p in first.parameters} | dict(model.start)
-    task = _Task(quiet, campaign, model.structure, response, known, how, names, rng)
+    task = _Task(quiet, campaign, model.structure, response, all_priors, how, names, rng)
     sines = task.limited_sines(start)
     for _ in range(2):
-        found, reached = task.solved(start, sines, model.names)
-        start = {p.name: p.value for p in found.parameters}
+        fit, reached = task.solved(start, sines, model.names)
+        start = {p.name: p.value for p in fit.parameters}
         before, sines = sines, task.limited_sines(start)
         if set(sines) == set(before):
             break
-    found = with_scatter_of_blocks(found)
+    fit = with_scatter_of_blocks(fit)
     return NonlinearFit(
-        identification=found,
+        identification=fit,
         linear=first,
-        limits=limit_numbers(found, signals.working_point, vessel),
+        limits=limit_numbers(fit, signals.working_point, vessel),
         lines=tuple(line for line in _lines(response) if line not in before),
         records=(*before, *names),
         starts=how.starts,
         reached=reached,
-        jump_stretches=task.jump_stretches(found),
+        jump_stretches=task.jump_stretches(fit),
     )
 
 
@@ -166,15 +168,15 @@ class _Task:
             ends[0] = np.array(list(free_values(parts, best).values()))
         return few, (many.reached, many.settings.starts)
 
-    def jump_stretches(self, found: Identification) -> tuple[JumpStretch, ...]:
+    def jump_stretches(self, fit: Identification) -> tuple[JumpStretch, ...]:
         """Return the stretches of staircases and chirps that a fit did not use though they were measured."""
-        whole = {record.name: record for record in self._records(self.names, self.how.rate_hz, self.how.drive_hz)}
-        fitted = [term.record for term in found.objective.terms if isinstance(term, OutputError)]
+        uncut = {record.name: record for record in self._records(self.names, self.how.rate_hz, self.how.drive_hz)}
+        fitted = [term.record for term in fit.objective.terms if isinstance(term, OutputError)]
         return tuple(
             stretch
             for record in fitted
-            if record.name in whole
-            for stretch in jump_stretches(record.name, record.time_s, whole[record.name].used & ~record.used)
+            if record.name in uncut
+            for stretch in jump_stretches(record.name, record.time_s, uncut[record.name].used & ~record.used)
         )
 
     def _parts(self, sines: Sequence[str], rate_hz: float, drive_hz: float, step_s: float) -> list[Part]:
@@ -189,29 +191,29 @@ class _Task:
         return parts
 
     def _records(self, names: Sequence[str], rate_hz: float, drive_hz: float) -> list[Record]:
-        found = records_of(self.signals, self.campaign, names, rate_hz=rate_hz, settled=True) if names else ()
-        return [with_exact_jumps(record, self.campaign, rate_hz=drive_hz) for record in found]
+        records = records_of(self.signals, self.campaign, names, rate_hz=rate_hz, settled=True) if names else ()
+        return [with_exact_jumps(record, self.campaign, rate_hz=drive_hz) for record in records]
 
     def _renewed(self, parts: Sequence[Part], values: Mapping[str, float]) -> list[Part]:
         """Return the parts, records with the noise that is left at some values, and without what noise decides."""
-        found: list[Part] = []
+        renewed: list[Part] = []
         for part in parts:
             if isinstance(part, OutputError):
-                own = part.structure.vector({p.name: values.get(p.name, p.value) for p in part.structure.free})
-                known = with_noise_at(part, own)
-                steady = without_jumps(known, own, self.rng.spawn(1)[0])
-                found.append(known if steady is known else with_noise_at(steady, own))
+                term_values = part.structure.vector({p.name: values.get(p.name, p.value) for p in part.structure.free})
+                with_noise = with_noise_at(part, term_values)
+                steady = without_jumps(with_noise, term_values, self.rng.spawn(1)[0])
+                renewed.append(with_noise if steady is with_noise else with_noise_at(steady, term_values))
             else:
-                found.append(part)
-        return found
+                renewed.append(part)
+        return renewed
 
 
 def _linear(
     gauge: Structure, response: FrequencyResponse, priors: Mapping[str, Prior], rng: np.random.Generator
 ) -> Identification:
     names = {p.name for p in gauge.free}
-    known = {name: prior for name, prior in priors.items() if name in names}
-    return identify(gauge, response, rng=rng, settings=Settings(priors=known))
+    free_priors = {name: prior for name, prior in priors.items() if name in names}
+    return identify(gauge, response, rng=rng, settings=Settings(priors=free_priors))
 
 
 def _small(limited: Structure) -> Structure:

@@ -63,8 +63,8 @@ def without_jumps(term: OutputError, values: FloatArray, rng: np.random.Generato
     apart = np.flatnonzero(np.any(spread > APART * np.median(spread[record.used], axis=0), axis=1))
     if not apart.size:
         return term
-    place, reach = np.arange(record.samples), round(AROUND_S * record.rate_hz)
-    sides = [record.used & (place < apart[0] - reach), record.used & (place > apart[-1] + reach)]
+    sample, reach = np.arange(record.samples), round(AROUND_S * record.rate_hz)
+    sides = [record.used & (sample < apart[0] - reach), record.used & (sample > apart[-1] + reach)]
     long = [side for side in sides if side.sum() >= LEAST_SHARE * record.used.sum()]
     if not long:
         return term
@@ -97,6 +97,6 @@ def _drawn(noise: NoiseModel, samples: int, rng: np.random.Generator) -> FloatAr
     order, beginning = noise.order, BEGINNING * (noise.order + 1)
     drawn = rng.standard_normal((samples + beginning, noise.outputs)) @ np.linalg.cholesky(noise.covariance).T
     weights = noise.coefficients.swapaxes(0, 1).reshape(noise.outputs, -1)
-    for place in range(order, drawn.shape[0]):
-        drawn[place] += weights @ drawn[place - order : place][::-1].ravel()
+    for sample in range(order, drawn.shape[0]):
+        drawn[sample] += weights @ drawn[sample - order : sample][::-1].ravel()
     return drawn[beginning:]

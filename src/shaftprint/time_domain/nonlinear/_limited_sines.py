@@ -32,21 +32,24 @@ def limited_sines(structure: Structure, values: Mapping[str, float], records: Se
     records
         Sines, each with its settled samples in use.
     """
-    found = []
+    names = []
     for record in records:
-        own = output_error(structure, record).structure
-        known = {p.name: values[p.name] for p in own.free if p.name in values}
-        idle = {name: value for name, value in IDLE.items() if name in own.names}
+        equipped = output_error(structure, record).structure
+        free_values = {p.name: values[p.name] for p in equipped.free if p.name in values}
+        idle = {name: value for name, value in IDLE.items() if name in equipped.names}
         pair = [
-            on_record(ExactDelays(), own, own.vector(each), record, ())
-            for each in (known, {**known, **{p.name: idle[p.name] for p in own.parameters if p.name in idle}})
+            on_record(ExactDelays(), equipped, equipped.vector(each), record, ())
+            for each in (
+                free_values,
+                {**free_values, **{p.name: idle[p.name] for p in equipped.parameters if p.name in idle}},
+            )
         ]
         limited_run, linear_run = pair
         if limited_run is None or linear_run is None:
-            found.append(record.name)
+            names.append(record.name)
             continue
         change = (limited_run - linear_run)[0, record.used]
         motion = linear_run[0, record.used] - linear_run[0, record.used].mean(axis=0)
         if not np.all(np.abs(change).max(axis=0) <= TOUCHED * np.abs(motion).max(axis=0)):
-            found.append(record.name)
-    return tuple(found)
+            names.append(record.name)
+    return tuple(names)

@@ -29,8 +29,8 @@ def without_orders(signals: Signals, vessel: Vessel) -> Signals:
     speed = np.array(signals.engine_speed.speed_rev_s)
     count = max(round(signals.samples / (STRETCH_S * signals.rate_hz)), 1)
     for part in np.array_split(np.arange(signals.samples), count):
-        own = slice(int(part[0]), int(part[-1]) + 1)
-        torque[own] -= _orders(torque[own], speed[own], signals.rate_hz, orders)
+        stretch = slice(int(part[0]), int(part[-1]) + 1)
+        torque[stretch] -= _orders(torque[stretch], speed[stretch], signals.rate_hz, orders)
     return signals.with_channel("M_s", values=frozen_float(torque))
 
 
@@ -39,17 +39,17 @@ def _orders(torque: FloatArray, speed_rev_s: FloatArray, rate_hz: float, orders:
     good = np.isfinite(torque) & np.isfinite(speed_rev_s)
     if not good.any():
         return np.zeros(torque.size)
-    known = np.where(good, torque, 0.0)
+    finite = np.where(good, torque, 0.0)
     turned = np.cumsum(np.where(np.isfinite(speed_rev_s), speed_rev_s, 0.0)) / rate_hz
     length = round(SLOW_S * rate_hz)
-    load = _slow(known, length)
+    load = _slow(finite, length)
     size = float(np.mean(np.abs(load))) or 1.0
     faster = np.where(good, speed_rev_s, 0.0) / float(np.mean(speed_rev_s[good])) - 1.0
     waves = [
         load / size * wave(2.0 * np.pi * order * turned) for order in dict.fromkeys(orders) for wave in (np.cos, np.sin)
     ]
     table = np.stack([*waves, *(faster * wave for wave in waves)], axis=1)
-    fast = np.stack([column - _slow(column, length) for column in (known, *table.T)], axis=1)[good]
+    fast = np.stack([column - _slow(column, length) for column in (finite, *table.T)], axis=1)[good]
     shares, *_ = np.linalg.lstsq(fast[:, 1:], fast[:, 0], rcond=None)
     return np.asarray(np.where(good, table @ shares, 0.0))
 

@@ -31,20 +31,20 @@ class SomeDrawn(Draw):
 
     def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
         """Return the given start and ``count - 1`` others from a Latin hypercube."""
-        found = np.tile(np.clip(self.first, lower, upper), (count, 1))
+        starts = np.tile(np.clip(self.first, lower, upper), (count, 1))
         places = list(self.drawn)
         low, high = lower[places], upper[places]
         wide = (low > 0.0) & (high > WIDE_RANGE * low)
         low, high = np.where(wide, np.log(np.where(wide, low, 1.0)), low), np.where(wide, np.log(high), high)
         table = LatinHypercube().starts(low, high, count - 1, rng)
-        found[1:, places] = np.where(wide, np.exp(np.where(wide, table, 0.0)), table)
-        return found
+        starts[1:, places] = np.where(wide, np.exp(np.where(wide, table, 0.0)), table)
+        return starts
 
 
-def free_values(parts: Sequence[Part], known: Mapping[str, float]) -> dict[str, float]:
+def free_values(parts: Sequence[Part], values: Mapping[str, float]) -> dict[str, float]:
     """Return the free parameters of all parts in their order, known ones at their values."""
     structures = [part.structure if isinstance(part, Term) else part[0] for part in parts]
-    return {p.name: float(known.get(p.name, p.value)) for structure in structures for p in structure.free}
+    return {p.name: float(values.get(p.name, p.value)) for structure in structures for p in structure.free}
 
 
 def first_pass(
@@ -81,10 +81,10 @@ def from_these(
     )
 
 
-def best_ends(found: Identification, count: int) -> FloatArray:
+def best_ends(fit: Identification, count: int) -> FloatArray:
     """Return the free parameters of the lowest optima, shape (count or fewer, free)."""
-    places = list(found.objective.free)
-    ends = [cluster.values[places] for cluster in found.clusters if np.isfinite(cluster.cost)]
+    places = list(fit.objective.free)
+    ends = [cluster.values[places] for cluster in fit.clusters if np.isfinite(cluster.cost)]
     return np.array(ends[:count])
 
 

@@ -66,11 +66,11 @@ def structure_for(
     structure = limited(*chosen, curve=full_load_shape(vessel, working_point))
     linear = limited().names
     bounds = {p.name: (p.lower, p.upper) for p in structure.parameters if p.name not in linear}
-    known = {name: float(np.clip(value, *bounds[name])) for name, value in (start or {}).items() if name in bounds}
+    clipped = {name: float(np.clip(value, *bounds[name])) for name, value in (start or {}).items() if name in bounds}
     motoring = Symbol.MOTORING_LIMIT
     if start and motoring in bounds and motoring not in start:
         structure = structure.held_at(**{motoring: bounds[motoring][0]})
-    return LimitedModel(structure=structure, limits=chosen, start=known)
+    return LimitedModel(structure=structure, limits=chosen, start=clipped)
 
 
 def full_load_shape(vessel: Vessel, working_point: WorkingPoint) -> tuple[tuple[float, float], ...]:

@@ -109,8 +109,8 @@ def misfit_of(
     spread = covariance @ (slopes @ slopes.T) / samples
     expected = energy + float(np.trace(spread))
     variance = energy_variance + 2.0 * float(np.trace(spread @ spread))
-    found = float(np.mean(residual**2))
-    beyond = found - expected
+    mean_square = float(np.mean(residual**2))
+    beyond = mean_square - expected
     along = slopes @ residual / samples
     mixed = 4.0 * (_noise_along(residual, autocovariance) + float(along @ covariance @ along))
     half = deviations(coverage) * np.sqrt(variance + (mixed if beyond > 0.0 else 0.0))
@@ -124,7 +124,7 @@ def misfit_of(
         fit_ceiling=ceiling,
         error=error,
         error_interval=(low, high),
-        p_value=_tail(found, expected, variance),
+        p_value=_tail(mean_square, expected, variance),
         noise_pieces=smooth.noise.pieces.shape[0] if smooth.noise.as_long else 0,
         outcome="fails" if low > largest_error else "passes" if high <= largest_error else "undecided",
     )
@@ -159,8 +159,8 @@ def _noise_along(residual: FloatArray, autocovariance: FloatArray) -> float:
     return max(both - _trace_of_square(autocovariance, residual.size), 0.0) / residual.size**2
 
 
-def _tail(found: float, expected: float, variance: float) -> float:
+def _tail(square: float, expected: float, variance: float) -> float:
     """Return the share of a scaled chi-square of that mean and variance at or beyond what was found."""
     if not variance > 0.0:
-        return float(found <= expected)
-    return chi_square_tail(2.0 * found * expected / variance, 2.0 * expected**2 / variance)
+        return float(square <= expected)
+    return chi_square_tail(2.0 * square * expected / variance, 2.0 * expected**2 / variance)

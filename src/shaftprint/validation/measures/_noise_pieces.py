@@ -48,9 +48,9 @@ class NoisePieces:
     as_long: bool
     """Whether they are as long as the excerpt; shorter ones lack what is slower."""
 
-    def autocovariance(self, place: int) -> FloatArray:
+    def autocovariance(self, row: int) -> FloatArray:
         """Return the autocovariance of speed (0) or torque (1) from lag 0 on, shape (lags,)."""
-        chosen = self.pieces[:, place]
+        chosen = self.pieces[:, row]
         samples = chosen.shape[-1]
         lags = max(int(_LAG_SHARE * samples), 1)
         # divided by all samples, not by those of the lag: a covariance that no signal can have is never made
@@ -87,21 +87,21 @@ class QuietNoise:
         """
         longest = max(stretch.shape[1] for stretch in self.stretches)
         length = min(samples, longest)
-        asked = max(load, LEAST_LOAD)
-        apart = np.abs(np.log(self.loads / asked))
-        found: list[FloatArray] = []
+        wanted = max(load, LEAST_LOAD)
+        apart = np.abs(np.log(self.loads / wanted))
+        pieces: list[FloatArray] = []
         last = 0.0
-        for place in np.argsort(apart, kind="stable"):
-            if len(found) >= _ENOUGH_PIECES and apart[place] > last + _ALIKE:
+        for index in np.argsort(apart, kind="stable"):
+            if len(pieces) >= _ENOUGH_PIECES and apart[index] > last + _ALIKE:
                 break
-            stretch = self.stretches[place] * (asked / self.loads[place])
+            stretch = self.stretches[index] * (wanted / self.loads[index])
             count = stretch.shape[1] // length
             if count == 0:
                 continue
-            last = last if len(found) >= _ENOUGH_PIECES else float(apart[place])
-            found += [stretch[:, k * length : (k + 1) * length] for k in range(count)]
-        kept = np.linspace(0, len(found) - 1, min(len(found), _MOST_PIECES)).round().astype(np.intp)
-        cut = np.stack([found[place] for place in kept])
+            last = last if len(pieces) >= _ENOUGH_PIECES else float(apart[index])
+            pieces += [stretch[:, k * length : (k + 1) * length] for k in range(count)]
+        kept = np.linspace(0, len(pieces) - 1, min(len(pieces), _MOST_PIECES)).round().astype(np.intp)
+        cut = np.stack([pieces[index] for index in kept])
         return NoisePieces(pieces=cut - cut.mean(axis=-1, keepdims=True), as_long=length == samples)
 
 
@@ -167,7 +167,7 @@ def _still(campaign: Campaign, end_s: float) -> Iterator[tuple[float, float, boo
         if test.start_s > last:
             yield last, test.start_s, True
         if isinstance(test, Staircase):
-            edges = [test.start_s + place * test.dwell_s for place in range(len(test.levels_v) + 1)]
+            edges = [test.start_s + step * test.dwell_s for step in range(len(test.levels_v) + 1)]
             yield from ((begin, stop, False) for begin, stop in pairwise(edges))
         last = test.stop_s
     if end_s > last:

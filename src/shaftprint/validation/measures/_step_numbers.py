@@ -74,24 +74,24 @@ def _refined(share: FloatArray, top: FloatArray, time: FloatArray) -> tuple[Floa
 def _crossing(share: FloatArray, level: float, time: FloatArray) -> FloatArray:
     """Return when each response first reaches a share of its height [s], between the samples."""
     above = share >= level
-    place = np.argmax(above, axis=1)
+    sample = np.argmax(above, axis=1)
     rows = np.arange(share.shape[0])
-    before = np.maximum(place - 1, 0)
-    width = share[rows, place] - share[rows, before]
+    before = np.maximum(sample - 1, 0)
+    width = share[rows, sample] - share[rows, before]
     part = np.where(width > 0.0, (level - share[rows, before]) / np.where(width > 0.0, width, 1.0), 0.0)
-    found = time[before] + part * (time[place] - time[before])
-    return np.where(above.any(axis=1), found, np.nan)
+    crossing = time[before] + part * (time[sample] - time[before])
+    return np.where(above.any(axis=1), crossing, np.nan)
 
 
 def _settled(share: FloatArray, settled_share: float, time: FloatArray, last: int) -> FloatArray:
     """Return from when on each response stays within a share of its height [s]; nan if it does so only at the end."""
     off = np.abs(share - 1.0)
     outside = off > settled_share
-    place = share.shape[1] - 1 - np.argmax(outside[:, ::-1], axis=1)
+    sample = share.shape[1] - 1 - np.argmax(outside[:, ::-1], axis=1)
     rows = np.arange(share.shape[0])
-    behind = np.minimum(place + 1, share.shape[1] - 1)
-    width = off[rows, place] - off[rows, behind]
-    part = np.where(width > 0.0, (off[rows, place] - settled_share) / np.where(width > 0.0, width, 1.0), 0.0)
-    found = time[place] + part * (time[behind] - time[place])
-    found = np.where(outside.any(axis=1), found, 0.0)
-    return np.where(place < last, found, np.where(outside.any(axis=1), np.nan, 0.0))
+    behind = np.minimum(sample + 1, share.shape[1] - 1)
+    width = off[rows, sample] - off[rows, behind]
+    part = np.where(width > 0.0, (off[rows, sample] - settled_share) / np.where(width > 0.0, width, 1.0), 0.0)
+    settled = time[sample] + part * (time[behind] - time[sample])
+    settled = np.where(outside.any(axis=1), settled, 0.0)
+    return np.where(sample < last, settled, np.where(outside.any(axis=1), np.nan, 0.0))
