@@ -164,7 +164,7 @@ class Identification:
     @property
     def by_role(self) -> dict[Role, float]:
         """Every parameter of the first structure that has a role, free or not."""
-        named = self.structure.named(self.own_values())
+        named = self.structure.named(self.structure_values())
         return {role: float(named[name]) for name, role in self.structure.roles.items() if name in named}
 
     def of_role(self, role: Role) -> Estimate:
