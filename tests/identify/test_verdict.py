@@ -223,8 +223,7 @@ def test_a_small_margin_is_a_caution(draw):
     strict = Requirements(gain_margin=1.2, phase_margin_deg=80.0, delay_margin_share=5.0)
     caution = assess(fitted(draw(LITTLE)), requirements=strict).cautions[0]
     assert (
-        "a phase margin of 71 deg, where 80 is the least and a delay margin of 0.4 s beside a delay of 0.12 s"
-        in caution
+        "a phase margin of 71 deg, where 80 is the least and a delay margin of 0.4 s for a delay of 0.12 s" in caution
     )
 
 
