@@ -31,7 +31,7 @@ def test_the_thesis_campaign_on_the_stan_tug(run):
     assert rows["tau_dn"][3].startswith("0.299")
     assert float(rows["t_d"][2]) > 10.0
     assert "t_d + t_sp is known to 0." in result.output
-    assert "tau_up stays what was known beforehand" in result.output
+    assert "tau_up stays at its prior" in result.output
 
 
 def test_with_g_alone_the_delay_in_the_loop_is_not_known(run):
