@@ -34,7 +34,7 @@ def test_a_structure_that_does_not_fit_is_not_trustworthy(run, recording, tmp_pa
     lines = result.output.splitlines()
     assert lines[0] == "Verdict: not trustworthy"
     assert lines[1].startswith("  * The structure CL4 does not explain the data within their noise (chi-square ")
-    assert "would go if there is inertia between engine and torque gauge" in lines[2]
+    assert "would disappear if there is inertia between engine and torque gauge" in lines[2]
     assert "Which structure: CL4" in result.output
     page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
     assert "Verdict: the fit is not trustworthy" in page
