@@ -14,7 +14,7 @@ _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 @contextlib.contextmanager
 def written_whole(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
-    """Give a temporary path beside ``path``; rename it to ``path`` when the block ends without error.
+    """Give a temporary path next to ``path``; rename it to ``path`` when the block ends without error.
 
     When the block raises, the temporary file is deleted and ``path`` is left as it was. The content is on the disk
     before the name is.

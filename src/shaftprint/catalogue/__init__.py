@@ -9,7 +9,7 @@ from shaftprint.catalogue._limited import limited
 from shaftprint.catalogue._limited_governor import AHEAD_S, Symbol, limited_governor
 from shaftprint.catalogue._roles import ROLES, ShipRole
 from shaftprint.catalogue._sailing_at_large import pitch_actuator, sailing_at_large
-from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
+from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingSpeed, SailingTorque
 from shaftprint.catalogue._shipped import expect_roles, shipped_structure
 from shaftprint.catalogue._thesis import STRUCTURES, structure
 from shaftprint.catalogue._thesis_figures import Family, thesis_families
@@ -25,9 +25,9 @@ __all__ = [
     "KnownPropeller",
     "PitchSpeed",
     "SailingShaft",
+    "SailingSpeed",
     "SailingTorque",
     "ShipRole",
-    "ShipSpeed",
     "Symbol",
     "expect_roles",
     "gauge_governor",

@@ -27,7 +27,7 @@ from shaftprint.catalogue._gauge import (
     V_ONE,
     G,
 )
-from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingTorque, ShipSpeed
+from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingSpeed, SailingTorque
 from shaftprint.models import (
     AveragingSensor,
     Combination,
@@ -76,14 +76,14 @@ def free_core() -> Structure:
 def free_ship() -> Structure:
     """Return core propulsion and ship: ``n`` and ``v_s`` from ``M_s``.
 
-    ``v_s / n = sigma (2 - a) exp(-s t_log) / (tau_u s + e - a)`` beside what FREE-CORE shows.
+    ``v_s / n = sigma (2 - a) exp(-s t_log) / (tau_u s + e - a)`` in addition to what FREE-CORE shows.
     """
     core = SailingShaft((TAU_DN,), _torque()) * Inverse(_torque_sensor())
     return Structure(
         name="FREE-SHIP",
         title="core propulsion of a free-sailing ship with its speed logged",
         input="M_s",
-        outputs={"n": core * _speed_sensor(), "v_s": core * ShipSpeed(A, E, TAU_U, SIGMA) * Delay(T_LOG)},
+        outputs={"n": core * _speed_sensor(), "v_s": core * SailingSpeed(A, E, TAU_U, SIGMA) * Delay(T_LOG)},
         combinations=(*_combinations(), *_ship_combinations()),
     )
 
@@ -103,7 +103,7 @@ def free_closed() -> Structure:
 def free_log() -> Structure:
     """Return the closed loop of a free-sailing ship with its speed logged: ``n``, ``M_s`` and ``v_s`` from ``n_set``.
 
-    ``v_s / n = sigma (2 - a) exp(-s t_log) / (tau_u s + e - a)`` beside what FREE-CLOSED shows.
+    ``v_s / n = sigma (2 - a) exp(-s t_log) / (tau_u s + e - a)`` in addition to what FREE-CLOSED shows.
     """
     speed, torque, ship = _governed()
     return Structure(
@@ -132,7 +132,7 @@ def free_pitch() -> Structure:
     pitch_torque = 0.5 * Gain(K_Q_HELD) * (Gain(Q) + Gain(B) * pitch_ship)
     by_set_point = loop * left_of_error * _set_point()
     by_pitch = -(pitch * pitch_torque * shaft * left_of_error)
-    ship = ShipSpeed(A, E, TAU_U, SIGMA)
+    ship = SailingSpeed(A, E, TAU_U, SIGMA)
     return Structure(
         name="FREE-PITCH",
         title="closed loop of a free-sailing ship with controllable pitch",
@@ -165,7 +165,7 @@ def _governed() -> tuple[Expression, Expression, Expression]:
     """Return ``n``, ``M_s`` and the speed of the ship from ``n_set``, without sensors."""
     loop = _drive() * SailingShaft((TAU_DN, TAU_UP), _torque(), G)
     speed = loop * Sensitivity(loop) * _set_point()
-    return speed, speed * (Inertia(TAU_DN) + _torque()), speed * ShipSpeed(A, E, TAU_U, SIGMA)
+    return speed, speed * (Inertia(TAU_DN) + _torque()), speed * SailingSpeed(A, E, TAU_U, SIGMA)
 
 
 def _torque() -> SailingTorque:

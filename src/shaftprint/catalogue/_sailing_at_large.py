@@ -107,7 +107,7 @@ def sailing_at_large(
 
 
 class SailingLoad:
-    """The propeller of a ship with a speed of its own."""
+    """The propeller of a ship under way."""
 
     def __init__(self, propeller: KnownPropeller) -> None:
         pitch = propeller.pitch_ratio

@@ -135,7 +135,7 @@ class SailingShaft(Block):
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ShipSpeed(Block):
+class SailingSpeed(Block):
     """Speed of the ship over shaft speed, ``sigma (2 - a) / (tau_u s + e - a)``."""
 
     thrust_slope: Parameter

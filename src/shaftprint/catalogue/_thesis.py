@@ -1,4 +1,4 @@
-"""The shipped structures: those of the thesis are written here, the gauge-aware ones beside.
+"""The shipped structures: those of the thesis are written here, the gauge-aware ones in their own files.
 
 Every structure is a few lines that read like the block diagrams of the thesis (figures 3.6 and 4.1). Default bounds are
 those of thesis table 5.1; for the initial linear model and the benchmark those of eqs 2.36-2.40.

@@ -14,8 +14,8 @@ from shaftprint.errors import ClockError
 from shaftprint.escape import printable
 from shaftprint.recording import CLOCK_MAPS, Channel, Recording
 
-# A part may begin this share of a sample beside the grid of the part before it.
-BESIDE = 0.51
+# A part may begin this share of a sample off the grid of the part before it.
+OFF_GRID = 0.51
 # Clocks of parts that one logger wrote are the same to this.
 SAME_RATE = 1e-6
 
@@ -130,7 +130,7 @@ def _chain(parts: Sequence[tuple[Recording, Channel]], follow_on: bool) -> Chann
     for recording, channel in parts[1:]:
         _expect_same(recording, channel, first)
         ends_s = first.start_s + sum(counts) / first.rate_hz
-        if not follow_on and abs(channel.start_s - ends_s) * first.rate_hz > BESIDE:
+        if not follow_on and abs(channel.start_s - ends_s) * first.rate_hz > OFF_GRID:
             raise ClockError(
                 f"{recording.path}, channel {channel.name}: expected it to begin at {ends_s:.4f} s, where the part "
                 f"before it ends, found {channel.start_s:.4f} s; analyse parts with a gap one by one, or say that they "

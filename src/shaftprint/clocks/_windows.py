@@ -22,7 +22,7 @@ STRETCH_S = 60.0
 FEWEST = 20
 STEP_S = 0.04
 ITERATIONS = 8
-# A stretch whose delay is known no better than this says nothing.
+# A stretch whose delay is known no better than this is not used.
 WORST_STD_S = 0.25
 # Longest correlation of what is left over that is looked for [s].
 MEMORY_S = 5.0
@@ -30,14 +30,14 @@ MEMORY_S = 5.0
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class WindowDelay:
-    """What one stretch says."""
+    """The delay of one stretch."""
 
     time_s: float
     """Middle of the stretch on the slower content's clock [s]."""
     delay_s: float
     """What the faster content's clock reads more [s]."""
     std_s: float
-    """Its standard deviation [s]; infinite where the stretch does not tell."""
+    """Its standard deviation [s]; infinite where the stretch does not determine it."""
     energy: float
     """Mean square of what the faster content shows there in the shared band; 1 is what is left over."""
     likeness: float
@@ -45,12 +45,12 @@ class WindowDelay:
 
     @property
     def tells(self) -> bool:
-        """Whether the stretch says something about the clocks."""
+        """Whether the stretch determines the delay of the clocks."""
         return self.std_s < WORST_STD_S
 
 
 def delays_of(slow: Content, fast: Content, expected: FloatArray, within_s: float) -> list[WindowDelay]:
-    """Return what every stretch says, in order of time.
+    """Return the delay of every stretch, in order of time.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def delays_of(slow: Content, fast: Content, expected: FloatArray, within_s: floa
 
 
 def _left(spline: CubicSpline, time_s: FloatArray, values: FloatArray, within_s: float) -> tuple[float, float]:
-    """Return what is left of the delay of one stretch with its standard deviation, infinite where it cannot be told."""
+    """Return what is left of the delay of one stretch and its standard deviation, infinite where undetermined."""
     line, _ = np.linalg.qr(np.stack([np.ones(time_s.size), time_s - time_s[0]], axis=1))
     detrended = values - line @ (line.T @ values)
     if not np.any(np.abs(detrended) > 1e-12 * np.max(np.abs(values))):

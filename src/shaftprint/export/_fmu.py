@@ -81,7 +81,7 @@ def write_fmu(
     platforms
         Systems to compile for, of ``PLATFORMS``; all that can be built here if not given, none for sources only.
     samples
-        How many samples of the parameters it holds beside the estimate.
+        How many samples of the parameters it holds besides the estimate.
     rng
         Where these are drawn from; needed for samples.
     overwrite

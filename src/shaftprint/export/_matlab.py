@@ -1,4 +1,4 @@
-"""A model for MATLAB and Octave: a data file, and a function beside it that rebuilds the objects."""
+"""A model for MATLAB and Octave: a data file, and a function next to it that rebuilds the objects."""
 
 import re
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ class WrittenMatlab:
     data: Path
     """The data file, MATLAB version 5."""
     script: Path
-    """The function that rebuilds the objects; it must stay beside the data."""
+    """The function that rebuilds the objects; it must stay in the folder of the data."""
 
 
 @refusing_none(ExportError)
@@ -50,11 +50,11 @@ def write_matlab(
     Parameters
     ----------
     path
-        Data file; the function is written beside it, its name made one that MATLAB can call.
+        Data file; the function is written next to it, its name made one that MATLAB can call.
     omega_rad_s
         Frequencies of the response [rad/s], shape (frequencies,); 0.05 to 50 rad/s if not given.
     measured
-        The measured response, to stand beside that of the model.
+        The measured response, to be shown with that of the model.
     overwrite
         Whether earlier files are replaced.
 

@@ -1,4 +1,4 @@
-"""The model description that Open Simulation Platform wants beside an FMU: groups of variables that belong together.
+"""The model description that Open Simulation Platform wants next to an FMU: groups of variables that belong together.
 
 OSP-IS, ``OspModelDescription`` of version 1.0: groups stand in the order of the schema; a mechanical port is a torque
 and an angular velocity of which one comes in and the other goes out, so that two models exchange power through it. A
@@ -26,7 +26,7 @@ ENDING: Final = "_OspModelDescription.xml"
 
 @refusing_none(ExportError)
 def write_osp(model: ExportedModel, fmu: str | Path, *, overwrite: bool = False) -> Path:
-    """Write the description of a model's variable groups beside its FMU.
+    """Write the description of a model's variable groups next to its FMU.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the numbers of a fingerprint rest on and no recording can show: it stands beside them."""
+"""What the numbers of a fingerprint rest on and no recording can show: it is stated with them."""
 
 from collections.abc import Iterator
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""What a recording tells of its own sensors, as quantities to be followed over the years."""
+"""What a recording shows of its sensors, as quantities to be followed over the years."""
 
 from typing import TYPE_CHECKING
 

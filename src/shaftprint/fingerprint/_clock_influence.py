@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from shaftprint.spectra import FrequencyResponse, Spectra
 
 NOTABLE_SHIFT = 0.3
-"""Shift that is worth a remark: with it a standard deviation is a twentieth too small."""
+"""Shift from which there is a remark: with it a standard deviation is a twentieth too small."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

@@ -38,7 +38,7 @@ class Block(Expression):
     def derivatives(self, s: ComplexArray, response: ComplexArray, *values: FloatArray) -> tuple[ComplexArray, ...]:
         """Return the derivative of ``transfer`` to each parameter; ``response`` is its value.
 
-        Central differences of fourth order where a block has no formula of its own: right to about eleven digits. They
+        Central differences of fourth order where a block has no formula for them: right to about eleven digits. They
         ask for values a thousandth outside the bounds.
         """
         return tuple(self._difference(s, values, index) for index in range(len(values)))
@@ -62,7 +62,7 @@ class Block(Expression):
         return True
 
     def flow(self, flow: Flow, signal: Formula) -> Formula:
-        """Return what the block makes of a signal in time; from its ratio where it has no equations of its own.
+        """Return what the block makes of a signal in time; from its ratio where it states no equations.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""A combination of parameters that means something of its own."""
+"""A combination of parameters with its own meaning."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

@@ -43,7 +43,7 @@ class Diagram:
     of: tuple[Parameter, ...]
     """Its parameters."""
     further: tuple[str, ...] = ()
-    """Names of inputs of the structure that the equations ask for beside the signal that goes in."""
+    """Names of inputs of the structure that the equations ask for besides the signal that goes in."""
     _small: dict[frozenset[str], SmallSignal] = field(default_factory=dict, repr=False)
     """Linear equations, by the parameters that are held at zero; made when first asked for."""
 

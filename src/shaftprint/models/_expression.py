@@ -87,7 +87,7 @@ class Expression(ABC):
         return NotImplemented if (right := _operand(other)) is None else Parallel(self, right)
 
     def __radd__(self, other: "Operand") -> "Expression":
-        """Put a number beside an expression."""
+        """Put a number in parallel with an expression."""
         return NotImplemented if (left := _operand(other)) is None else Parallel(left, self)
 
     def __neg__(self) -> "Expression":
@@ -117,7 +117,7 @@ class Expression(ABC):
 
 
 def _operand(other: "Operand") -> Expression | None:
-    """Return what stands beside a sign as an expression; None for what is neither expression nor number."""
+    """Return an operand as an expression; None for what is neither expression nor number."""
     if isinstance(other, Parameter):
         raise StructureError(f"{other.name} is a parameter, not a block: write Gain({other.name}).")
     if isinstance(other, Real):
@@ -127,7 +127,7 @@ def _operand(other: "Operand") -> Expression | None:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Constant(Expression):
-    """A fixed number, such as the 1 of ``1 - G``; a number beside an expression becomes one."""
+    """A fixed number, such as the 1 of ``1 - G``; a number combined with an expression becomes one."""
 
     number: float
     """The number, in the unit of the expression."""

@@ -29,7 +29,7 @@ from shaftprint.models._structure import Structure
 
 # Share of a parameter by which it is moved to see how coefficients change: exact but for rounding up to second order.
 STEP = 1e-4
-# Laplace variable [rad/s] beside zero, where some blocks have no value.
+# Laplace variable [rad/s] near zero, where some blocks have no value.
 AROUND_ZERO = np.array([-1e-4, 1e-4], dtype=np.complex128)
 # Below this argument cosh(x) - sinh(x) / x loses its digits.
 SERIES_BELOW = 0.02

@@ -119,7 +119,7 @@ class EntrainedWater(Inertia):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class DynamicInflow(Block):
-    """Propeller torque beside the quasi-steady one while the slipstream lags: ``kappa tau_i s / (tau_i s + 1)``.
+    """Propeller torque above the quasi-steady one while the slipstream lags: ``kappa tau_i s / (tau_i s + 1)``.
 
     ``Q* = (k_q + kappa) n* - kappa u*`` with ``tau_i du*/dt = n* - u*``: the speed ``u`` through the disc follows the
     propeller by momentum (Blanke, Lindegaard and Fossen, Dynamic model for thrust generation of marine propellers,

@@ -13,7 +13,7 @@ from shaftprint.recording._container import CHUNK_SAMPLES
 # 5.1 s to 110 MB; all levels read in 0.8 s.
 _GZIP_LEVEL = 1
 
-# What the NetCDF-4 library writes into a dimension that has no variable of its own.
+# What the NetCDF-4 library writes into a dimension that has no variable.
 _NO_VARIABLE = "This is a netCDF dimension but not a netCDF variable."
 
 

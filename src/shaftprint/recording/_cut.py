@@ -1,4 +1,4 @@
-"""A stretch of a recording as a recording of its own."""
+"""A stretch of a recording as a separate recording."""
 
 import math
 from dataclasses import replace

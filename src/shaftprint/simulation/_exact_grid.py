@@ -49,7 +49,7 @@ class ExactGrid:
         number = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
         times = np.repeat(keys_s[:-1], counts) + np.repeat(gaps / counts, counts) * number
         stretches = np.repeat(stretch, counts)
-        # each stretch ends with a node of its own, at the time at which the next begins
+        # each stretch ends with its own node, at the time at which the next begins
         last = np.searchsorted(stretches, np.arange(edges.size - 1), side="right")
         return cls(
             time_s=np.insert(times, last, edges[1:]),

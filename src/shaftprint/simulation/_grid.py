@@ -59,7 +59,7 @@ def stencils(delay_s: FloatArray, step_s: float, *, varies: bool = False) -> Ste
 
 
 def cubic_weights(x: Place) -> tuple[Four[Place], Four[Place], Four[Place]]:
-    """Return Lagrange's weights of nodes 0, 1, 2 and 3 at places between or beside them, their slopes and bends."""
+    """Return Lagrange's weights of nodes 0, 1, 2 and 3 at places between or outside them, their slopes and bends."""
     a, b, c, d = x, x - 1.0, x - 2.0, x - 3.0
     weight = (-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0)
     slope = (

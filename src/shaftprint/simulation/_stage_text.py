@@ -1,7 +1,7 @@
 """Source text of the four stages of a Runge-Kutta step.
 
 The equations are asked four times a step, so that here is nearly all the time of a simulation. What they are made of
-has names of its own instead of places in a list: it can stay in registers. The derivatives of all states go forward in
+has its own names instead of places in a list: it can stay in registers. The derivatives of all states go forward in
 one loop over the lanes of a stage, which the compiler makes vectors of; written as loops over states it does not, and
 takes twice the time.
 """

@@ -19,7 +19,7 @@ MOST_DECAY = 1.0
 MOST_EXTRAPOLATED = 0.1
 # Small signals that are slower need no shorter step [1/s].
 SLOWEST = 1e-6
-# How far from still the largest rate may be left, beside the sizes of what it is made of.
+# How far from still the largest rate may be left, relative to the sizes of what it is made of.
 TOLERANCE = 1e-11
 
 

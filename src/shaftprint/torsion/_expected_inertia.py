@@ -1,4 +1,4 @@
-"""Inertias and inertia times that the vessel file lets expect, each with its uncertainty by source."""
+"""Inertias and inertia times by calculation from the vessel file, each with its uncertainty by source."""
 
 import math
 from collections.abc import Mapping
@@ -62,7 +62,7 @@ class WetLine:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class ExpectedInertia:
-    """What the inertia table of a vessel lets expect of a test."""
+    """What follows from the inertia table of a vessel."""
 
     sums: tuple[ExpectedValue, ...]
     """Sums of the table, at the propeller shaft [kg m2]."""
@@ -101,7 +101,7 @@ def expected_inertia(
 ) -> ExpectedInertia:
     """Return inertia sums, inertia times and the entrained water of a vessel.
 
-    ``tau = 2 pi I n_s0 / M_s0`` (thesis eq. 2.23). Every row of the table is a source of its own. A gauge that shows
+    ``tau = 2 pi I n_s0 / M_s0`` (thesis eq. 2.23). Every row of the table is a separate source. A gauge that shows
     too much makes the inertia times too small; it counts in them as it does in ``priors_from_vessel``.
 
     Parameters

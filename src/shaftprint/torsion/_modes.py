@@ -91,7 +91,7 @@ def _settled(line: TorsionalLine, start: complex) -> tuple[complex, ComplexArray
 
 
 def _std_hz(line: TorsionalLine, root: complex, shape: ComplexArray) -> float:
-    """Return the standard deviation of the natural frequency, each inertia and stiffness a source of its own."""
+    """Return the standard deviation of the natural frequency, each inertia and stiffness a separate source."""
     twist = line.incidence @ shape
     damping = line.viscous_nm_s_rad(abs(root))
     scale = 2.0 * root * np.sum(line.inertia_kg_m2 * shape**2)

@@ -7,7 +7,7 @@ from shaftprint.models import Computed, Formula, Late, Program, derivatives, pos
 
 
 def without_past_rates(program: Program) -> Program:
-    """Return the same equations, with how fast a late signal changes as a late signal of its own.
+    """Return the same equations, with how fast a late signal changes as a separate late signal.
 
     Of ``w = z(t - d)`` with a constant delay the change is ``w' = z'(t - d)``, and ``z'`` is a formula of states, of
     how fast they change and of other late signals.

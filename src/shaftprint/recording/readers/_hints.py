@@ -27,7 +27,7 @@ def expect_hints(path: Path, hints: Mapping[str, object], accepted: Mapping[str,
 def rate_hint(
     path: Path, hints: Mapping[str, object], others: Mapping[str, type | tuple[type, ...]] = MappingProxyType({})
 ) -> float | None:
-    """Return the hint ``sample_rate_hz`` [Hz], if given; beside it only ``others`` are known.
+    """Return the hint ``sample_rate_hz`` [Hz], if given; besides it only ``others`` are accepted.
 
     Raises
     ------

@@ -10,7 +10,7 @@ from shaftprint.errors import RecordingError
 
 # Records of a few channels fit; of a thousand, the library takes out one channel piece by piece.
 _MOST_BYTES = 1 << 26
-# Several channels may be read at once, each at a place of its own.
+# Several channels may be read at once, each at its own place.
 _MOST_KEPT = 3
 
 

@@ -78,7 +78,7 @@ def _recording(path: Path, file: Any, sha256: str) -> Recording:
 
 
 def _facts(attributes: Any) -> dict[str, str | float]:
-    """Return the texts and numbers that stand beside the container's own attributes; other tools may add lists."""
+    """Return the texts and numbers other than the container's attributes; other tools may add lists."""
     facts = {name: attributes[name] for name in attributes if name not in OWN}
     texts = {name: value for name, value in facts.items() if isinstance(value, str)}
     numbers = {name: float(value) for name, value in facts.items() if isinstance(value, np.number | int | float)}

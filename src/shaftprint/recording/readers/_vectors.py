@@ -56,7 +56,7 @@ def gather_vectors(
     rate_hz: float | None,
     left_out: Mapping[str, str] | None = None,
 ) -> Gathered:
-    """Make a channel of every vector that is no time, each on the clock of its own, its group or the whole file.
+    """Make a channel of every vector that is no time, each on its own clock, that of its group or the whole file.
 
     Parameters
     ----------

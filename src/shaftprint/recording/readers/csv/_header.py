@@ -183,7 +183,7 @@ def _time(
 
 
 def _titles(lines: Sequence[str], first: int, delimiter: str) -> tuple[list[str], list[str]]:
-    """Return titles and units: those of a row of its own, where the time's field there is a unit of time."""
+    """Return titles and units: those of a separate row, where the time's field there is a unit of time."""
     width = len(split_row(lines[first], delimiter)) if first < len(lines) else 0
     below = _title_fields(lines[first - 1], delimiter, width) if lines else [""]
     if first >= 2:

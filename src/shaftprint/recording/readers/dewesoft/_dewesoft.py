@@ -1,4 +1,4 @@
-"""Dewesoft files (d7d, d7z, dxd, dxz), unpacked by Dewesoft's own library in a process of its own."""
+"""Dewesoft files (d7d, d7z, dxd, dxz), unpacked by Dewesoft's own library in a separate process."""
 
 import json
 import subprocess

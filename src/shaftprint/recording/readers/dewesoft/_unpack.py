@@ -1,4 +1,4 @@
-"""A program of its own that lets Dewesoft's native library unpack a file: what it does to memory stays there."""
+"""A separate program that lets Dewesoft's native library unpack a file: what it does to memory stays there."""
 
 import ctypes
 import importlib

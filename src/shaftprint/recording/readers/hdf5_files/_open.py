@@ -25,7 +25,7 @@ def is_hdf5(path: Path) -> bool:
 
 
 def open_hdf5(path: Path, what: str, *, is_whole: bool = False) -> Any:
-    """Open an HDF5 file, read only; one that may be damaged is first looked at by a program of its own.
+    """Open an HDF5 file, read only; one that may be damaged is first opened in a separate process.
 
     Parameters
     ----------

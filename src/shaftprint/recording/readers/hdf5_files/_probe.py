@@ -1,4 +1,4 @@
-"""A program of its own that looks at everything in an HDF5 file that a reader would: it may hang or crash there.
+"""A separate program that looks at everything in an HDF5 file that a reader would: it may hang or crash there.
 
 Damaged lengths and addresses lead HDF5's library round in circles that no alarm in Python ends, because the library
 does not come back to Python. The watchdog of ``faulthandler`` is a thread in C and ends the program all the same.
