@@ -2,7 +2,7 @@
 
 import pytest
 
-from shaftprint.cli._progress import progress
+from shaftprint.cli.output import progress
 
 
 @pytest.fixture

@@ -1,12 +1,8 @@
 """Tables on a terminal and in a file."""
 
-import io
-
 import pytest
-from rich.console import Console
 
-from shaftprint.cli import _tables
-from shaftprint.cli._tables import print_table, print_tables
+from shaftprint.cli.output import print_table, print_tables
 from shaftprint.tables import Column, Table, numbers, texts
 
 
@@ -23,18 +19,17 @@ def test_table_in_a_file_is_not_folded(capsys):
 
 
 @pytest.mark.parametrize(("width", "shown"), [(40, False), (120, True)])
-def test_spare_column_is_left_out_on_a_narrow_terminal(monkeypatch, width, shown):
-    screen = io.StringIO()
-    monkeypatch.setattr(
-        _tables,
-        "Console",
-        lambda **_: Console(file=screen, force_terminal=True, width=width, legacy_windows=False, color_system=None),
-    )
+def test_spare_column_is_left_out_on_a_narrow_terminal(monkeypatch, capsys, width, shown):
+    # what passes for a terminal
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", str(width))
     columns = (*texts("name", "value"), Column("meaning", spare=True))
     print_table(Table(title="Title", columns=columns, rows=(("tau_dn", "0.3198", "inertia " * 5),)))
-    assert "0.3198" in screen.getvalue()
-    assert ("meaning" in screen.getvalue()) is shown
-    assert ("inertia" in screen.getvalue()) is shown
+    screen = capsys.readouterr().out
+    assert "0.3198" in screen
+    assert ("meaning" in screen) is shown
+    assert ("inertia" in screen) is shown
 
 
 def test_a_common_note_comes_once_and_empty_tables_not_at_all(capsys):

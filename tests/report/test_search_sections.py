@@ -11,7 +11,7 @@ from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.identify.comparison import compare_fits
 from shaftprint.identify.fit import scan
 from shaftprint.report import plot_scan
-from shaftprint.report._html import cell_html
+from shaftprint.report.notation import cell_html
 from shaftprint.report.sections import comparison_section, search_section, verdict_section
 
 

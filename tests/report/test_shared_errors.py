@@ -6,8 +6,7 @@ from shaftprint.fingerprint import SourceFile, vessel_fields
 from shaftprint.identify import Prior
 from shaftprint.identify.uncertainty import Budget, BudgetRow
 from shaftprint.report import vessel_file_sentences
-from shaftprint.report._shared_errors import shared_errors
-from shaftprint.report._vessel_file_words import vessel_file_table
+from shaftprint.report.comparison import shared_errors, vessel_file_table
 from shaftprint.vessel import Vessel
 
 STATED = ("TVC", "gauge scale", "telemetry latency", "prior of g")

@@ -3,8 +3,8 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.report import Curve, plot_bode, save_figure
-from shaftprint.report._symbols import mathtext, with_unit
 from shaftprint.report.figures import LOOKS, house_style, legend_below, new_figure
+from shaftprint.report.notation import mathtext, with_unit
 
 
 def test_matplotlib_is_left_as_it_was():

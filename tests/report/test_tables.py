@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.fingerprint import Quantity
-from shaftprint.report._html import sentence_html, symbol_html
+from shaftprint.report.notation import sentence_html, symbol_html
 from shaftprint.report.sections import summary_section
 from shaftprint.tables import (
     Table,

@@ -11,7 +11,7 @@ import signal
 import sys
 from pathlib import Path
 
-from shaftprint.cli._output_folder import output_folder
+from shaftprint.cli.output import output_folder
 from shaftprint.errors import PublicationError
 from shaftprint.publication import CONTROL_NAMES, complete
 

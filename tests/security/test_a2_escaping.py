@@ -29,8 +29,8 @@ from rich.console import Console
 import shaftprint.cli
 from shaftprint import escape
 from shaftprint.catalogue import structure
-from shaftprint.cli._tables import literal
 from shaftprint.cli._terminal import echo
+from shaftprint.cli.output import literal
 from shaftprint.export import ExportedModel, write_fmu, write_matlab, write_modelica, write_osp, write_ssv
 
 CHROMIUM = Path("/usr/bin/chromium")

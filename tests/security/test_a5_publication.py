@@ -14,7 +14,7 @@ import pytest
 from click.testing import CliRunner
 
 from shaftprint.cli import shaftprint
-from shaftprint.cli._output_folder import output_folder
+from shaftprint.cli.output import output_folder
 from shaftprint.errors import PublicationError, ShaftprintError
 from shaftprint.fingerprint import read_fingerprint
 from shaftprint.publication import _lock, complete, publish, staged

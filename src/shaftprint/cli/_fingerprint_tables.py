@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from shaftprint.cli._tables import print_tables
 from shaftprint.cli._terminal import echo, on_terminal, print_findings
+from shaftprint.cli.output import print_tables
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.tables import (
     NO_TRUTH,

@@ -1,8 +1,8 @@
 """Where the tests of a campaign are in the recorded set point, as a table and as lines of a campaign file."""
 
 from shaftprint.campaign import Campaign, Sine
-from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo
+from shaftprint.cli.output import print_table
 from shaftprint.errors import SignalError
 from shaftprint.escape import toml_string
 from shaftprint.signals import FoundTest, common_shift_s, proposed_campaign

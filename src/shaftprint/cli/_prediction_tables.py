@@ -5,8 +5,8 @@ from collections.abc import Mapping
 
 from shaftprint.campaign import Campaign
 from shaftprint.cli._fingerprint_tables import print_assumed
-from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo, print_findings
+from shaftprint.cli.output import print_table
 from shaftprint.identify.fit import Estimate
 from shaftprint.identify.prediction import Accuracy, Identifiability
 from shaftprint.identify.uncertainty import Interval

@@ -3,10 +3,8 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-from shaftprint.cli._fingerprint_file import FINGERPRINT, REPORT
-from shaftprint.cli._progress import Steps
-from shaftprint.cli._tables import print_tables
 from shaftprint.cli._terminal import echo, print_findings
+from shaftprint.cli.output import FINGERPRINT, REPORT, Steps, print_tables
 from shaftprint.fingerprint import write_fingerprint
 from shaftprint.identify.comparison import StructureComparison
 from shaftprint.recording import read_recording

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from shaftprint.cli._tables import print_table, print_tables
 from shaftprint.cli._terminal import echo, on_terminal
+from shaftprint.cli.output import print_table, print_tables
 from shaftprint.signals import Signals
 from shaftprint.spectra import Spectra
 from shaftprint.tables import (

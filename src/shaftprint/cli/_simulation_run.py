@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.cli._progress import Steps
 from shaftprint.cli._simulated_model import SimulatedModel
 from shaftprint.cli._simulated_set_point import Drive, Place
+from shaftprint.cli.output import Steps
 from shaftprint.errors import ExactStepsError
 from shaftprint.recording import Channel, write_csv
 from shaftprint.report import SimulatedSignal

@@ -7,8 +7,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.cli._simulated_model import SimulatedModel
-from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo
+from shaftprint.cli.output import print_table
 from shaftprint.report import SimulatedSignal
 from shaftprint.tables import MEANING, Table, numbers, rounded, texts, unit_text, with_deviation
 

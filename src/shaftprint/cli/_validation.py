@@ -6,9 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from shaftprint.arrays import frozen_float
-from shaftprint.cli._progress import Steps
-from shaftprint.cli._tables import print_tables
 from shaftprint.cli._terminal import print_findings
+from shaftprint.cli.output import Steps, print_tables
 from shaftprint.errors import FingerprintError
 from shaftprint.escape import plain_name
 from shaftprint.fingerprint import Fingerprint, identified_model

@@ -17,11 +17,15 @@ Every ``plot_*`` function returns a matplotlib ``Figure`` that belongs to nobody
 """
 
 from shaftprint.report._comparison import render_comparison
-from shaftprint.report._comparison_tables import difference_table
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
-from shaftprint.report._differences import LOAD_REPEATABILITY, Difference, differences
 from shaftprint.report._render import render_report
-from shaftprint.report._vessel_file_words import vessel_file_sentences
+from shaftprint.report.comparison import (
+    LOAD_REPEATABILITY,
+    Difference,
+    difference_table,
+    differences,
+    vessel_file_sentences,
+)
 from shaftprint.report.figures import (
     SimulatedSignal,
     plot_bode,

@@ -7,11 +7,18 @@ from typing import TYPE_CHECKING
 
 from shaftprint.catalogue import STRUCTURES, structure
 from shaftprint.errors import ReportError
-from shaftprint.report._comparison_tables import beside_table, condition_table, difference_table
 from shaftprint.report._curve import fingerprint_curve
-from shaftprint.report._differences import LOAD_REPEATABILITY, Difference, differences
 from shaftprint.report._page import Page, write_page
-from shaftprint.report._vessel_file_words import vessel_file_sentences, vessel_file_table
+from shaftprint.report.comparison import (
+    LOAD_REPEATABILITY,
+    Difference,
+    beside_table,
+    condition_table,
+    difference_table,
+    differences,
+    vessel_file_sentences,
+    vessel_file_table,
+)
 from shaftprint.report.figures import plot_bode, plot_differences, shown_names
 from shaftprint.report.plots import bode_plot, difference_plot
 from shaftprint.report.sections import Picture, Section, comparison_cover, not_alike

@@ -19,8 +19,8 @@ from markupsafe import Markup
 
 from shaftprint.escape import html_value
 from shaftprint.report._folder import FIGURES, PAGE, PLOTS, report_written_whole
-from shaftprint.report._html import cell_html, sentence_html
 from shaftprint.report.figures import save_figure
+from shaftprint.report.notation import cell_html, sentence_html
 from shaftprint.report.plots import plotly_script, plotly_sheets, plotly_version, quick_script
 from shaftprint.report.sections import Cover, Picture, Section
 from shaftprint.tables import Table

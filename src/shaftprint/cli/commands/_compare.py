@@ -4,11 +4,9 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._fingerprint_file import FINGERPRINT, REPORT, fingerprint_at
-from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
-from shaftprint.cli._tables import print_tables
 from shaftprint.cli._terminal import echo
+from shaftprint.cli.output import FINGERPRINT, REPORT, fingerprint_at, force_option, output_folder, print_tables
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.report import (
     LOAD_REPEATABILITY,

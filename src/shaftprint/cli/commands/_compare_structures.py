@@ -8,8 +8,8 @@ import numpy as np
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
-from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._results import print_comparison
+from shaftprint.cli.output import no_progress_option, progress
 from shaftprint.identify import compare_structures
 from shaftprint.identify.comparison import expect_comparable
 from shaftprint.survey import load_trial, measure, response_of

@@ -5,10 +5,9 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._file_to_write import expect_no_input
 from shaftprint.cli._options import cut_options, hints_of, reading_options
-from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._terminal import echo
+from shaftprint.cli.output import expect_no_input, no_progress_option, progress
 from shaftprint.errors import RecordingError
 from shaftprint.recording import (
     NATIVE_ENDINGS,

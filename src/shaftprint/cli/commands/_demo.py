@@ -9,12 +9,10 @@ import numpy as np
 from shaftprint.cli._demo_summary import print_summary
 from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.cli._fingerprint_tables import print_fingerprint
-from shaftprint.cli._output_folder import force_option, output_folder
-from shaftprint.cli._progress import Steps, no_progress_option, progress
 from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._signal_tables import print_lines
-from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo
+from shaftprint.cli.output import Steps, force_option, no_progress_option, output_folder, print_table, progress
 from shaftprint.survey import (
     Survey,
     ThesisMode,

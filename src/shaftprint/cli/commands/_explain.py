@@ -6,11 +6,9 @@ import click
 import numpy as np
 
 from shaftprint.cli._options import campaign_option, vessel_option
-from shaftprint.cli._output_folder import force_option, output_folder
-from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._results import print_paths, write_results
-from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo, on_terminal
+from shaftprint.cli.output import force_option, no_progress_option, output_folder, print_table, progress
 from shaftprint.report import (
     Explanation,
     damping_table,

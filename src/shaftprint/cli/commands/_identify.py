@@ -8,12 +8,10 @@ import numpy as np
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
 from shaftprint.cli._options import campaign_option, structure_sources, vessel_option
-from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
-from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._results import print_comparison, print_paths, write_results
-from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo, print_findings
+from shaftprint.cli.output import force_option, no_progress_option, output_folder, print_table, progress
 from shaftprint.survey import run
 from shaftprint.tables import fits_table
 

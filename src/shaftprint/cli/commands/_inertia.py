@@ -4,10 +4,8 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._file_to_write import expect_free, expect_no_input
-from shaftprint.cli._fingerprint_file import fingerprint_at, fingerprint_file
-from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo, on_terminal
+from shaftprint.cli.output import expect_free, expect_no_input, fingerprint_at, fingerprint_file, print_table
 from shaftprint.files import written_whole
 from shaftprint.fingerprint import inertia_beside
 from shaftprint.report import (

@@ -8,11 +8,10 @@ import numpy as np
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.cli._found_tests import print_found_tests
 from shaftprint.cli._options import NAMES, hints_of, reading_options
-from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._sensor_map import Seen, proposed_sensors
 from shaftprint.cli._signal_tables import print_lines, print_signals
-from shaftprint.cli._tables import print_table, print_tables
 from shaftprint.cli._terminal import echo, print_findings
+from shaftprint.cli.output import no_progress_option, print_table, print_tables, progress
 from shaftprint.clocks import logger_clocks
 from shaftprint.fingerprint import clock_findings, clock_influences
 from shaftprint.limits import limit_hints

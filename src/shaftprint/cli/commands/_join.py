@@ -5,9 +5,9 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._file_to_write import expect_no_input
 from shaftprint.cli._options import cut_options
 from shaftprint.cli._terminal import echo
+from shaftprint.cli.output import expect_no_input
 from shaftprint.clocks import joined
 from shaftprint.recording import cut, read_recording, write_recording
 

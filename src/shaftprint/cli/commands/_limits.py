@@ -5,9 +5,8 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._options import campaign_option, vessel_option
-from shaftprint.cli._progress import no_progress_option, progress
-from shaftprint.cli._tables import print_tables
 from shaftprint.cli._terminal import print_findings
+from shaftprint.cli.output import no_progress_option, print_tables, progress
 from shaftprint.limits import LimitEstimate, LimitFit, identify_limits
 from shaftprint.survey import load_trial, measure
 from shaftprint.tables import Symbol, Table, numbers, texts, unit_text, with_deviation

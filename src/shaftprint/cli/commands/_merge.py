@@ -4,10 +4,9 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._file_to_write import expect_no_input
 from shaftprint.cli._options import NAMES
-from shaftprint.cli._tables import print_tables
 from shaftprint.cli._terminal import echo
+from shaftprint.cli.output import expect_no_input, print_tables
 from shaftprint.clocks import align, logger_clocks, merged
 from shaftprint.recording import Recording, read_recording, write_recording
 from shaftprint.signals import Content, content_of

@@ -13,7 +13,7 @@ from shaftprint.cli._known_values import hold_option, named_value, prior_option,
 from shaftprint.cli._options import NAMES, campaign_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._prediction_tables import print_prediction
-from shaftprint.cli._progress import no_progress_option, progress
+from shaftprint.cli.output import no_progress_option, progress
 from shaftprint.errors import StructureError
 from shaftprint.identify import (
     STAN_TUG_NOISE,

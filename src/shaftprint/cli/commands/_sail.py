@@ -4,8 +4,8 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._terminal import echo
+from shaftprint.cli.output import no_progress_option, progress
 from shaftprint.recording import expect_known_ending
 from shaftprint.survey import load_trial
 from shaftprint.tug import sail_as, truth_path

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, TypeAlias
 import click
 
 from shaftprint.catalogue import thesis_families
-from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import TypedName, chosen_structures
-from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._terminal import echo
+from shaftprint.cli.output import force_option, no_progress_option, output_folder, progress
 from shaftprint.escape import plain_name
 from shaftprint.report import plot_sensitivity, save_figure
 

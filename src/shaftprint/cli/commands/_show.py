@@ -4,8 +4,8 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._fingerprint_tables import print_fingerprint
+from shaftprint.cli.output import fingerprint_at
 
 
 @click.command("show")

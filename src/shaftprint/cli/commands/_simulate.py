@@ -5,18 +5,23 @@ from pathlib import Path
 import click
 import numpy as np
 
-from shaftprint.cli._file_to_write import expect_free, expect_no_input
-from shaftprint.cli._fingerprint_file import fingerprint_at, fingerprint_file
 from shaftprint.cli._known_values import named_value, rpm_per_volt_option
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
-from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
 from shaftprint.cli._simulated_set_point import Drive, Place, campaign_drive, file_drive, place_of
 from shaftprint.cli._simulation_run import Prediction, predicted, signals_of, write_signals
 from shaftprint.cli._simulation_tables import print_simulation
 from shaftprint.cli._terminal import echo
 from shaftprint.cli.commands._inertia import picture
+from shaftprint.cli.output import (
+    expect_free,
+    expect_no_input,
+    fingerprint_at,
+    fingerprint_file,
+    no_progress_option,
+    progress,
+)
 from shaftprint.files import written_whole
 from shaftprint.models import Structure
 from shaftprint.report import SimulatedSignal, plot_simulation, save_figure

@@ -4,8 +4,8 @@ import click
 
 from shaftprint.catalogue import STRUCTURES
 from shaftprint.cli._own_structure import TypedName, chosen_structures
-from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo
+from shaftprint.cli.output import print_table
 from shaftprint.models import Parameter, Structure
 from shaftprint.tables import MEANING, Symbol, Table, numbers, texts
 

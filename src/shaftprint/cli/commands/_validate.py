@@ -6,15 +6,20 @@ from pathlib import Path
 import click
 import numpy as np
 
-from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._fit_options import FitOptions, fit_options, held_structures, settings_of, structures_of
 from shaftprint.cli._options import campaign_option, vessel_option
-from shaftprint.cli._output_folder import force_option, output_folder
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
-from shaftprint.cli._progress import Steps, no_progress_option, progress
-from shaftprint.cli._tables import print_table
 from shaftprint.cli._terminal import echo
 from shaftprint.cli._validation import fingerprint_model, print_validation, write_validations
+from shaftprint.cli.output import (
+    Steps,
+    fingerprint_at,
+    force_option,
+    no_progress_option,
+    output_folder,
+    print_table,
+    progress,
+)
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.models import Structure
 from shaftprint.survey import Measurement, Trial, fit, load_trial, measure

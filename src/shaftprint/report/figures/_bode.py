@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report._symbols import response_label
 from shaftprint.report.figures._bode_parts import channel_of, draw_data, draw_trace, measured_phase_deg, trace_of
 from shaftprint.report.figures._style import (
     REFERENCE,
@@ -19,6 +18,7 @@ from shaftprint.report.figures._style import (
     plain_log_axis,
 )
 from shaftprint.report.figures._uncertainty import measured_points
+from shaftprint.report.notation import response_label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

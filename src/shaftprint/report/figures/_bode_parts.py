@@ -9,9 +9,9 @@ from matplotlib.artist import Artist
 
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.identify.uncertainty import model_band
-from shaftprint.report._symbols import plain_label
 from shaftprint.report.figures._style import DATA, Handle, LineLook
 from shaftprint.report.figures._uncertainty import measured_points
+from shaftprint.report.notation import plain_label
 from shaftprint.units import decibel
 
 if TYPE_CHECKING:

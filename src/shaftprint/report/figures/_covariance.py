@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report._symbols import mathtext
 from shaftprint.report.figures._style import house_style, legend_below, legend_entries, look, new_figure
+from shaftprint.report.notation import mathtext
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report._symbols import mathtext, plain_label
 from shaftprint.report.figures._style import REFERENCE, house_style, legend_below, legend_entries, look, new_figure
+from shaftprint.report.notation import mathtext, plain_label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from shaftprint.report._differences import Difference
+    from shaftprint.report.comparison import Difference
 
 PERCENT = 100.0
 ROW_CM, FRAME_CM = 0.62, 3.4

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.identify.uncertainty import profile_curve
-from shaftprint.report._symbols import mathtext
 from shaftprint.report.figures._style import REFERENCE, house_style, legend_below, legend_entries, look, new_figure
+from shaftprint.report.notation import mathtext
 from shaftprint.tables import unit_text
 
 if TYPE_CHECKING:

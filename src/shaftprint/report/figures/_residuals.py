@@ -7,7 +7,6 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.distributions import NORMAL_95, chi_square_quantile
 from shaftprint.identify.likelihood import load_factors
-from shaftprint.report._symbols import mathtext
 from shaftprint.report.figures._style import (
     REFERENCE,
     house_style,
@@ -19,6 +18,7 @@ from shaftprint.report.figures._style import (
     plain_log_axis,
 )
 from shaftprint.report.figures._uncertainty import COVERAGE
+from shaftprint.report.notation import mathtext
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.report._symbols import response_label
 from shaftprint.report.figures._bode import Column, plot_bode, plot_columns
+from shaftprint.report.notation import response_label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -6,8 +6,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import NORMAL_95
-from shaftprint.report._symbols import mathtext, with_unit
 from shaftprint.report.figures._style import REFERENCE, house_style, legend_below, legend_entries, look, new_figure
+from shaftprint.report.notation import mathtext, with_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

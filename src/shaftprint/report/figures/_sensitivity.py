@@ -9,10 +9,10 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.report._curve import Curve
-from shaftprint.report._symbols import mathtext, response_label
 from shaftprint.report.figures._bode_parts import channel_of, draw_data, measured_phase_deg, trace_of
 from shaftprint.report.figures._style import RAMP_DASHES, house_style, new_figure, plain_log_axis, plain_number, ramp
 from shaftprint.report.figures._uncertainty import measured_points
+from shaftprint.report.notation import mathtext, response_label
 from shaftprint.tables import unit_text
 
 if TYPE_CHECKING:

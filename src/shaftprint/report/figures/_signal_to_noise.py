@@ -4,7 +4,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report._symbols import mathtext
 from shaftprint.report.figures._style import (
     REFERENCE,
     house_style,
@@ -14,6 +13,7 @@ from shaftprint.report.figures._style import (
     new_figure,
     plain_log_axis,
 )
+from shaftprint.report.notation import mathtext
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

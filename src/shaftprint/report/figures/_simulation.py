@@ -8,7 +8,6 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import deviations
-from shaftprint.report._symbols import mathtext, with_unit
 from shaftprint.report.figures._envelope import STRETCHES, envelope
 from shaftprint.report.figures._style import (
     REFERENCE,
@@ -19,6 +18,7 @@ from shaftprint.report.figures._style import (
     look,
     new_figure,
 )
+from shaftprint.report.notation import mathtext, with_unit
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

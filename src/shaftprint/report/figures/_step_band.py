@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.identify.uncertainty import step_band
-from shaftprint.report._symbols import mathtext, response_label
 from shaftprint.report.figures._style import house_style, legend_below, legend_entries, letter_panels, look, new_figure
+from shaftprint.report.notation import mathtext, response_label
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

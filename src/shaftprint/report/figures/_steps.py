@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.report._symbols import mathtext
 from shaftprint.report.figures._style import (
     REFERENCE,
     house_style,
@@ -15,6 +14,7 @@ from shaftprint.report.figures._style import (
     look,
     new_figure,
 )
+from shaftprint.report.notation import mathtext
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

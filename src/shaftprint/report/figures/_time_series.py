@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.report._symbols import mathtext
 from shaftprint.report.figures._envelope import envelope
 from shaftprint.report.figures._style import house_style, legend_below, legend_entries, letter_panels, look, new_figure
+from shaftprint.report.notation import mathtext
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

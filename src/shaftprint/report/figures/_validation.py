@@ -7,7 +7,6 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import deviations
-from shaftprint.report._symbols import mathtext
 from shaftprint.report.figures._envelope import envelope, worthwhile
 from shaftprint.report.figures._style import (
     REFERENCE,
@@ -18,6 +17,7 @@ from shaftprint.report.figures._style import (
     look,
     new_figure,
 )
+from shaftprint.report.notation import mathtext
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,7 +10,7 @@ from shaftprint.report.plots._traces import MARKERS, colour, points
 from shaftprint.report.plots._words import label_text, name_text
 
 if TYPE_CHECKING:
-    from shaftprint.report._differences import Difference
+    from shaftprint.report.comparison import Difference
 
 ROW_PX, FRAME_PX = 30, 150
 

@@ -1,7 +1,7 @@
 """Words on interactive figures: names with slanted letters and lowered indices, all else as it is written."""
 
 from shaftprint.escape import html_text
-from shaftprint.report._html import symbol_html
+from shaftprint.report.notation import symbol_html
 from shaftprint.tables import unit_text
 
 

@@ -9,7 +9,7 @@ from shaftprint.tables import plain, unit_text
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint
-    from shaftprint.report._differences import Difference
+    from shaftprint.report.comparison import Difference
 
 # Normalised numbers move with the working point: beyond this share they differ for that reason alone.
 SAME_WORKING_POINT = 0.02

@@ -4,8 +4,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from shaftprint.fingerprint import clock_influences
-from shaftprint.report._symbols import name_parts
 from shaftprint.report.figures import THESIS_LIMIT_DB, plot_signal_to_noise
+from shaftprint.report.notation import name_parts
 from shaftprint.report.plots import signal_to_noise_plot
 from shaftprint.report.sections._clocks import clock_sentences
 from shaftprint.report.sections._sections import Inputs, Picture, Section

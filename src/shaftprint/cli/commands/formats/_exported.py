@@ -5,11 +5,10 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._file_to_write import expect_free, expect_no_input
-from shaftprint.cli._fingerprint_file import fingerprint_at, fingerprint_file
 from shaftprint.cli._known_values import named_value
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
+from shaftprint.cli.output import expect_free, expect_no_input, fingerprint_at, fingerprint_file
 from shaftprint.escape import plain_name
 from shaftprint.export import ExportedModel
 

@@ -7,7 +7,6 @@ import click
 import numpy as np
 
 from shaftprint.cli._own_structure import TypedName
-from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._terminal import echo
 from shaftprint.cli.commands.formats._exported import (
     file_to_write,
@@ -17,6 +16,7 @@ from shaftprint.cli.commands.formats._exported import (
     set_option,
     structure_option,
 )
+from shaftprint.cli.output import no_progress_option, progress
 from shaftprint.export import PLATFORMS, WrittenFmu, write_fmu
 
 

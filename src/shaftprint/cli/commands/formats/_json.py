@@ -4,10 +4,10 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
 from shaftprint.cli._terminal import echo
 from shaftprint.cli.commands.formats._exported import file_to_write, fingerprint_argument, force_option
+from shaftprint.cli.output import fingerprint_at
 from shaftprint.export import exported_model, write_json
 
 

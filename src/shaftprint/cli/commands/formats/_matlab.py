@@ -4,10 +4,8 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._fingerprint_file import fingerprint_at
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._own_structure import TypedName
-from shaftprint.cli._progress import no_progress_option, progress
 from shaftprint.cli._terminal import echo
 from shaftprint.cli.commands.formats._exported import (
     file_to_write,
@@ -17,6 +15,7 @@ from shaftprint.cli.commands.formats._exported import (
     set_option,
     structure_option,
 )
+from shaftprint.cli.output import fingerprint_at, no_progress_option, progress
 from shaftprint.export import write_matlab
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse

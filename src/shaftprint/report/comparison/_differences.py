@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from shaftprint.distributions import NORMAL_95, normal_cdf
 from shaftprint.fingerprint import GAUGE_ZERO
-from shaftprint.report._shared_errors import shared_errors
+from shaftprint.report.comparison._shared_errors import shared_errors
 from shaftprint.tables import limits
 
 if TYPE_CHECKING:

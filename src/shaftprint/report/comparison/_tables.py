@@ -22,7 +22,7 @@ from shaftprint.tables import (
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quantity
-    from shaftprint.report._differences import Difference
+    from shaftprint.report.comparison._differences import Difference
 
 PERCENT = 100.0
 NOT_THERE = "–"
