@@ -27,7 +27,7 @@ LARGEST_LINE_STD = 0.003
 RAMP_STD = 7e-3
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
+@dataclass(frozen=True, slots=True)
 class Scale:
     """One way to print a parameter."""
 
@@ -77,65 +77,43 @@ class Units:
             case Symbol.TORQUE_LIMIT:
                 return (
                     Scale(
-                        name="share",
-                        unit="-",
-                        meaning="highest torque over the full-load curve of the vessel file",
-                        factor=1.0 / self.full,
-                        share_std=gauge,
+                        "share",
+                        "-",
+                        "highest torque over the full-load curve of the vessel file",
+                        1.0 / self.full,
+                        gauge,
                     ),
-                    Scale(name=name, unit="-", meaning="the same over the brake torque of the working point"),
-                    Scale(
-                        name="M_max",
-                        unit="N m",
-                        meaning="the same at the working-point speed",
-                        factor=brake,
-                        share_std=gauge,
-                    ),
+                    Scale(name, "-", "the same over the brake torque of the working point"),
+                    Scale("M_max", "N m", "the same at the working-point speed", brake, gauge),
                 )
             case Symbol.MOTORING_LIMIT:
                 return (
-                    Scale(name=name, unit="-", meaning="lowest brake torque over that of the working point"),
-                    Scale(
-                        name="M_min", unit="N m", meaning="torque of the motored engine", factor=brake, share_std=gauge
-                    ),
+                    Scale(name, "-", "lowest brake torque over that of the working point"),
+                    Scale("M_min", "N m", "torque of the motored engine", brake, gauge),
                 )
             case Symbol.RACK_RATE:
                 return (
-                    Scale(name=name, unit="1/s", meaning="fastest change of the rack over that of the working point"),
-                    Scale(name="R_x", unit="N m/s", meaning="the same as brake torque", factor=brake, share_std=gauge),
+                    Scale(name, "1/s", "fastest change of the rack over that of the working point"),
+                    Scale("R_x", "N m/s", "the same as brake torque", brake, gauge),
                 )
             case Symbol.SET_POINT_RATE:
                 return (
-                    Scale(
-                        name="r_s_rpm",
-                        unit="rpm/s",
-                        meaning="fastest change of the set point",
-                        factor=rpm,
-                        share_std=RAMP_STD,
-                    ),
-                    Scale(
-                        name=name,
-                        unit="1/s",
-                        meaning="the same over the speed of the working point",
-                        share_std=RAMP_STD,
-                    ),
+                    Scale("r_s_rpm", "rpm/s", "fastest change of the set point", rpm, RAMP_STD),
+                    Scale(name, "1/s", "the same over the speed of the working point", share_std=RAMP_STD),
                 )
             case Symbol.DEADBAND:
                 return (
                     Scale(
-                        name="d_e_rpm",
-                        unit="rpm",
-                        meaning="speed error within which the governor does nothing, half of the band",
-                        factor=rpm,
+                        "d_e_rpm", "rpm", "speed error within which the governor does nothing, half of the band", rpm
                     ),
-                    Scale(name=name, unit="-", meaning="the same over the speed of the working point"),
+                    Scale(name, "-", "the same over the speed of the working point"),
                 )
             case Symbol.UNBOOSTED_TORQUE:
-                return (Scale(name=name, unit="-", meaning="torque without boost over full-load torque"),)
+                return (Scale(name, "-", "torque without boost over full-load torque"),)
             case Symbol.TURBOCHARGER_LAG:
-                return (Scale(name=name, unit="s", meaning="time in which the boost follows the torque"),)
+                return (Scale(name, "s", "time in which the boost follows the torque"),)
             case _:
-                return (Scale(name=name, unit="s", meaning="time in which the integrator is led back at a limit"),)
+                return (Scale(name, "s", "time in which the integrator is led back at a limit"),)
 
 
 def numbers_of(found: Fitted, spread: LevelScatter, units: Units) -> tuple[LimitEstimate, ...]:

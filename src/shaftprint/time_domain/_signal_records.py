@@ -112,12 +112,8 @@ def _record(
     torque = deviation(signals.shaft_torque_nm[fine], point.shaft_torque_nm)
     start_s = signals.start_s + first / rate
     time = start_s + np.arange(count) * every / rate
-    used = (
-        ~_repaired(signals, sensor, time, every)
-        & ~_lost(signals, name, time, every)
-        & _finite(decimator, n)
-        & _finite(decimator, torque)
-    )
+    used = ~_repaired(signals, sensor, time, every) & ~_lost(signals, name, time, every)
+    used &= _finite(decimator, n) & _finite(decimator, torque)
     if settled:
         used &= _settled(time, excitations)
     outputs = {"n": decimator.filtered(np.nan_to_num(n)), "M_s": decimator.filtered(np.nan_to_num(torque))}

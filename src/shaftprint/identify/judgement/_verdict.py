@@ -122,15 +122,8 @@ def assess(
     rejected = any(reason.kind == "misfit" for reason in of_fit)
     suspects = suspects_of(identification, rejected=evidence.requirements.lowest_p_value) if rejected else ()
     hints = tuple(Reason(kind="suspect", sentence=suspect.sentence) for suspect in suspects)
-    every = by_weight(
-        (
-            *_of_data(identification),
-            *reasons,
-            *contradicted_priors(identification),
-            *of_fit,
-            *hints,
-        )
-    )
+    of_data = (reason for part in identification.experiments for reason in part.response.reasons)
+    every = by_weight((*of_data, *reasons, *contradicted_priors(identification), *of_fit, *hints))
     numbers = (*identification.parameters, *identification.combinations, *further)
     imprecise = doubts_of(identification, numbers, evidence.profile, evidence.requirements)
     doubts = {number.name: clause_of(number, every) or imprecise.get(number.name, "") for number in numbers}
@@ -139,20 +132,17 @@ def assess(
     usable = bool(trusted) and not of_fit
     cautions = cautions_of(evidence) if usable else ()
     headline = _headline(evidence, every, trusted=trusted, not_trusted=not_trusted, usable=usable)
+    sentences = (
+        headline,
+        *(reason.sentence for reason in every),
+        *_lists(trusted, not_trusted, rejected=bool(of_fit)),
+        *cautions,
+        *(f"Assumed: {assumption}" for assumption in assumptions),
+    )
     return Verdict(
         trustworthy=usable,
         reason=headline,
-        sentences=tuple(
-            dict.fromkeys(
-                (
-                    headline,
-                    *(reason.sentence for reason in every),
-                    *_lists(trusted, not_trusted, rejected=not usable and bool(of_fit)),
-                    *cautions,
-                    *(f"Assumed: {assumption}" for assumption in assumptions),
-                )
-            )
-        ),
+        sentences=tuple(dict.fromkeys(sentences)),
         trusted=trusted,
         not_trusted=not_trusted,
         loop=evidence.loop,
@@ -169,11 +159,6 @@ def _of_fit(evidence: Evidence) -> tuple[Reason, ...]:
         if sentence := question(evidence):
             return (Reason(kind=kind, sentence=sentence),)
     return ()
-
-
-def _of_data(identification: Identification) -> tuple[Reason, ...]:
-    """Return what speaks against the responses that were fitted."""
-    return tuple(reason for part in identification.experiments for reason in part.response.reasons)
 
 
 def _headline(
