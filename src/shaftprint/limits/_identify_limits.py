@@ -87,7 +87,6 @@ def identify_limits(
     else:
         not_seen = {**not_seen, Kind.QUANTUM: quantum_exclusion(quantum, units)}
     return LimitFit(
-        kinds=tuple(gains),
         numbers=numbers,
         gains=gains,
         governor=tuple(

@@ -44,18 +44,21 @@ class LimitEstimate:
 class LimitFit:
     """The limits of a line."""
 
-    kinds: tuple[Kind, ...]
-    """The limits that act, the strongest evidence first."""
     numbers: tuple[LimitEstimate, ...]
     """Their levels, rates and widths; the first of each limit is the one by which it is known."""
     gains: Mapping[Kind, float]
-    """Fall of minus twice the log-likelihood that each limit brings to the others."""
+    """Fall of minus twice the log-likelihood that each limit brings to the others, the strongest evidence first."""
     governor: tuple[Estimate, ...]
     """Governor and delays that go with them, with their standard deviations."""
     not_seen: Mapping[Kind, str]
     """For each limit that does not act: up to which level the data exclude it, in words."""
     identification: Identification
     """The fit."""
+
+    @property
+    def kinds(self) -> tuple[Kind, ...]:
+        """The limits that act, the strongest evidence first."""
+        return tuple(self.gains)
 
     @property
     def trusted(self) -> tuple[LimitEstimate, ...]:

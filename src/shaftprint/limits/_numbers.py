@@ -164,38 +164,36 @@ def _printed(found: Fitted, spread: LevelScatter, units: Units, kind: Kind, name
 def _cycle(messages: Messages) -> LimitEstimate:
     """Return the cycle of the messages between which the set point is held."""
     lower, value, upper = (messages.quantile(share) for share in (0.025, 0.5, 0.975))
-    interval = LevelInterval(lower=lower, upper=upper, lower_open=False, upper_open=False)
-    return LimitEstimate(
-        kind=Kind.HELD,
-        name="T_set",
-        unit="s",
-        value=value,
-        std=0.5 * (upper - lower) / NORMAL_95,
-        lower=lower,
-        upper=upper,
-        meaning="time from one message with the set point to the next, the last one held between them",
-        doubt=_doubt(value, interval, at_bound=False),
+    meaning = "time from one message with the set point to the next, the last one held between them"
+    return _of_set_point(
+        Kind.HELD, Scale("T_set", "s", meaning), (lower, value, upper), 0.5 * (upper - lower) / NORMAL_95
     )
 
 
 def quantum_number(quantum: Quantum, units: Units) -> LimitEstimate:
     """Return the step of a quantised set point."""
     value, std = units.speed_rpm * quantum.step, units.speed_rpm * quantum.std
-    lower, upper = value - NORMAL_95 * std, value + NORMAL_95 * std
+    ends = (value - NORMAL_95 * std, value, value + NORMAL_95 * std)
+    doubt = "" if quantum.is_only_one else "another step explains the test nearly as well"
+    return _of_set_point(Kind.QUANTUM, Scale("q_rpm", "rpm", "step of the set point"), ends, std, doubt=doubt)
+
+
+def _of_set_point(
+    kind: Kind, scale: Scale, ends: tuple[float, float, float], std: float, *, doubt: str = ""
+) -> LimitEstimate:
+    """Return a number of the set point, from lower end, value and upper end; it has no parameter of the governor."""
+    lower, value, upper = ends
     interval = LevelInterval(lower=lower, upper=upper, lower_open=False, upper_open=False)
-    doubt = _doubt(value, interval, at_bound=False)
-    if not quantum.is_only_one:
-        doubt = doubt or "another step explains the test nearly as well"
     return LimitEstimate(
-        kind=Kind.QUANTUM,
-        name="q_rpm",
-        unit="rpm",
+        kind=kind,
+        name=scale.name,
+        unit=scale.unit,
         value=value,
         std=std,
         lower=lower,
         upper=upper,
-        meaning="step of the set point",
-        doubt=doubt,
+        meaning=scale.meaning,
+        doubt=_doubt(value, interval, at_bound=False) or doubt,
     )
 
 
