@@ -6,7 +6,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Settings, identify, identify_jointly
-from shaftprint.identify.search import Descent, Draw, beside_border, descend, stable_models
+from shaftprint.identify.search import Descent, Draw, border_minimum, descend, stable_models
 from shaftprint.models import Delay, Parameter, PIGovernor, Sensitivity, Shaft, Structure, is_stable
 
 DURING = Settings(stability="during")
@@ -184,7 +184,7 @@ def test_a_border_is_looked_for_only_where_there_is_feedback(make_response):
         converged=np.ones(1, dtype=bool),
         refused=np.ones(1, dtype=bool),
     )
-    found = beside_border(fit.objective, stopped, DURING, stable_models(fit.objective))
+    found = border_minimum(fit.objective, stopped, DURING, stable_models(fit.objective))
     assert found.cost.tolist() == [np.inf]
     np.testing.assert_array_equal(found.theta, theta)
 
@@ -199,5 +199,5 @@ def test_a_border_without_a_stable_side_gives_nothing(make_response):
         converged=np.ones(1, dtype=bool),
         refused=np.ones(1, dtype=bool),
     )
-    nowhere = beside_border(fit.objective, stopped, DURING, lambda theta: np.zeros(len(theta), dtype=bool))
+    nowhere = border_minimum(fit.objective, stopped, DURING, lambda theta: np.zeros(len(theta), dtype=bool))
     assert nowhere.cost.tolist() == [np.inf]

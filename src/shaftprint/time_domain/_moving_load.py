@@ -43,7 +43,7 @@ def load_columns(record: Record, outputs: tuple[str, ...]) -> FloatArray:
     return columns
 
 
-def without_square(simulated: FloatArray, outputs: tuple[str, ...], load: float) -> FloatArray:
+def without_quadratic_torque(simulated: FloatArray, outputs: tuple[str, ...], load: float) -> FloatArray:
     """Return outputs and derivatives with the torque less ``load n^2``, shape (1 + wanted, samples, outputs)."""
     speed, torque = outputs.index(SPEED), outputs.index(TORQUE)
     linear = simulated.copy()
@@ -52,8 +52,8 @@ def without_square(simulated: FloatArray, outputs: tuple[str, ...], load: float)
     return linear
 
 
-def with_square(values: FloatArray, outputs: tuple[str, ...], load: float) -> FloatArray:
-    """Return outputs with the torque that ``without_square`` took off, shape (samples, outputs)."""
+def with_quadratic_torque(values: FloatArray, outputs: tuple[str, ...], load: float) -> FloatArray:
+    """Return outputs with the torque that ``without_quadratic_torque`` took off, shape (samples, outputs)."""
     squared = values.copy()
     squared[:, outputs.index(TORQUE)] += load * values[:, outputs.index(SPEED)] ** 2
     return squared

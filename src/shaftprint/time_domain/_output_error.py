@@ -18,7 +18,7 @@ from shaftprint.identify.likelihood import LineTest, Repeats, TermTest, Whitened
 from shaftprint.time_domain._flexible_model import FlexibleModel
 from shaftprint.time_domain._initial_states import InitialStates, best_states, state_estimates
 from shaftprint.time_domain._input_response import excited
-from shaftprint.time_domain._moving_load import load_columns, with_square, without_square
+from shaftprint.time_domain._moving_load import load_columns, with_quadratic_torque, without_quadratic_torque
 from shaftprint.time_domain._noise_model import LONGEST_S
 from shaftprint.time_domain._nuisance import drift_columns, orthonormal, without
 from shaftprint.time_domain._record import Record
@@ -266,7 +266,11 @@ class OutputError(WhitenedTerm):
                 columns = np.concatenate([columns, start.effects])
             shares, *_ = np.linalg.lstsq(self._white(columns).T, gap, rcond=1e-9)
             completed = completed + np.tensordot(shares, columns, axes=1)
-        return with_square(completed, self._names, self.record.load) if self.moving_load else np.asarray(completed)
+        return (
+            with_quadratic_torque(completed, self._names, self.record.load)
+            if self.moving_load
+            else np.asarray(completed)
+        )
 
     def _flexible(self, simulated: FloatArray, start: InitialStates | None) -> FlexibleModel:
         """Return what is more flexible than the structure, to judge it by."""
@@ -285,7 +289,7 @@ class OutputError(WhitenedTerm):
 
     def _compared(self, values: FloatArray) -> FloatArray:
         """Return outputs as they are compared, without the square of the speed where the load may move."""
-        return without_square(values[None], self._names, self.record.load)[0] if self.moving_load else values
+        return without_quadratic_torque(values[None], self._names, self.record.load)[0] if self.moving_load else values
 
     def _simulated(
         self, values: FloatArray, wanted: Sequence[str], initial: FloatArray | None = None
@@ -293,7 +297,7 @@ class OutputError(WhitenedTerm):
         simulated = on_record(self.simulator, self.structure, values, self.record, wanted, initial=initial)
         if simulated is None or not self.moving_load:
             return simulated
-        return without_square(simulated, self._names, self.record.load)
+        return without_quadratic_torque(simulated, self._names, self.record.load)
 
     def _columns(self) -> FloatArray:
         """Return offsets, drifts and moving load, shape (columns, samples, outputs)."""

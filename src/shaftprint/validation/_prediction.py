@@ -124,7 +124,7 @@ def simulated_prediction(
     )
 
 
-def with_square(output: FloatArray, slopes: FloatArray) -> tuple[FloatArray, FloatArray]:
+def with_quadratic_torque(output: FloatArray, slopes: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return a linear prediction with the rest of the propeller's quadratic law in the torque."""
     squared, turned = output.copy(), slopes.copy()
     squared[1] += output[0] ** 2

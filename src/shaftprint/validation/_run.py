@@ -9,7 +9,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign
 from shaftprint.signals import Signals, deviation
 from shaftprint.validation._model import Model
-from shaftprint.validation._prediction import OUTPUTS, Predict, with_square
+from shaftprint.validation._prediction import OUTPUTS, Predict, with_quadratic_torque
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._validation_records import Excerpt
 from shaftprint.validation.measures import LEAST_LOAD, Compared, QuietNoise, low_pass, quiet_noise
@@ -149,7 +149,7 @@ def run_model(
         wanted=[p.name for p in model.structure.free] if model.has_uncertainty else [],
     )
     if quadratic_propeller:
-        raw, slopes = with_square(raw, slopes)
+        raw, slopes = with_quadratic_torque(raw, slopes)
     if not model.has_uncertainty:
         slopes = np.zeros((len(model.structure.free), *raw.shape))
     smooth, slopes = (low_pass(values, data.rate_hz, settings.highest_hz) for values in (raw, slopes))

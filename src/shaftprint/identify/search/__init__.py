@@ -7,8 +7,7 @@ from shaftprint.identify.search._optimum_path import highest_between
 from shaftprint.identify.search._search import polish, search
 from shaftprint.identify.search._settings import Settings, Stability
 from shaftprint.identify.search._spread import spread
-from shaftprint.identify.search._stability import stable_models
-from shaftprint.identify.search._stability_border import beside_border
+from shaftprint.identify.search._stability_border import border_minimum, stable_models
 from shaftprint.identify.search._starts import Draw, GivenStarts, LatinHypercube, Uniform
 
 __all__ = [
@@ -21,7 +20,7 @@ __all__ = [
     "Settings",
     "Stability",
     "Uniform",
-    "beside_border",
+    "border_minimum",
     "bounded_least_squares",
     "descend",
     "highest_between",

@@ -16,8 +16,7 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify.likelihood import Objective
 from shaftprint.identify.search._levenberg_marquardt import Allowed, Descent, descend
 from shaftprint.identify.search._settings import Settings
-from shaftprint.identify.search._stability import stable_models
-from shaftprint.identify.search._stability_border import beside_border
+from shaftprint.identify.search._stability_border import border_minimum, stable_models
 from shaftprint.identify.search._starts import LatinHypercube
 
 POLISH_TOLERANCE = 1e-14
@@ -53,7 +52,7 @@ def search(objective: Objective, settings: Settings, rng: np.random.Generator) -
     floors = tuple(_floors(objective))
     if floors:
         descent = _lower(descent, _in_steps(objective, start, floors, settings, allowed))
-    return descent if allowed is None else _lower(descent, beside_border(objective, descent, settings, allowed))
+    return descent if allowed is None else _lower(descent, border_minimum(objective, descent, settings, allowed))
 
 
 def polish(objective: Objective, theta: FloatArray, settings: Settings) -> Descent:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.arrays import ComplexArray, FloatArray, IntArray
+from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray
 from shaftprint.identify.likelihood import Objective
 from shaftprint.identify.search._levenberg_marquardt import Allowed, Descent, descend
 from shaftprint.identify.search._settings import Settings
@@ -29,7 +29,16 @@ TOLERANCE = 1e-9
 STEPS_INSIDE = np.geomspace(1e-12, 0.1, 45)
 
 
-def beside_border(objective: Objective, descent: Descent, settings: Settings, allowed: Allowed) -> Descent:
+def stable_models(objective: Objective) -> Allowed:
+    """Return a function that tells of free parameters, shape (rows, free), whether the models are stable."""
+
+    def stable(theta: FloatArray) -> BoolArray:
+        return objective.stable(objective.complete(theta))
+
+    return stable
+
+
+def border_minimum(objective: Objective, descent: Descent, settings: Settings, allowed: Allowed) -> Descent:
     """Return the starts that were stopped at the border of stability at the lowest cost beside it.
 
     Parameters
