@@ -5,6 +5,7 @@ import importlib
 import inspect
 import os
 import pkgutil
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -135,3 +136,28 @@ def test_every_file_is_described_and_short(path):
     text = path.read_text(encoding="utf-8")
     assert ast.get_docstring(ast.parse(text))
     assert text.count("\n") <= 400
+
+
+# ---- tests ----
+
+# Tests that come in by the doors let the files behind them change: each private file that a test names is a debt.
+MOST_PRIVATE_NAMES = 39
+
+
+def private_files(path):
+    """Files of the package that begin with ``_`` and that a test imports, or names in a text to change them there."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("shaftprint"):
+            names = [node.module] if "._" in node.module else [f"{node.module}.{alias.name}" for alias in node.names]
+        elif isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            names = re.findall(r"shaftprint\.[\w.]*\._[a-z]\w*", node.value)
+        else:
+            continue
+        yield from (f"{path.name}:{node.lineno} {name}" for name in names if re.match(r"shaftprint\..*\b_[a-z]", name))
+
+
+def test_tests_come_in_by_the_doors():
+    found = [name for path in sorted((ROOT / "tests").rglob("*.py")) for name in private_files(path)]
+    assert len(found) <= MOST_PRIVATE_NAMES, "\n".join(found)
