@@ -93,6 +93,12 @@ def test_wrong_input_leaves_nothing_behind(run, recording, tmp_path, options, co
     assert list(tmp_path.iterdir()) == []
 
 
+def test_a_mistake_in_a_settings_file_makes_no_folder_on_the_way(run, recording, tmp_path):
+    result = run("identify", recording, *GIVEN, "--vessel", "tor", "-o", tmp_path / "tests" / "out")
+    assert result.exit_code == 1
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_missing_recording(run, tmp_path):
     result = run("identify", tmp_path / "test.nc", *GIVEN, "-o", tmp_path / "out")
     assert result.exit_code == 1

@@ -77,7 +77,7 @@ def test_words_say_what_it_does_to_the_result():
     bad = replace(NONE, moved=("n", "M_s"), phase_rad=0.02, delay_std_s=4e-3)
     words = clock_sentences(SHAFT, bad)
     assert "turns the phase of n and M_s over the set point by 1.1° at S9 (2.00 Hz), the highest line" in words
-    assert "tell such a delay to 4.0 ms, so that it moves no parameter by more than 0.40 of its standard" in words
+    assert "determine such a delay to 4.0 ms, so that it moves no parameter by more than 0.40 of its standard" in words
     assert words.endswith("The standard deviations of this report do not hold it and are too small.")
     assert clock_sentences(SHAFT, replace(bad, std_s=1e-4)).endswith(
         "The standard deviations of this report do not hold it."

@@ -82,6 +82,13 @@ def test_many_lines_left_out_are_worth_a_look(fingerprint):
     assert card.sentence.startswith("2 of 4 test lines could be used, 1 place was repaired. Left out: S3: no signal")
 
 
+def test_a_remark_on_the_card_begins_a_sentence(fingerprint):
+    remarks = ("channel M_s reaches 1.02 of its range.",)
+    quality = fingerprint.quality.model_copy(update={"remarks": remarks, "repairs": {"M_s: outlier": 156}})
+    card = answers(fingerprint.model_copy(update={"quality": quality}))["Were the measurements good?"]
+    assert card.sentence.endswith("156 places were repaired. Channel M_s reaches 1.02 of its range.")
+
+
 def test_the_headline_counts_what_is_worth_a_look(fingerprint):
     good = with_verdict(fingerprint, loop="ample", trustworthy=True, trusted=("k_q",), not_trusted={}, reasons=())
     good = with_physical(good, "K_Q", value=0.049, std=0.001, expected=0.0494)

@@ -189,7 +189,7 @@ def test_what_was_known_beforehand_is_not_called_found(page, fingerprint):
     summary = page.text[page.text.index("Summary", page.text.index("Sensitivity")) :]
     known = summary[summary.index("This test knows") : summary.index("Physical values")]
     assert "τup" not in known
-    assert ("Known beforehand" in page.text) == bool(fingerprint.priors)
+    assert ("Priors, from the vessel file" in page.text) == bool(fingerprint.priors)
 
 
 @pytest.mark.slow

@@ -14,26 +14,26 @@ from shaftprint.escape import terminal_message
 # The one-line help of every command, in the order of use. It stands here, and not in the commands only, because
 # asking a command for it would import the command: 2 s instead of 0.06 s. A test holds both against each other.
 COMMANDS = {
-    "demo": "Sail the simulated Stan Tug 1205 and identify it from its recording.",
+    "demo": "Simulate the Stan Tug 1205 and identify it from its recording.",
     "new": "Write a commented vessel or campaign file to fill in.",
-    "sail": "Let a simulated tug sail a campaign and write its raw recording.",
-    "predict": "Say what a test would find, before it is made.",
-    "inspect": "Say what is in a recording and whether it is good enough.",
+    "sail": "Simulate a tug in a campaign and write its raw recording.",
+    "predict": "Predict the accuracy of a planned test.",
+    "inspect": "Show what is in a recording and whether it is good enough.",
     "merge": "Bring the recordings of two loggers onto the clock of the first.",
     "join": "Join files that one logger wrote one after the other, in the order given.",
     "convert": "Write recordings of any readable format as the native container.",
     "identify": "Identify the fingerprint from a recording.",
-    "compare": "Say what differs between fingerprints, and whether it is more than chance.",
-    "compare-structures": "Say which of several structures a recording wants, and why.",
-    "validate": "Hold a model against chirps and steps that it was not identified from.",
+    "compare": "Compare fingerprints: what differs, and whether by more than chance.",
+    "compare-structures": "Compare model structures on a recording: which explains it best, and why.",
+    "validate": "Validate a model on chirps and steps that it was not identified from.",
     "limits": "Find which limits a line has, and their levels and rates with uncertainty.",
-    "simulate": "Predict what speed and torque do for a set point, with limits where the model has them.",
+    "simulate": "Simulate speed and torque for a set point, with limits where the model has them.",
     "export": "Write the model of a fingerprint for another program.",
-    "explain": "Say where the numbers of the thesis' way come from on one recording.",
+    "explain": "Explain the numbers of the thesis' method on one recording.",
     "show": "Print a saved fingerprint.",
     "structures": "List the model structures with their parameters and bounds.",
-    "inertia": "Say what inertia and torsional modes the vessel file lets expect.",
-    "sensitivity": "Draw what each parameter of a structure does to its response.",
+    "inertia": "Calculate inertia and torsional modes from the vessel file.",
+    "sensitivity": "Draw the effect of each parameter of a structure on its response.",
 }
 
 INTERRUPTED = 130

@@ -124,8 +124,7 @@ def run(
     trial = replace(trial, sources=(*trial.sources, *sources))
     chosen = tuple(one if isinstance(one, Structure) else shipped_structure(one) for one in structures)
     measurement = measure(recording, trial, mode=mode, progress=progress)
-    how = settings or _with_priors
-    by_name = {one.name: how(one, measurement, trial) for one in chosen}
+    by_name = settings_by_name(chosen, measurement, trial, settings or _with_priors)
     fits = fit(chosen, measurement, settings=by_name, rng=rng, progress=progress)
     return survey_of(fits, measurement, trial, rng=rng, now=now, progress=progress)
 
@@ -168,6 +167,13 @@ def survey_of(
         validations=validations,
         remarks=remarks,
     )
+
+
+def settings_by_name(
+    structures: Sequence[Structure], measurement: Measurement, trial: Trial, settings: SettingsOf
+) -> dict[str, Settings]:
+    """Return how each structure is fitted, by its name."""
+    return {structure.name: settings(structure, measurement, trial) for structure in structures}
 
 
 def _with_priors(structure: Structure, measurement: Measurement, trial: Trial) -> Settings:

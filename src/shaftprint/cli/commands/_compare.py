@@ -57,7 +57,7 @@ def command(
     output: Path | None,
     force: bool,
 ) -> None:
-    """Say what differs between fingerprints, and whether it is more than chance.
+    """Compare fingerprints: what differs, and whether by more than chance.
 
     FINGERPRINTS are two or more JSON files, or the folders in which identify or demo has put them. All are
     compared with the first. --name and --structure may be repeated.

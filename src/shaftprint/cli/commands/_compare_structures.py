@@ -12,7 +12,7 @@ from shaftprint.cli._results import print_comparison
 from shaftprint.cli.output import no_progress_option, progress
 from shaftprint.identify import compare_structures
 from shaftprint.identify.comparison import expect_comparable
-from shaftprint.survey import load_trial, measure, response_of
+from shaftprint.survey import load_trial, measure, response_of, settings_by_name
 
 
 @click.command("compare-structures")
@@ -45,7 +45,7 @@ def command(
     options: FitOptions,
     no_progress: bool,
 ) -> None:
-    """Say which of several structures a recording wants, and why.
+    """Compare model structures on a recording: which explains it best, and why.
 
     Each structure is fitted to the same lines. It wins that explains them with the fewest parameters (BIC);
     beside it stand a test of each fit, of each structure within a larger one, and how well each predicts
@@ -56,13 +56,12 @@ def command(
     trial = load_trial(vessel, campaign)
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode=options.mode, progress=steps)
-        how = settings_of(structures, options)
         steps.begin("Comparing the structures")
         comparison = compare_structures(
             structures,
             response_of(structures[0], measurement.responses),
             rng=np.random.default_rng(options.seed),
-            settings={one.name: how(one, measurement, trial) for one in structures},
+            settings=settings_by_name(structures, measurement, trial, settings_of(structures, options)),
             folds=folds,
         )
     print_comparison(comparison)

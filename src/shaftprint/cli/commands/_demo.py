@@ -42,7 +42,7 @@ RECORDING = "recording.nc"
 @force_option
 @no_progress_option
 def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool) -> None:
-    """Sail the simulated Stan Tug 1205 and identify it from its recording.
+    """Simulate the Stan Tug 1205 and identify it from its recording.
 
     The raw recording is written as a logger would write it, and the fingerprint is identified from that
     file alone. The truth is opened at the end, to be printed beside what was found.

@@ -32,7 +32,7 @@ from shaftprint.survey import Survey, fingerprint_of, load_trial, measure, thesi
 def command(
     recording: Path, vessel: str, campaign: str, seed: int, output: Path | None, force: bool, no_progress: bool
 ) -> None:
-    """Say where the numbers of the thesis' way come from on one recording.
+    """Explain the numbers of the thesis' method on one recording.
 
     Fits the structures of the thesis the thesis' way and the gauge-aware one, and shows side by side where the
     inertia time that is too small, the damping that is missing between 1 and 10 rad/s, the K_p that

@@ -12,7 +12,7 @@ from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._terminal import echo, print_findings
 from shaftprint.cli.output import force_option, no_progress_option, output_folder, print_table, progress
-from shaftprint.survey import run
+from shaftprint.survey import load_trial, run
 from shaftprint.tables import fits_table
 
 
@@ -49,15 +49,17 @@ def command(
     --structure, --prior, --free and --hold may be repeated.
     """
     structures = structures_of(names, options)
+    # before the folder is made: a mistake in a settings file leaves none
+    trial = load_trial(vessel, campaign)
     with output_folder(output, of="identify", force=force) as folder, progress(hidden=no_progress) as steps:
         survey = run(
             recording,
-            vessel,
-            campaign,
+            trial.vessel,
+            trial.campaign,
             structures=structures,
             settings=settings_of(structures, options),
             mode=options.mode,
-            sources=structure_sources(names),
+            sources=(*trial.sources, *structure_sources(names)),
             rng=np.random.default_rng(options.seed),
             progress=steps,
         )

@@ -64,7 +64,7 @@ def picture(context: click.Context, parameter: click.Parameter, path: Path | Non
 )
 @click.option("--force", is_flag=True, help="Replace an earlier picture.")
 def command(vessel: str, found: Path | None, drawing: Path | None, force: bool) -> None:
-    """Say what inertia and torsional modes the vessel file lets expect.
+    """Calculate inertia and torsional modes from the vessel file.
 
     Prints the inertia table referred to the propeller shaft, the sums on either side of the torque gauge, the inertia
     times with where their uncertainty comes from, the entrained water by several methods and, where VESSEL has links

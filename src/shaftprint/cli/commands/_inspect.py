@@ -38,7 +38,7 @@ _MOST_GAPS = 20
 @reading_options
 @no_progress_option
 def command(recording: Path, vessel: str | None, campaign: str | None, no_progress: bool, **said: object) -> None:
-    """Say what is in a recording and whether it is good enough.
+    """Show what is in a recording and whether it is good enough.
 
     Without a vessel file, the channels with rates, spans and levels, and a proposal for its sensors. With one, what
     each sensor shows: pulses, faults, outliers. With a campaign file too, the calibration and the signal-to-noise ratio

@@ -89,7 +89,7 @@ def command(
     values: tuple[tuple[str, float], ...],
     no_progress: bool,
 ) -> None:
-    """Say what a test would find, before it is made.
+    """Predict the accuracy of a planned test.
 
     Prints the standard deviation of every parameter that the lines of a campaign would give, what they cannot
     separate, and what no test of these outputs can find. --prior, --free, --hold and --value may be repeated.

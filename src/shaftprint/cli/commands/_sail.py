@@ -25,7 +25,7 @@ from shaftprint.tug import sail_as, truth_path
 @click.option("--force", is_flag=True, help="Replace an existing recording.")
 @no_progress_option
 def command(vessel: str, campaign: str, output: Path, seed: int, force: bool, no_progress: bool) -> None:
-    """Let a simulated tug sail a campaign and write its raw recording.
+    """Simulate a tug in a campaign and write its raw recording.
 
     VESSEL and CAMPAIGN are files, or names of shipped ones such as stan-tug-1205 and thesis. What was put
     into the recording goes to a file of its own beside it, which nothing that identifies will open.

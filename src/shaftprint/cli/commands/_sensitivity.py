@@ -58,7 +58,7 @@ def ascending(context: click.Context, parameter: click.Parameter, span: tuple[fl
 def command(
     name: TypedName, output: Path, suffix: str, span: tuple[float, float], force: bool, no_progress: bool
 ) -> None:
-    """Draw what each parameter of a structure does to its response.
+    """Draw the effect of each parameter of a structure on its response.
 
     One figure an output and input: the Bode families of STRUCTURE with each free parameter varied between its bounds. A
     STRUCTURE such as my_ship.py:my_loop is one in a file of your own, which is Python and is run. With `thesis` for

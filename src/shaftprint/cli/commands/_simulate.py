@@ -104,7 +104,7 @@ def command(
     force: bool,
     no_progress: bool,
 ) -> None:
-    """Predict what speed and torque do for a set point, with limits where the model has them.
+    """Simulate speed and torque for a set point, with limits where the model has them.
 
     Delays are exact. With a fingerprint, every output has its standard deviation from the covariance of the
     parameters. A working point, of the fingerprint or a vessel file, turns deviations into rpm and N m.

@@ -22,7 +22,7 @@ from shaftprint.cli.output import (
 )
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.models import Structure
-from shaftprint.survey import Measurement, Trial, fit, load_trial, measure
+from shaftprint.survey import Measurement, Trial, fit, load_trial, measure, settings_by_name
 from shaftprint.tables import models_table
 from shaftprint.validation import Model, identified_model, thesis_models, validate
 
@@ -78,10 +78,10 @@ def command(
     force: bool,
     no_progress: bool,
 ) -> None:
-    """Hold a model against chirps and steps that it was not identified from.
+    """Validate a model on chirps and steps that it was not identified from.
 
     Prints for each stretch how much of the motion the model misses beyond noise, the delay that is left,
-    overshoot, rise and settling of steps beside what the model lets expect, and whether the model passes.
+    overshoot, rise and settling of steps beside those that the model predicts, and whether the model passes.
     --record, --used, --prior, --free and --hold may be repeated.
     """
     trial = load_trial(vessel, campaign)
@@ -129,7 +129,6 @@ def _model(
     """Return the model of a fingerprint that was kept, otherwise the one that the sines of the recording give."""
     if kept is not None:
         return fingerprint_model(kept, structures[0], measurement.signals)
-    how = settings_of(structures, options)
-    settings = {one.name: how(one, measurement, trial) for one in structures}
+    settings = settings_by_name(structures, measurement, trial, settings_of(structures, options))
     rng = np.random.default_rng(options.seed)
     return identified_model(fit(structures, measurement, settings=settings, rng=rng, progress=steps)[0])

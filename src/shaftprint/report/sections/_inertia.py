@@ -12,7 +12,7 @@ from shaftprint.tables import (
 from shaftprint.torsion import modes, torsional_line
 
 OPENING = (
-    "What the inertia table of the vessel file lets expect at the measured working point. The torque gauge cuts the "
+    "Inertia by the table of the vessel file, at the measured working point. The torque gauge cuts the "
     "line: shaft torque and speed show what is downstream of it, the loop of governor and engine turns both sides."
 )
 

@@ -66,7 +66,7 @@ def _aliasing(inputs: Inputs) -> str:
     limit = inputs.aliasing_limit_hz
     sensor = inputs.signals.engine_speed.channel
     above = [window.line for window in inputs.spectra.windows if window.frequency_hz > limit]
-    words = f"Speeds of {sensor} can be told up to {plain(limit, 2)} Hz, half its pulse rate"
+    words = f"Speeds of {sensor} are resolved up to {plain(limit, 2)} Hz, half its pulse rate"
     if not above:
         return f"{words}: all test lines lie below."
     return f"{words}: {', '.join(above)} {'lies' if len(above) == 1 else 'lie'} above, aliased, and cannot be used."

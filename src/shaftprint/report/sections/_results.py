@@ -134,8 +134,8 @@ def _given(fingerprint: "Fingerprint") -> tuple[str, ...]:
     sentences = []
     if known:
         sentences.append(
-            f"Known beforehand, from the vessel file or as given: {known}. Where the standard deviation below is "
-            "hardly smaller than this one, the test adds nothing to what was known."
+            f"Priors, from the vessel file or as given: {known}. Where the standard deviation below is hardly smaller "
+            "than this one, the test adds nothing to the prior."
         )
     if held:
         sentences.append(f"Held during the fit: {held}.")

@@ -224,7 +224,8 @@ def _measured(fingerprint: "Fingerprint") -> Card:
         reasons = "; ".join(f"{line}: {why}" for line, why in list(conditions.lines_left_out.items())[:2])
         words += f" Left out: {reasons}{' and others' if left > 2 else ''}."
     if quality.remarks:
-        words += f" {quality.remarks[0].rstrip('.')}."
+        remark = quality.remarks[0].rstrip(".")
+        words += f" {remark[:1].upper()}{remark[1:]}."
     return Card(
         question="Were the measurements good?", state="look" if many or quality.remarks else "fine", sentence=words
     )
