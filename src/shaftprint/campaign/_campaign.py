@@ -39,8 +39,8 @@ class Campaign(Settings):
     @property
     def excitations(self) -> tuple[Excitation, ...]:
         """Every excitation in the order of time."""
-        found: tuple[Excitation, ...] = (*self.sines, *self.chirps, *self.staircases)
-        return tuple(sorted(found, key=lambda excitation: excitation.start_s))
+        every: tuple[Excitation, ...] = (*self.sines, *self.chirps, *self.staircases)
+        return tuple(sorted(every, key=lambda excitation: excitation.start_s))
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -60,11 +60,17 @@ class Campaign(Settings):
 
     @model_validator(mode="after")
     def _can_be_sailed(self) -> Self:
-        found = [*self._without_offset(), *self._names_twice(), *self._overlaps(), *self._too_late(), *self._too_fast()]
+        errors = [
+            *self._without_offset(),
+            *self._names_twice(),
+            *self._overlaps(),
+            *self._too_late(),
+            *self._too_fast(),
+        ]
         if not self.excitations:
-            found.append("expected at least one sine, chirp or staircase, found none.")
-        if found:
-            raise ValueError(" ".join(found))
+            errors.append("expected at least one sine, chirp or staircase, found none.")
+        if errors:
+            raise ValueError(" ".join(errors))
         return self
 
     def _without_offset(self) -> list[str]:

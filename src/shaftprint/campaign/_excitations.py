@@ -80,16 +80,16 @@ class Chirp(Settings):
 
     @model_validator(mode="after")
     def _sweeps(self) -> Self:
-        found = []
+        errors = []
         if not self.start_s < self.stop_s:
-            found.append(f"expected start_s < stop_s, found {self.start_s:g}, {self.stop_s:g}.")
+            errors.append(f"expected start_s < stop_s, found {self.start_s:g}, {self.stop_s:g}.")
         if self.start_frequency_hz == self.stop_frequency_hz:
-            found.append(
+            errors.append(
                 f"expected two different frequencies, found {self.start_frequency_hz:g} Hz twice; "
                 "a constant frequency belongs under [[sines]]."
             )
-        if found:
-            raise ValueError(" ".join(found))
+        if errors:
+            raise ValueError(" ".join(errors))
         return self
 
 

@@ -37,8 +37,8 @@ def measured(response: FrequencyResponse) -> BoolArray:
     True where the response was measured, shape (outputs, lines).
     """
     variance = np.diagonal(response.covariance, axis1=1, axis2=2)[:, : len(response.outputs)]
-    known: BoolArray = variance.T < 0.5 * NOT_MEASURED_STD**2
-    return known
+    is_measured: BoolArray = variance.T < 0.5 * NOT_MEASURED_STD**2
+    return is_measured
 
 
 def outputs_of(signals: "Signals", channels: Sequence[str]) -> tuple[str, ...]:
@@ -80,25 +80,25 @@ def response_of_lines(
     response = np.empty((len(outputs), 1, len(measurements)), dtype=np.complex128)
     common = np.zeros_like(response)
     covariance = np.empty((len(measurements), 2 * len(outputs), 2 * len(outputs)))
-    for place, line in enumerate(measurements):
+    for row, line in enumerate(measurements):
         known = _known_outputs(signals, line, outputs)
         rows = (excitation, sensor, *(signals.channels[name] for name in known[1:]))
-        amplitude, noise = _amplitudes(line, rows, thesis=signals.mode == "thesis", load=load[place])
+        amplitude, noise = _amplitudes(line, rows, thesis=signals.mode == "thesis", load=load[row])
         samples = line.noise.complex_samples
         values, spread = response_of_line(amplitude, noise, complex_samples=samples, weighted=len(outputs))
         # the common error takes part in the factor of the weights: speed and torque alone keep what they would have
         more = weight_factor(samples, len(outputs)) / weight_factor(samples, _SPEED_AND_TORQUE)
         share = excitation.scale_std * np.sqrt(more)
         spread = with_common_error(spread, values, share)
-        common[[outputs.index(name) for name in known], 0, place] = share * values
+        common[[outputs.index(name) for name in known], 0, row] = share * values
         for position, name in enumerate(outputs):
             if name not in known:
                 values, spread = _with_unknown_output(values, spread, position)
         if len(outputs) > _SPEED_AND_TORQUE:
             # a speed that is known well beside an output that is not: rounding must leave the matrix positive definite
             spread += _ROUNDING * spread.diagonal().max() * np.eye(len(spread))
-        response[:, 0, place] = values
-        covariance[place] = spread
+        response[:, 0, row] = values
+        covariance[row] = spread
     return FrequencyResponse(
         frequency_hz=np.array([line.window.frequency_hz for line in measurements]),
         response=response,
@@ -143,9 +143,9 @@ def _amplitudes(
         message = line.messages[name]
         amplitude = np.append(amplitude, message.amplitude)
         # two channels on clocks of their own are taken as unrelated
-        own = np.zeros(amplitude.size, dtype=np.complex128)
-        own[: len(places)], own[-1] = message.covariance[places], message.covariance[-1]
-        noise = np.block([[noise, own[:-1, np.newaxis].conj()], [own[np.newaxis]]])
+        cross = np.zeros(amplitude.size, dtype=np.complex128)
+        cross[: len(places)], cross[-1] = message.covariance[places], message.covariance[-1]
+        noise = np.block([[noise, cross[:-1, np.newaxis].conj()], [cross[np.newaxis]]])
     amplitude, noise = scale * amplitude, scale[:, np.newaxis] * noise * scale.conj()
     if thesis:
         offset = np.ones(amplitude.size)

@@ -38,10 +38,10 @@ def with_measured_inputs(
     jacobian = np.zeros((lines, len(outputs), len(measured) + len(outputs)), dtype=np.complex128)
     jacobian[:, :, : len(measured)] = -np.moveaxis(gains, -1, 0)
     jacobian[:, :, len(measured) :] = np.eye(len(outputs))
-    found = converted(both, both.response[len(measured) :], jacobian, inputs=both.inputs, outputs=tuple(outputs))
+    residual = converted(both, both.response[len(measured) :], jacobian, inputs=both.inputs, outputs=tuple(outputs))
     change = weight_change(both.degrees_of_freedom, len(measured) + len(outputs), len(outputs))
     return replace(
-        found,
-        covariance=change[:, np.newaxis, np.newaxis] * found.covariance,
-        common={name: np.sqrt(change) * part for name, part in found.common.items()},
+        residual,
+        covariance=change[:, np.newaxis, np.newaxis] * residual.covariance,
+        common={name: np.sqrt(change) * part for name, part in residual.common.items()},
     )

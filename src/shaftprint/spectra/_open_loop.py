@@ -42,19 +42,19 @@ def open_loop(
     ResponseError
         If the response is not from ``n_set`` to ``n`` and ``M_s``, or ``e`` or ``M_s`` is exactly 0 at a line.
     """
-    found = _expected(response, "n", "M_s")
+    outputs = _expected(response, "n", "M_s")
     if response.outputs != ("n", "M_s"):
         response = response.of_outputs("n", "M_s")
-    error = np.exp(-1j * response.omega_rad_s * set_point_latency_s) - found["n"]
+    error = np.exp(-1j * response.omega_rad_s * set_point_latency_s) - outputs["n"]
     _expect_not_zero(response, "e", error)
-    _expect_not_zero(response, "M_s", found["M_s"])
-    governor = found["M_s"] / error
-    core = found["n"] / found["M_s"]
+    _expect_not_zero(response, "M_s", outputs["M_s"])
+    governor = outputs["M_s"] / error
+    core = outputs["n"] / outputs["M_s"]
     return (
         _without_lost_lines(
             _converted(response, ("e", "M_s"), governor, {"n": governor / error, "M_s": 1.0 / error}), response, error
         ),
-        _converted(response, ("M_s", "n"), core, {"n": 1.0 / found["M_s"], "M_s": -core / found["M_s"]}),
+        _converted(response, ("M_s", "n"), core, {"n": 1.0 / outputs["M_s"], "M_s": -core / outputs["M_s"]}),
     )
 
 
@@ -84,18 +84,18 @@ def governor_and_engine(
     ResponseError
         If the response is not from ``n_set`` to ``n``, ``M_s`` and ``X``, or ``e`` or ``X`` is exactly 0 at a line.
     """
-    found = _expected(response, "n", "M_s", "X")
-    error = np.exp(-1j * response.omega_rad_s * set_point_latency_s) - found["n"]
+    outputs = _expected(response, "n", "M_s", "X")
+    error = np.exp(-1j * response.omega_rad_s * set_point_latency_s) - outputs["n"]
     _expect_not_zero(response, "e", error)
-    _expect_not_zero(response, "X", found["X"])
-    governor = found["X"] / error
-    engine = found["M_s"] / found["X"]
-    heard = _without_lost_lines(response, response, found["X"], signal="X")
+    _expect_not_zero(response, "X", outputs["X"])
+    governor = outputs["X"] / error
+    engine = outputs["M_s"] / outputs["X"]
+    heard = _without_lost_lines(response, response, outputs["X"], signal="X")
     return (
         _without_lost_lines(
             _converted(heard, ("e", "X"), governor, {"n": governor / error, "X": 1.0 / error}), response, error
         ),
-        _converted(heard, ("X", "M_s"), engine, {"M_s": 1.0 / found["X"], "X": -engine / found["X"]}),
+        _converted(heard, ("X", "M_s"), engine, {"M_s": 1.0 / outputs["X"], "X": -engine / outputs["X"]}),
     )
 
 

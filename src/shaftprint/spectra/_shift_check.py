@@ -65,7 +65,7 @@ def shift_reasons(response: "FrequencyResponse") -> tuple[Reason, ...]:
 
 def _chi_squares(omega_rad_s: FloatArray, ratio: FloatArray, std: FloatArray, load: FloatArray) -> FloatArray:
     """Return the lowest chi-square for each delay, shape (delays,); infinite where the best fit is impossible."""
-    found = np.full(_DELAYS_S.size, np.inf)
+    chi_square = np.full(_DELAYS_S.size, np.inf)
     for place, delay_s in enumerate(_DELAYS_S):
         seen = ratio * np.exp(1j * omega_rad_s * delay_s) / std
         # the real part is the load, the imaginary part the inertia
@@ -73,5 +73,5 @@ def _chi_squares(omega_rad_s: FloatArray, ratio: FloatArray, std: FloatArray, lo
         k = float(load_row @ seen.real / (load_row @ load_row))
         tau = float(inertia_row @ seen.imag / (inertia_row @ inertia_row))
         if _LOADS[0] < k < _LOADS[1] and 0.0 <= tau < _LONGEST_S:
-            found[place] = np.sum((seen.real - k * load_row) ** 2 + (seen.imag - tau * inertia_row) ** 2)
-    return found
+            chi_square[place] = np.sum((seen.real - k * load_row) ** 2 + (seen.imag - tau * inertia_row) ** 2)
+    return chi_square

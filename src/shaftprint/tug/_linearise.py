@@ -62,10 +62,10 @@ def linearised_response(
     SettingsError
         If the truth is not physical or an output has another name.
     """
-    known = ("n", "M_s", "X") if tug.sailing is None else ("n", "M_s", "X", "v_s")
-    unknown = [name for name in outputs if name not in known]
+    names = ("n", "M_s", "X") if tug.sailing is None else ("n", "M_s", "X", "v_s")
+    unknown = [name for name in outputs if name not in names]
     if unknown:
-        words = f"{', '.join(known[:-1])} and {known[-1]}"
+        words = f"{', '.join(names[:-1])} and {names[-1]}"
         raise SettingsError(f"outputs: expected names out of {words}, found {', '.join(unknown)}.")
     plant = build_plant(tug, vessel)
     speed, torque = working_point(tug, vessel)
@@ -82,18 +82,18 @@ def linearised_response(
         # (s I - A) x - B_delayed e^{-s t_d} (given) = B_demand e^{-s t_sp} n_set
         given, gauge = slope[_GIVEN], slope[_GAUGE]
         inner = slope[states, _RACK_DELAYED] * delay
-        left = value * np.eye(inner.size) - slope[np.ix_(states, states)] - np.outer(inner, given[states])
+        system = value * np.eye(inner.size) - slope[np.ix_(states, states)] - np.outer(inner, given[states])
         moved, size, late = _excitation(tug, input, value, speed)
         right = slope[states, moved] + inner * given[moved]
-        x = np.linalg.solve(left, right) * late
-        found = {
+        x = np.linalg.solve(system, right) * late
+        responses = {
             "n": plant.gear_ratio * x[SPEED] * size / speed,
             "M_s": (gauge[states] @ x + gauge[moved] * late) * size / torque,
             "X": (given[states] @ x + given[moved] * late) * size / rack,
         }
         if plant.sails:
-            found["v_s"] = x[-1] * size / way
-        response[:, 0, line] = [found[name] for name in outputs]
+            responses["v_s"] = x[-1] * size / way
+        response[:, 0, line] = [responses[name] for name in outputs]
     return response
 
 
@@ -127,6 +127,6 @@ def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
 
 def _rates(plant: Plant, vector: FloatArray) -> FloatArray:
     rates: Any = derivatives
-    found = rates.py_func(vector[:_DEMAND], *vector[_DEMAND:_PITCH], 0.0, 0.0, plant, 1.0, vector[_PITCH])
+    values = rates.py_func(vector[:_DEMAND], *vector[_DEMAND:_PITCH], 0.0, 0.0, plant, 1.0, vector[_PITCH])
     # the angle's rate, which is the speed, plays no part
-    return np.array([*found[:5], 0.0, found[9], found[5], found[6]])
+    return np.array([*values[:5], 0.0, values[9], values[5], values[6]])

@@ -257,6 +257,9 @@ class _Crew:
                 scale=VOLT_PER_COUNT,
                 long_name="set point of the pitch of the propeller",
             )
+        self._declare_slow_channels(writer)
+
+    def _declare_slow_channels(self, writer: RecordingWriter) -> None:
         if self._control_unit is not None:
             writer.declare(
                 self._control_unit.channel,

@@ -31,16 +31,16 @@ class ShaftLink(Settings):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        found = []
+        errors = []
         first, second = self.between
         if first == second:
-            found.append(f"expected two different masses in between, found {first} twice.")
+            errors.append(f"expected two different masses in between, found {first} twice.")
         if self.stiffness_nm_rad is None and self.relative_damping > 0.0:
-            found.append("expected stiffness_nm_rad beside relative_damping, a share of its energy, found none.")
+            errors.append("expected stiffness_nm_rad beside relative_damping, a share of its energy, found none.")
         if self.stiffness_nm_rad is None and self.stiffness_std_nm_rad is not None:
-            found.append("expected stiffness_nm_rad beside stiffness_std_nm_rad, found none.")
-        if found:
-            raise ValueError(" ".join(found))
+            errors.append("expected stiffness_nm_rad beside stiffness_std_nm_rad, found none.")
+        if errors:
+            raise ValueError(" ".join(errors))
         return self
 
     @property
@@ -93,8 +93,8 @@ def _wrong_gauge(links: Sequence[ShaftLink], rows: Mapping[str, InertiaRow]) -> 
     across = [link for link in links if rows[link.between[0]].gauge != rows[link.between[1]].gauge]
     if len(across) == 1 and across[0].stiffness_nm_rad is not None:
         return []
-    found = ", ".join(_words(link) for link in across) or "none"
-    return [f"expected one elastic link from upstream to downstream of the torque gauge, found {found}."]
+    links_across = ", ".join(_words(link) for link in across) or "none"
+    return [f"expected one elastic link from upstream to downstream of the torque gauge, found {links_across}."]
 
 
 def _words(link: ShaftLink) -> str:

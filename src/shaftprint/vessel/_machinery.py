@@ -54,24 +54,24 @@ class Engine(Settings):
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
-        found = []
+        errors = []
         if self.idle_speed_rpm >= self.rated_speed_rpm:
-            found.append(
+            errors.append(
                 f"expected idle_speed_rpm below rated_speed_rpm = {self.rated_speed_rpm:g}, "
                 f"found {self.idle_speed_rpm:g}."
             )
         if self.strokes_per_cycle not in (2, 4):
-            found.append(f"expected strokes_per_cycle 2 or 4, found {self.strokes_per_cycle}.")
+            errors.append(f"expected strokes_per_cycle 2 or 4, found {self.strokes_per_cycle}.")
         speeds, torques = len(self.full_load_speed_rpm), len(self.full_load_torque_nm)
         if speeds != torques or speeds < 2:
-            found.append(
+            errors.append(
                 "expected full_load_speed_rpm and full_load_torque_nm of equal length, at least 2, "
                 f"found {speeds} and {torques}."
             )
         if any(later <= earlier for earlier, later in pairwise(self.full_load_speed_rpm)):
-            found.append("expected ascending speeds in full_load_speed_rpm.")
-        if found:
-            raise ValueError(" ".join(found))
+            errors.append("expected ascending speeds in full_load_speed_rpm.")
+        if errors:
+            raise ValueError(" ".join(errors))
         return self
 
     @property

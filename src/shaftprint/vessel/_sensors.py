@@ -43,22 +43,22 @@ class SpeedSensor(Settings):
 
     @model_validator(mode="after")
     def _strips_fit_on_the_shaft(self) -> Self:
-        found = []
+        errors = []
         strips = self.pulses_per_revolution
         if self.pulse_width_deg is not None and self.pulse_width_deg * strips >= 360.0:
-            found.append(
+            errors.append(
                 f"expected pulse_width_deg below {360.0 / strips:g} for {strips} strips, "
                 f"found {self.pulse_width_deg:g}."
             )
         angles = self.strip_angles_deg
         # 0.1 deg: printed tables are rounded (table 3.4 of the thesis adds up to 360.02 deg)
         if angles is not None and (len(angles) != strips or abs(sum(angles) - 360.0) > 0.1):
-            found.append(
+            errors.append(
                 f"expected strip_angles_deg to hold {strips} angles that add up to 360, "
                 f"found {len(angles)} that add up to {sum(angles):g}."
             )
-        if found:
-            raise ValueError(" ".join(found))
+        if errors:
+            raise ValueError(" ".join(errors))
         return self
 
 
@@ -223,11 +223,11 @@ class Sensors(Settings):
         channels += [self.shaft_torque.channel, self.set_point.channel]
         further = (self.rack, self.ship_speed, self.pitch_set_point)
         channels += [sensor.channel for sensor in further if sensor is not None]
-        found = []
+        errors = []
         for what, values in (("name", names), ("channel", channels)):
             twice = sorted({value for value in values if values.count(value) > 1})
             if twice:
-                found.append(f"expected every sensor to have its own {what}, found {', '.join(twice)} twice.")
-        if found:
-            raise ValueError(" ".join(found))
+                errors.append(f"expected every sensor to have its own {what}, found {', '.join(twice)} twice.")
+        if errors:
+            raise ValueError(" ".join(errors))
         return self

@@ -48,18 +48,18 @@ class Vessel(Settings):
     def _masses_make_a_line(self) -> Self:
         names = [row.name for row in self.inertia]
         twice = sorted({name for name in names if names.count(name) > 1})
-        found = []
+        errors = []
         if twice:
-            found.append(f"expected every inertia row to have its own name, found {', '.join(twice)} twice.")
+            errors.append(f"expected every inertia row to have its own name, found {', '.join(twice)} twice.")
         for side, value in (
             ("upstream", self.inertia_upstream_kg_m2),
             ("downstream", self.inertia_downstream_kg_m2),
         ):
             if value <= 0.0:
-                found.append(f"expected some inertia {side} of the torque gauge, found none.")
-        found += wrong_links(self.links, self.inertia)
-        if found:
-            raise ValueError(" ".join(found))
+                errors.append(f"expected some inertia {side} of the torque gauge, found none.")
+        errors += wrong_links(self.links, self.inertia)
+        if errors:
+            raise ValueError(" ".join(errors))
         return self
 
     @property
@@ -86,17 +86,17 @@ class Vessel(Settings):
     def taken_as_usual(self) -> tuple[str, ...]:
         """Standard deviations that the file does not state, each with the value that is taken, in words."""
         gauge, field = self.sensors.shaft_torque, "sensors.shaft_torque"
-        taken = []
+        usual = []
         if gauge.scale_std_fraction is None:
-            taken.append(f"{field}.scale_std_fraction = {gauge.scale_std:g}")
+            usual.append(f"{field}.scale_std_fraction = {gauge.scale_std:g}")
         if gauge.zero_std_nm is None:
-            taken.append(f"{field}.zero_std_nm = {gauge.zero_std:g}")
+            usual.append(f"{field}.zero_std_nm = {gauge.zero_std:g}")
         if gauge.latency_std_s is None:
-            taken.append(f"{field}.latency_std_s = {gauge.latency_std:g}")
+            usual.append(f"{field}.latency_std_s = {gauge.latency_std:g}")
         silent = [row.name for row in self.inertia if row.std_kg_m2 is None]
         if silent:
-            taken.append(f"std_kg_m2 of {', '.join(silent)} = {INERTIA_STD:g} of the inertia")
-        return tuple(taken)
+            usual.append(f"std_kg_m2 of {', '.join(silent)} = {INERTIA_STD:g} of the inertia")
+        return tuple(usual)
 
     def _inertia_kg_m2(self, gauge: Literal["upstream", "downstream"]) -> float:
         ratio = self.gearbox.ratio

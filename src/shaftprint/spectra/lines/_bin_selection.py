@@ -47,12 +47,12 @@ def _fit_of_bins(
     # the first sample lies up to one sample after the start of the window
     shift = np.exp(-2j * np.pi * chosen * (samples.rate_hz / count) * samples.time_s[0])
     mean = spectrum[:, 0].real / count
-    rest = spectrum.copy()
-    rest[:, 0] = 0.0
-    rest[channel, chosen] = 0.0
+    residual = spectrum.copy()
+    residual[:, 0] = 0.0
+    residual[channel, chosen] = 0.0
     return LineFit(
         samples=samples,
         amplitude=(amplitude * shift)[np.newaxis],
         mean=mean,
-        residual=np.fft.irfft(rest, n=count, axis=1),
+        residual=np.fft.irfft(residual, n=count, axis=1),
     )

@@ -45,23 +45,23 @@ def clock_reasons(
         Name of each channel, by what a reader calls it; the first is what was excited.
     """
     samples = {cut.window.line: cut for cut in cuts}
-    told = [line for line in lines if line.window.periods >= _FEWEST_PERIODS]
-    if len(told) < _FEWEST_LINES:
+    long_enough = [line for line in lines if line.window.periods >= _FEWEST_PERIODS]
+    if len(long_enough) < _FEWEST_LINES:
         return ()
     names = list(channels.values())
-    found = np.array([_frequencies(samples[line.window.line], line, names) for line in told])
-    ratio, std = found[:, 0], found[:, 1]
-    planned = np.array([line.window.frequency_hz for line in told])
-    whole = _common_ratio(ratio[:, 0] / planned)
+    frequencies = np.array([_frequencies(samples[line.window.line], line, names) for line in long_enough])
+    ratio, std = frequencies[:, 0], frequencies[:, 1]
+    planned = np.array([line.window.frequency_hz for line in long_enough])
+    recording_ratio = _common_ratio(ratio[:, 0] / planned)
     reasons = []
-    if whole is not None and abs(whole - 1.0) > _TOLERANCE:
-        reasons.append(_recording(whole))
+    if recording_ratio is not None and abs(recording_ratio - 1.0) > _TOLERANCE:
+        reasons.append(_recording(recording_ratio))
     for place, name in enumerate(channels):
         if place:
             spread = np.hypot(std[:, place], std[:, 0])
-            own = _weighted(ratio[:, place] / ratio[:, 0] - 1.0, spread)
-            if own is not None and abs(own) > _TOLERANCE:
-                reasons.append(_channel(name, own))
+            offset = _weighted(ratio[:, place] / ratio[:, 0] - 1.0, spread)
+            if offset is not None and abs(offset) > _TOLERANCE:
+                reasons.append(_channel(name, offset))
     return tuple(reasons)
 
 
@@ -93,33 +93,33 @@ def _common_ratio(ratio: FloatArray) -> float | None:
     The noise of a set point is far below what a window resolves, and what is found beside a line whose frequency is
     wrong is not noise: that the lines agree is the better measure.
     """
-    known = ratio[np.isfinite(ratio)]
-    if known.size < _FEWEST_LINES:
+    finite = ratio[np.isfinite(ratio)]
+    if finite.size < _FEWEST_LINES:
         return None
-    middle = float(np.median(known))
-    return middle if np.mean(np.abs(known - middle) < _TOLERANCE) >= _AGREE else None
+    middle = float(np.median(finite))
+    return middle if np.mean(np.abs(finite - middle) < _TOLERANCE) >= _AGREE else None
 
 
 def _weighted(offset: FloatArray, std: FloatArray) -> float | None:
     """Return the mean offset where it stands out of its deviation; None where it does not."""
-    known = np.isfinite(offset) & np.isfinite(std)
-    if np.count_nonzero(known) < _FEWEST_LINES:
+    finite = np.isfinite(offset) & np.isfinite(std)
+    if np.count_nonzero(finite) < _FEWEST_LINES:
         return None
-    weight = std[known] ** -2.0
-    mean = float(weight @ offset[known] / weight.sum())
-    agree = np.abs(offset[known] - mean) < np.maximum(_DEVIATIONS * std[known], 0.5 * abs(mean))
+    weight = std[finite] ** -2.0
+    mean = float(weight @ offset[finite] / weight.sum())
+    agree = np.abs(offset[finite] - mean) < np.maximum(_DEVIATIONS * std[finite], 0.5 * abs(mean))
     return mean if abs(mean) > _DEVIATIONS * weight.sum() ** -0.5 and agree.mean() >= _AGREE else None
 
 
 def _frequencies(cut: "WindowSamples", line: "LineMeasurement", names: Sequence[str]) -> FloatArray:
     """Return frequency [Hz] and its relative deviation of a line in some channels, shape (2, channels)."""
-    found = np.empty((2, len(names)))
+    frequencies = np.empty((2, len(names)))
     noise = line.noise.covariance.diagonal().real
     for row, name in enumerate(names):
-        found[0, row] = sine_frequency_hz(cut.of(name), cut.rate_hz, cut.window.frequency_hz)
+        frequencies[0, row] = sine_frequency_hz(cut.of(name), cut.rate_hz, cut.window.frequency_hz)
         share = np.sqrt(line.of(noise, name)) / max(abs(line.of(line.amplitude, name)), np.finfo(np.float64).tiny)
-        found[1, row] = np.hypot(_BINS * share, _LEAST_BINS) / cut.window.periods
-    return found
+        frequencies[1, row] = np.hypot(_BINS * share, _LEAST_BINS) / cut.window.periods
+    return frequencies
 
 
 def sine_frequency_hz(values: FloatArray, rate_hz: float, near_hz: float) -> float:

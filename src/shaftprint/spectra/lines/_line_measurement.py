@@ -127,8 +127,8 @@ def measure_line(
     variances = line_variances(fit.amplitude[0], samples.values, spectrum, periods=window.periods)
     harmonic, harmonic_variance = _harmonics(fit, spectrum, window.periods)
     cleaned = without_modulation(spectrum, samples.of("M_s"), relation, periods=window.periods)
-    place = samples.channels.index(excitation)
-    dominant = variances.signal[place] > 0.5 * variances.overall[place]
+    row = samples.channels.index(excitation)
+    dominant = variances.signal[row] > 0.5 * variances.overall[row]
     measured = {
         name: line
         for name, part in messages.items()
@@ -170,8 +170,8 @@ def _shaft_relation(
 ) -> ShaftRelation:
     """Return how the torque goes with a speed; taken as unrelated where the line is moved from the propeller's side."""
     first, second = channels.index(speed), channels.index("M_s")
-    known = from_engine and amplitude[first] != 0.0
-    ratio = complex(amplitude[second] / amplitude[first]) if known else 0.0
+    is_known = from_engine and amplitude[first] != 0.0
+    ratio = complex(amplitude[second] / amplitude[first]) if is_known else 0.0
     return ShaftRelation(speed=first, torque=second, ratio=ratio)
 
 

@@ -125,11 +125,11 @@ def measure_messages(
     if messages.samples is None:
         return None
     fit = method.fit(messages.samples)
-    own = _residual_at_bins(fit, samples, spectrum.shape[1])
-    together = np.concatenate([spectrum, own])
+    message_spectrum = _residual_at_bins(fit, samples, spectrum.shape[1])
+    together = np.concatenate([spectrum, message_spectrum])
     cleaned = without_modulation(together, samples.of("M_s"), relation, periods=samples.window.periods)
     # a torque without noise has no slow changes to look for in them: what was found then is rounding, enlarged
-    if np.vdot(cleaned[-1], cleaned[-1]).real > _ENLARGED * np.vdot(own, own).real:
+    if np.vdot(cleaned[-1], cleaned[-1]).real > _ENLARGED * np.vdot(message_spectrum, message_spectrum).real:
         cleaned = together
     noise = line_noise(cleaned, periods=samples.window.periods, relation=relation)
     amplitude = complex(fit.amplitude[0, 0] / messages.gain)
@@ -139,7 +139,9 @@ def measure_messages(
     return MessageLine(
         amplitude=amplitude,
         covariance=covariance,
-        variances=line_variances(fit.amplitude[0], messages.samples.values, own, periods=samples.window.periods),
+        variances=line_variances(
+            fit.amplitude[0], messages.samples.values, message_spectrum, periods=samples.window.periods
+        ),
     )
 
 
@@ -177,8 +179,8 @@ def _with_steps(variance: float, messages: MessageWindow, fit: LineFit, amplitud
     white = step**2 / 3.0
     noise = max(float(fit.residual.var()) - step**2 / 12.0, 0.0)
     order = np.arange(1.0, 6.0)
-    left = np.exp(-4.0 * np.pi**2 * order**2 * noise / step**2)
-    distortion = 2.0 * step**3 / (np.pi**4 * max(amplitude, 0.25 * step)) * float((left / order**3).sum())
+    undithered = np.exp(-4.0 * np.pi**2 * order**2 * noise / step**2)
+    distortion = 2.0 * step**3 / (np.pi**4 * max(amplitude, 0.25 * step)) * float((undithered / order**3).sum())
     turns = fit.samples.time_s * fit.samples.window.frequency_hz
     phases = np.unique(np.round(turns * _PHASES) % _PHASES).size
-    return max(variance, white / messages.count) + distortion + float(left[0]) * white / phases
+    return max(variance, white / messages.count) + distortion + float(undithered[0]) * white / phases

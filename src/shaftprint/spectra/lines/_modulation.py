@@ -44,14 +44,14 @@ def without_modulation(
         return spectrum
     slow = np.fft.rfft(torque)[1 : reach + 1] * (2.0 / torque.size)
     pattern = np.concatenate([slow[::-1].conj(), [0.0], slow])
-    beside = slice(periods - reach, periods + reach + 1)
+    neighbours = slice(periods - reach, periods + reach + 1)
     power = max(np.vdot(pattern, pattern).real, np.finfo(np.float64).tiny)
-    near = spectrum[:, beside].copy()
+    near = spectrum[:, neighbours].copy()
     turn = relation.turn(np.arange(-reach, reach + 1) / periods)
     near[relation.torque] -= turn * near[relation.speed]
     near = near - (near @ pattern.conj() / power)[:, np.newaxis] * pattern
     near *= np.sqrt(2.0 * reach / (2.0 * reach - 1.0))
     near[relation.torque] += turn * near[relation.speed]
     cleaned = spectrum.copy()
-    cleaned[:, beside] = near
+    cleaned[:, neighbours] = near
     return cleaned

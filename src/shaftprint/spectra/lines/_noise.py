@@ -149,9 +149,9 @@ def _own_torque(values: ComplexArray, relation: ShaftRelation, neighbours: Neigh
         power = float(weight @ np.abs(speed) ** 2) + _NOTHING
         bend = turning - complex(weight * speed.conj() @ turning) / power * speed
         present = float((weight * bend.conj() @ torque).real) / (float(weight @ np.abs(bend) ** 2) + _NOTHING)
-        left = torque - min(max(present, 0.0), 1.0) * turning
-        share = complex(weight * speed.conj() @ left) / power
-        own = left - share * speed
+        unrelated = torque - min(max(present, 0.0), 1.0) * turning
+        share = complex(weight * speed.conj() @ unrelated) / power
+        own = unrelated - share * speed
     return own, share
 
 

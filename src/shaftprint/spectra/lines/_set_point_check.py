@@ -98,18 +98,18 @@ def check_set_point(
     -------
     Remarks, and whether the line can be used.
     """
-    found = line.excited
+    amplitude = line.excited
     if line.excitation_frequency_hz != line.window.frequency_hz:
-        return SetPointFinding(remarks=(_wrong_sine(line, found, expected, moved),), usable=False)
-    if found < _UNEXCITED_SHARE * expected:
-        return SetPointFinding(remarks=(amplitude_remark(found, expected, moved),), usable=False)
+        return SetPointFinding(remarks=(_wrong_sine(line, amplitude, expected, moved),), usable=False)
+    if amplitude < _UNEXCITED_SHARE * expected:
+        return SetPointFinding(remarks=(amplitude_remark(amplitude, expected, moved),), usable=False)
     disturbed = _disturbed_stretches(line)
     if np.any(disturbed):
         usable = bool(disturbed.mean() < _STRETCH_LIMIT)
         return SetPointFinding(remarks=(_stretch_remark(line, disturbed),), usable=usable)
     remarks = []
-    if abs(found - expected) > _AMPLITUDE_TOLERANCE * expected:
-        remarks.append(amplitude_remark(found, expected, moved))
+    if abs(amplitude - expected) > _AMPLITUDE_TOLERANCE * expected:
+        remarks.append(amplitude_remark(amplitude, expected, moved))
     offset_hz = _frequency_offset_hz(line)
     offset_bins = abs(offset_hz) * line.window.duration_s
     typical_db = _typical_db(local_db, place)

@@ -134,11 +134,11 @@ def _transform(run: int, values: FloatArray, rate_hz: float, *, drift: bool) -> 
     count = values.shape[1]
     if count < _FEWEST_SAMPLES:
         raise ResponseError(f"record {run + 1}: expected at least {_FEWEST_SAMPLES} samples, found {count}.")
-    left = values - values.mean(axis=1, keepdims=True)
+    deviation = values - values.mean(axis=1, keepdims=True)
     if drift:
         place = np.arange(count) - 0.5 * (count - 1)
-        left -= np.outer(left @ place / (place @ place), place)
-    spectrum = np.fft.rfft(left, axis=1)[:, 1 : (count + 1) // 2] / np.sqrt(count)
+        deviation -= np.outer(deviation @ place / (place @ place), place)
+    spectrum = np.fft.rfft(deviation, axis=1)[:, 1 : (count + 1) // 2] / np.sqrt(count)
     return Transform(resolution_hz=rate_hz / count, values=spectrum)
 
 
@@ -156,23 +156,23 @@ def _split(bands: Bands, low: float, high: float, splits: int) -> list[_Band]:
 
 def _fitted(bands: Bands, chosen: list[_Band]) -> LineEstimates:
     fits = [(band, bands.fit(band.low_hz, band.high_hz)) for band in chosen]
-    known = [(band, fit) for band, fit in fits if fit.known]
-    if not known:
+    identified = [(band, fit) for band, fit in fits if fit.known]
+    if not identified:
         raise ResponseError(
             "found no line at which every input moves, apart from the others and from transients: excite the inputs "
             "more, and differently from each other."
         )
-    excess = np.array([float(fit.excess) for _, fit in known])
-    noise = np.stack([fit.noise for _, fit in known]) / excess[:, np.newaxis, np.newaxis]
-    power = np.stack([fit.power for _, fit in known]) / excess[:, np.newaxis]
-    response = np.stack([fit.response for _, fit in known], axis=2)
-    spread = products(noise + rounding_floor(power), np.stack([fit.inverse for _, fit in known]))
-    for row, (band, _) in enumerate(known):
+    excess = np.array([float(fit.excess) for _, fit in identified])
+    noise = np.stack([fit.noise for _, fit in identified]) / excess[:, np.newaxis, np.newaxis]
+    power = np.stack([fit.power for _, fit in identified]) / excess[:, np.newaxis]
+    response = np.stack([fit.response for _, fit in identified], axis=2)
+    spread = products(noise + rounding_floor(power), np.stack([fit.inverse for _, fit in identified]))
+    for row, (band, _) in enumerate(identified):
         if not band.smooth:
             spread[row] = _widened(spread[row], misfit(bands, band.low_hz, band.high_hz).reshape(-1))
     variance = np.diagonal(spread, axis1=1, axis2=2).real.T
     return LineEstimates(
-        frequency_hz=np.array([0.5 * (band.low_hz + band.high_hz) for band, _ in known]),
+        frequency_hz=np.array([0.5 * (band.low_hz + band.high_hz) for band, _ in identified]),
         response=response,
         spread=spread,
         complex_samples=excess,

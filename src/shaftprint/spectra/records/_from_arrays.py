@@ -65,20 +65,20 @@ def response_from_arrays(
     band = band_hz or (0.0, 0.5 * records.rate_hz)
     if not 0.0 <= band[0] < band[1]:
         raise ResponseError(f"band_hz = {band[0]:g} to {band[1]:g}: expected ascending frequencies in Hz, 0 or more.")
-    found = (excitation or Arbitrary()).estimate(records, drift=drift, band_hz=band)
-    factor = np.array([weight_factor(float(n), len(records.outputs)) for n in found.complex_samples])
-    covariance = real_covariance(factor[:, np.newaxis, np.newaxis] * found.spread)
-    names = _line_names(found.frequency_hz)
+    estimates = (excitation or Arbitrary()).estimate(records, drift=drift, band_hz=band)
+    factor = np.array([weight_factor(float(n), len(records.outputs)) for n in estimates.complex_samples])
+    covariance = real_covariance(factor[:, np.newaxis, np.newaxis] * estimates.spread)
+    names = _line_names(estimates.frequency_hz)
     return FrequencyResponse(
-        frequency_hz=found.frequency_hz,
-        response=found.response,
+        frequency_hz=estimates.frequency_hz,
+        response=estimates.response,
         covariance=0.5 * (covariance + np.swapaxes(covariance, 1, 2)),
         inputs=records.inputs,
         outputs=records.outputs,
         lines=names,
-        degrees_of_freedom=2.0 * found.complex_samples,
-        used=~found.lost,
-        remarks={name: _LOST for name, lost in zip(names, found.lost, strict=True) if lost},
+        degrees_of_freedom=2.0 * estimates.complex_samples,
+        used=~estimates.lost,
+        remarks={name: _LOST for name, lost in zip(names, estimates.lost, strict=True) if lost},
     )
 
 
