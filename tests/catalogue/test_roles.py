@@ -6,7 +6,16 @@ from pathlib import Path
 import pytest
 
 import shaftprint
-from shaftprint.catalogue import ROLES, STRUCTURES, ShipRole, Symbol, expect_roles, limited, limited_governor, structure
+from shaftprint.catalogue import (
+    ROLES,
+    STRUCTURES,
+    GovernorSymbol,
+    ShipRole,
+    expect_roles,
+    limited,
+    limited_governor,
+    structure,
+)
 from shaftprint.errors import StructureError
 from shaftprint.models import Gain, Parameter, Role, Structure
 from shaftprint.normalisation import Normalisation, inertia_time_s
@@ -120,4 +129,4 @@ def test_a_role_of_ones_own_is_a_role():
 
 def test_symbols_are_parameters_of_the_limited_governor():
     names = set(limited_governor(*LIMITS).names)
-    assert {value for name, value in vars(Symbol).items() if name.isupper()} <= names
+    assert {value for name, value in vars(GovernorSymbol).items() if name.isupper()} <= names

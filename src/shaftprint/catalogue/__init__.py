@@ -6,7 +6,7 @@ The language in which they are written, blocks and structures, is ``models``; sy
 from shaftprint.catalogue._gauge import gauge_governor, gauge_line
 from shaftprint.catalogue._known_propeller import KnownPropeller, with_known_propeller
 from shaftprint.catalogue._limited import limited
-from shaftprint.catalogue._limited_governor import AHEAD_S, Symbol, limited_governor
+from shaftprint.catalogue._limited_governor import AHEAD_S, GovernorSymbol, limited_governor
 from shaftprint.catalogue._roles import ROLES, ShipRole
 from shaftprint.catalogue._sailing_at_large import pitch_actuator, sailing_at_large
 from shaftprint.catalogue._sailing_blocks import PitchSpeed, SailingShaft, SailingSpeed, SailingTorque
@@ -22,13 +22,13 @@ __all__ = [
     "STRUCTURES",
     "THESIS_VALUES",
     "Family",
+    "GovernorSymbol",
     "KnownPropeller",
     "PitchSpeed",
     "SailingShaft",
     "SailingSpeed",
     "SailingTorque",
     "ShipRole",
-    "Symbol",
     "expect_roles",
     "gauge_governor",
     "gauge_line",

@@ -15,7 +15,7 @@ places on the grid of the simulation. Speed and torque are given ``AHEAD_S`` ear
 """
 
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any
 
 from shaftprint.catalogue._gauge import (
     C_SET,
@@ -52,26 +52,26 @@ LEAST_SPEED = 0.1
 E_SET = Parameter("e_set", "-", -0.05, 0.05, 0.0, "offset of the measured set point", role=ShipRole.SET_POINT_OFFSET)
 
 
-class Symbol:
+class GovernorSymbol:
     """Symbols of the parameters of ``limited_governor``, and of the limits of ``limited``, by what they are."""
 
-    PROPORTIONAL_GAIN: Final = GAUGE_K_P.name
-    INTEGRAL_GAIN: Final = GAUGE_K_I.name
-    LOOP_DELAY: Final = T_D.name
-    ACTUATOR_FREQUENCY: Final = GAUGE_OMEGA_N.name
-    ACTUATOR_DAMPING: Final = GAUGE_ZETA.name
-    SET_POINT_LATENCY: Final = T_SP.name
-    SET_POINT_SCALE: Final = C_SET.name
-    SET_POINT_OFFSET: Final = E_SET.name
-    ENGINE_SPEED_SLOPE: Final = G.name
-    TORQUE_LIMIT: Final = M_MAX.name
-    MOTORING_LIMIT: Final = M_MIN.name
-    ANTI_WINDUP: Final = T_AW.name
-    RACK_RATE: Final = R_X.name
-    SET_POINT_RATE: Final = R_S.name
-    DEADBAND: Final = D_E.name
-    UNBOOSTED_TORQUE: Final = A_0.name
-    TURBOCHARGER_LAG: Final = TAU_TC.name
+    PROPORTIONAL_GAIN = GAUGE_K_P.name
+    INTEGRAL_GAIN = GAUGE_K_I.name
+    LOOP_DELAY = T_D.name
+    ACTUATOR_FREQUENCY = GAUGE_OMEGA_N.name
+    ACTUATOR_DAMPING = GAUGE_ZETA.name
+    SET_POINT_LATENCY = T_SP.name
+    SET_POINT_SCALE = C_SET.name
+    SET_POINT_OFFSET = E_SET.name
+    ENGINE_SPEED_SLOPE = G.name
+    TORQUE_LIMIT = M_MAX.name
+    MOTORING_LIMIT = M_MIN.name
+    ANTI_WINDUP = T_AW.name
+    RACK_RATE = R_X.name
+    SET_POINT_RATE = R_S.name
+    DEADBAND = D_E.name
+    UNBOOSTED_TORQUE = A_0.name
+    TURBOCHARGER_LAG = TAU_TC.name
 
 
 def limited_governor(*limits: str, period_s: float = 0.0, name: str = "") -> Structure:

@@ -40,32 +40,57 @@ class ShipRole:
     INERTIA_DOWNSTREAM: Final = _inertia(
         "inertia downstream", "I_dn", "inertia downstream of the torque gauge", "inertia"
     )
+    """Inertia time downstream of the torque gauge."""
     INERTIA_UPSTREAM: Final = _inertia("inertia upstream", "I_up", "inertia upstream of the torque gauge", "torque")
+    """Inertia time upstream of the torque gauge; the vessel file gives its prior."""
     INERTIA: Final = _inertia("inertia", "I", "inertia that the thesis' shaft loop implies", "inertia")
+    """Inertia time of the thesis' one shaft."""
     PROPORTIONAL_GAIN: Final = _gain("proportional", "-", "N m/rpm", "change of torque")
+    """Proportional gain of the governor."""
     INTEGRAL_GAIN: Final = _gain("integral", "1/s", "N m/(rpm s)", "rate of change of torque")
+    """Integral gain of the governor."""
     DERIVATIVE_GAIN: Final = Role(name="derivative gain", unit="s", over_torque=True, rack_power=-1)
+    """Derivative gain of the governor."""
     ENGINE_SPEED_SLOPE: Final = Role(
         name="engine slope with speed", unit="-", basis=frozenset(("governor",)), over_torque=True
     )
+    """Slope of the engine torque with speed at constant rack."""
     ENGINE_RACK_SLOPE: Final = Role(name="engine slope with rack", unit="-", rack_power=1)
+    """Slope of the engine torque with fuel rack."""
     LOAD_SLOPE: Final = Role(name="load slope", unit="-", basis=frozenset(("load",)), loaded=True)
+    """Slope of the propeller torque with speed."""
     INFLOW_SLOPE: Final = Role(name="inflow slope", unit="-", loaded=True)
+    """Slope of the propeller torque with the speed of the slipstream."""
     LOOP_DELAY: Final = _line("loop delay", "s", "delay", "governor")
+    """Delay inside the loop."""
     SET_POINT_LATENCY: Final = _line("set-point latency", "s", "delay", "governor")
+    """Latency of the set point, outside the loop."""
     TOTAL_DELAY: Final = _line("total delay", "s", "delay")
+    """All delays from set point to torque, a combination."""
     ACTUATOR_FREQUENCY: Final = _line("actuator frequency", "rad/s", "governor")
+    """Natural frequency of the actuator's lag."""
     ACTUATOR_DAMPING: Final = _line("actuator damping", "-", "governor")
+    """Damping ratio of the actuator's lag."""
     LOOP_GAIN: Final = _line("loop gain", "", "governor")
+    """Gains over each other or over the line, a combination in which the working point cancels; a margin."""
     SET_POINT_SCALE: Final = _sensor("set-point scale", "-", "set point")
+    """Scale error of the measured set point."""
     SET_POINT_OFFSET: Final = _sensor("set-point offset", "-", "set point")
+    """Offset of the measured set point."""
     TORQUE_LATENCY: Final = _sensor("torque latency", "s", "latency")
+    """Error of the known latency of the torque gauge."""
     RACK_LATENCY: Final = _sensor("rack latency", "s")
+    """Error of the known latency of the rack channel."""
     PICK_UP_AVERAGE: Final = _sensor("pick-up average", "s", "speed")
+    """Window of a pick-up's mean."""
     PICK_UP_HOLD: Final = _sensor("pick-up hold", "s", "speed")
+    """Time for which a pick-up's value is held."""
     PICK_UP_DELAY: Final = _sensor("pick-up delay", "s", "speed")
+    """Delay of a pick-up's value."""
     TORQUE: Final = _line("torque", "", "torque")
+    """Made of torques in N m, such as the torque coefficient."""
     SPEED: Final = _line("speed", "", "speed")
+    """Made of speeds."""
 
 
 ROLES: Mapping[str, Role] = {role.name: role for role in vars(ShipRole).values() if isinstance(role, Role)}

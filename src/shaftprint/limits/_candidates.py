@@ -7,7 +7,7 @@ from enum import Enum
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import Symbol
+from shaftprint.catalogue import GovernorSymbol
 
 
 class Kind(Enum):
@@ -34,14 +34,14 @@ STRUCTURE_LIMITS: Mapping[Kind, tuple[str, ...]] = {
 
 # Values with which a limit does nothing. None of them is a round zero, for that would be another simulation.
 IDLE: Mapping[str, float] = {
-    Symbol.TORQUE_LIMIT: 60.0,
-    Symbol.MOTORING_LIMIT: -60.0,
-    Symbol.ANTI_WINDUP: 0.5,
-    Symbol.RACK_RATE: 1e5,
-    Symbol.DEADBAND: 1e-12,
-    Symbol.UNBOOSTED_TORQUE: 1.0,
-    Symbol.TURBOCHARGER_LAG: 1.0,
-    Symbol.SET_POINT_RATE: 1e5,
+    GovernorSymbol.TORQUE_LIMIT: 60.0,
+    GovernorSymbol.MOTORING_LIMIT: -60.0,
+    GovernorSymbol.ANTI_WINDUP: 0.5,
+    GovernorSymbol.RACK_RATE: 1e5,
+    GovernorSymbol.DEADBAND: 1e-12,
+    GovernorSymbol.UNBOOSTED_TORQUE: 1.0,
+    GovernorSymbol.TURBOCHARGER_LAG: 1.0,
+    GovernorSymbol.SET_POINT_RATE: 1e5,
 }
 
 
@@ -64,22 +64,27 @@ class LimitCandidate:
 CANDIDATES: tuple[LimitCandidate, ...] = (
     LimitCandidate(
         kind=Kind.TORQUE,
-        level=Symbol.TORQUE_LIMIT,
-        companions=(Symbol.ANTI_WINDUP,),
+        level=GovernorSymbol.TORQUE_LIMIT,
+        companions=(GovernorSymbol.ANTI_WINDUP,),
         shares=(0.4, 0.5, 0.6, 0.7, 0.8, 0.87, 0.93, 0.97),
     ),
     LimitCandidate(
-        kind=Kind.MOTORING, level=Symbol.MOTORING_LIMIT, companions=(Symbol.ANTI_WINDUP,), shares=(0.05, 0.3, 0.6, 0.85)
+        kind=Kind.MOTORING,
+        level=GovernorSymbol.MOTORING_LIMIT,
+        companions=(GovernorSymbol.ANTI_WINDUP,),
+        shares=(0.05, 0.3, 0.6, 0.85),
     ),
-    LimitCandidate(kind=Kind.RATE, level=Symbol.RACK_RATE, levels=tuple(np.geomspace(0.5, 30.0, 9).tolist())),
-    LimitCandidate(kind=Kind.RAMP, level=Symbol.SET_POINT_RATE, levels=tuple(np.geomspace(0.01, 4.0, 12).tolist())),
+    LimitCandidate(kind=Kind.RATE, level=GovernorSymbol.RACK_RATE, levels=tuple(np.geomspace(0.5, 30.0, 9).tolist())),
     LimitCandidate(
-        kind=Kind.DEADBAND, level=Symbol.DEADBAND, levels=(0.016, 0.011, 0.0075, 0.005, 0.0033, 0.0022, 0.0015)
+        kind=Kind.RAMP, level=GovernorSymbol.SET_POINT_RATE, levels=tuple(np.geomspace(0.01, 4.0, 12).tolist())
+    ),
+    LimitCandidate(
+        kind=Kind.DEADBAND, level=GovernorSymbol.DEADBAND, levels=(0.016, 0.011, 0.0075, 0.005, 0.0033, 0.0022, 0.0015)
     ),
     LimitCandidate(
         kind=Kind.SMOKE,
-        level=Symbol.UNBOOSTED_TORQUE,
-        companions=(Symbol.TURBOCHARGER_LAG, Symbol.ANTI_WINDUP),
+        level=GovernorSymbol.UNBOOSTED_TORQUE,
+        companions=(GovernorSymbol.TURBOCHARGER_LAG, GovernorSymbol.ANTI_WINDUP),
         levels=(0.3, 0.42, 0.55, 0.7, 0.85, 0.95),
     ),
 )
@@ -108,14 +113,26 @@ def starts_of(
             # below the torque of steady running there is no line that could be tested
             highest = float(np.max(torque))
             tried = [max(share * highest, 1.02) for share in candidate.shares]
-            return [{Symbol.TORQUE_LIMIT: level} for level in dict.fromkeys(tried)]
+            return [{GovernorSymbol.TORQUE_LIMIT: level} for level in dict.fromkeys(tried)]
         case Kind.MOTORING:
             lowest = float(np.min(torque))
-            return [{Symbol.MOTORING_LIMIT: share * lowest} for share in candidate.shares] if lowest < -0.05 else []
+            return (
+                [{GovernorSymbol.MOTORING_LIMIT: share * lowest} for share in candidate.shares]
+                if lowest < -0.05
+                else []
+            )
         case Kind.SMOKE:
-            limit = values[Symbol.TORQUE_LIMIT] if values[Symbol.TORQUE_LIMIT] < IDLE[Symbol.TORQUE_LIMIT] else full
+            limit = (
+                values[GovernorSymbol.TORQUE_LIMIT]
+                if values[GovernorSymbol.TORQUE_LIMIT] < IDLE[GovernorSymbol.TORQUE_LIMIT]
+                else full
+            )
             return [
-                {Symbol.UNBOOSTED_TORQUE: a, Symbol.TURBOCHARGER_LAG: lag, Symbol.TORQUE_LIMIT: limit}
+                {
+                    GovernorSymbol.UNBOOSTED_TORQUE: a,
+                    GovernorSymbol.TURBOCHARGER_LAG: lag,
+                    GovernorSymbol.TORQUE_LIMIT: limit,
+                }
                 for a in candidate.levels
                 for lag in LAGS_S
             ]

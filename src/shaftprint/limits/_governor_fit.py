@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import Symbol
+from shaftprint.catalogue import GovernorSymbol
 from shaftprint.identify import Identification, Prior, Settings, identify_jointly
 from shaftprint.identify.search import Draw
 from shaftprint.limits._candidates import IDLE, Kind, parameters_of
@@ -14,14 +14,14 @@ from shaftprint.limits.prediction import GovernorRecord, Messages, PredictionErr
 from shaftprint.models import Structure
 
 GOVERNOR: Mapping[str, float] = {
-    Symbol.PROPORTIONAL_GAIN: 5.0,
-    Symbol.INTEGRAL_GAIN: 4.0,
-    Symbol.LOOP_DELAY: 0.07,
-    Symbol.ACTUATOR_FREQUENCY: 11.0,
-    Symbol.ACTUATOR_DAMPING: 0.55,
-    Symbol.SET_POINT_LATENCY: 0.05,
-    Symbol.SET_POINT_SCALE: 1.0,
-    Symbol.SET_POINT_OFFSET: 0.0,
+    GovernorSymbol.PROPORTIONAL_GAIN: 5.0,
+    GovernorSymbol.INTEGRAL_GAIN: 4.0,
+    GovernorSymbol.LOOP_DELAY: 0.07,
+    GovernorSymbol.ACTUATOR_FREQUENCY: 11.0,
+    GovernorSymbol.ACTUATOR_DAMPING: 0.55,
+    GovernorSymbol.SET_POINT_LATENCY: 0.05,
+    GovernorSymbol.SET_POINT_SCALE: 1.0,
+    GovernorSymbol.SET_POINT_OFFSET: 0.0,
 }
 """What is always free, and where the search begins."""
 # Iterations of a fit that is reported.
@@ -86,7 +86,7 @@ def values_without_limits(whole: Structure) -> dict[str, float]:
     """Return the value of every parameter of a governor that nothing limits."""
     default = {p.name: p.value for p in whole.parameters}
     # a slope of zero is a small one: a round zero would be another simulation
-    return {**default, **GOVERNOR, **IDLE, Symbol.ENGINE_SPEED_SLOPE: 1e-12}
+    return {**default, **GOVERNOR, **IDLE, GovernorSymbol.ENGINE_SPEED_SLOPE: 1e-12}
 
 
 def fitted(

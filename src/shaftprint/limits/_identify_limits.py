@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from shaftprint.campaign import Campaign
-from shaftprint.catalogue import Symbol, limited_governor
+from shaftprint.catalogue import GovernorSymbol, limited_governor
 from shaftprint.identify import Prior
 from shaftprint.limits._candidates import CANDIDATES, Kind
 from shaftprint.limits._governor_fit import GOVERNOR, Fitted, fitted, schwarz
@@ -68,8 +68,8 @@ def identify_limits(
     units = Units.of(signals, vessel)
     governor = whole_governor()
     priors = {
-        Symbol.SET_POINT_SCALE: Prior(1.0, max(signals.dc_scale_std / signals.dc_scale, 1e-4)),
-        Symbol.SET_POINT_OFFSET: Prior(0.0, _offset_std(signals)),
+        GovernorSymbol.SET_POINT_SCALE: Prior(1.0, max(signals.dc_scale_std / signals.dc_scale, 1e-4)),
+        GovernorSymbol.SET_POINT_OFFSET: Prior(0.0, _offset_std(signals)),
     }
     say("Looking for limits")
     search = Search.of(governor, test, campaign, drive_hz=COARSE_HZ, full=units.full, priors=priors)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.catalogue import Symbol
+from shaftprint.catalogue import GovernorSymbol
 from shaftprint.distributions import NORMAL_95
 from shaftprint.limits._candidates import CANDIDATES, Kind, LimitCandidate
 from shaftprint.limits._governor_fit import Fitted
@@ -32,7 +32,7 @@ class Scale:
     """One way to print a parameter."""
 
     name: str
-    """Symbol."""
+    """GovernorSymbol."""
     unit: str
     """Unit."""
     meaning: str
@@ -74,7 +74,7 @@ class Units:
         """Return the ways in which a parameter is printed, the clearest first."""
         gauge, brake, rpm = self.gauge_std, self.brake_nm, self.speed_rpm
         match name:
-            case Symbol.TORQUE_LIMIT:
+            case GovernorSymbol.TORQUE_LIMIT:
                 return (
                     Scale(
                         "share",
@@ -86,31 +86,31 @@ class Units:
                     Scale(name, "-", "the same over the brake torque of the working point"),
                     Scale("M_max", "N m", "the same at the working-point speed", brake, gauge),
                 )
-            case Symbol.MOTORING_LIMIT:
+            case GovernorSymbol.MOTORING_LIMIT:
                 return (
                     Scale(name, "-", "lowest brake torque over that of the working point"),
                     Scale("M_min", "N m", "torque of the motored engine", brake, gauge),
                 )
-            case Symbol.RACK_RATE:
+            case GovernorSymbol.RACK_RATE:
                 return (
                     Scale(name, "1/s", "fastest change of the rack over that of the working point"),
                     Scale("R_x", "N m/s", "the same as brake torque", brake, gauge),
                 )
-            case Symbol.SET_POINT_RATE:
+            case GovernorSymbol.SET_POINT_RATE:
                 return (
                     Scale("r_s_rpm", "rpm/s", "fastest change of the set point", rpm, RAMP_STD),
                     Scale(name, "1/s", "the same over the speed of the working point", share_std=RAMP_STD),
                 )
-            case Symbol.DEADBAND:
+            case GovernorSymbol.DEADBAND:
                 return (
                     Scale(
                         "d_e_rpm", "rpm", "speed error within which the governor does nothing, half of the band", rpm
                     ),
                     Scale(name, "-", "the same over the speed of the working point"),
                 )
-            case Symbol.UNBOOSTED_TORQUE:
+            case GovernorSymbol.UNBOOSTED_TORQUE:
                 return (Scale(name, "-", "torque without boost over full-load torque"),)
-            case Symbol.TURBOCHARGER_LAG:
+            case GovernorSymbol.TURBOCHARGER_LAG:
                 return (Scale(name, "s", "time in which the boost follows the torque"),)
             case _:
                 return (Scale(name, "s", "time in which the integrator is led back at a limit"),)
@@ -138,7 +138,7 @@ def _printed(found: Fitted, spread: LevelScatter, units: Units, kind: Kind, name
     at_bound = value in (parameter.lower, parameter.upper)
     interval = profile_interval(found, spread, name)
     doubt = _doubt(value, interval, at_bound=at_bound)
-    line_std = found.priors[Symbol.SET_POINT_OFFSET].std
+    line_std = found.priors[GovernorSymbol.SET_POINT_OFFSET].std
     if kind in (Kind.TORQUE, Kind.SMOKE) and line_std > LARGEST_LINE_STD:
         doubt = doubt or (
             f"the speed fell behind the set point so often that their line is known to {100.0 * line_std:.2g} % only, "

@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, frozen_bool
 from shaftprint.campaign import Campaign
-from shaftprint.catalogue import Symbol
+from shaftprint.catalogue import GovernorSymbol
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Prior
 from shaftprint.limits._candidates import CANDIDATES, IDLE, Kind, LimitCandidate, parameters_of, starts_of
@@ -18,10 +18,10 @@ from shaftprint.models import Structure
 # Gain of twice the log-likelihood over what Schwarz' criterion asks that a limit must bring to be named.
 LEAST_GAIN = 25.0
 FAST = (
-    Symbol.LOOP_DELAY,
-    Symbol.ACTUATOR_FREQUENCY,
-    Symbol.ACTUATOR_DAMPING,
-    Symbol.SET_POINT_LATENCY,
+    GovernorSymbol.LOOP_DELAY,
+    GovernorSymbol.ACTUATOR_FREQUENCY,
+    GovernorSymbol.ACTUATOR_DAMPING,
+    GovernorSymbol.SET_POINT_LATENCY,
 )
 """What slow sines tell too little of."""
 MOST_LIMITS = 4
@@ -239,16 +239,17 @@ class Search:
         A line that rests near its torque limit has an optimum with the limit acting at rest, a lower level, a lower set
         point and a slower governor, and one without.
         """
-        scale, offset = self.priors[Symbol.SET_POINT_SCALE].mean, self.priors[Symbol.SET_POINT_OFFSET]
+        scale, offset = self.priors[GovernorSymbol.SET_POINT_SCALE].mean, self.priors[GovernorSymbol.SET_POINT_OFFSET]
         levels: list[dict[str, float]] = [{}]
-        if Symbol.TORQUE_LIMIT in parameters_of(here.kinds):
-            gains = {name: self.calm[name] for name in (Symbol.PROPORTIONAL_GAIN, Symbol.INTEGRAL_GAIN)}
+        if GovernorSymbol.TORQUE_LIMIT in parameters_of(here.kinds):
+            gains = {name: self.calm[name] for name in (GovernorSymbol.PROPORTIONAL_GAIN, GovernorSymbol.INTEGRAL_GAIN)}
             levels = [
-                {Symbol.TORQUE_LIMIT: share * here.values[Symbol.TORQUE_LIMIT], **gains} for share in LEVEL_SHARES
+                {GovernorSymbol.TORQUE_LIMIT: share * here.values[GovernorSymbol.TORQUE_LIMIT], **gains}
+                for share in LEVEL_SHARES
             ]
         offsets = [offset.mean + side * REST_PUSH * offset.std for side in (-1.0, 1.0)]
         return [
-            {Symbol.SET_POINT_SCALE: scale, Symbol.SET_POINT_OFFSET: off, **level}
+            {GovernorSymbol.SET_POINT_SCALE: scale, GovernorSymbol.SET_POINT_OFFSET: off, **level}
             for off in offsets
             for level in levels
         ]
@@ -275,11 +276,11 @@ def with_messages(test: GovernorTest, messages: Messages | None) -> GovernorTest
 
 def _delay_moves(here: Fitted) -> list[dict[str, float]]:
     """Return the delays inside the loop and before it, moved from one to the other: they trade along a valley."""
-    late, before = here.values[Symbol.LOOP_DELAY], here.values[Symbol.SET_POINT_LATENCY]
+    late, before = here.values[GovernorSymbol.LOOP_DELAY], here.values[GovernorSymbol.SET_POINT_LATENCY]
     return [
         {
-            Symbol.LOOP_DELAY: max(late + by_s, 0.005),
-            Symbol.SET_POINT_LATENCY: max(before - by_s, 0.005),
+            GovernorSymbol.LOOP_DELAY: max(late + by_s, 0.005),
+            GovernorSymbol.SET_POINT_LATENCY: max(before - by_s, 0.005),
         }
         for by_s in (-PUSH_S, PUSH_S)
     ]

@@ -14,7 +14,7 @@ import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.campaign import Campaign, Staircase
-from shaftprint.catalogue import Symbol
+from shaftprint.catalogue import GovernorSymbol
 from shaftprint.limits._candidates import Kind
 from shaftprint.limits._governor_fit import GOVERNOR, Fitted, values_without_limits
 from shaftprint.limits.prediction import GovernorRecord, GovernorTest, Innovations
@@ -125,7 +125,7 @@ class _Rounding:
         record = test.record(drive_hz=ROUNDED_HZ)
         limited, rate = (
             Kind.RAMP in best.kinds,
-            best.values[Symbol.SET_POINT_RATE] / best.values[Symbol.SET_POINT_SCALE],
+            best.values[GovernorSymbol.SET_POINT_RATE] / best.values[GovernorSymbol.SET_POINT_SCALE],
         )
         set_point = record.set_point_at(rate) if limited else np.asarray(record.drive["n_set"])
         time = record.start_s - record.margin / record.drive_rate_hz + record.drive_time_s

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import Symbol
+from shaftprint.catalogue import GovernorSymbol
 from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import IdentificationError
 from shaftprint.limits._governor_fit import Fitted, fitted
@@ -89,7 +89,7 @@ def _taken_for_granted(fit: Fitted, test: GovernorTest, signals: Signals, vessel
     residuals = term.residuals(values)
     moved = [test.with_inertia(inertia), test.with_torque(torque)]
     changes = [_with_record(term, one, drive_hz).residuals(values) - residuals for one in moved]
-    sloped = {**fit.values, Symbol.ENGINE_SPEED_SLOPE: SLOPE_STD}
+    sloped = {**fit.values, GovernorSymbol.ENGINE_SPEED_SLOPE: SLOPE_STD}
     changes.append(term.residuals(np.array([sloped[name] for name in term.whole.names])) - residuals)
     # a rate limit turns at whole steps of the simulation: half as long ones move the rate by as much as noise does
     finer = replace(term, record=test.record(drive_hz=2.0 * drive_hz))

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_float
-from shaftprint.catalogue import Symbol
+from shaftprint.catalogue import GovernorSymbol
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import fit_percent
 from shaftprint.identify.likelihood import FittedTerm, LineTest, Repeats, TermCheck, TermTest, WhitenedTerm
@@ -23,7 +23,7 @@ AWAY = 1e9
 OUTPUT = "y"
 EXACT = ExactDelays(longest_step_s=LONGEST_STEP_S)
 # The rate limit of the set point acts before the equations; the step of its derivative, as a share of it.
-RATE, RATE_STEP = Symbol.SET_POINT_RATE, 1e-3
+RATE, RATE_STEP = GovernorSymbol.SET_POINT_RATE, 1e-3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -211,7 +211,7 @@ class PredictionError(WhitenedTerm):
         if rate >= IDLE[RATE]:
             return self.record
         # the rate is that of the demand, which is the recorded set point times its scale
-        limited = self.record.set_point_at(rate / float(values[self.whole.names.index(Symbol.SET_POINT_SCALE)]))
+        limited = self.record.set_point_at(rate / float(values[self.whole.names.index(GovernorSymbol.SET_POINT_SCALE)]))
         return replace(self.record, drive={**self.record.drive, "n_set": limited})
 
     def _change_with_rate(self, values: FloatArray) -> FloatArray | None:

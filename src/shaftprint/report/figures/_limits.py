@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.catalogue import AHEAD_S, Symbol
+from shaftprint.catalogue import AHEAD_S, GovernorSymbol
 from shaftprint.distributions import NORMAL_95
 from shaftprint.report.figures._style import (
     DATA,
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from shaftprint.limits import LimitFit
 
 SHOWN_S = 12.0
-LEVEL = Symbol.TORQUE_LIMIT
+LEVEL = GovernorSymbol.TORQUE_LIMIT
 
 
 def plot_limits(limits: "LimitFit") -> "Figure":

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from shaftprint.catalogue import Symbol
+from shaftprint.catalogue import GovernorSymbol
 from shaftprint.models import Structure
 from shaftprint.time_domain._identify_in_time import output_error
 from shaftprint.time_domain._record import Record
@@ -12,11 +12,11 @@ from shaftprint.time_domain._simulator import ExactDelays, on_record
 
 # Values at which a limit does nothing, whatever is asked for.
 IDLE: Mapping[str, float] = {
-    Symbol.TORQUE_LIMIT: 6.0,
-    Symbol.MOTORING_LIMIT: -2.0,
-    Symbol.RACK_RATE: 100.0,
-    Symbol.DEADBAND: 0.0,
-    Symbol.UNBOOSTED_TORQUE: 1.0,
+    GovernorSymbol.TORQUE_LIMIT: 6.0,
+    GovernorSymbol.MOTORING_LIMIT: -2.0,
+    GovernorSymbol.RACK_RATE: 100.0,
+    GovernorSymbol.DEADBAND: 0.0,
+    GovernorSymbol.UNBOOSTED_TORQUE: 1.0,
 }
 # A sine is touched where limits change more than this share of its motion.
 TOUCHED = 2e-3

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.catalogue import Symbol
+from shaftprint.catalogue import GovernorSymbol
 from shaftprint.identify import Identification
 from shaftprint.identify.fit import Estimate
 from shaftprint.signals import WorkingPoint
@@ -18,7 +18,7 @@ class LimitNumber:
     """One number of a limit."""
 
     name: str
-    """Symbol, with the unit where it is not that of the structure."""
+    """GovernorSymbol, with the unit where it is not that of the structure."""
     unit: str
     """Unit, ``-`` where there is none."""
     value: float
@@ -72,7 +72,7 @@ def _numbers(estimate: Estimate, point: WorkingPoint, vessel: Vessel) -> Iterato
 
     in_nm = (doubt, estimate.value * gauge)
     match estimate.name:
-        case Symbol.TORQUE_LIMIT:
+        case GovernorSymbol.TORQUE_LIMIT:
             own = ((estimate.value - 1.0) * doubt,)
             yield number(estimate.name, "-", "torque limit over the brake torque of the working point", shares=own)
             yield number(
@@ -82,25 +82,25 @@ def _numbers(estimate: Estimate, point: WorkingPoint, vessel: Vessel) -> Iterato
             yield number(
                 "share", "-", "the same over the full-load curve of the vessel file", scale=share, shares=in_nm
             )
-        case Symbol.MOTORING_LIMIT:
+        case GovernorSymbol.MOTORING_LIMIT:
             own = ((estimate.value - 1.0) * doubt,)
             yield number(estimate.name, "-", "lowest brake torque over that of the working point", shares=own)
             yield number(
                 "M_min", "N m", "torque of the motored engine at the working-point speed", scale=brake_nm, shares=in_nm
             )
-        case Symbol.RACK_RATE:
+        case GovernorSymbol.RACK_RATE:
             own = (estimate.value * doubt,)
             yield number(
                 estimate.name, "1/s", "fastest change of the fuel rack over that of the working point", shares=own
             )
             yield number("R_x", "N m/s", "the same as brake torque", scale=brake_nm, shares=(estimate.value * gauge,))
-        case Symbol.DEADBAND:
+        case GovernorSymbol.DEADBAND:
             rpm = rpm_from_rev_s(speed)
             yield number(estimate.name, "-", "speed error within which the governor does nothing, half of the band")
             yield number("d_e_rpm", "rpm", "the same in engine speed", scale=rpm)
-        case Symbol.ANTI_WINDUP:
+        case GovernorSymbol.ANTI_WINDUP:
             yield number(estimate.name, "s", "time in which the integrator is led back at a limit")
-        case Symbol.UNBOOSTED_TORQUE:
+        case GovernorSymbol.UNBOOSTED_TORQUE:
             yield number(estimate.name, "-", "torque without boost over full-load torque")
-        case Symbol.TURBOCHARGER_LAG:
+        case GovernorSymbol.TURBOCHARGER_LAG:
             yield number(estimate.name, "s", "lag of the turbocharger")

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.catalogue import Symbol, limited
+from shaftprint.catalogue import GovernorSymbol, limited
 from shaftprint.errors import IdentificationError
 from shaftprint.models import Structure
 from shaftprint.signals import WorkingPoint
@@ -67,7 +67,7 @@ def structure_for(
     linear = limited().names
     bounds = {p.name: (p.lower, p.upper) for p in structure.parameters if p.name not in linear}
     clipped = {name: float(np.clip(value, *bounds[name])) for name, value in (start or {}).items() if name in bounds}
-    motoring = Symbol.MOTORING_LIMIT
+    motoring = GovernorSymbol.MOTORING_LIMIT
     if start and motoring in bounds and motoring not in start:
         structure = structure.held_at(**{motoring: bounds[motoring][0]})
     return LimitedModel(structure=structure, limits=chosen, start=clipped)
