@@ -37,6 +37,7 @@ def test_equal_models_give_equal_binaries(exported, zig_fmu, tmp_path, monkeypat
     assert tempfile.gettempdir().encode() not in content
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("system", ["linux64", "linux-arm64"])
 def test_linux_needs_no_younger_c_library_than_it_says(zig_fmu, system):
     """That of 2012 is enough; Red Hat Enterprise Linux 7 has it."""
@@ -144,6 +145,7 @@ def exported_symbols(library, listed):
     return names
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize("system", CPUS)
 def test_library_for_macos(zig_fmu, declared_functions, system, version):

@@ -15,6 +15,7 @@ def drawn(rng, cycle_s):
     return common + cycle_s * rng.uniform(-0.5, 0.5, STD_S.size) + STD_S * rng.standard_normal(STD_S.size)
 
 
+@pytest.mark.slow
 def test_the_cycle_is_in_its_interval_as_often_as_stated():
     rng = np.random.default_rng(2)
     inside = 0
@@ -26,6 +27,7 @@ def test_the_cycle_is_in_its_interval_as_often_as_stated():
     assert 180 <= inside <= 200
 
 
+@pytest.mark.slow
 def test_jumps_of_one_delay_show_no_cycle():
     rng = np.random.default_rng(3)
     gains = [explained(drawn(rng, 0.0), STD_S, MEAN_STD_S).gain for _ in range(200)]

@@ -72,6 +72,7 @@ def sailed(folder: Path, *, compiled: bool) -> dict[str, np.ndarray]:
         return dict(arrays)
 
 
+@pytest.mark.slow
 def test_compiled_and_plain_kernels_agree(tmp_path: Path) -> None:
     compiled, plain = (sailed(tmp_path / str(way), compiled=way) for way in (True, False))
     assert compiled.keys() == plain.keys()
