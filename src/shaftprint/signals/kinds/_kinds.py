@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from shaftprint.signals._signals import Role
 from shaftprint.signals.kinds._pick_up import Speed
 from shaftprint.signals.kinds._pitch import PitchSetPoint
 from shaftprint.signals.kinds._rack import Rack
@@ -30,4 +31,7 @@ def find_sources(recording: "Recording", vessel: "Vessel") -> "tuple[Source[Any]
     SignalError
         If one is missing, empty or in another unit.
     """
-    return tuple(source for kind in KINDS.values() for source in kind.sources(recording, vessel))
+    # what every ship answers with is missed first
+    kinds = sorted(KINDS.values(), key=lambda kind: kind.role is not Role.RESPONSE)
+    sources = {kind.name: kind.sources(recording, vessel) for kind in kinds}
+    return tuple(source for name in KINDS for source in sources[name])
