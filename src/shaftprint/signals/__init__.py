@@ -22,11 +22,11 @@ from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._inspect import ChannelReport, PulseReport, inspect_channels
 from shaftprint.signals._prepare import find_tests, prepare_signals
 from shaftprint.signals._signals import (
+    ChannelRole,
     ChannelSignal,
     ExcitationSignal,
     MessageSignal,
     Repair,
-    Role,
     SetPointCalibration,
     Signals,
     SpeedSignal,
@@ -42,6 +42,7 @@ __all__ = [
     "KINDS",
     "ChannelKind",
     "ChannelReport",
+    "ChannelRole",
     "ChannelSignal",
     "Content",
     "Coverage",
@@ -52,7 +53,6 @@ __all__ = [
     "Mode",
     "PulseReport",
     "Repair",
-    "Role",
     "SetPointCalibration",
     "Signals",
     "SpeedSignal",

@@ -10,7 +10,7 @@ from shaftprint.errors import SignalError
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, Counts, blocks
 from shaftprint.signals._clock import clock_of
 from shaftprint.signals._gaps import Gap, clock_gaps
-from shaftprint.signals._signals import Repair, Role
+from shaftprint.signals._signals import ChannelRole, Repair
 from shaftprint.signals.conditioning import FaultLimits, Patcher, flagged
 from shaftprint.signals.kinds import find_sources, judge_saturation, numbered_strips, pulse_gaps, pulse_repairs
 from shaftprint.signals.pulses import find_edges, pulse_levels
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from shaftprint.signals.kinds import Source
     from shaftprint.vessel import Vessel
 
-_ORDER = (Role.RESPONSE, Role.EXCITATION, Role.SIDE)
+_ORDER = (ChannelRole.RESPONSE, ChannelRole.EXCITATION, ChannelRole.SIDE)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

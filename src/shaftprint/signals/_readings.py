@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import SignalError
 from shaftprint.signals._gaps import Coverage, Gap, within
-from shaftprint.signals._signals import Repair, Role
+from shaftprint.signals._signals import ChannelRole, Repair
 from shaftprint.signals.conditioning import Reading
 from shaftprint.signals.kinds import PickUp
 
@@ -67,7 +67,7 @@ class Readings:
 
 def logger_channels(sources: "Sequence[Source[Any]]") -> "list[Channel]":
     """Return the channels of the logger, which span the grid; side signals come seldom."""
-    return [source.channel for source in sources if source.kind.role is not Role.SIDE]
+    return [source.channel for source in sources if source.kind.role is not ChannelRole.SIDE]
 
 
 def read_all(sources: "Sequence[Source[Any]]", clock: "Clock") -> Readings:

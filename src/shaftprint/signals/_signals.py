@@ -99,7 +99,7 @@ class StepDelay:
         return self.speed_time_s - self.set_point_time_s
 
 
-class Role(Enum):
+class ChannelRole(Enum):
     """What a channel is to a test."""
 
     EXCITATION = "excitation"
@@ -121,7 +121,7 @@ class ChannelSignal:
     """Symbol of the quantity, such as ``M_s``; of a speed its name in the vessel file, such as ``n_e``."""
     channel: str
     """Name of the channel in the recording."""
-    role: Role = Role.RESPONSE
+    role: ChannelRole = ChannelRole.RESPONSE
     """What it is to a test."""
     values: FloatArray
     """Values in the unit of the quantity, known latency taken off, shape (samples,)."""
@@ -141,7 +141,7 @@ class ChannelSignal:
     @property
     def is_side(self) -> bool:
         """Whether it comes seldom, so that it may be missing at a line."""
-        return self.role is Role.SIDE
+        return self.role is ChannelRole.SIDE
 
     @property
     def nyquist_hz(self) -> float:
@@ -168,7 +168,7 @@ class ChannelSignal:
 class ExcitationSignal(ChannelSignal):
     """What a test moves, such as the set point of the speed."""
 
-    role: Role = Role.EXCITATION
+    role: ChannelRole = ChannelRole.EXCITATION
     """What it is to a test."""
     input: str = "set_point"
     """Table of the vessel file's sensors, by which a campaign names it."""
@@ -236,7 +236,7 @@ class SpeedSignal(ChannelSignal):
 class MessageSignal(ChannelSignal):
     """A channel on its own clock, such as the fuel rack on the CAN bus: between two messages nothing is known."""
 
-    role: Role = Role.SIDE
+    role: ChannelRole = ChannelRole.SIDE
     """What it is to a test."""
     rate_hz: float
     """Values a second [Hz]."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
 
 from shaftprint.signals._channels import find_channel
-from shaftprint.signals._signals import ChannelSignal, Role
+from shaftprint.signals._signals import ChannelRole, ChannelSignal
 from shaftprint.signals.conditioning import Reading
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ class ChannelKind(ABC, Generic[SensorT]):
     """Symbol of the quantity."""
     use: ClassVar[str]
     """What it is, in words."""
-    role: ClassVar[Role] = Role.RESPONSE
+    role: ClassVar[ChannelRole] = ChannelRole.RESPONSE
     """What it is to a test."""
     needed: ClassVar[bool] = False
     """Whether no test goes without it."""

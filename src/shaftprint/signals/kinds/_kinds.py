@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from shaftprint.signals._signals import Role
+from shaftprint.signals._signals import ChannelRole
 from shaftprint.signals.kinds._pick_up import Speed
 from shaftprint.signals.kinds._pitch import PitchSetPoint
 from shaftprint.signals.kinds._rack import Rack
@@ -32,6 +32,6 @@ def find_sources(recording: "Recording", vessel: "Vessel") -> "tuple[Source[Any]
         If one is missing, empty or in another unit.
     """
     # what every ship answers with is missed first
-    kinds = sorted(KINDS.values(), key=lambda kind: kind.role is not Role.RESPONSE)
+    kinds = sorted(KINDS.values(), key=lambda kind: kind.role is not ChannelRole.RESPONSE)
     sources = {kind.name: kind.sources(recording, vessel) for kind in kinds}
     return tuple(source for name in KINDS for source in sources[name])

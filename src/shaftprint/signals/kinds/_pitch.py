@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import frozen_float
 from shaftprint.errors import SignalError
-from shaftprint.signals._signals import ExcitationSignal, Role
+from shaftprint.signals._signals import ChannelRole, ExcitationSignal
 from shaftprint.signals.conditioning import FaultLimits, Reading, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.kinds._set_point import read_voltage
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class PitchSetPoint(ChannelKind[PitchSetPointSensor]):
     """Pitch over diameter that is asked for [-]; its working point is its mean while the line stands still."""
 
-    sensor, name, use, role = "pitch_set_point", "theta_set", "pitch set point", Role.EXCITATION
+    sensor, name, use, role = "pitch_set_point", "theta_set", "pitch set point", ChannelRole.EXCITATION
 
     def limits(self, source: Source[PitchSetPointSensor]) -> FaultLimits:
         """Return the limits of a voltage that may stand still."""

@@ -14,7 +14,7 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import blocks, time_of
 from shaftprint.signals._gaps import Coverage, Gap, clock_gaps, joined, runs_of
-from shaftprint.signals._signals import MessageSignal, Repair, Role
+from shaftprint.signals._signals import ChannelRole, MessageSignal, Repair
 from shaftprint.signals.conditioning import Reading
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.levels import SteadyStretch, find_working_point
@@ -38,7 +38,7 @@ _PERCENT = 0.01
 class Rack(ChannelKind[RackSensor]):
     """Fuel rack that the governor gives [fraction]: 1 gives rated torque at rated speed."""
 
-    sensor, name, use, role, own_clock = "rack", "X", "fuel rack", Role.SIDE, True
+    sensor, name, use, role, own_clock = "rack", "X", "fuel rack", ChannelRole.SIDE, True
 
     def read(self, source: Source[RackSensor], clock: "Clock") -> Reading:
         """Return the rack at the times of its messages."""

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from shaftprint.arrays import frozen_float
-from shaftprint.signals._signals import ExcitationSignal, Role
+from shaftprint.signals._signals import ChannelRole, ExcitationSignal
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.units import rpm_from_rev_s
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 class SetPoint(ChannelKind[SetPointSensor]):
     """Engine speed that is asked for [rev/s]; its line from the voltage is found in the recording."""
 
-    sensor, name, use, role, needed = "set_point", "n_set", "set point", Role.EXCITATION, True
+    sensor, name, use, role, needed = "set_point", "n_set", "set point", ChannelRole.EXCITATION, True
 
     def limits(self, source: Source[SetPointSensor]) -> FaultLimits:
         """Return the limits of a voltage that may stand still."""

@@ -12,7 +12,7 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import blocks, time_of
 from shaftprint.signals._gaps import Gap, clock_gaps, joined, runs_of
-from shaftprint.signals._signals import ChannelSignal, Role
+from shaftprint.signals._signals import ChannelRole, ChannelSignal
 from shaftprint.signals.conditioning import Reading
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.levels import SteadyStretch, mean_of_stretches
@@ -33,7 +33,7 @@ _LONGEST_GAP_S = 2.0
 class ShipSpeed(ChannelKind[ShipSpeedSensor]):
     """Speed of the ship from its log [m/s], where the ship has way on."""
 
-    sensor, name, use, role = "ship_speed", "v_s", "speed of the ship", Role.SIDE
+    sensor, name, use, role = "ship_speed", "v_s", "speed of the ship", ChannelRole.SIDE
     absence = "the ship had no way on"
 
     def read(self, source: Source[ShipSpeedSensor], clock: "Clock") -> Reading:
