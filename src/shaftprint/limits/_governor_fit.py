@@ -65,10 +65,10 @@ class Fitted:
     @property
     def log_squares(self) -> float:
         """``N log`` of the squared innovations, and the priors: minus twice the log-likelihood but for a constant."""
-        found = self.term.innovations(self.own)
-        known = sum(((self.values[name] - prior.mean) / prior.std) ** 2 for name, prior in self.priors.items())
-        known += 0.0 if self.messages is None else self.messages.cost
-        return np.inf if found is None else found.count * float(np.log(found.squares)) + known
+        innovations = self.term.innovations(self.own)
+        penalty = sum(((self.values[name] - prior.mean) / prior.std) ** 2 for name, prior in self.priors.items())
+        penalty += 0.0 if self.messages is None else self.messages.cost
+        return np.inf if innovations is None else innovations.count * float(np.log(innovations.squares)) + penalty
 
     @property
     def parameters(self) -> int:
@@ -113,14 +113,14 @@ def fitted(
     """
     free = [name for name in (*GOVERNOR, *parameters_of(kinds)) if name not in held]
     term = PredictionError.of(whole, record, values, free)
-    own = np.array([values[name] for name in whole.names])
-    term = term.with_scale_at(own)
+    start_values = np.array([values[name] for name in whole.names])
+    term = term.with_scale_at(start_values)
     draw = SingleStart(np.array([values[p.name] for p in term.structure.free]))
     settings = Settings(priors=priors, starts=1, draw=draw, max_iterations=iterations, stability="ignored")
     fit = identify_jointly([term], rng=np.random.default_rng(0), settings=settings)
-    found = {**values, **{estimate.name: estimate.value for estimate in fit.parameters}}
-    best = term.with_scale_at(np.array([found[name] for name in whole.names]))
-    return Fitted(kinds=tuple(kinds), term=best, values=found, fit=fit, priors=priors, messages=messages)
+    fitted_values = {**values, **{estimate.name: estimate.value for estimate in fit.parameters}}
+    best = term.with_scale_at(np.array([fitted_values[name] for name in whole.names]))
+    return Fitted(kinds=tuple(kinds), term=best, values=fitted_values, fit=fit, priors=priors, messages=messages)
 
 
 def schwarz(one: Fitted) -> float:

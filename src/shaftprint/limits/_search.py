@@ -128,15 +128,15 @@ class Search:
         """
         here = self.linear()
         while True:
-            rest = self.scanned(here)
-            tries = [self._joined(here, rest), self.held(here)] if len(here.kinds) < MOST_LIMITS else []
+            scans = self.scanned(here)
+            tries = [self._joined(here, scans), self.held(here)] if len(here.kinds) < MOST_LIMITS else []
             better = min((one for one in tries if one is not None), key=schwarz, default=here)
             if schwarz(here) - schwarz(better) > LEAST_GAIN:
                 here = self._without_idle(better)
                 continue
             other = self._pushed(here, self._rest_moves(here))
             if other is here:
-                return here, rest
+                return here, scans
             here = other
 
     def scanned(self, here: Fitted) -> list[Scanned]:
@@ -146,15 +146,15 @@ class Search:
     def _scan_from(self, here: Fitted, base: Mapping[str, float]) -> list[Scanned]:
         """Return the gains, the governor following to first order from some values."""
         term = here.term
-        own = np.array([base[name] for name in self.whole.names])
-        rows, now, best = term.rows(own), term.innovations(own), term.innovations(here.own)
+        base_values = np.array([base[name] for name in self.whole.names])
+        rows, now, best = term.rows(base_values), term.innovations(base_values), term.innovations(here.own)
         if rows is None or now is None or best is None:
             raise IdentificationError(f"{term.name}: the simulation runs away where it was fitted.")
         basis, _ = np.linalg.qr(rows[1:].T)
-        simulated = term.predicted(own)
+        simulated = term.predicted(base_values)
         speed = term.record.decimator.thinned(term.record.drive["n"][:, None])[:, 0]
         load = np.maximum(1.0 + speed, LEAST_SPEED) ** 2
-        found = []
+        scans = []
         for candidate in CANDIDATES:
             if candidate.kind in here.kinds or (candidate.kind is Kind.TORQUE and Kind.SMOKE in here.kinds):
                 continue
@@ -165,8 +165,8 @@ class Search:
                 moved = moved - basis @ (basis.T @ moved)
                 squares = max(float(moved @ moved), SMALLEST)
                 gain = best.count * float(np.log(best.squares / squares)) if np.isfinite(squares) else -np.inf
-                found.append(Scanned(candidate=candidate, start={**base, **start}, gain=gain))
-        return found
+                scans.append(Scanned(candidate=candidate, start={**base, **start}, gain=gain))
+        return scans
 
     def _joined(self, here: Fitted, scanned: Sequence[Scanned]) -> Fitted | None:
         """Return the governor with the one more limit that gains most; None where there is none to try."""

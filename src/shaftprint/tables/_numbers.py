@@ -48,10 +48,10 @@ def with_deviation(value: float, std: float) -> str:
         return f"{rounded(value)} ({NOT_KNOWN})"
     if std == 0.0:
         return f"{rounded(value)} ± {plain(0.0, decimals_of(value, 0.0))}"
-    place = _place(std)
+    decimals = _place(std)
     least = _place(value) if value else 0
-    shown = place if place >= 0 else max(place, least)
-    return f"{plain(round(value, shown), max(shown, 0))} ± {plain(round(std, place), max(place, 0))}"
+    shown = decimals if decimals >= 0 else max(decimals, least)
+    return f"{plain(round(value, shown), max(shown, 0))} ± {plain(round(std, decimals), max(decimals, 0))}"
 
 
 def interval(lower: float, upper: float, std: float) -> str:

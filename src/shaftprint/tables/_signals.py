@@ -142,15 +142,15 @@ def local_ratio_table(spectra: "Spectra") -> Table:
     ratios, response = spectra.signal_to_noise, spectra.response
     rows = []
     for line, values in zip(ratios.lines, ratios.local_db, strict=True):
-        place = response.lines.index(line)
-        frequency = float(response.frequency_hz[place])
+        index = response.lines.index(line)
+        frequency = float(response.frequency_hz[index])
         rows.append(
             (
                 line,
                 plain(frequency, 4),
                 plain(2.0 * np.pi * frequency, 2),
                 *(plain(float(value), 1) for value in values),
-                "yes" if response.used[place] else "no",
+                "yes" if response.used[index] else "no",
             )
         )
     channels = (Column(Symbol(channel), number=True) for channel in ratios.channels)
