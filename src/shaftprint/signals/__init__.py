@@ -15,25 +15,14 @@ deviation             1        ``(x - x_0) / x_0`` from the working point
 ===================== ======== ====================================================================
 """
 
+from shaftprint.signals._channel_signals import ChannelRole, ChannelSignal, ExcitationSignal, MessageSignal, SpeedSignal
 from shaftprint.signals._clock import Mode
 from shaftprint.signals._content import Content, content_of
 from shaftprint.signals._contradictions import contradictions
 from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._inspect import ChannelReport, PulseReport, inspect_channels
 from shaftprint.signals._prepare import find_tests, prepare_signals
-from shaftprint.signals._signals import (
-    ChannelRole,
-    ChannelSignal,
-    ExcitationSignal,
-    MessageSignal,
-    Repair,
-    SetPointCalibration,
-    Signals,
-    SpeedSignal,
-    StepDelay,
-    StripAngles,
-    WorkingPoint,
-)
+from shaftprint.signals._signals import Repair, SetPointCalibration, Signals, StepDelay, StripAngles, WorkingPoint
 from shaftprint.signals.excitation import FoundTest, common_shift_s, proposed_campaign
 from shaftprint.signals.kinds import KINDS, ChannelKind
 from shaftprint.signals.levels import deviation

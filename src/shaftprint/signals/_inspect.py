@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shaftprint.errors import SignalError
+from shaftprint.signals._channel_signals import ChannelRole
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, Counts, blocks
 from shaftprint.signals._clock import clock_of
 from shaftprint.signals._gaps import Gap, clock_gaps
-from shaftprint.signals._signals import ChannelRole, Repair
+from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning import FaultLimits, Patcher, flagged
 from shaftprint.signals.kinds import find_sources, judge_saturation, numbered_strips, pulse_gaps, pulse_repairs
 from shaftprint.signals.pulses import find_edges, pulse_levels

@@ -8,12 +8,13 @@ from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
 from shaftprint.reasons import Reason
+from shaftprint.signals._channel_signals import ChannelSignal
 from shaftprint.signals._channels import find_channel
 from shaftprint.signals._clock import Mode, clock_of, common_clock
 from shaftprint.signals._gaps import Coverage
 from shaftprint.signals._rates import expect_one_rate
 from shaftprint.signals._readings import Readings, logger_channels, read_all
-from shaftprint.signals._signals import ChannelSignal, SetPointCalibration, Signals
+from shaftprint.signals._signals import SetPointCalibration, Signals
 from shaftprint.signals.excitation import FoundTest, expect_campaign, find_step_delays, found_tests, left_out
 from shaftprint.signals.kinds import (
     Source,

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import SignalError
+from shaftprint.signals._channel_signals import ChannelRole
 from shaftprint.signals._gaps import Coverage, Gap, within
-from shaftprint.signals._signals import ChannelRole, Repair
+from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning import Reading
 from shaftprint.signals.kinds import PickUp
 

@@ -4,8 +4,8 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
 
+from shaftprint.signals._channel_signals import ChannelRole, ChannelSignal
 from shaftprint.signals._channels import find_channel
-from shaftprint.signals._signals import ChannelRole, ChannelSignal
 from shaftprint.signals.conditioning import Reading
 
 if TYPE_CHECKING:

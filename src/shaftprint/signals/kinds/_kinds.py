@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from shaftprint.signals._signals import ChannelRole
+from shaftprint.signals._channel_signals import ChannelRole
 from shaftprint.signals.kinds._pick_up import Speed
 from shaftprint.signals.kinds._pitch import PitchSetPoint
 from shaftprint.signals.kinds._rack import Rack

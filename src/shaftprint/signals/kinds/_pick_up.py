@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.signals._channel_signals import SpeedSignal
 from shaftprint.signals._channels import Advance, blocks, find_channel, time_of
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps
-from shaftprint.signals._signals import Repair, SpeedSignal, StripAngles
+from shaftprint.signals._signals import Repair, StripAngles
 from shaftprint.signals.conditioning import Reading, pulse_period_speed
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.pulses import (

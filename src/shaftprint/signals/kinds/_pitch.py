@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import frozen_float
 from shaftprint.errors import SignalError
-from shaftprint.signals._signals import ChannelRole, ExcitationSignal
+from shaftprint.signals._channel_signals import ChannelRole, ExcitationSignal
 from shaftprint.signals.conditioning import FaultLimits, Reading, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.kinds._set_point import read_voltage

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING
 
 from shaftprint.arrays import frozen_float
-from shaftprint.signals._signals import ChannelRole, ExcitationSignal
+from shaftprint.signals._channel_signals import ChannelRole, ExcitationSignal
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.units import rpm_from_rev_s

@@ -9,8 +9,9 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign import Campaign, Sine
 from shaftprint.errors import SignalError
+from shaftprint.signals._channel_signals import ChannelSignal
 from shaftprint.signals._gaps import EVERYTHING, Coverage
-from shaftprint.signals._signals import ChannelSignal, Repair
+from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.vessel import ShaftTorqueSensor
