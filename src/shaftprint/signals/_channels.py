@@ -98,11 +98,11 @@ def spots(channel: "Channel") -> list[Counts]:
     starts = np.linspace(0, channel.count - length, _SPOTS).astype(int)
     # on block borders where the channel is long enough, so that no block is unpacked twice
     starts -= starts % length
-    found = [_finite(_counts(channel, int(start), int(start) + length)) for start in np.unique(starts)]
-    numbers = [counts for counts in found if counts.size]
+    stretches = [_finite(_counts(channel, int(start), int(start) + length)) for start in np.unique(starts)]
+    numbers = [counts for counts in stretches if counts.size]
     if not numbers:
         raise SignalError(
-            f"channel {channel.name}: expected numbers, found none in {len(found)} stretches of "
+            f"channel {channel.name}: expected numbers, found none in {len(stretches)} stretches of "
             f"{length / channel.rate_hz:.3g} s all over the recording; check the export of the logger."
         )
     return numbers

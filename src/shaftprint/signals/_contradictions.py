@@ -80,12 +80,12 @@ def _in_words(sensors: Sequence["SpeedSensor"], pulses: Mapping[str, PulseReport
     speeds = {sensor.name: _engine_speed(sensor, pulses[sensor.channel], vessel) for sensor in sensors}
     shafts = {sensor.name: sensor.shaft for sensor in sensors}
     low, high = min(speeds, key=speeds.__getitem__), max(speeds, key=speeds.__getitem__)
-    found = f"expected one engine speed, found {low} = {speeds[low]:.4g} and {high} = {speeds[high]:.4g} rev/s"
+    sentence = f"expected one engine speed, found {low} = {speeds[low]:.4g} and {high} = {speeds[high]:.4g} rev/s"
     if shafts[low] == shafts[high]:
-        return found
+        return sentence
     apart = speeds[low] / speeds[high]
     ratio = vessel.gearbox.ratio * (apart if shafts[high] == "propeller" else 1.0 / apart)
-    return f"{found}, as with a gear ratio of {ratio:.4g} instead of {vessel.gearbox.ratio:g}"
+    return f"{sentence}, as with a gear ratio of {ratio:.4g} instead of {vessel.gearbox.ratio:g}"
 
 
 def _of_torque(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str, ...]:
@@ -96,10 +96,10 @@ def _of_torque(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str,
     def mean_nm(report: ChannelReport) -> float:
         return sensor.scale_nm_per_unit * report.mean - sensor.zero_nm
 
-    found = mean_nm(torque)
-    if not np.isfinite(found) or found >= _CLEARLY_NEGATIVE * expected:
+    mean_torque_nm = mean_nm(torque)
+    if not np.isfinite(mean_torque_nm) or mean_torque_nm >= _CLEARLY_NEGATIVE * expected:
         return ()
-    sentence = f"expected a torque around {expected:.4g} N m, found a mean of {found:.4g} N m"
+    sentence = f"expected a torque around {expected:.4g} N m, found a mean of {mean_torque_nm:.4g} N m"
     swapped = mean_nm(set_point)
     if set_point.unit == torque.unit and _AROUND[0] * expected < swapped < _AROUND[1] * expected:
         return (

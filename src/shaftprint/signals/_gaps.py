@@ -105,11 +105,11 @@ class Coverage:
         channel
             The only channel whose gaps count; by default those of all count.
         """
-        found = np.zeros(time_s.shape, dtype=np.bool_)
+        is_lost = np.zeros(time_s.shape, dtype=np.bool_)
         for gap in self.gaps:
             if channel in (None, gap.channel):
-                found |= (time_s > gap.first_s) & (time_s < gap.last_s)
-        return found
+                is_lost |= (time_s > gap.first_s) & (time_s < gap.last_s)
+        return is_lost
 
 
 EVERYTHING = Coverage()
@@ -131,24 +131,24 @@ def clock_gaps(channel: "Channel") -> list[Gap]:
 
 def merged(gaps: Iterable[Gap], begin_s: float, end_s: float) -> list[tuple[float, float]]:
     """Return the stretches that gaps take out of a window, without overlap, in order of time [s]."""
-    found: list[tuple[float, float]] = []
+    stretches: list[tuple[float, float]] = []
     for gap in sorted(gaps, key=lambda gap: gap.first_s):
         first, last = max(gap.first_s, begin_s), min(gap.last_s, end_s)
         if first >= last:
             continue
-        if found and first <= found[-1][1]:
-            found[-1] = (found[-1][0], max(found[-1][1], last))
+        if stretches and first <= stretches[-1][1]:
+            stretches[-1] = (stretches[-1][0], max(stretches[-1][1], last))
         else:
-            found.append((first, last))
-    return found
+            stretches.append((first, last))
+    return stretches
 
 
 def joined(values: FloatArray) -> FloatArray:
     """Return values with straight lines in place of those that are not numbers, shape of ``values``."""
-    known = np.flatnonzero(np.isfinite(values))
-    if known.size in (0, values.size):
+    indices = np.flatnonzero(np.isfinite(values))
+    if indices.size in (0, values.size):
         return values
-    return np.interp(np.arange(values.size), known, values[known])
+    return np.interp(np.arange(values.size), indices, values[indices])
 
 
 def runs_of(wrong: BoolArray) -> list[tuple[int, int]]:

@@ -39,7 +39,7 @@ def thesis_way(
     latency = trial.vessel.sensors.shaft_torque.latency_s
     structures = [*(structure(name) for name in OF_THE_THESIS), structure(WITH_PICK_UP).held_at(t_gauge=latency)]
     unweighted = Settings(weighting=Unweighted(), draw=Uniform())
-    settings = dict.fromkeys((found.name for found in structures), unweighted)
+    settings = dict.fromkeys((item.name for item in structures), unweighted)
     fits = fit(structures, measurement, settings=settings, rng=rng, progress=progress)
     off = set_point_scaled(measurement.spectra.response, 1.0 + SET_POINT_OFF)
     measurement_off = replace(measurement, responses=responses_of(off))
@@ -48,8 +48,8 @@ def thesis_way(
     return ThesisMode(
         signals=measurement.signals,
         spectra=measurement.spectra,
-        identifications={found.structure.name: found for found in fits},
-        set_point_off={found.structure.name: found for found in fits_off},
+        identifications={result.structure.name: result for result in fits},
+        set_point_off={result.structure.name: result for result in fits_off},
     )
 
 

@@ -127,9 +127,9 @@ def filter_grid(  # type: ignore[no-untyped-def]
     """Write the instants that the held samples reach, from number ``done`` on; return the next."""
     phases, length = taps.shape
     while done < out.size:
-        place = first + done * step
-        middle = int(np.floor(place + 1e-9))
-        phase = int(np.rint((place - middle) * phases))
+        position = first + done * step
+        middle = int(np.floor(position + 1e-9))
+        phase = int(np.rint((position - middle) * phases))
         if phase >= phases:
             phase -= phases
             middle += 1

@@ -151,7 +151,7 @@ class Patcher:
     def _end_gap(self, sample: int) -> None:
         if self._gap_since is None:
             return
-        start_s, stop_s = (time_of(self.channel, place) for place in (self._gap_since, sample))
+        start_s, stop_s = (time_of(self.channel, index) for index in (self._gap_since, sample))
         reason = _REASONS.get(self._gap_code, _REASONS[MISSING])
         self.gaps.append(Gap(channel=self.channel.name, start_s=start_s, stop_s=stop_s, reason=reason))
         self._gap_since = None

@@ -33,10 +33,10 @@ def previous_neighbours(samples: Iterable[FloatArray], grid: Grid) -> FloatArray
         # a few instants too many, of which those beyond the block wait for the next one
         reach = min(grid.count, int((origin - grid.first) / grid.step) + 2)
         instants = np.arange(done, max(reach, done))
-        place = np.floor(grid.first + grid.step * instants + _ROUNDING).astype(np.int64)
-        place = np.maximum(place[place < origin], 0)
-        out[done : done + place.size] = block[place - origin + block.size]
-        done, last = done + place.size, block[-1]
+        index = np.floor(grid.first + grid.step * instants + _ROUNDING).astype(np.int64)
+        index = np.maximum(index[index < origin], 0)
+        out[done : done + index.size] = block[index - origin + block.size]
+        done, last = done + index.size, block[-1]
     out[done:] = last
     return out
 
@@ -67,9 +67,9 @@ def pulse_period_speed(
     """
     quantised = np.ceil(train.position - _ROUNDING)
     speed = channel.rate_hz / (np.diff(quantised) * strips)
-    whole = np.diff(train.number) == 1
-    place = np.arange(speed.size)
-    speed[~whole] = np.interp(place[~whole], place[whole], speed[whole])
+    complete = np.diff(train.number) == 1
+    index = np.arange(speed.size)
+    speed[~complete] = np.interp(index[~complete], index[complete], speed[complete])
     # the instant from which each period is the last whole one; the first serves from the beginning
     ends_s = channel.start_s + quantised[2:] / channel.rate_hz
     instant = np.ceil((ends_s - start_s) / step_s - _ROUNDING).astype(np.int64)

@@ -108,20 +108,20 @@ def _frequency_hz(time_s: FloatArray, values: FloatArray, near_hz: float) -> flo
     # slower than a period in the window is drift; the campaign's own frequency always counts
     slowest = min(1.0 / (time_s[-1] - time_s[0]), 0.5 * near_hz)
     allowed = (frequencies >= slowest) & (frequencies <= _HIGHEST * near_hz)
-    found = float(frequencies[allowed][np.argmax(power[allowed])])
+    frequency_hz = float(frequencies[allowed][np.argmax(power[allowed])])
     step = 0.1 / (time_s[-1] - time_s[0])
     for _ in range(12):
-        shares = [_fitted(time_s, values, found + side * step)[1] for side in (-1.0, 0.0, 1.0)]
+        shares = [_fitted(time_s, values, frequency_hz + side * step)[1] for side in (-1.0, 0.0, 1.0)]
         bend = shares[0] - 2.0 * shares[1] + shares[2]
         move = 0.5 * (shares[0] - shares[2]) / bend if bend < 0.0 else float(np.argmax(shares) - 1)
-        found += float(np.clip(move, -1.0, 1.0)) * step
+        frequency_hz += float(np.clip(move, -1.0, 1.0)) * step
         step *= 0.5
-    return found
+    return frequency_hz
 
 
 def _fitted(time_s: FloatArray, values: FloatArray, frequency_hz: float) -> tuple[FloatArray, float]:
     """Return cosine, sine and mean from the first time on, and the share of the variance that they explain."""
     phase = 2.0 * np.pi * frequency_hz * (time_s - time_s[0])
     design = np.column_stack([np.cos(phase), np.sin(phase), np.ones(phase.size)])
-    found = np.linalg.solve(design.T @ design, design.T @ values)
-    return found, 1.0 - float(np.var(values - design @ found) / np.var(values))
+    coefficients = np.linalg.solve(design.T @ design, design.T @ values)
+    return coefficients, 1.0 - float(np.var(values - design @ coefficients) / np.var(values))

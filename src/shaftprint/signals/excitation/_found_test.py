@@ -63,22 +63,24 @@ class FoundTest:
         if not self.is_found:
             return ("is not in the set point near its place",)
         planned = self.planned
-        found = []
+        sentences = []
         if abs(self.later_s) > self._begin_tolerance_s:
-            found.append(f"begins at {self.begin_s:.2f} s where the campaign says {planned.start_s:g} s")
+            sentences.append(f"begins at {self.begin_s:.2f} s where the campaign says {planned.start_s:g} s")
         if self.is_inverted:
-            found.append("is upside down")
+            sentences.append("is upside down")
         if not isinstance(planned, Sine):
-            return tuple(found)
+            return tuple(sentences)
         if self.frequency_hz != planned.frequency_hz:
-            found.append(f"has {self.frequency_hz:.4g} Hz where the campaign says {planned.frequency_hz:g} Hz")
-        elif not found and not self._has_planned_phase:
-            found.append(f"begins at a phase of {self.phase_error_deg:.0f} degrees: start_s = {self.rising_s:.3f} fits")
+            sentences.append(f"has {self.frequency_hz:.4g} Hz where the campaign says {planned.frequency_hz:g} Hz")
+        elif not sentences and not self._has_planned_phase:
+            sentences.append(
+                f"begins at a phase of {self.phase_error_deg:.0f} degrees: start_s = {self.rising_s:.3f} fits"
+            )
         if abs(self.amplitude_v / planned.amplitude_v - 1.0) > _SAME_AMPLITUDE:
-            found.append(f"has {self.amplitude_v:.3g} V where the campaign says {planned.amplitude_v:g} V")
+            sentences.append(f"has {self.amplitude_v:.3g} V where the campaign says {planned.amplitude_v:g} V")
         if self.end_s < planned.window_stop_s - _SAME_BEGIN_S:
-            found.append(f"ends at {self.end_s:.2f} s, before its window does at {planned.window_stop_s:.2f} s")
-        return tuple(found)
+            sentences.append(f"ends at {self.end_s:.2f} s, before its window does at {planned.window_stop_s:.2f} s")
+        return tuple(sentences)
 
     @property
     def _has_planned_phase(self) -> bool:

@@ -36,19 +36,19 @@ def found_tests(
         The grid.
     """
     grid = SetPointGrid(set_point_v=set_point_v, rate_hz=rate_hz, start_s=start_s)
-    found = _found_at(grid, campaign, 0.0)
-    if not all(test.is_same for test in found):
+    tests = _found_at(grid, campaign, 0.0)
+    if not all(test.is_same for test in tests):
         shifted = _found_at(grid, campaign, _likely_shift_s(grid, campaign))
-        if sum(test.is_same for test in shifted) > sum(test.is_same for test in found):
-            found = shifted
+        if sum(test.is_same for test in shifted) > sum(test.is_same for test in tests):
+            tests = shifted
     # a test that was looked for half way to its neighbours only may begin beyond: again about the median, between
     # the neighbours as they were found
     for _ in range(_ROUNDS):
-        if not any(test.differences for test in found):
+        if not any(test.differences for test in tests):
             break
-        later = [test.later_s for test in found if test.is_same] or [0.0]
-        found = _found_at(grid, campaign, float(np.median(later)), known=found)
-    return found
+        later = [test.later_s for test in tests if test.is_same] or [0.0]
+        tests = _found_at(grid, campaign, float(np.median(later)), known=tests)
+    return tests
 
 
 def _found_at(
@@ -66,22 +66,22 @@ def _found_at(
         The tests as they were found before.
     """
     tests = campaign.excitations
-    found = []
-    for place, test in enumerate(tests):
+    results = []
+    for index, test in enumerate(tests):
         if not isinstance(test, Sine):
-            found.append(_found_course(grid, test, campaign, shift_s))
+            results.append(_found_course(grid, test, campaign, shift_s))
             continue
         first_s, last_s = test.start_s + shift_s - _SEARCHED_S, test.stop_s + shift_s + _SEARCHED_S
-        if place:
-            half_way = shift_s + 0.5 * (tests[place - 1].stop_s + test.start_s)
-            is_known = bool(known) and known[place - 1].is_found
-            first_s = max(first_s, known[place - 1].end_s if is_known else half_way)
-        if place + 1 < len(tests):
-            half_way = shift_s + 0.5 * (test.stop_s + tests[place + 1].start_s)
-            is_known = bool(known) and known[place + 1].is_found
-            last_s = min(last_s, known[place + 1].begin_s if is_known else half_way)
-        found.append(found_sine(grid, test, shift_s, first_s, last_s))
-    return tuple(found)
+        if index:
+            half_way = shift_s + 0.5 * (tests[index - 1].stop_s + test.start_s)
+            is_known = bool(known) and known[index - 1].is_found
+            first_s = max(first_s, known[index - 1].end_s if is_known else half_way)
+        if index + 1 < len(tests):
+            half_way = shift_s + 0.5 * (test.stop_s + tests[index + 1].start_s)
+            is_known = bool(known) and known[index + 1].is_found
+            last_s = min(last_s, known[index + 1].begin_s if is_known else half_way)
+        results.append(found_sine(grid, test, shift_s, first_s, last_s))
+    return tuple(results)
 
 
 def _likely_shift_s(grid: SetPointGrid, campaign: Campaign) -> float:
@@ -115,7 +115,7 @@ def _envelope(blocks: FloatArray) -> FloatArray:
 
 def _found_course(grid: SetPointGrid, test: Excitation, campaign: Campaign, shift_s: float) -> FoundTest:
     """Return a staircase or chirp where it correlates best with the set point."""
-    first_s, last_s = (place + shift_s for place in (test.start_s - _SEARCHED_S, test.stop_s + _SEARCHED_S))
+    first_s, last_s = (border_s + shift_s for border_s in (test.start_s - _SEARCHED_S, test.stop_s + _SEARCHED_S))
     time, values = grid.cut(first_s, last_s)
     planned_s = np.arange(test.start_s, test.stop_s, 1.0 / grid.rate_hz)
     planned = setpoint(campaign, planned_s)

@@ -24,11 +24,11 @@ _OPPOSITE_DEG = 150.0
 
 def measured_windows(campaign: Campaign) -> tuple[tuple[str, float, float], ...]:
     """Return name, begin and end [s] of everything that is measured, in order of time."""
-    found = [(sine.name, sine.settled_s, sine.window_stop_s) for sine in campaign.sines]
-    found += [(chirp.name, chirp.start_s, chirp.stop_s) for chirp in campaign.chirps]
+    windows = [(sine.name, sine.settled_s, sine.window_stop_s) for sine in campaign.sines]
+    windows += [(chirp.name, chirp.start_s, chirp.stop_s) for chirp in campaign.chirps]
     for stairs in campaign.staircases:
-        found += [(f"step {k} of {stairs.name}", *step_window(stairs, k)) for k in range(1, len(stairs.levels_v))]
-    return tuple(sorted(found, key=lambda window: window[1]))
+        windows += [(f"step {k} of {stairs.name}", *step_window(stairs, k)) for k in range(1, len(stairs.levels_v))]
+    return tuple(sorted(windows, key=lambda window: window[1]))
 
 
 def left_out(campaign: Campaign, coverage: Coverage, *, name: str) -> tuple[str, ...]:
@@ -101,10 +101,10 @@ def expect_campaign(
     foreign = [
         item.name for item in slow if _explained(set_point_v, item, campaign, rate_hz, start_s) < _LEAST_EXPLAINED
     ]
-    found = found_tests(set_point_v, campaign, rate_hz=rate_hz, start_s=start_s)
-    shift_s = common_shift_s(found)
+    tests = found_tests(set_point_v, campaign, rate_hz=rate_hz, start_s=start_s)
+    shift_s = common_shift_s(tests)
     if foreign and len(foreign) == len(slow):
-        instead = _shift_words(shift_s) or _upside_down(found) or "check the campaign file and its start times"
+        instead = _shift_words(shift_s) or _upside_down(tests) or "check the campaign file and its start times"
         raise SignalError(
             f'channel {channel}: expected the set point of the campaign "{campaign.name}", found '
             f"another course in every slow test ({', '.join(foreign)}): {instead}; `shaftprint inspect` with --vessel "
@@ -112,13 +112,13 @@ def expect_campaign(
         )
     if shift_s:
         return (f"{_shift_words(shift_s)}; `shaftprint inspect` proposes the start of every test",)
-    whole = {item.name for item in held}
-    judged = [test for test in found if test.planned.name in whole]
+    held_names = {item.name for item in held}
+    held_tests = [test for test in tests if test.planned.name in held_names]
     return tuple(
         f"{test.planned.name} {difference}"
         if test.is_found
         else f"the set point does not follow the campaign during {test.planned.name}; check its times"
-        for test in judged
+        for test in held_tests
         for difference in test.differences
     )
 

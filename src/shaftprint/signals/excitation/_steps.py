@@ -52,20 +52,20 @@ def find_step_delays(
             if abs(levels[k] - levels[k - 1]) < _LEAST_STEP_V or coverage.missing(*step_window(staircase, k)):
                 continue
             crossings = [_crossing(values, staircase, k, rate_hz, start_s) for values in (set_point_rev_s, speed_rev_s)]
-            asked, followed = crossings
-            if asked is None or followed is None:
+            set_point_crossing, speed_crossing = crossings
+            if set_point_crossing is None or speed_crossing is None:
                 findings.append(
                     f"step {k} of {staircase.name} near {staircase.start_s + k * staircase.dwell_s:.0f}"
-                    f" s: expected the {'set point' if asked is None else 'speed'} to cross the middle "
+                    f" s: expected the {'set point' if set_point_crossing is None else 'speed'} to cross the middle "
                     "between its levels, found no crossing"
                 )
                 continue
             delays.append(
                 StepDelay(
                     staircase=staircase.name,
-                    set_point_time_s=asked[0],
-                    speed_time_s=followed[0],
-                    rising=asked[1],
+                    set_point_time_s=set_point_crossing[0],
+                    speed_time_s=speed_crossing[0],
+                    rising=set_point_crossing[1],
                 )
             )
     delays.sort(key=lambda delay: delay.set_point_time_s)
@@ -90,20 +90,20 @@ def _crossing(
     places = [
         round((instant + share * dwell - start_s) * rate_hz) for share in (-_REST_SHARE, 0.0, 1.0 - _REST_SHARE, 1.0)
     ]
-    rest, jump, settled, end = (min(max(place, 0), values.size) for place in places)
+    first, jump, settled, end = (min(max(index, 0), values.size) for index in places)
     # a little before the next step: the filter makes it visible ahead of time
     ahead = round(0.02 * dwell * rate_hz)
-    if jump - ahead <= rest or end - ahead <= settled:
+    if jump - ahead <= first or end - ahead <= settled:
         return None
-    before = float(np.median(values[rest : jump - ahead]))
+    before = float(np.median(values[first : jump - ahead]))
     after = float(np.median(values[settled : end - ahead]))
     rising = after > before
     middle = 0.5 * (before + after)
-    part = values[rest:settled]
+    part = values[first:settled]
     above = part >= middle if rising else part <= middle
-    found = np.flatnonzero(above[1:] & ~above[:-1])
-    if found.size == 0:
+    crossings = np.flatnonzero(above[1:] & ~above[:-1])
+    if crossings.size == 0:
         return None
-    k = int(found[0])
+    k = int(crossings[0])
     fraction = (middle - part[k]) / (part[k + 1] - part[k])
-    return start_s + (rest + k + float(fraction)) / rate_hz, rising
+    return start_s + (first + k + float(fraction)) / rate_hz, rising

@@ -212,7 +212,7 @@ def pulse_gaps(channel: "Channel", train: PulseTrain, strips: int) -> tuple[Gap,
     mean = (train.position[-1] - train.position[0]) / train.number[-1]
     ends = np.concatenate([[0.0], train.position, [float(channel.count)]])
     long = np.flatnonzero(np.diff(ends) > max(_LONGEST_GAP_S * channel.rate_hz, _LONGEST_GAP_PULSES * mean))
-    stretches = [(float(ends[place]), float(ends[place + 1])) for place in long]
+    stretches = [(float(ends[interval]), float(ends[interval + 1])) for interval in long]
     inner = long[(long > 0) & (long < train.position.size)] - 1
     if strips > 1 and inner.size:
         stretches += unplaced_stretches(train, strips, inner)
@@ -226,8 +226,8 @@ def pulse_gaps(channel: "Channel", train: PulseTrain, strips: int) -> tuple[Gap,
         for first, last in sorted(stretches)
     ]
     reach_s = _REACH_PULSES * float(mean) / channel.rate_hz
-    found = [replace(gap, reach_s=reach_s) for gap in (*silent, *clock_gaps(channel))]
-    return tuple(sorted(found, key=lambda gap: gap.start_s))
+    widened = [replace(gap, reach_s=reach_s) for gap in (*silent, *clock_gaps(channel))]
+    return tuple(sorted(widened, key=lambda gap: gap.start_s))
 
 
 def _counted(train: PulseTrain, time_s: FloatArray, gaps: Sequence[Gap]) -> tuple[float, float]:

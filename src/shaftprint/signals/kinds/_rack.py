@@ -124,14 +124,14 @@ def rack_signal(
     rate_hz, start_s = channel.rate_hz / group, time_of(channel, 0.5 * (group - 1)) - latency_s
     resolution = _PERCENT * sensor.resolution_percent
     covered = Coverage(gaps=gaps)
-    whole = [stretch for stretch in stretches if not covered.missing(stretch.start_s, stretch.stop_s)]
-    inside = [_between(fraction, rate_hz, start_s, stretch) for stretch in whole]
+    uninterrupted = [stretch for stretch in stretches if not covered.missing(stretch.start_s, stretch.stop_s)]
+    inside = [_between(fraction, rate_hz, start_s, stretch) for stretch in uninterrupted]
     mean, std = _working_point(inside, rate_hz, resolution)
     if not mean > 0.0:
-        found = "none there" if np.isnan(mean) else f"{mean / _PERCENT:.3g} %"
+        value = "none there" if np.isnan(mean) else f"{mean / _PERCENT:.3g} %"
         raise SignalError(
             f"channel {channel.name}: expected a positive percent torque while the line stands still, as near "
-            f"{stretches[0].start_s:.0f} s, found {found}; check the message it was taken from and when it was logged."
+            f"{stretches[0].start_s:.0f} s, found {value}; check the message it was taken from and when it was logged."
         )
     return MessageSignal(
         name=Rack.name,
@@ -168,12 +168,12 @@ def _means(channel: "Channel", group: int, block_samples: int) -> Iterator[Float
     waiting = np.empty(0)
     for counts in blocks(channel, block_samples):
         percent = np.concatenate([waiting, counts * channel.scale + channel.offset])
-        whole = percent.size - percent.size % group
-        waiting = percent[whole:]
-        parts = percent[:whole].reshape(-1, group)
-        known = parts <= _HIGHEST_PERCENT
-        number = known.sum(axis=1)
-        mean = np.where(known, parts, 0.0).sum(axis=1) / np.maximum(number, 1)
+        count = percent.size - percent.size % group
+        waiting = percent[count:]
+        parts = percent[:count].reshape(-1, group)
+        available = parts <= _HIGHEST_PERCENT
+        number = available.sum(axis=1)
+        mean = np.where(available, parts, 0.0).sum(axis=1) / np.maximum(number, 1)
         yield np.where(number > 0, mean, np.nan)
 
 
@@ -225,5 +225,5 @@ def _working_point(inside: list[FloatArray], rate_hz: float, resolution: float) 
     mean = float(share @ [values.mean() for values in long_enough])
     std = float(np.linalg.norm(share * deviations))
     noise = max(float(np.mean([values.var() for values in long_enough])) - resolution**2 / 12.0, 0.0)
-    left = resolution / np.sqrt(12.0) * np.exp(-2.0 * np.pi**2 * noise / resolution**2)
-    return mean, float(np.hypot(std, left))
+    step_error = resolution / np.sqrt(12.0) * np.exp(-2.0 * np.pi**2 * noise / resolution**2)
+    return mean, float(np.hypot(std, step_error))

@@ -133,25 +133,25 @@ def _windows(
     stretches: "tuple[SteadyStretch, ...]", campaign: "Campaign", length_s: float
 ) -> list[tuple[float, float]]:
     """Return begin and end of every window [s], in order: parts of stretches, and whole periods of sines."""
-    found = []
+    windows = []
     for stretch in stretches:
         borders = np.linspace(stretch.start_s, stretch.stop_s, max(int(stretch.duration_s / length_s), 1) + 1)
-        found += list(pairwise(borders.tolist()))
+        windows += list(pairwise(borders.tolist()))
     for sine in campaign.sines:
         together = min(max(int(length_s * sine.frequency_hz), 1), sine.periods)
         borders = sine.settled_s + np.arange(0, sine.periods + 1, together) / sine.frequency_hz
-        found += list(pairwise(borders.tolist()))
-    return sorted(found)
+        windows += list(pairwise(borders.tolist()))
+    return sorted(windows)
 
 
 def _two_levels(stretches: "tuple[SteadyStretch, ...]", channel: str) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return voltage, speed and standard deviation of the speed of each level; two at least."""
     volts, speed, deviation = _levels(stretches)
     if volts.size < 2:
-        found = ", ".join(f"{level:.3f} V" for level in volts) or "none"
+        level_list = ", ".join(f"{level:.3f} V" for level in volts) or "none"
         raise SignalError(
             f"channel {channel}: expected at least two steady levels of the set point to find its "
-            f"line, found {found}; record a staircase with two or more levels of at least 30 s."
+            f"line, found {level_list}; record a staircase with two or more levels of at least 30 s."
         )
     return volts, speed, deviation
 
@@ -167,7 +167,7 @@ def _levels(stretches: "tuple[SteadyStretch, ...]") -> tuple[FloatArray, FloatAr
     duration = np.array([stretch.duration_s for stretch in ordered])
     apart = max(_SAME_LEVEL * float(np.ptp(volts)), _SAME_LEVEL_V)
     borders = np.flatnonzero(np.diff(volts) > apart) + 1
-    found = []
+    levels = []
     for group in np.split(np.arange(volts.size), borders):
         weight = duration[group] / duration[group].sum()
         mean = float(weight @ speed[group])
@@ -175,6 +175,6 @@ def _levels(stretches: "tuple[SteadyStretch, ...]") -> tuple[FloatArray, FloatAr
         if group.size > 1:
             between = float(weight @ (speed[group] - mean) ** 2) / (group.size - 1)
             spread = max(spread, float(np.sqrt(between)))
-        found.append((float(weight @ volts[group]), mean, max(spread, _LEAST_RELATIVE_STD * mean)))
-    level_v, level_rev_s, level_std = np.array(found).T
+        levels.append((float(weight @ volts[group]), mean, max(spread, _LEAST_RELATIVE_STD * mean)))
+    level_v, level_rev_s, level_std = np.array(levels).T
     return level_v, level_rev_s, level_std

@@ -131,15 +131,15 @@ def low_lines(
         if sine.periods < 2 or sine.settled_s < start_s or coverage.missing(sine.settled_s, sine.window_stop_s):
             continue
         pair = [_period_amplitudes(values, sine, rate_hz, start_s) for values in (set_point_rev_s, speed_rev_s)]
-        asked = float(np.sum(np.abs(pair[0]) ** 2))
-        found = complex(np.vdot(pair[0], pair[1])) / asked
-        if abs(found - 1.0) > _LARGEST_DEPARTURE:
+        set_point_power = float(np.sum(np.abs(pair[0]) ** 2))
+        response = complex(np.vdot(pair[0], pair[1])) / set_point_power
+        if abs(response - 1.0) > _LARGEST_DEPARTURE:
             break
-        left = float(np.sum(np.abs(pair[1] - found * pair[0]) ** 2))
+        residual_power = float(np.sum(np.abs(pair[1] - response * pair[0]) ** 2))
         omega.append(2.0 * np.pi * sine.frequency_hz)
-        ratio.append(found)
+        ratio.append(response)
         # of one component; each period gives two
-        variance.append(left / (2.0 * (sine.periods - 1)) / asked)
+        variance.append(residual_power / (2.0 * (sine.periods - 1)) / set_point_power)
         length_s.append(sine.window_s)
         periods.append(sine.periods)
     return LowLines(
@@ -158,21 +158,21 @@ def zero_frequency_ratio(lines: LowLines) -> tuple[float, float]:
     s = 1j * lines.omega_rad_s
     ones = np.ones_like(s)
     denominator = ones
-    found = np.zeros(4)
+    coefficients = np.zeros(4)
     for _ in range(_ROUNDS):
         columns = np.stack([ones, s, -s * lines.ratio, -(s**2) * lines.ratio], axis=1)
         weight = 1.0 / (lines.std * np.abs(denominator))
         matrix, right = _real(columns * weight[:, np.newaxis]), _real(lines.ratio * weight)
-        found[:] = np.linalg.lstsq(matrix, right, rcond=None)[0]
-        denominator = 1.0 + found[2] * s + found[3] * s**2
-    numerator = found[0] + found[1] * s
+        coefficients[:] = np.linalg.lstsq(matrix, right, rcond=None)[0]
+        denominator = 1.0 + coefficients[2] * s + coefficients[3] * s**2
+    numerator = coefficients[0] + coefficients[1] * s
     tangents = [ones, s, -s * numerator / denominator, -(s**2) * numerator / denominator]
     jacobian = _real(np.stack(tangents, axis=1) / (denominator * lines.std)[:, np.newaxis])
     residual = _real((lines.ratio - numerator / denominator) / lines.std)
     covariance = np.linalg.pinv(jacobian.T @ jacobian)
-    freedom = residual.size - found.size
+    freedom = residual.size - coefficients.size
     enlarged = max(1.0, float(residual @ residual) / freedom)
-    return float(found[0]), float(np.sqrt(covariance[0, 0] * enlarged))
+    return float(coefficients[0]), float(np.sqrt(covariance[0, 0] * enlarged))
 
 
 def _period_amplitudes(values: FloatArray, sine: Sine, rate_hz: float, start_s: float) -> ComplexArray:
@@ -192,15 +192,15 @@ def _period_amplitudes(values: FloatArray, sine: Sine, rate_hz: float, start_s: 
     waves = [wave(order * phase) for order in _ORDERS for wave in (np.cos, np.sin)]
     design = np.column_stack([*waves, np.ones(time.size), time])
     fitted = np.linalg.solve(design.T @ design, design.T @ part)
-    rest = part - design[:, 2:] @ fitted[2:]
+    detrended = part - design[:, 2:] @ fitted[2:]
     borders = np.searchsorted(time, np.arange(sine.periods + 1) / sine.frequency_hz - 1e-9)
-    found = np.empty(sine.periods, dtype=np.complex128)
+    amplitudes = np.empty(sine.periods, dtype=np.complex128)
     for k in range(sine.periods):
         inside = slice(borders[k], borders[k + 1])
         pair = design[inside, :2]
-        cosine, sinus = np.linalg.solve(pair.T @ pair, pair.T @ rest[inside])
-        found[k] = cosine - 1j * sinus
-    return found
+        cosine, sinus = np.linalg.solve(pair.T @ pair, pair.T @ detrended[inside])
+        amplitudes[k] = cosine - 1j * sinus
+    return amplitudes
 
 
 def _shrunk(variance: FloatArray, length_s: FloatArray, periods: FloatArray) -> FloatArray:

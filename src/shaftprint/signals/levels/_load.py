@@ -59,10 +59,10 @@ def torque_of_mean_load(
     for block_s in (longest, *BLOCKS_S[1:]):
         length = max(round(block_s * rate_hz), 2)
         begins = start_s + np.arange(speed.size // length) * length / rate_hz
-        whole = np.array(
+        complete = np.array(
             [not coverage.missing(begin, begin + length / rate_hz) for begin in begins.tolist()], dtype=bool
         )
-        values, columns, near = _blocks(speed, torque_nm, length, rate_hz, whole)
+        values, columns, near = _blocks(speed, torque_nm, length, rate_hz, complete)
         if values.size >= FEWEST_BLOCKS:
             break
     line = fit_through_wander(values, columns, begins[near], begins[near] + length / rate_hz)

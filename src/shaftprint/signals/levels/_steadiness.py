@@ -137,14 +137,14 @@ def loads_of(
     start_s: float,
 ) -> Loads:
     """Return the load in windows; those outside the signals are left out."""
-    found = []
+    rows = []
     for begin, end in sorted(windows):
         first, stop = round((begin - start_s) * rate_hz), round((end - start_s) * rate_hz)
         if first < 0 or stop > torque_nm.size or stop <= first:
             continue
         square = float(np.mean(speed_rev_s[first:stop] ** 2))
-        found.append((begin, end, float(np.mean(torque_nm[first:stop])) / square, square))
-    table = np.array(found).reshape(-1, 4)
+        rows.append((begin, end, float(np.mean(torque_nm[first:stop])) / square, square))
+    table = np.array(rows).reshape(-1, 4)
     return Loads(
         start_s=table[:, 0],
         stop_s=table[:, 1],
@@ -159,33 +159,33 @@ def changes(loads: Loads) -> tuple[Change, Change]:
     count = middle.size
     places = range(_FEWEST_BESIDE, count - _FEWEST_BESIDE + 1)
     tried = np.stack(
-        [(middle - middle[0]) / (middle[-1] - middle[0]), *(np.arange(count) >= place for place in places)], axis=1
+        [(middle - middle[0]) / (middle[-1] - middle[0]), *(np.arange(count) >= index for index in places)], axis=1
     )
-    known = np.stack([np.ones(count), 1.0 / loads.square - 1.0], axis=1)
+    common = np.stack([np.ones(count), 1.0 / loads.square - 1.0], axis=1)
     plain = -np.inf
     best, sizes = np.full(tried.shape[1], -np.inf), np.zeros(tried.shape[1])
     for time_s in _TIMES_S:
         lower = np.linalg.cholesky(window_covariance(loads.start_s, loads.stop_s, float(time_s)))
-        white = np.linalg.solve(lower, np.column_stack([loads.load, known, tried]))
+        white = np.linalg.solve(lower, np.column_stack([loads.load, common, tried]))
         basis = np.linalg.qr(white[:, 1:3]).Q
-        rest = white - basis @ (basis.T @ white)
-        left, more = rest[:, 0], rest[:, 3:]
-        along = more.T @ left
+        residual = white - basis @ (basis.T @ white)
+        load_residual, more = residual[:, 0], residual[:, 3:]
+        along = more.T @ load_residual
         power = np.sum(more**2, axis=0)
-        square = float(left @ left)
+        square = float(load_residual @ load_residual)
         log = -np.log(np.diag(lower)).sum()
         plain = max(plain, log - 0.5 * count * np.log(square))
-        found = log - 0.5 * count * np.log(square - along**2 / power)
-        better = found > best
-        best[better], sizes[better] = found[better], (along / power)[better]
+        log_likelihood = log - 0.5 * count * np.log(square - along**2 / power)
+        better = log_likelihood > best
+        best[better], sizes[better] = log_likelihood[better], (along / power)[better]
     gains = 2.0 * (best - plain)
-    place = 1 + int(np.argmax(gains[1:]))
-    at = places[place - 1]
+    index = 1 + int(np.argmax(gains[1:]))
+    at = places[index - 1]
     return (
         Change(gain=float(gains[0]), size=float(sizes[0]), at_s=None),
         Change(
-            gain=float(gains[place]),
-            size=float(sizes[place]),
+            gain=float(gains[index]),
+            size=float(sizes[index]),
             at_s=0.5 * float(loads.stop_s[at - 1] + loads.start_s[at]),
         ),
     )

@@ -74,9 +74,9 @@ def steady_stretches(
     length = round(_BLOCK_S * rate_hz)
     means = [_block_means(values, length) for values in (set_point_v, speed_rev_s, torque_nm)]
     starts = start_s + np.arange(means[0].size) * length / rate_hz
-    whole = _without_gaps(starts, length / rate_hz, coverage)
-    tolerance = _TOLERANCE * float(np.ptp(means[0][whole])) if whole.any() else 0.0
-    still = (_block_spread(set_point_v, length) <= tolerance) & whole
+    complete = _without_gaps(starts, length / rate_hz, coverage)
+    tolerance = _TOLERANCE * float(np.ptp(means[0][complete])) if complete.any() else 0.0
+    still = (_block_spread(set_point_v, length) <= tolerance) & complete
     still &= _outside_waves(starts, length / rate_hz, campaign)
     moved = np.abs(np.diff(means[0], prepend=means[0][:1])) > tolerance
     settled = [_settled(run, means[1]) for run in _runs(still, moved)]
@@ -107,14 +107,14 @@ def _settled(run: tuple[int, int], speed: FloatArray) -> tuple[int, int] | None:
 
 
 def _block_means(values: FloatArray, length: int) -> FloatArray:
-    whole = values.size - values.size % length
-    means: FloatArray = values[:whole].reshape(-1, length).mean(axis=1)
+    used = values.size - values.size % length
+    means: FloatArray = values[:used].reshape(-1, length).mean(axis=1)
     return means
 
 
 def _block_spread(values: FloatArray, length: int) -> FloatArray:
-    whole = values.size - values.size % length
-    spread: FloatArray = values[:whole].reshape(-1, length).std(axis=1)
+    used = values.size - values.size % length
+    spread: FloatArray = values[:used].reshape(-1, length).std(axis=1)
     return spread
 
 
@@ -127,10 +127,10 @@ def _outside_waves(starts: FloatArray, length_s: float, campaign: Campaign) -> B
 
 
 def _without_gaps(starts: FloatArray, length_s: float, coverage: Coverage) -> BoolArray:
-    whole = np.ones(starts.size, dtype=np.bool_)
+    complete = np.ones(starts.size, dtype=np.bool_)
     for gap in coverage.gaps:
-        whole &= (starts + length_s <= gap.first_s) | (starts >= gap.last_s)
-    return whole
+        complete &= (starts + length_s <= gap.first_s) | (starts >= gap.last_s)
+    return complete
 
 
 def _runs(still: BoolArray, moved: BoolArray) -> list[tuple[int, int]]:
@@ -150,9 +150,9 @@ def _runs(still: BoolArray, moved: BoolArray) -> list[tuple[int, int]]:
 
 def _settling(speed: FloatArray) -> int:
     """Return how many blocks to leave out: twice as many as the speed needs to come near its end."""
-    rest = speed[speed.size // 2 :]
-    final = float(np.median(rest))
-    scatter = 1.4826 * float(np.median(np.abs(rest - final)))
+    second_half = speed[speed.size // 2 :]
+    final = float(np.median(second_half))
+    scatter = 1.4826 * float(np.median(np.abs(second_half - final)))
     near = np.abs(speed - final) <= max(_SCATTERS * scatter, _SETTLED * abs(final))
     # three in a row: noise may leave the band again, and one block may only pass through it
     arrived = np.flatnonzero(near[:-2] & near[1:-1] & near[2:])

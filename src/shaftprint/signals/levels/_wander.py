@@ -61,14 +61,14 @@ def fit_through_wander(values: FloatArray, columns: FloatArray, start_s: FloatAr
         If there are fewer than three windows more than columns that are not zero.
     """
     size = np.abs(columns).max(axis=0, initial=0.0)
-    told = np.flatnonzero(size > _NOTHING * size[0])
-    if values.size - told.size < FEWEST_BEYOND:
+    nonzero = np.flatnonzero(size > _NOTHING * size[0])
+    if values.size - nonzero.size < FEWEST_BEYOND:
         raise SignalError(
-            f"expected at least {FEWEST_BEYOND + told.size} stretches of time to tell {told.size} numbers from a load "
-            f"or demand that wanders, found {values.size}; record longer at the working point."
+            f"expected at least {FEWEST_BEYOND + nonzero.size} stretches of time to tell {nonzero.size} numbers from a "
+            f"load or demand that wanders, found {values.size}; record longer at the working point."
         )
     scale = float(np.abs(values).max()) or 1.0
-    design = columns[:, told] / size[told]
+    design = columns[:, nonzero] / size[nonzero]
     fits = [
         _given_disturbance(values / scale, design, lower)
         for lower in _disturbances(start_s, stop_s, float(np.min(stop_s - start_s)))
@@ -76,13 +76,13 @@ def fit_through_wander(values: FloatArray, columns: FloatArray, start_s: FloatAr
     logs = np.array([fit[2] for fit in fits])
     share = np.exp(logs - logs.max())
     share /= share.sum()
-    found = np.array([fit[0] for fit in fits])
-    mean = share @ found
-    apart = found - mean
+    coefficients = np.array([fit[0] for fit in fits])
+    mean = share @ coefficients
+    apart = coefficients - mean
     spread = np.tensordot(share, np.array([fit[1] for fit in fits]), axes=1) + (apart * share[:, None]).T @ apart
-    unit = scale / size[told]
+    unit = scale / size[nonzero]
     value, covariance = np.zeros(size.size), np.zeros((size.size, size.size))
-    value[told], covariance[np.ix_(told, told)] = mean * unit, spread * np.outer(unit, unit)
+    value[nonzero], covariance[np.ix_(nonzero, nonzero)] = mean * unit, spread * np.outer(unit, unit)
     return Line(value=value, covariance=covariance)
 
 

@@ -49,10 +49,10 @@ def stretches_at_working_point(
     """
     near = [stretch for stretch in stretches if abs(stretch.set_point_v - campaign.offset_v) < _NEAR_V]
     if not near:
-        found = ", ".join(f"{stretch.set_point_v:.2f} V" for stretch in stretches) or "none"
+        levels = ", ".join(f"{stretch.set_point_v:.2f} V" for stretch in stretches) or "none"
         raise SignalError(
             f"channel {channel}: expected a quiet stretch of at least 15 s near the working voltage "
-            f"of {campaign.offset_v:g} V, found steady levels at {found}; check offset_v in the "
+            f"of {campaign.offset_v:g} V, found steady levels at {levels}; check offset_v in the "
             "campaign file."
         )
     return tuple(stretch for stretch in near if _between_tests(stretch, campaign)) or tuple(near)
@@ -172,11 +172,11 @@ def mean_of_stretches(values: list[float], deviations: list[float], weight: Floa
         Weight of each stretch, shape (stretches,).
     """
     share = weight / weight.sum()
-    found = np.array(values)
-    mean = float(share @ found)
-    if found.size == 1:
+    means = np.array(values)
+    mean = float(share @ means)
+    if means.size == 1:
         return mean, deviations[0]
     # effective number of stretches: long ones count more
     effective = 1.0 / float(np.sum(share**2))
-    variance = float(share @ (found - mean) ** 2) / max(effective - 1.0, 1e-9)
+    variance = float(share @ (means - mean) ** 2) / max(effective - 1.0, 1e-9)
     return mean, float(np.sqrt(variance))

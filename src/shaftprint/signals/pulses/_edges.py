@@ -57,10 +57,10 @@ def pulse_levels(channel: "Channel", *, edge: str = "rising") -> PulseLevels:
         If there are neither two levels that stand clear of the noise nor even swings: the channel is dead or
         saturated.
     """
-    found = spots(channel)
-    counts = np.concatenate(found).astype(np.float64)
+    stretches = spots(channel)
+    counts = np.concatenate(stretches).astype(np.float64)
     low, high, noise, above = _two_levels(counts)
-    if high - low <= _LEAST_SEPARATION * noise and _swings_evenly(found, low, high):
+    if high - low <= _LEAST_SEPARATION * noise and _swings_evenly(stretches, low, high):
         noise = float(np.median(np.abs(np.diff(counts, 2)))) / (_MEDIAN * _SECOND_DIFFERENCE)
     if high - low <= _LEAST_SEPARATION * noise or high == low:
         raise SignalError(
@@ -92,14 +92,14 @@ def find_edges(samples: Iterable[Counts], levels: PulseLevels) -> FloatArray:
     low, high = sign * levels.low, sign * levels.high
     arm, middle, fire = (low + share * (high - low) for share in (_ARM, _EDGE, _FIRE))
     state = np.array([0.0, np.inf, 0.0])
-    found = []
+    positions = []
     first = 0
     for block in samples:
         edges = np.empty(block.size // 2 + 1)
         count = scan_edges(block, first, sign, arm, middle, fire, state, edges)
-        found.append(edges[:count].copy())
+        positions.append(edges[:count].copy())
         first += block.size
-    return np.concatenate(found) if found else np.empty(0)
+    return np.concatenate(positions) if positions else np.empty(0)
 
 
 @compiled(nogil=True)
@@ -114,15 +114,15 @@ def scan_edges(  # type: ignore[no-untyped-def]
     armed = state[0] != 0.0
     previous = state[1]
     crossing = state[2]
-    found = 0
+    count = 0
     for k in range(counts.size):
         value = sign * counts[k]
         if armed:
             if previous < middle <= value:
                 crossing = first + k - 1 + (middle - previous) / (value - previous)
             if value >= fire:
-                edges[found] = crossing
-                found += 1
+                edges[count] = crossing
+                count += 1
                 armed = False
             elif np.isnan(value):
                 # a pulse that began before a gap must not be timed behind it
@@ -133,7 +133,7 @@ def scan_edges(  # type: ignore[no-untyped-def]
     state[0] = 1.0 if armed else 0.0
     state[1] = previous
     state[2] = crossing
-    return found
+    return count
 
 
 def _swings_evenly(stretches: Sequence[Counts], low: float, high: float) -> bool:

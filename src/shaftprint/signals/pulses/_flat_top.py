@@ -32,15 +32,15 @@ def expect_whole_crests(channel: "Channel") -> tuple[Reason, ...]:
     """
     values = np.concatenate(spots(channel))
     levels, counts = np.unique(values, return_counts=True)
-    found = []
-    for end, place, order in (("highest", -1, slice(None, None, -1)), ("lowest", 0, slice(None))):
-        share = counts[place] / values.size
+    flat_ends = []
+    for end, index, order in (("highest", -1, slice(None, None, -1)), ("lowest", 0, slice(None))):
+        share = counts[index] / values.size
         if share > _LEAST_SHARE and _stands_out(counts[order]):
-            level = float(levels[place]) * channel.scale + channel.offset
-            found.append((end, level, share))
-    if not found:
+            level = float(levels[index]) * channel.scale + channel.offset
+            flat_ends.append((end, level, share))
+    if not flat_ends:
         return ()
-    end, level, share = max(found, key=lambda one: one[2])
+    end, level, share = max(flat_ends, key=lambda one: one[2])
     return (
         Reason(
             kind="clipping",
@@ -55,5 +55,5 @@ def expect_whole_crests(channel: "Channel") -> tuple[Reason, ...]:
 
 def _stands_out(counts: NDArray[Any]) -> bool:
     """Return whether the first of the counts is many times those that follow."""
-    beside = counts[1 : 1 + _BESIDE]
-    return bool(beside.size == _BESIDE and counts[0] > _TIMES * np.median(beside))
+    following = counts[1 : 1 + _BESIDE]
+    return bool(following.size == _BESIDE and counts[0] > _TIMES * np.median(following))

@@ -69,10 +69,10 @@ def number_pulses(position: FloatArray, *, channel: str) -> PulseTrain:
         )
     kept, faults = _without_doubled(position)
     interval = np.diff(kept)
-    left, right = _neighbours(interval)
+    before, after = _neighbours(interval)
     missing = np.zeros(interval.size, dtype=np.int64)
-    long = interval > _LONG * np.maximum(left, right)
-    expected = 0.5 * (left + right)
+    long = interval > _LONG * np.maximum(before, after)
+    expected = 0.5 * (before + after)
     missing[long] = np.rint(interval[long] / expected[long]).astype(np.int64) - 1
     faults += [
         PulseFault(
@@ -97,11 +97,11 @@ def _without_doubled(position: FloatArray) -> tuple[FloatArray, list[PulseFault]
     faults: list[PulseFault] = []
     while position.size > 2 * _NEIGHBOURS:
         interval = np.diff(position)
-        left, right = _neighbours(interval)
-        short = np.flatnonzero(interval < _SHORT * np.minimum(left, right))
+        before, after = _neighbours(interval)
+        short = np.flatnonzero(interval < _SHORT * np.minimum(before, after))
         dropped: list[int] = []
         for k in short:
-            edge = _edge_too_many(interval, int(k), 0.5 * float(left[k] + right[k]))
+            edge = _edge_too_many(interval, int(k), 0.5 * float(before[k] + after[k]))
             # intervals beside a dropped edge are no longer what they were: next round
             if edge is not None and (not dropped or edge > dropped[-1] + 1):
                 dropped.append(edge)

@@ -59,16 +59,16 @@ def sample_slopes(x, y, slope, start: float, step: float, out) -> None:  # type:
     last = x.size - 1
     k = 0
     for j in range(out.size):
-        place = start + j * step
-        if place <= x[0]:
+        position = start + j * step
+        if position <= x[0]:
             out[j] = slope[0]
-        elif place >= x[last]:
+        elif position >= x[last]:
             out[j] = slope[last]
         else:
-            while x[k + 1] < place:
+            while x[k + 1] < position:
                 k += 1
             width = x[k + 1] - x[k]
-            u = (place - x[k]) / width
+            u = (position - x[k]) / width
             chord = (y[k + 1] - y[k]) / width
             out[j] = (
                 6.0 * u * (1.0 - u) * chord

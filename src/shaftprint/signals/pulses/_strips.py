@@ -46,13 +46,13 @@ def find_strips(train: "PulseTrain", strips: int, *, channel: str) -> StripAngle
     strip = train.number[:-1] % strips
     angle, deviation = np.empty(strips), np.empty(strips)
     for k in range(strips):
-        found = share[steady & (strip == k)]
-        if found.size < _FEWEST_REVOLUTIONS:
+        shares = share[steady & (strip == k)]
+        if shares.size < _FEWEST_REVOLUTIONS:
             raise SignalError(
                 f"channel {channel}: expected at least {_FEWEST_REVOLUTIONS} steady revolutions "
-                f"to find the angles of its {strips} strips, found {found.size}."
+                f"to find the angles of its {strips} strips, found {shares.size}."
             )
-        angle[k], deviation[k] = _clipped_mean(found)
+        angle[k], deviation[k] = _clipped_mean(shares)
     # the angles of one turn: what is left over is shared in proportion
     total = angle.sum()
     return StripAngles(channel=channel, angle_rev=frozen_float(angle / total), std_rev=frozen_float(deviation / total))
@@ -122,15 +122,15 @@ def unplaced_stretches(train: "PulseTrain", strips: int, gaps: IntArray) -> list
     borders = np.flatnonzero(np.diff(train.number) > 1)
     starts, ends = np.concatenate([[0], borders + 1]), np.concatenate([borders, [train.number.size - 1]])
     longest = int(np.argmax(ends - starts))
-    found = []
+    stretches = []
     for gap in gaps.tolist():
         behind = int(np.searchsorted(starts, gap, side="right"))
         # behind, as seen from the longest stretch, at which the count begins
         stretch = behind if behind > longest else behind - 1
         inside = slice(starts[stretch], ends[stretch])
         if not np.all(np.isfinite(_pattern(share, steady, train.number, inside, strips))):
-            found.append((float(train.position[starts[stretch]]), float(train.position[ends[stretch]])))
-    return found
+            stretches.append((float(train.position[starts[stretch]]), float(train.position[ends[stretch]])))
+    return stretches
 
 
 def _interval_shares(train: "PulseTrain", strips: int) -> tuple[FloatArray, BoolArray]:
@@ -147,10 +147,10 @@ def _interval_shares(train: "PulseTrain", strips: int) -> tuple[FloatArray, Bool
     turn = np.convolve(interval, weights, mode="valid")
     inside = slice(half, half + turn.size)
     share[inside] = interval[inside] / turn
-    whole = np.diff(train.number) == 1
+    consecutive = np.diff(train.number) == 1
     changed = np.full(turn.size, np.inf)
     changed[strips:-strips] = np.abs(turn[2 * strips :] / turn[: -2 * strips] - 1.0)
-    complete = np.convolve(whole, np.ones(4 * half + 1), mode="same") > 4 * half
+    complete = np.convolve(consecutive, np.ones(4 * half + 1), mode="same") > 4 * half
     steady[inside] = (changed < _STEADY) & complete[inside]
     return share, steady
 
