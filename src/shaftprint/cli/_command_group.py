@@ -99,5 +99,5 @@ class CommandGroup(LazyGroup):
 
 
 def _describe(error: OSError) -> str:
-    place = f"{error.filename}: " if error.filename is not None else ""
-    return f"{place}{error.strerror or error}; check the path, the permissions and the free space."
+    prefix = f"{error.filename}: " if error.filename is not None else ""
+    return f"{prefix}{error.strerror or error}; check the path, the permissions and the free space."

@@ -15,8 +15,8 @@ def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], core: Id
     for name, words in SENTENCES.items():
         quantity = fingerprint.quantity(name)
         unit = "" if quantity.unit == "-" else f" {quantity.unit}"
-        given = _given(quantity, fingerprint)
-        value = on_terminal(f"{_value(quantity)}{unit}{given}; true value {rounded(truth[name])}{unit}.")
+        remark = _given(quantity, fingerprint)
+        value = on_terminal(f"{_value(quantity)}{unit}{remark}; true value {rounded(truth[name])}{unit}.")
         echo(f"  * {words}: {value}")
     for sentence in _of_the_thesis(fingerprint, core):
         echo(f"  * {sentence}")

@@ -69,20 +69,20 @@ def _parameters(truth: Truth, structure: Structure, signals: Signals) -> dict[st
 
 
 def _calibration(truth: Truth, signals: Signals) -> dict[str, float]:
-    found = {
+    true_values = {
         "set-point slope": truth.set_point_slope_rpm_per_v,
         "set-point intercept": truth.set_point_intercept_rpm,
     }
     for strips in signals.strips:
-        true = next(known for known in truth.strips if known.channel == strips.channel)
+        true = next(candidate for candidate in truth.strips if candidate.channel == strips.channel)
         for number, angle in enumerate(_turned(true, strips), start=1):
-            found[f"{strips.channel} strip {number}"] = angle
-    return found
+            true_values[f"{strips.channel} strip {number}"] = angle
+    return true_values
 
 
 def _turned(true: StripTruth, strips: StripAngles) -> list[float]:
     """Return the true angles from the strip on that was counted first, which no recording shows."""
-    found = DEGREES_PER_REVOLUTION * strips.angle_rev
-    turns = [np.roll(true.angle_deg, shift) for shift in range(found.size)]
-    closest: list[float] = min(turns, key=lambda angles: float(np.abs(angles - found).max())).tolist()
+    identified_deg = DEGREES_PER_REVOLUTION * strips.angle_rev
+    turns = [np.roll(true.angle_deg, shift) for shift in range(identified_deg.size)]
+    closest: list[float] = min(turns, key=lambda angles: float(np.abs(angles - identified_deg).max())).tolist()
     return closest

@@ -92,22 +92,23 @@ def held_structures(chosen: Sequence[Structure], options: FitOptions) -> tuple[S
         If a parameter that is held or freed is in none of them.
     """
     held = dict(options.held)
-    unused = [name for name in held if not any(name in found.names for found in chosen)]
+    unused = [name for name in held if not any(name in structure.names for structure in chosen)]
     if unused:
         raise StructureError(
-            f"--hold {', '.join(unused)}: expected a parameter of {', '.join(found.name for found in chosen)}, "
-            f"which have {', '.join(sorted({name for found in chosen for name in found.names}))}."
+            f"--hold {', '.join(unused)}: expected a parameter of {', '.join(structure.name for structure in chosen)}, "
+            f"which have {', '.join(sorted({name for structure in chosen for name in structure.names}))}."
         )
-    taken = tuple(
-        found.held_at(**{name: value for name, value in held.items() if name in found.names}) for found in chosen
+    structures = tuple(
+        structure.held_at(**{name: value for name, value in held.items() if name in structure.names})
+        for structure in chosen
     )
-    anywhere = _free_names(taken)
+    anywhere = _free_names(structures)
     unknown = [name for name in options.freed if name not in anywhere]
     if unknown:
         raise StructureError(
             f"--free {', '.join(unknown)}: expected a free parameter, one of {', '.join(sorted(anywhere))}."
         )
-    return taken
+    return structures
 
 
 def settings_of(structures: Sequence[Structure], options: FitOptions) -> SettingsOf:
@@ -137,4 +138,4 @@ def _stated(chosen: Structure, structures: Sequence[Structure], stated: Mapping[
 
 
 def _free_names(structures: Sequence[Structure]) -> set[str]:
-    return {parameter.name for found in structures for parameter in found.free}
+    return {parameter.name for structure in structures for parameter in structure.free}

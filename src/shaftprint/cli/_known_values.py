@@ -62,8 +62,8 @@ def _slope(context: click.Context, parameter: click.Parameter, value: float | No
 
 
 def _split(text: str) -> tuple[str, str]:
-    name, _, rest = text.partition("=")
-    return name.strip(), rest.strip()
+    name, _, value = text.partition("=")
+    return name.strip(), value.strip()
 
 
 def _number(text: str) -> float:

@@ -14,8 +14,8 @@ NAMES = "a path, or the name of a shipped one such as"
 
 def structure_sources(names: Sequence[TypedName]) -> tuple[SourceFile, ...]:
     """Return the user's files that structures were taken from, each once, with their hashes."""
-    own = (own_file(name) for name in names)
-    paths = {found[0].resolve() for found in own if found is not None}
+    files = (own_file(name) for name in names)
+    paths = {file[0].resolve() for file in files if file is not None}
     return tuple(
         SourceFile(role="structure", name=path.name, sha256=hashlib.sha256(path.read_bytes()).hexdigest())
         for path in sorted(paths)

@@ -48,20 +48,20 @@ def chosen_structures(texts: Sequence[TypedName]) -> tuple[Structure, ...]:
         If there is no such structure, a file fails, or two structures have the same name.
     """
     modules: dict[Path, ModuleType] = {}
-    found: dict[str, Structure] = {}
+    structures: dict[str, Structure] = {}
     for text in texts:
-        own = own_file(text)
-        if own is None:
-            found.setdefault(text.upper(), shipped_structure(text))
+        user_file = own_file(text)
+        if user_file is None:
+            structures.setdefault(text.upper(), shipped_structure(text))
             continue
-        path, name = own
+        path, name = user_file
         key = f"{path.resolve()}:{name}"
-        if key not in found:
+        if key not in structures:
             if path not in modules:
                 modules[path] = _run(path, text)
-            found[key] = _taken(modules[path], path, name)
-    _expect_different_names(found)
-    return tuple(found.values())
+            structures[key] = _taken(modules[path], path, name)
+    _expect_different_names(structures)
+    return tuple(structures.values())
 
 
 def own_file(text: TypedName) -> tuple[Path, str] | None:
@@ -87,14 +87,14 @@ def _run(path: Path, text: str) -> ModuleType:
     if not path.is_file():
         what = "a folder" if path.is_dir() else "nothing there"
         raise StructureError(f"{path}: expected a Python file, found {what}.")
-    place = str(path.resolve())
-    spec = spec_from_file_location(place, place, loader=_Text(place, place))
+    origin = str(path.resolve())
+    spec = spec_from_file_location(origin, origin, loader=_Text(origin, origin))
     assert spec is not None  # noqa: S101 - a loader was given
     module = module_from_spec(spec)
     # a dataclass looks its module up there
-    sys.modules[place] = module
+    sys.modules[origin] = module
     with _one_sentence(path), _beside(path):
-        _Text(place, place).exec_module(module)
+        _Text(origin, origin).exec_module(module)
     return module
 
 
@@ -108,37 +108,37 @@ class _Text(SourceFileLoader):
 
 def _taken(module: ModuleType, path: Path, name: str) -> Structure:
     """Return a structure out of a file that was run, or what a function of it returns."""
-    known = _names(module)
+    names = _names(module)
     if not name:
-        example = known[0] if known else "my_loop"
+        example = names[0] if names else "my_loop"
         raise StructureError(f"{path}: expected the name of a structure in it, such as {path}:{example}.")
     if not hasattr(module, name):
-        others = f"; its structures are {', '.join(known)}" if known else ", and no other structure in it"
+        others = f"; its structures are {', '.join(names)}" if names else ", and no other structure in it"
         raise StructureError(f"{path}: found no {name}{others}.")
-    found = getattr(module, name)
-    if not isinstance(found, Structure):
-        if not callable(found):
+    structure = getattr(module, name)
+    if not isinstance(structure, Structure):
+        if not callable(structure):
             raise StructureError(
                 f"{path}:{name}: expected a Structure, or a function without arguments that returns one, found "
-                f"{type(found).__name__}."
+                f"{type(structure).__name__}."
             )
-        asked = _required(found)
-        if asked:
+        arguments = _required(structure)
+        if arguments:
             raise StructureError(
-                f"{path}:{name}: expected a function without arguments, found arguments {', '.join(asked)}."
+                f"{path}:{name}: expected a function without arguments, found arguments {', '.join(arguments)}."
             )
         with _one_sentence(path), _beside(path):
-            found = found()
-    if not isinstance(found, Structure):
-        raise StructureError(f"{path}:{name}: expected a Structure, found {type(found).__name__}.")
+            structure = structure()
+    if not isinstance(structure, Structure):
+        raise StructureError(f"{path}:{name}: expected a Structure, found {type(structure).__name__}.")
     with _one_sentence(path, prefix=f"{path}:{name}"):
-        check_structure(found)
-    if found.name.upper() in STRUCTURES:
+        check_structure(structure)
+    if structure.name.upper() in STRUCTURES:
         raise StructureError(
-            f"{path}:{name}: its name {found.name} is that of a shipped structure; give it its own, with "
+            f"{path}:{name}: its name {structure.name} is that of a shipped structure; give it its own, with "
             'dataclasses.replace(structure, name="...").'
         )
-    return found
+    return structure
 
 
 def _names(module: ModuleType) -> list[str]:
@@ -184,10 +184,10 @@ def _one_sentence(path: Path, *, prefix: str | None = None) -> Iterator[None]:
     try:
         yield
     except (Exception, SystemExit) as error:
-        own = str(path.resolve())
-        lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == own]
+        file_name = str(path.resolve())
+        lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == file_name]
         message = " ".join(str(error).split())
-        if isinstance(error, SyntaxError) and error.filename == own:
+        if isinstance(error, SyntaxError) and error.filename == file_name:
             lines, message = [error.lineno], error.msg
         where = f"{path}, line {lines[-1]}" if lines else prefix or str(path)
         if not isinstance(error, ShaftprintError):
@@ -200,7 +200,7 @@ def _expect_different_names(found: dict[str, Structure]) -> None:
     for text, chosen in found.items():
         other = owners.setdefault(chosen.name.upper(), text)
         if other != text:
-            one, two = (Path(place).name for place in (other, text))
+            one, two = (Path(source).name for source in (other, text))
             raise StructureError(
                 f"two structures have the name {chosen.name}, {one} and {two}: give one of them another name."
             )

@@ -84,15 +84,15 @@ def _by_name(chosen: Structure, given: Mapping[str, float]) -> SimulatedModel:
 
 
 def _of_fingerprint(chosen: Structure, fingerprint: Fingerprint, given: Mapping[str, float]) -> SimulatedModel:
-    found = {quantity.name: quantity.value for quantity in fingerprint.parameters}
-    known = found | fingerprint.held
-    foreign = [name for name in known if name not in chosen.names]
+    identified = {quantity.name: quantity.value for quantity in fingerprint.parameters}
+    values = identified | fingerprint.held
+    foreign = [name for name in values if name not in chosen.names]
     if foreign:
         raise FingerprintError(
             f"fingerprint of {fingerprint.structure}: expected the parameters of structure {chosen.name}, found "
             f"{', '.join(foreign)} too; name the structure that it was identified with, or one that has all of them."
         )
-    missing = [p for p in chosen.parameters if not p.held and p.name not in known and p.name not in given]
+    missing = [p for p in chosen.parameters if not p.held and p.name not in values and p.name not in given]
     if missing:
         usual = " ".join(f"--set {p.name}={p.value:g}" for p in missing)
         raise StructureError(
@@ -100,14 +100,14 @@ def _of_fingerprint(chosen: Structure, fingerprint: Fingerprint, given: Mapping[
             f"of {fingerprint.structure} does not have; give them, usual ones are {usual}."
         )
     std = {quantity.name: quantity.std for quantity in fingerprint.parameters}
-    free = [name for name in found if name not in given]
+    free = [name for name in identified if name not in given]
     uncertain = [name for name in free if np.isfinite(std[name]) and std[name] > 0.0]
     fixed = {name: value for name, value in (fingerprint.held | dict(given)).items() if name in chosen.names}
-    origins = dict.fromkeys(chosen.names, "usual value") | dict.fromkeys(known, "fingerprint")
+    origins = dict.fromkeys(chosen.names, "usual value") | dict.fromkeys(values, "fingerprint")
     origins |= dict.fromkeys(given, "--set")
     return SimulatedModel(
         structure=chosen.held_at(**fixed),
-        values=frozen_float(chosen.vector(known | dict(given))),
+        values=frozen_float(chosen.vector(values | dict(given))),
         origins=tuple(origins[name] for name in chosen.names),
         uncertain=tuple(uncertain),
         covariance=frozen_float(fingerprint.covariance_of(uncertain)),

@@ -168,12 +168,12 @@ def campaign_drive(
     samples = _at_least_two(int(np.floor((end - begin) * rate_hz + 1e-9)) + 1)
     time = frozen_float(begin + np.arange(samples) / rate_hz)
     fine = begin + np.arange((samples - 1) * every + 1) / (rate_hz * every)
-    asked = 0.5 * (_asked(campaign, place, fine - _BESIDE_S) + _asked(campaign, place, fine + _BESIDE_S))
-    asked[0] = _asked(campaign, place, fine[:1] + _BESIDE_S)[0]
+    set_point = 0.5 * (_asked(campaign, place, fine - _BESIDE_S) + _asked(campaign, place, fine + _BESIDE_S))
+    set_point[0] = _asked(campaign, place, fine[:1] + _BESIDE_S)[0]
     return Drive(
         time_s=time,
         every=every,
-        inputs={SET_POINT: asked},
+        inputs={SET_POINT: set_point},
         # a step that is due now has been made
         shown={SET_POINT: _asked(campaign, place, time + _BESIDE_S)},
         units={SET_POINT: "-"},
@@ -209,10 +209,10 @@ def file_drive(
         If the file cannot be read, a column is missing, or two have different clocks.
     """
     with read_recording(path) as recording:
-        taken = {name: _channel(recording.channels, name, path) for name in structure.inputs}
-        clocks = {(channel.rate_hz, channel.start_s, channel.count) for channel in taken.values()}
+        channels = {name: _channel(recording.channels, name, path) for name in structure.inputs}
+        clocks = {(channel.rate_hz, channel.start_s, channel.count) for channel in channels.values()}
         if len(clocks) != 1:
-            raise RecordingError(f"{path}: expected one clock for {', '.join(taken)}, found {len(clocks)}.")
+            raise RecordingError(f"{path}: expected one clock for {', '.join(channels)}, found {len(clocks)}.")
         ((rate_hz, start_s, count),) = clocks
         first, last = 0, count
         if span is not None:
@@ -225,8 +225,8 @@ def file_drive(
             last += 1
         _at_least_two(last - first)
         time = start_s + np.arange(first, last) / rate_hz
-        inputs = {name: _in_own_units(channel, path, name, place, first, last) for name, channel in taken.items()}
-    units = {name: "-" if name == SET_POINT else channel.unit for name, channel in taken.items()}
+        inputs = {name: _in_own_units(channel, path, name, place, first, last) for name, channel in channels.items()}
+    units = {name: "-" if name == SET_POINT else channel.unit for name, channel in channels.items()}
     return Drive(time_s=time, every=1, inputs=inputs, shown=inputs, units=units, hold=hold)
 
 

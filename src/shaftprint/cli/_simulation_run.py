@@ -82,13 +82,13 @@ def _deviation(slopes: FloatArray, covariance: FloatArray) -> FloatArray:
 
 def signals_of(drive: Drive, prediction: Prediction, place: Place | None) -> tuple[SimulatedSignal, ...]:
     """Return inputs and outputs with names and units: rpm and N m where the working point is known."""
-    found = []
+    signals = []
     for name, values in drive.shown.items():
-        found.append(_signal(name, drive.units[name], values, None, place, is_input=True))
+        signals.append(_signal(name, drive.units[name], values, None, place, is_input=True))
     for name, values in prediction.outputs.items():
         std = None if prediction.std is None else prediction.std[name]
-        found.append(_signal(name, "-" if name in DEVIATIONS else "", values, std, place, is_input=False))
-    return tuple(found)
+        signals.append(_signal(name, "-" if name in DEVIATIONS else "", values, std, place, is_input=False))
+    return tuple(signals)
 
 
 def _signal(

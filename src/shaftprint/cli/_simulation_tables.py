@@ -60,8 +60,8 @@ def print_simulation(
     if model.uncertain:
         echo("The standard deviations hold the covariance of the parameters, not noise, weather or load.")
     if model.not_known:
-        left = "it" if len(model.not_known) == 1 else "them"
-        echo(f"The test said nothing of {', '.join(model.not_known)}: the band leaves {left} out.")
+        pronoun = "it" if len(model.not_known) == 1 else "them"
+        echo(f"The test said nothing of {', '.join(model.not_known)}: the band leaves {pronoun} out.")
     for sentence in warnings:
         echo(sentence)
 

@@ -96,7 +96,7 @@ def fingerprint_model(fingerprint: Fingerprint, structure: Structure, signals: S
         If the structure has other parameters than the fingerprint, or the working points of both differ by more than
         2 %.
     """
-    found = identified_model(fingerprint, structure)
+    model = identified_model(fingerprint, structure)
     here = rpm_from_rev_s(signals.working_point.engine_speed_rev_s)
     there = fingerprint.conditions.engine_speed.value
     if abs(here / there - 1.0) > _SAME_WORKING_POINT:
@@ -104,15 +104,15 @@ def fingerprint_model(fingerprint: Fingerprint, structure: Structure, signals: S
             f"fingerprint of {fingerprint.conditions.vessel}: expected a recording around its working point of "
             f"{there:.1f} rpm, found {here:.1f} rpm; identify the recording at its own working point."
         )
-    lost = ~np.isfinite(np.diag(found.covariance))
-    own = any(s.role == "recording" and s.sha256 == signals.recording_sha256 for s in fingerprint.sources)
+    lost = ~np.isfinite(np.diag(model.covariance))
+    same_recording = any(s.role == "recording" and s.sha256 == signals.recording_sha256 for s in fingerprint.sources)
     return Model(
         name=fingerprint.structure,
-        structure=found.structure,
-        values=found.values,
-        covariance=frozen_float(np.where(lost[:, None] | lost[None, :], 0.0, found.covariance)),
-        used=fingerprint.conditions.lines_used if own else (),
-        not_known=found.not_known,
+        structure=model.structure,
+        values=model.values,
+        covariance=frozen_float(np.where(lost[:, None] | lost[None, :], 0.0, model.covariance)),
+        used=fingerprint.conditions.lines_used if same_recording else (),
+        not_known=model.not_known,
     )
 
 

@@ -71,7 +71,7 @@ def command(
             render_comparison(folder, named, structures=structures, load_repeatability=load)
     apart = {name: differences(first, other, load_repeatability=load) for name, other in others}
     for name, other in others:
-        doubtful = [said for said, one in ((first_name, first), (name, other)) if not one.verdict.trustworthy]
+        doubtful = [label for label, one in ((first_name, first), (name, other)) if not one.verdict.trustworthy]
         answer = change_in_words(apart[name])
         if doubtful:
             answer = f"It cannot be told: not trustworthy: {', '.join(doubtful)}."
@@ -92,7 +92,7 @@ def _named(places: tuple[Path, ...], names: tuple[str, ...]) -> dict[str, Finger
     called = names or _short_names(places)
     if len(set(called)) < len(called):
         raise click.UsageError(f"expected different names, found {', '.join(called)}; tell them apart with --name.")
-    return {name: fingerprint_at(place) for name, place in zip(called, places, strict=True)}
+    return {name: fingerprint_at(path) for name, path in zip(called, places, strict=True)}
 
 
 def _short_names(places: tuple[Path, ...]) -> tuple[str, ...]:
@@ -100,20 +100,20 @@ def _short_names(places: tuple[Path, ...]) -> tuple[str, ...]:
 
     ``fingerprint.json`` is called by the folder around it.
     """
-    parts = [_parts(place) for place in places]
-    taken = [1] * len(parts)
+    parts = [_parts(path) for path in places]
+    counts = [1] * len(parts)
     while True:
-        names = ["/".join(own[-count:]) for own, count in zip(parts, taken, strict=True)]
-        known = zip(names, parts, taken, strict=True)
-        alike = [names.count(name) > 1 and count < len(own) for name, own, count in known]
+        names = ["/".join(path_parts[-count:]) for path_parts, count in zip(parts, counts, strict=True)]
+        rows = zip(names, parts, counts, strict=True)
+        alike = [names.count(name) > 1 and count < len(path_parts) for name, path_parts, count in rows]
         if not any(alike):
             return tuple(names)
-        taken = [count + more for count, more in zip(taken, alike, strict=True)]
+        counts = [count + more for count, more in zip(counts, alike, strict=True)]
 
 
 def _parts(place: Path) -> tuple[str, ...]:
-    whole = place.resolve()
-    folder = whole.parent if whole.name == FINGERPRINT else whole.with_name(whole.name.removesuffix(".json"))
+    path = place.resolve()
+    folder = path.parent if path.name == FINGERPRINT else path.with_name(path.name.removesuffix(".json"))
     return folder.parts
 
 

@@ -57,14 +57,14 @@ def command(
     targets = [output / f"{path.name.removesuffix('.gz')}.nc" if into_folder else output for path in recordings]
     for target in targets:
         expect_no_input(target, *recordings)
-    given = dict(_unit(text) for text in units)
+    unit_of = dict(_unit(text) for text in units)
     with progress(hidden=no_progress) as steps:
         for source, target in zip(recordings, targets, strict=True):
             expect_known_ending(target)
             steps.begin(f"Converting {source.name}")
-            with read_recording(source, **hints_of(**said)) as whole:
-                opened = cut(_only(whole, chosen), from_s=from_s, to_s=to_s)
-                channels = [_with_unit(opened, name, given) for name in opened.channels]
+            with read_recording(source, **hints_of(**said)) as recording:
+                opened = cut(_only(recording, chosen), from_s=from_s, to_s=to_s)
+                channels = [_with_unit(opened, name, unit_of) for name in opened.channels]
                 write_by_ending(target, channels, attributes=opened.attributes, overwrite=force)
                 left_out = dict(opened.left_out) | _facts_left_out(opened, target)
             for name, reason in left_out.items():
@@ -87,8 +87,8 @@ def _facts_left_out(opened: Recording, target: Path) -> dict[str, str]:
 
 
 def _unit(text: str) -> tuple[str, str]:
-    name, found, unit = text.rpartition("=")
-    if not found or not name:
+    name, separator, unit = text.rpartition("=")
+    if not separator or not name:
         raise click.UsageError(f'--unit: expected CHANNEL=UNIT such as M_s="N m", found "{text}".')
     return name, unit
 

@@ -74,11 +74,11 @@ def command(vessel: str, found: Path | None, drawing: Path | None, force: bool) 
         expect_no_input(drawing, Path(vessel), None if found is None else fingerprint_file(found))
         expect_free(drawing, force=force)
     ship = load_vessel(vessel)
-    expected, beside = _expected(ship, found)
+    expected, comparisons = _expected(ship, found)
     vibrations = modes(torsional_line(ship)) if ship.links or drawing is not None else None
     if drawing is not None and vibrations is not None:
         _draw(vibrations, drawing)
-    _print(ship, expected, beside, vibrations)
+    _print(ship, expected, comparisons, vibrations)
     if drawing is not None:
         echo(drawing)
 

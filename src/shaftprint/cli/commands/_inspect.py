@@ -47,7 +47,7 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
     if campaign is not None and vessel is None:
         raise click.UsageError("--campaign needs --vessel, which says what each channel is.")
     ship = None if vessel is None else load_vessel(vessel)
-    asked = None if campaign is None else load_campaign(campaign)
+    planned = None if campaign is None else load_campaign(campaign)
     with read_recording(recording, **hints_of(**said)) as opened:
         clocks = logger_clocks(opened)
         seen = _print_channels(opened, hidden=no_progress)
@@ -59,17 +59,17 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
                 echo(line)
             return
         _print_sensors(opened, ship, hidden=no_progress)
-        if asked is not None:
-            _print_test(opened, ship, asked, hidden=no_progress)
+        if planned is not None:
+            _print_test(opened, ship, planned, hidden=no_progress)
 
 
 def _print_channels(opened: Recording, *, hidden: bool) -> list[Seen]:
     rows, seen = [], []
     with progress(hidden=hidden) as steps:
         steps.begin("Reading the channels", total=1.0)
-        found = opened.levels(steps.reach)
+        levels_of = opened.levels(steps.reach)
     for name, channel in opened.channels.items():
-        levels = found[name]
+        levels = levels_of[name]
         seen.append(Seen(channel=channel, is_pulses=levels.is_pulses))
         values = [f"{value:.5g}" for value in (levels.lowest, levels.mean, levels.highest)]
         span = f"{channel.start_s:g} to {channel.start_s + channel.duration_s:g}"
@@ -145,12 +145,12 @@ def verdict(spectra: Spectra) -> str:
     omega = response.omega_rad_s[good]
     crossover = int(np.count_nonzero((omega >= CROSSOVER_RAD_S[0]) & (omega <= CROSSOVER_RAD_S[1])))
     between = f"{crossover} of them between {CROSSOVER_RAD_S[0]:g} and {CROSSOVER_RAD_S[1]:g} rad/s"
-    found = f"{omega.size} of {good.size} lines are usable and above {LOWEST_DB:g} dB, {between}"
+    counts = f"{omega.size} of {good.size} lines are usable and above {LOWEST_DB:g} dB, {between}"
     if omega.size < FEWEST_LINES:
-        return f"Not good enough: {found}; at least {FEWEST_LINES} are needed. Use a larger amplitude or more lines."
+        return f"Not good enough: {counts}; at least {FEWEST_LINES} are needed. Use a larger amplitude or more lines."
     if crossover < FEWEST_AT_CROSSOVER:
         return (
-            f"Not good enough: {found}, where the loop crosses over; at least {FEWEST_AT_CROSSOVER} are needed there "
+            f"Not good enough: {counts}, where the loop crosses over; at least {FEWEST_AT_CROSSOVER} are needed there "
             "to find delay, lag and gain."
         )
-    return f"Good enough: {found}, where the loop crosses over."
+    return f"Good enough: {counts}, where the loop crosses over."

@@ -28,8 +28,8 @@ def command(
     expect_no_input(output, *parts)
     with ExitStack() as stack:
         opened = [stack.enter_context(read_recording(part)) for part in parts]
-        whole = cut(joined(opened, follow_on=follow_on), from_s=from_s, to_s=to_s)
-        write_recording(output, whole.channels.values(), attributes=whole.attributes, overwrite=force)
-        for channel in whole.channels.values():
+        recording = cut(joined(opened, follow_on=follow_on), from_s=from_s, to_s=to_s)
+        write_recording(output, recording.channels.values(), attributes=recording.attributes, overwrite=force)
+        for channel in recording.channels.values():
             echo(f"{channel.name}: {channel.count} samples, {channel.duration_s:.1f} s")
     echo(output)

@@ -27,8 +27,8 @@ def command(recording: Path, vessel: str, campaign: str, no_progress: bool) -> N
     trial = load_trial(vessel, campaign)
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode="shaftprint", progress=steps)
-        found = identify_limits(measurement.signals, trial.campaign, trial.vessel, progress=steps.begin)
-    print_limits(found)
+        limits = identify_limits(measurement.signals, trial.campaign, trial.vessel, progress=steps.begin)
+    print_limits(limits)
 
 
 def print_limits(found: LimitFit) -> None:

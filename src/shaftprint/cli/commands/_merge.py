@@ -51,13 +51,13 @@ def command(
     ship = None if vessel is None else load_vessel(vessel)
     names = _names(shared)
     with read_recording(reference) as still, read_recording(other) as moving:
-        found = align(
+        alignment = align(
             _content(moving, names[1], ship),
             _content(still, names[0], ship),
             latency_s=1e-3 * latency_ms,
             latency_std_s=1e-3 * latency_std_ms,
         )
-        both = merged(still, [(moving, found)])
+        both = merged(still, [(moving, alignment)])
         print_tables([clock_map_table(logger_clocks(both))])
         write_recording(output, both.channels.values(), attributes=both.attributes, overwrite=force)
     echo(output)

@@ -104,10 +104,10 @@ def command(
         ship = _recorded(recording, vessel, recorded or campaign, chosen, no_progress=no_progress)
     else:
         ship = _assumed(vessel, rpm_per_volt, chosen)
-    known = {
+    assumed_priors = {
         parameter: prior for parameter, prior in (dict(ship.priors) | dict(priors)).items() if parameter not in freed
     }
-    assumed = _values_of(chosen, known) | dict(values)
+    assumed = _values_of(chosen, assumed_priors) | dict(values)
     response = _planned(chosen, planned, ship.noise)
     possible = identifiability(chosen, rng=np.random.default_rng(SEED))
     print_prediction(
@@ -115,8 +115,8 @@ def command(
         response,
         ship.words,
         possible,
-        predict_accuracy(chosen, response, values=assumed, priors=known, combinations=possible.combinations),
-        predict_intervals(chosen, response, values=assumed, priors=known),
+        predict_accuracy(chosen, response, values=assumed, priors=assumed_priors, combinations=possible.combinations),
+        predict_intervals(chosen, response, values=assumed, priors=assumed_priors),
     )
 
 
@@ -183,16 +183,16 @@ def _planned(chosen: Structure, campaign: Campaign, noise: NoiseLevels) -> Frequ
         If the lines of a campaign do not give these.
     """
     closed = planned_response(campaign, noise)
-    given = {"n_set": closed}
+    responses = {"n_set": closed}
     if chosen.inputs in (("e",), ("M_s",)):
         speed_and_torque = closed.of_outputs("n", "M_s")
         governor, core = open_loop(expected_response(speed_and_torque, structure(CLOSED_LOOP)))
-        given |= {"e": governor, "M_s": core}
-    found = given.get(chosen.input) if len(chosen.inputs) == 1 else None
-    if found is None or not set(chosen.outputs) <= set(found.outputs):
+        responses |= {"e": governor, "M_s": core}
+    response = responses.get(chosen.input) if len(chosen.inputs) == 1 else None
+    if response is None or not set(chosen.outputs) <= set(response.outputs):
         raise StructureError(
             f"structure {chosen.name} goes from {', '.join(chosen.inputs)} to {', '.join(chosen.outputs)}; the noise "
             f"is known of {', '.join(noise.outputs)} under the set point only. Give a recording of the other channels "
             "with --from."
         )
-    return found
+    return response

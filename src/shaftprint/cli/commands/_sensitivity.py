@@ -76,11 +76,11 @@ def command(
 
 def _of_structure(name: TypedName, span: tuple[float, float]) -> "Drawings":
     (chosen,) = chosen_structures([name])
-    found = {}
+    drawings = {}
     for output, cause in chosen.channels:
         stem = f"{chosen.name}_{output}" + (f"_{cause}" if len(chosen.inputs) > 1 else "")
-        found[plain_name(stem)] = partial(plot_sensitivity, chosen, output=output, cause=cause, span_rad_s=span)
-    return found
+        drawings[plain_name(stem)] = partial(plot_sensitivity, chosen, output=output, cause=cause, span_rad_s=span)
+    return drawings
 
 
 def _of_the_thesis() -> "Drawings":

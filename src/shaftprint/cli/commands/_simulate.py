@@ -113,13 +113,13 @@ def command(
         if path is not None:
             expect_no_input(path, table, None if fingerprint is None else fingerprint_file(fingerprint))
             expect_free(path, force=force)
-    found = None if fingerprint is None else fingerprint_at(fingerprint)
-    model = simulated_model(structure, found, dict(given))
-    place = place_of(found, vessel, rpm_per_volt)
-    drive = _drive(campaign, table, model.structure, place, hold=hold, span=span, rate_hz=rate_hz)
+    identified = None if fingerprint is None else fingerprint_at(fingerprint)
+    model = simulated_model(structure, identified, dict(given))
+    working_point = place_of(identified, vessel, rpm_per_volt)
+    drive = _drive(campaign, table, model.structure, working_point, hold=hold, span=span, rate_hz=rate_hz)
     with progress(hidden=no_progress) as steps:
         prediction = predicted(model, drive, steps=steps)
-        signals = signals_of(drive, prediction, place)
+        signals = signals_of(drive, prediction, working_point)
         if figure is not None:
             steps.begin("Drawing")
             _draw(drive, signals, model.structure.name, figure)
@@ -162,12 +162,12 @@ def _warnings(structure: Structure, drive: Drive, prediction: Prediction) -> lis
     linear = all(block.is_linear for block in structure.blocks)
     if not linear or structure.input != "n_set" or not {"n", "M_s"} <= set(prediction.outputs):
         return remarks
-    left = float(np.max(prediction.outputs["n"] ** 2))
-    if left < 0.01:
+    neglected = float(np.max(prediction.outputs["n"] ** 2))
+    if neglected < 0.01:
         return remarks
     return [
         *remarks,
         f"The torque of {structure.name} is linear in the speed; at the quay it goes with the square, up to "
-        f"{100.0 * left:.0f} % of the working-point torque more. --structure GAUGE-QUADRATIC has the square, "
+        f"{100.0 * neglected:.0f} % of the working-point torque more. --structure GAUGE-QUADRATIC has the square, "
         "GAUGE-TORQUE-RATE limits too.",
     ]

@@ -13,10 +13,10 @@ def expect_no_input(output: Path, *inputs: Path | None) -> None:
     click.ClickException
         If it is one of them, by whatever name.
     """
-    for place in inputs:
-        if place is not None and output.exists() and place.exists() and output.samefile(place):
+    for source in inputs:
+        if source is not None and output.exists() and source.exists() and output.samefile(source):
             raise click.ClickException(
-                f"{output}: expected another file than the input {place}, which is not to be replaced; choose another "
+                f"{output}: expected another file than the input {source}, which is not to be replaced; choose another "
                 "name."
             )
 

@@ -62,10 +62,10 @@ def _expect_ours(path: Path, of: str, *, force: bool) -> None:
         return
     names = sorted(entry.name for entry in path.iterdir() if entry.name not in (MARKER, *CONTROL_NAMES))
     if names:
-        found = f"{names[0]}{f' and {len(names) - 1} more' if len(names) > 1 else ''}"
+        content = f"{names[0]}{f' and {len(names) - 1} more' if len(names) > 1 else ''}"
         raise click.ClickException(
             f"{path}: expected an empty folder or one with results of shaftprint {of}, found "
-            f"{f'those of shaftprint {other}' if other else found}; choose another folder, or use --force to put the "
+            f"{f'those of shaftprint {other}' if other else content}; choose another folder, or use --force to put the "
             "results between them."
         )
 

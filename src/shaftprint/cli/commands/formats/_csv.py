@@ -29,9 +29,9 @@ def command(fingerprint: Path, structure: TypedName | None, output: Path | None,
     FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. Columns are set apart
     by commas, numbers have points, and an empty cell is not known.
     """
-    found = fingerprint_at(fingerprint)
-    chosen = structure_to_use(structure, found)
-    path = file_to_write(output, exported_model(found, of=chosen), ".csv", inputs=(fingerprint,), force=force)
-    written = write_csv(found, path, of=chosen, overwrite=force)
+    identified = fingerprint_at(fingerprint)
+    chosen = structure_to_use(structure, identified)
+    path = file_to_write(output, exported_model(identified, of=chosen), ".csv", inputs=(fingerprint,), force=force)
+    written = write_csv(identified, path, of=chosen, overwrite=force)
     for table in (written.parameters, written.combinations, written.response):
         echo(table)

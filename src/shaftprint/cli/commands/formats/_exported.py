@@ -39,14 +39,14 @@ def model_to_export(fingerprint: Path, structure: TypedName | None, given: Mappi
     StructureError
         If there is no such structure or parameter, or a value is missing.
     """
-    found = fingerprint_at(fingerprint)
-    model = simulated_model(structure, found, given)
+    identified = fingerprint_at(fingerprint)
+    model = simulated_model(structure, identified, given)
     return ExportedModel(
-        title=found.conditions.vessel,
+        title=identified.conditions.vessel,
         structure=model.structure,
         values=model.values,
-        engine_speed_rpm=found.conditions.engine_speed.value,
-        shaft_torque_nm=found.conditions.shaft_torque.value,
+        engine_speed_rpm=identified.conditions.engine_speed.value,
+        shaft_torque_nm=identified.conditions.shaft_torque.value,
         uncertain=model.uncertain,
         covariance=model.covariance,
         not_known=model.not_known,
@@ -64,6 +64,6 @@ def file_to_write(
         If it is a folder or an input, its folder does not exist, or it exists and is not to be replaced.
     """
     path = output or Path(plain_name(f"{model.title}-{model.structure.name}{suffix}"))
-    expect_no_input(path, *(None if place is None else fingerprint_file(place) for place in inputs))
+    expect_no_input(path, *(None if source is None else fingerprint_file(source) for source in inputs))
     expect_free(path, force=force)
     return path

@@ -26,7 +26,8 @@ def command(fingerprint: Path, structure: TypedName | None, output: Path | None,
     FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. The file is for
     programs that know nothing of shaftprint; what is not known is null.
     """
-    found = fingerprint_at(fingerprint)
-    chosen = structure_to_use(structure, found)
-    path = file_to_write(output, exported_model(found, of=chosen), ".model.json", inputs=(fingerprint,), force=force)
-    echo(write_json(found, path, of=chosen, overwrite=force))
+    identified = fingerprint_at(fingerprint)
+    chosen = structure_to_use(structure, identified)
+    model = exported_model(identified, of=chosen)
+    path = file_to_write(output, model, ".model.json", inputs=(fingerprint,), force=force)
+    echo(write_json(identified, path, of=chosen, overwrite=force))
