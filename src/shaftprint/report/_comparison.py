@@ -71,14 +71,14 @@ def render_comparison(
             f"comparison: expected two or more fingerprints, found {len(fingerprints)}; name another one."
         )
     (first_name, first), *others = fingerprints.items()
-    found = {name: differences(first, other, load_repeatability=load_repeatability) for name, other in others}
+    comparisons = {name: differences(first, other, load_repeatability=load_repeatability) for name, other in others}
     page = Page(
         title="Fingerprints compared",
         subtitle=f"{', '.join(name for name, _ in others)} compared with {first_name}",
         created=max(fingerprint.created for fingerprint in fingerprints.values()),
         version=first.shaftprint_version,
-        cover=comparison_cover(fingerprints, found),
-        sections=_sections(fingerprints, found, structures or {}, load_repeatability),
+        cover=comparison_cover(fingerprints, comparisons),
+        sections=_sections(fingerprints, comparisons, structures or {}, load_repeatability),
         files=_files(fingerprints),
         ending="± is one standard deviation throughout; bands, intervals and error bars hold 95 %.",
     )
@@ -116,7 +116,7 @@ def _sections(
         ),
         tables=_difference_tables(first, found, normalised=True),
     )
-    beside = Section(
+    side_by_side = Section(
         key="numbers",
         title="Numbers beside each other",
         paragraphs=_warnings(fingerprints),
@@ -128,7 +128,7 @@ def _sections(
         title="Under which conditions",
         tables=(condition_table(fingerprints), *((files,) if files.rows else ())),
     )
-    return [changed, *_responses(fingerprints, structures), moving, beside, conditions]
+    return [changed, *_responses(fingerprints, structures), moving, side_by_side, conditions]
 
 
 def _difference_tables(first: str, found: Mapping[str, Sequence[Difference]], *, normalised: bool) -> list[Table]:

@@ -84,11 +84,11 @@ def closed_loop_curve(core: Curve, governor: Curve) -> Curve:
     StructureError
         If the two structures are not of that kind.
     """
-    found = [(c.structure.input, tuple(c.structure.outputs)) for c in (core, governor)]
-    if found != [("M_s", ("n",)), ("e", ("M_s",))]:
+    channels = [(c.structure.input, tuple(c.structure.outputs)) for c in (core, governor)]
+    if channels != [("M_s", ("n",)), ("e", ("M_s",))]:
         raise StructureError(
             f"structures {core.structure.name} and {governor.structure.name}: expected n of M_s and M_s of e, found "
-            f"{', '.join(outputs[0] + ' of ' + input_ for input_, outputs in found)}."
+            f"{', '.join(outputs[0] + ' of ' + input_ for input_, outputs in channels)}."
         )
     engine, shaft = governor.structure.path("M_s"), core.structure.path("n")
     torque = engine * Sensitivity(engine * shaft)

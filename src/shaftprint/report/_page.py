@@ -113,9 +113,9 @@ def write_page(
     ReportError
         If figures are to be interactive and plotly is not installed.
     """
-    place = Path(directory)
+    folder = Path(directory)
     library = plotly_script() if interactive else b""
-    with report_written_whole(place, overwrite=overwrite) as part:
+    with report_written_whole(folder, overwrite=overwrite) as part:
         pictures = [picture for section in page.sections for picture in section.pictures]
         stills, plots = {}, {}
         for number, picture in enumerate(pictures, start=1):
@@ -126,7 +126,7 @@ def write_page(
                 progress(number / len(pictures))
         scripts = _written_scripts(part, library) if interactive else None
         (part / PAGE).write_text(_html(page, stills, plots, scripts, plotly_sheets(library)), encoding="utf-8")
-    return place / PAGE
+    return folder / PAGE
 
 
 def _written_still(picture: Picture, part: Path) -> _Still:

@@ -91,9 +91,9 @@ def differences(
     """
     pair = _Pair(first=first, other=other, common=shared_errors(first, other).common, load=load_repeatability)
     kept = _shared(pair, ("physical", "margins"))
-    rest = _shared(pair, ("combinations", "parameters"))
-    kept += [found for found in rest if _is_of_line(found.first)]
-    moving = [_moving(found, first.physical) for found in rest if not _is_of_line(found.first)]
+    model_numbers = _shared(pair, ("combinations", "parameters"))
+    kept += [difference for difference in model_numbers if _is_of_line(difference.first)]
+    moving = [_moving(difference, first.physical) for difference in model_numbers if not _is_of_line(difference.first)]
     return (*_judged(kept), *_judged(moving))
 
 
@@ -204,10 +204,10 @@ def _variances(fingerprint: "Fingerprint", name: str) -> dict[str, float]:
 
 def _judged(found: Sequence[Difference]) -> list[Difference]:
     """Return the differences with their outcome after Holm's correction for their number."""
-    known = sorted((d.p_value, place) for place, d in enumerate(found) if d.p_value is not None)
+    ordered = sorted((d.p_value, index) for index, d in enumerate(found) if d.p_value is not None)
     outcomes: dict[int, Outcome] = {}
     surely = True
-    for rank, (p_value, place) in enumerate(known):
-        surely = surely and p_value <= UNLIKELY / (len(known) - rank)
-        outcomes[place] = "differs" if surely else "perhaps" if p_value <= UNLIKELY else "no difference seen"
-    return [replace(d, outcome=outcomes.get(place, d.outcome)) for place, d in enumerate(found)]
+    for rank, (p_value, index) in enumerate(ordered):
+        surely = surely and p_value <= UNLIKELY / (len(ordered) - rank)
+        outcomes[index] = "differs" if surely else "perhaps" if p_value <= UNLIKELY else "no difference seen"
+    return [replace(d, outcome=outcomes.get(index, d.outcome)) for index, d in enumerate(found)]

@@ -86,12 +86,12 @@ def beside_table(fingerprints: "Mapping[str, Fingerprint]") -> list[Table]:
 
 
 def _beside(title: str, quantities: "Mapping[str, Sequence[Quantity]]") -> Table:
-    there = {name: {q.name: q for q in found} for name, found in quantities.items()}
-    names = list(dict.fromkeys(q for found in there.values() for q in found))
+    there = {name: {q.name: q for q in column} for name, column in quantities.items()}
+    names = list(dict.fromkeys(q for column in there.values() for q in column))
     rows: list[tuple[str, ...]] = []
     for name in names:
-        units = {found[name].unit for found in there.values() if name in found}
-        cells = [_cell(found.get(name)) for found in there.values()]
+        units = {column[name].unit for column in there.values() if name in column}
+        cells = [_cell(column.get(name)) for column in there.values()]
         rows.append((Symbol(name), *cells, " or ".join(sorted(unit_text(unit) for unit in units))))
     note = "± is one standard deviation, in brackets the 95 % interval."
     return Table(title=title, columns=texts("quantity", *quantities, "unit"), rows=tuple(rows), note=note)

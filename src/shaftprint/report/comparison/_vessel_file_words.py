@@ -64,14 +64,14 @@ def vessel_file_table(fingerprints: "Mapping[str, Fingerprint]") -> Table:
     fingerprints
         Fingerprints by name; those of an earlier version, which do not hold the fields, are left out.
     """
-    known = {name: f.vessel_fields for name, f in fingerprints.items() if f.vessel_fields}
-    fields = dict.fromkeys(field for stated in known.values() for field in stated)
+    fields_of = {name: f.vessel_fields for name, f in fingerprints.items() if f.vessel_fields}
+    fields = dict.fromkeys(field for stated in fields_of.values() for field in stated)
     rows = tuple(
-        (field, *(_words(stated.get(field)) for stated in known.values()))
+        (field, *(_words(stated.get(field)) for stated in fields_of.values()))
         for field in fields
-        if len({stated.get(field) for stated in known.values()}) > 1
+        if len({stated.get(field) for stated in fields_of.values()}) > 1
     )
-    return Table(title="Where the vessel files differ", columns=texts("field", *known), rows=rows)
+    return Table(title="Where the vessel files differ", columns=texts("field", *fields_of), rows=rows)
 
 
 def _words(value: "FieldValue | None") -> str:

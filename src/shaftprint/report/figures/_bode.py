@@ -103,11 +103,11 @@ def plot_bode(
     columns = []
     for name, cause in product(names, causes):
         title = response_label(name, cause)
-        whole = Column(title=title, output=name, cause=cause, curves=curves, data=measured, span_rad_s=span_rad_s)
-        columns.append(whole)
+        column = Column(title=title, output=name, cause=cause, curves=curves, data=measured, span_rad_s=span_rad_s)
+        columns.append(column)
         if zoom_rad_s is not None:
             title = f"{title}, {zoom_rad_s[0]:g} to {zoom_rad_s[1]:g} rad/s"
-            columns.append(replace(whole, title=title, span_rad_s=zoom_rad_s))
+            columns.append(replace(column, title=title, span_rad_s=zoom_rad_s))
     return plot_columns(columns, aliasing_limit_hz=aliasing_limit_hz)
 
 
@@ -117,10 +117,10 @@ def plot_columns(columns: Sequence[Column], *, aliasing_limit_hz: float | None =
         figure = new_figure(11.5)
         grid = figure.subplots(2, len(columns), squeeze=False, sharex="col")
         entries: dict[str, Handle] = {}
-        for place, column in enumerate(columns):
-            pair = (grid[0, place], grid[1, place])
+        for index, column in enumerate(columns):
+            pair = (grid[0, index], grid[1, index])
             entries |= _draw_column(pair, column, aliasing_limit_hz)
-            letter = f"({chr(ord('a') + place)}) " if len(columns) > 1 else ""
+            letter = f"({chr(ord('a') + index)}) " if len(columns) > 1 else ""
             pair[0].set_title(f"{letter}{column.title}")
             pair[1].set_xlabel("frequency [rad/s]")
         grid[0, 0].set_ylabel("magnitude [dB re 1 s]" if columns[0].output == "E_n" else "magnitude [dB]")
@@ -134,14 +134,14 @@ def _draw_column(pair: "tuple[Axes, Axes]", column: Column, aliasing_limit_hz: f
     """Draw one output over one span into a magnitude and a phase panel; return the legend's entries."""
     entries: dict[str, Handle] = {}
     span = column.span_rad_s or column.whole_span()
-    whole = column.whole_span()
-    omega = np.geomspace(min(span[0], whole[0]), max(span[1], whole[1]), GRID_POINTS)
+    full_span = column.whole_span()
+    omega = np.geomspace(min(span[0], full_span[0]), max(span[1], full_span[1]), GRID_POINTS)
     traces = [trace_of(curve, column.output, omega, column.cause) for curve in column.curves]
-    for place, (curve, trace) in enumerate(zip(column.curves, traces, strict=True)):
-        entries |= draw_trace(pair, curve, trace, column.output, look(place), cause=column.cause)
-    for place, (label, response) in enumerate(column.data.items()):
-        style = look(place) if len(column.data) > 1 else None
-        aside = SIDEWAYS ** (place - 0.5 * (len(column.data) - 1))
+    for index, (curve, trace) in enumerate(zip(column.curves, traces, strict=True)):
+        entries |= draw_trace(pair, curve, trace, column.output, look(index), cause=column.cause)
+    for index, (label, response) in enumerate(column.data.items()):
+        style = look(index) if len(column.data) > 1 else None
+        aside = SIDEWAYS ** (index - 0.5 * (len(column.data) - 1))
         entries |= draw_data(
             pair, response, column.output, traces, style=style, label=label, sideways=aside, cause=column.cause
         )
@@ -168,9 +168,9 @@ def _set_limits(
     magnitudes, phases = [np.empty(0)], [np.empty(0)]
     for response in column.data.values():
         inside = (response.omega_rad_s >= span[0]) & (response.omega_rad_s <= span[1])
-        place = channel_of(response.outputs, response.inputs, column.output, column.cause)
-        magnitudes.append(measured_points(response, place).magnitude_db[inside])
-        phases.append(measured_phase_deg(response, place, traces)[inside])
+        index = channel_of(response.outputs, response.inputs, column.output, column.cause)
+        magnitudes.append(measured_points(response, index).magnitude_db[inside])
+        phases.append(measured_phase_deg(response, index, traces)[inside])
     seen = [(trace.omega_rad_s >= span[0]) & (trace.omega_rad_s <= span[1]) for trace in traces]
     for axes, points, lines, beyond in (
         (pair[0], magnitudes, [t.magnitude_db[i] for t, i in zip(traces, seen, strict=True)], BEYOND_DB),

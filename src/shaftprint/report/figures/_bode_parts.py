@@ -48,8 +48,8 @@ def channel_of(outputs: Iterable[str], inputs: Sequence[str], output: str, cause
 
 def trace_of(curve: "Curve", output: str, omega_rad_s: FloatArray, cause: str | None = None) -> Trace:
     """Return magnitude and unwrapped phase of one output of a model, to the first input where none is named."""
-    place = channel_of(curve.structure.outputs, curve.structure.inputs, output, cause)
-    response = curve.structure.response(curve.values, 1j * omega_rad_s)[place]
+    index = channel_of(curve.structure.outputs, curve.structure.inputs, output, cause)
+    response = curve.structure.response(curve.values, 1j * omega_rad_s)[index]
     return Trace(
         omega_rad_s=omega_rad_s,
         magnitude_db=decibel(np.abs(response)),
@@ -76,12 +76,12 @@ def measured_phase_deg(data: "FrequencyResponse", channel: int, traces: Sequence
 
 def _followed(phase: FloatArray, used: BoolArray) -> FloatArray:
     """Return phases [deg] with whole turns that make each used line lag behind the one before."""
-    found = phase.copy()
+    followed = phase.copy()
     before = phase[used][0] if used.any() else phase[0]
-    for place in range(phase.size):
-        found[place] = before + LARGEST_LEAD_DEG - np.mod(before + LARGEST_LEAD_DEG - phase[place], 360.0)
-        before = found[place] if used[place] else before
-    return found
+    for index in range(phase.size):
+        followed[index] = before + LARGEST_LEAD_DEG - np.mod(before + LARGEST_LEAD_DEG - phase[index], 360.0)
+        before = followed[index] if used[index] else before
+    return followed
 
 
 def draw_trace(
@@ -97,17 +97,17 @@ def draw_trace(
     label = plain_label(curve.label)
     bands: list[Artist] = []
     if curve.covariance is not None:
-        place = channel_of(curve.structure.outputs, curve.structure.inputs, output, cause)
+        index = channel_of(curve.structure.outputs, curve.structure.inputs, output, cause)
         few = slice(None, None, BAND_STEP)
         frequency = trace.omega_rad_s[few] / (2.0 * np.pi)
         band = model_band(curve.structure, curve.values, curve.covariance, frequency)
         halves = (
-            (band.magnitude_upper_db - band.magnitude_db)[place],
-            (band.phase_upper_deg - band.phase_deg)[place],
+            (band.magnitude_upper_db - band.magnitude_db)[index],
+            (band.phase_upper_deg - band.phase_deg)[index],
         )
-        known = bool(np.isfinite(halves).all())
-        label += f", {100.0 * band.coverage:g} % band" if known else ", no band"
-        if known:
+        finite = bool(np.isfinite(halves).all())
+        label += f", {100.0 * band.coverage:g} % band" if finite else ", no band"
+        if finite:
             bands = [
                 axes.fill_between(
                     trace.omega_rad_s[few],
@@ -139,9 +139,9 @@ def draw_data(
 ) -> dict[str, Handle]:
     """Draw a measured output with 95 % intervals, used lines filled, the others hollow; return the legend's entries."""
     entries: dict[str, Handle] = {}
-    place = channel_of(data.outputs, data.inputs, output, cause)
-    points = measured_points(data, place)
-    phase = measured_phase_deg(data, place, traces)
+    index = channel_of(data.outputs, data.inputs, output, cause)
+    points = measured_points(data, index)
+    phase = measured_phase_deg(data, index, traces)
     below = np.minimum(points.below_db, ENDLESS_DB)
     colour = DATA if style is None else style.colour
     for chosen, filled, text in (

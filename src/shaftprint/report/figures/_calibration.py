@@ -43,15 +43,17 @@ def plot_calibration(calibration: "SetPointCalibration") -> "Figure":
     bars = NORMAL_95 * SECONDS_PER_MINUTE * calibration.level_std_rev_s
     with house_style():
         figure = new_figure(7.5)
-        left, right = figure.subplots(1, 2)
+        line_axes, residual_axes = figure.subplots(1, 2)
         style = look(0)
         slope = plain_number(round(SECONDS_PER_MINUTE * calibration.slope_rev_s_per_v, 2))
         intercept = SECONDS_PER_MINUTE * calibration.intercept_rev_s
         text = f"n = {slope} rpm/V · U {'+' if intercept >= 0.0 else '−'} {abs(intercept):.1f} rpm"
-        left.plot(volts, line, color=style.colour, label=text)
-        right.axhline(0.0, color=style.colour, linewidth=1.2)
-        right.fill_between(volts, -half, half, color=style.colour, alpha=0.28, linewidth=0.0, label="95 % band of line")
-        for axes, values in ((left, levels), (right, levels - at_levels)):
+        line_axes.plot(volts, line, color=style.colour, label=text)
+        residual_axes.axhline(0.0, color=style.colour, linewidth=1.2)
+        residual_axes.fill_between(
+            volts, -half, half, color=style.colour, alpha=0.28, linewidth=0.0, label="95 % band of line"
+        )
+        for axes, values in ((line_axes, levels), (residual_axes, levels - at_levels)):
             axes.errorbar(
                 calibration.level_v,
                 values,
@@ -65,10 +67,10 @@ def plot_calibration(calibration: "SetPointCalibration") -> "Figure":
                 label="steady levels, 95 % interval",
             )
             axes.set_xlabel("set-point voltage U [V]")
-        left.set_ylabel("engine speed n [rpm]")
-        right.set_ylabel("level minus line [rpm]")
-        letter_panels((left, right), ("line through the steady levels", "residuals"))
-        legend_below(figure, legend_entries((left, right)))
+        line_axes.set_ylabel("engine speed n [rpm]")
+        residual_axes.set_ylabel("level minus line [rpm]")
+        letter_panels((line_axes, residual_axes), ("line through the steady levels", "residuals"))
+        legend_below(figure, legend_entries((line_axes, residual_axes)))
         return figure
 
 

@@ -63,14 +63,14 @@ def plot_campaign(recording: "Recording", vessel: "Vessel", campaign: "Campaign"
 
 def _range_v(campaign: "Campaign") -> tuple[float, float]:
     """Return the voltages that the picture shows: those of the campaign with some room."""
-    asked = [campaign.offset_v]
+    volts = [campaign.offset_v]
     amplitudes = [sine.amplitude_v for sine in campaign.sines] + [chirp.amplitude_v for chirp in campaign.chirps]
     for amplitude in amplitudes:
-        asked += [campaign.offset_v - amplitude, campaign.offset_v + amplitude]
+        volts += [campaign.offset_v - amplitude, campaign.offset_v + amplitude]
     for stairs in campaign.staircases:
-        asked += stairs.levels_v
-    room = BEYOND * (max(asked) - min(asked))
-    return min(asked) - room, max(asked) + room
+        volts += stairs.levels_v
+    room = BEYOND * (max(volts) - min(volts))
+    return min(volts) - room, max(volts) + room
 
 
 def _mark_spikes(axes: "Axes", time: FloatArray, volts: FloatArray) -> None:
@@ -99,12 +99,12 @@ def _name_tests(axes: "Axes", campaign: "Campaign") -> None:
     low, high = axes.get_ylim()
     height = high - low
     axes.set_ylim(low, high + 0.28 * height)
-    for number, (test, place, centre) in enumerate(zip(tests, places, middle, strict=True)):
+    for number, (test, position, centre) in enumerate(zip(tests, places, middle, strict=True)):
         # Neighbours follow each other closely: every other bar is set a little higher.
         level = high + (0.02 + 0.035 * (number % 2)) * height
         axes.plot([test.start_s, test.stop_s], [level] * 2, color="black", linewidth=1.5, solid_capstyle="butt")
-        axes.plot([centre, place], [level, high + 0.15 * height], color=REFERENCE, linewidth=0.5)
-        axes.text(place, high + 0.16 * height, test.name, ha="center", va="bottom")
+        axes.plot([centre, position], [level, high + 0.15 * height], color=REFERENCE, linewidth=0.5)
+        axes.text(position, high + 0.16 * height, test.name, ha="center", va="bottom")
 
 
 def spread(places: FloatArray | Sequence[float], gap: float, span: tuple[float, float]) -> FloatArray:
@@ -112,7 +112,7 @@ def spread(places: FloatArray | Sequence[float], gap: float, span: tuple[float, 
 
     Groups of places that are too close are set at equal distances around their own middle, within the span.
     """
-    groups = [[float(place)] for place in places]
+    groups = [[float(position)] for position in places]
     moved = True
     while moved:
         moved = False
@@ -122,7 +122,7 @@ def spread(places: FloatArray | Sequence[float], gap: float, span: tuple[float, 
                 groups[i : i + 2] = [groups[i] + groups[i + 1]]
                 moved = True
                 break
-    return np.array([place for group in groups for place in _laid_out(group, gap, span)])
+    return np.array([position for group in groups for position in _laid_out(group, gap, span)])
 
 
 def _laid_out(group: list[float], gap: float, span: tuple[float, float]) -> list[float]:

@@ -72,10 +72,10 @@ def plot_budget(budget: "Budget", names: Sequence[str] | None = None) -> "Figure
         figure = new_figure(AROUND_CM + BAR_CM * len(rows))
         axes = figure.subplots()
         places = np.arange(len(rows))
-        right, left = np.zeros(len(rows)), np.zeros(len(rows))
+        above, below = np.zeros(len(rows)), np.zeros(len(rows))
         for number, source in enumerate(shown):
             share = np.array([PERCENT * row.shares.get(source, 0.0) for row in rows])
-            start = np.where(share >= 0.0, right, left)
+            start = np.where(share >= 0.0, above, below)
             axes.barh(
                 places,
                 share,
@@ -87,12 +87,12 @@ def plot_budget(budget: "Budget", names: Sequence[str] | None = None) -> "Figure
                 linewidth=0.4,
                 label=mathtext(source),
             )
-            right, left = np.where(share >= 0.0, right + share, right), np.where(share < 0.0, left + share, left)
+            above, below = np.where(share >= 0.0, above + share, above), np.where(share < 0.0, below + share, below)
         axes.set_yticks(places, [mathtext(row.name) for row in rows])
         axes.invert_yaxis()
         axes.grid(visible=False, axis="y")
         axes.axvline(0.0, color="black", linewidth=0.8)
-        axes.set_xlim(min(0.0, float(left.min())), max(PERCENT, float(right.max())))
+        axes.set_xlim(min(0.0, float(below.min())), max(PERCENT, float(above.max())))
         axes.set_xlabel("share of the variance [%]")
         legend_below(figure, legend_entries((axes,)))
         return figure

@@ -50,14 +50,14 @@ def plot_differences(found: Mapping[str, Sequence["Difference"]]) -> "Figure":
         figure = new_figure(FRAME_CM + ROW_CM * len(names))
         axes = figure.subplots()
         axes.axvline(0.0, color=REFERENCE, linewidth=1.0)
-        for place, (label, differences) in enumerate(found.items()):
-            style = look(place)
+        for index, (label, differences) in enumerate(found.items()):
+            style = look(index)
             rows = {d.first.name: percent for d in differences if (percent := shown_percent(d)) is not None}
             at = np.array([names.index(name) for name in rows], dtype=np.float64)
             values = np.array(list(rows.values())).reshape(-1, 3)
             axes.errorbar(
                 values[:, 0],
-                at + APART * ((place + 0.5) / len(found) - 0.5),
+                at + APART * ((index + 0.5) / len(found) - 0.5),
                 xerr=[values[:, 0] - values[:, 1], values[:, 2] - values[:, 0]],
                 fmt=style.marker,
                 color=style.colour,

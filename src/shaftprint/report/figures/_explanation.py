@@ -36,8 +36,8 @@ def plot_missing_damping(explanation: "Explanation") -> "Figure":
             "governor and engine alone": curves.governor,
             "with the inertia upstream of the gauge": curves.governor * curves.inertia,
         }
-        for place, (label, values) in enumerate(models.items()):
-            drawn: dict[str, Any] = {"color": look(place).colour, "linestyle": look(place).dashes}
+        for index, (label, values) in enumerate(models.items()):
+            drawn: dict[str, Any] = {"color": look(index).colour, "linestyle": look(index).dashes}
             turned = np.degrees(np.unwrap(np.angle(values)))
             gain.plot(curves.omega_rad_s, decibel(np.abs(values)), label=label, **drawn)
             phase.plot(curves.omega_rad_s, turned, **drawn)
@@ -47,8 +47,8 @@ def plot_missing_damping(explanation: "Explanation") -> "Figure":
         phase.plot(at, measured_deg, "ko", markersize=4.0)
         speed.plot(at, [step.speed for step in explanation.lines], "ko", markersize=4.0)
         closed = {"GAUGE-CLOSED": curves.speed_gauge_aware, "OL1+OL5": curves.speed_thesis}
-        for place, (label, peak) in enumerate(closed.items(), start=2):
-            speed.plot(curves.omega_rad_s, peak, color=look(place).colour, linestyle=look(place).dashes, label=label)
+        for index, (label, peak) in enumerate(closed.items(), start=2):
+            speed.plot(curves.omega_rad_s, peak, color=look(index).colour, linestyle=look(index).dashes, label=label)
         gain.set_ylabel("dB")
         phase.set_ylabel("deg")
         speed.set_ylabel("|n / n_set| [-]")

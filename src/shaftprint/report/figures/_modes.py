@@ -70,20 +70,20 @@ def _draw(
     axes: "Axes", modes: "Modes", mode: int, chain: list[int], branches: list[tuple[int, int]], across: "FloatArray"
 ) -> None:
     line, shape = modes.line, modes.shape[mode].real
-    own, beside = look(0), look(1)
+    main, branch = look(0), look(1)
     axes.axhline(0.0, color=REFERENCE, linewidth=0.7)
     gauge = float(np.mean(across[list(line.links[line.gauge].between)]))
     axes.axvline(gauge, color=REFERENCE, linewidth=0.9, linestyle=(0.0, (1.0, 1.5)), label="torque gauge")
-    axes.plot(across[chain], shape[chain], color=own.colour, marker=own.marker, markersize=3.5, label="line")
+    axes.plot(across[chain], shape[chain], color=main.colour, marker=main.marker, markersize=3.5, label="line")
     for body, carrier in branches:
         axes.plot(
-            across[[carrier, body]], shape[[carrier, body]], color=beside.colour, linestyle=beside.dashes, linewidth=0.9
+            across[[carrier, body]], shape[[carrier, body]], color=branch.colour, linestyle=branch.dashes, linewidth=0.9
         )
         axes.plot(
             across[body],
             shape[body],
-            color=beside.colour,
-            marker=beside.marker,
+            color=branch.colour,
+            marker=branch.marker,
             markersize=3.5,
             linestyle="none",
             label="branch",
@@ -123,7 +123,7 @@ def _ways(line: "TorsionalLine", start: int) -> tuple[dict[int, int | None], dic
 
 def _way(body: int, came_from: dict[int, int | None]) -> list[int]:
     """Return the bodies from one to where the search began."""
-    found = [body]
-    while (before := came_from[found[-1]]) is not None:
-        found.append(before)
-    return found
+    bodies = [body]
+    while (before := came_from[bodies[-1]]) is not None:
+        bodies.append(before)
+    return bodies

@@ -35,7 +35,7 @@ def plot_nyquist(curve: "Curve") -> "Figure":
     StructureError
         If the structure has no feedback loop.
     """
-    found = margins(curve.structure, curve.values)
+    loop_margins = margins(curve.structure, curve.values)
 
     def loop(omega: float) -> complex:
         return complex(loop_gain(curve.structure, curve.values, np.array([1j * omega]))[0])
@@ -48,11 +48,11 @@ def plot_nyquist(curve: "Curve") -> "Figure":
         axes.set_aspect("equal")
         axes.set_xlim(*WINDOW[0])
         axes.set_ylim(*WINDOW[1])
-        _draw_circles(axes, found)
+        _draw_circles(axes, loop_margins)
         axes.plot(gain.real, gain.imag, color=look(0).colour, label=f"loop gain L of {curve.label}")
         _name_frequencies(axes, np.array([loop(value) for value in NAMED_RAD_S]))
         axes.plot(-1.0, 0.0, marker="+", markersize=9.0, color="black", linestyle="none", label="critical point −1")
-        _mark_margins(axes, found, loop)
+        _mark_margins(axes, loop_margins, loop)
         axes.set_xlabel("real part of L [-]")
         axes.set_ylabel("imaginary part of L [-]")
         axes.legend(loc="center left", bbox_to_anchor=(1.03, 0.5), borderaxespad=0.0)
@@ -78,12 +78,12 @@ def _draw_circles(axes: "Axes", found: Margins) -> None:
 
 def _name_frequencies(axes: "Axes", places: ComplexArray) -> None:
     """Mark some frequencies on the curve, as far as they are in the window."""
-    (left, right), (low, high) = WINDOW
-    inside = (places.real > left) & (places.real < right) & (places.imag > low) & (places.imag < high)
-    for value, place in zip(np.array(NAMED_RAD_S)[inside], places[inside], strict=True):
+    (real_low, real_high), (low, high) = WINDOW
+    inside = (places.real > real_low) & (places.real < real_high) & (places.imag > low) & (places.imag < high)
+    for value, point in zip(np.array(NAMED_RAD_S)[inside], places[inside], strict=True):
         axes.annotate(
             f"{value:g}",
-            xy=(place.real, place.imag),
+            xy=(point.real, point.imag),
             xytext=(-5.0, 0.0),
             textcoords="offset points",
             ha="right",
@@ -113,10 +113,10 @@ def _mark_margins(axes: "Axes", found: Margins, loop: Callable[[float], complex]
             label=f"gain margin {found.gain_margin:.2f}\nat {found.gain_margin_rad_s:.1f} rad/s",
         )
     if np.isfinite(found.phase_margin_rad):
-        place = loop(found.phase_margin_rad_s)
+        point = loop(found.phase_margin_rad_s)
         axes.plot(
-            place.real,
-            place.imag,
+            point.real,
+            point.imag,
             marker="^",
             markersize=6.0,
             color=look(2).colour,

@@ -33,16 +33,16 @@ LEAST_STD = 3.2
 def normalised_residuals(identification: "Identification") -> FloatArray:
     """Return measured minus model over standard deviation, real parts first, shape (2 channels, lines)."""
     data = identification.response
-    left = _left(identification)
+    residuals = _left(identification)
     std = np.sqrt(np.diagonal(data.covariance, axis1=1, axis2=2)).T
-    return np.asarray(np.concatenate([left.real, left.imag]) / std)
+    return np.asarray(np.concatenate([residuals.real, residuals.imag]) / std)
 
 
 def line_chi_square(identification: "Identification") -> FloatArray:
     """Return ``r^T C^-1 r`` of each line with its full covariance, shape (lines,)."""
     data = identification.response
-    left = _left(identification)
-    stacked = np.concatenate([left.real, left.imag]).T
+    residuals = _left(identification)
+    stacked = np.concatenate([residuals.real, residuals.imag]).T
     solved = np.linalg.solve(data.covariance, stacked[:, :, None])[:, :, 0]
     return np.asarray(np.einsum("lr,lr->l", stacked, solved))
 

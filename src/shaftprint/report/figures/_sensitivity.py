@@ -104,15 +104,15 @@ def _varied(structure: "Structure", channel: tuple[str, str], vary: Sequence[str
     for kind, name, there in zip(("output", "input"), channel, (structure.outputs, structure.inputs), strict=True):
         if name not in there:
             raise StructureError(f"structure {structure.name} has no {kind} {name}; it has {', '.join(there)}.")
-    known = {parameter.name: parameter for parameter in structure.parameters}
+    parameters = {parameter.name: parameter for parameter in structure.parameters}
     wanted = [parameter.name for parameter in structure.free] if vary is None else list(vary)
-    unknown = [name for name in wanted if name not in known]
+    unknown = [name for name in wanted if name not in parameters]
     if unknown or not wanted:
         raise StructureError(
-            f"structure {structure.name}: expected parameters to vary out of {', '.join(known)}, found "
+            f"structure {structure.name}: expected parameters to vary out of {', '.join(parameters)}, found "
             f"{', '.join(unknown) or 'none'}."
         )
-    return tuple(known[name] for name in wanted)
+    return tuple(parameters[name] for name in wanted)
 
 
 def _draw_row(
@@ -126,10 +126,10 @@ def _draw_row(
 ) -> None:
     """Draw the family of one parameter into a magnitude and a phase panel."""
     omega = np.geomspace(*span, GRID_POINTS)
-    place = structure.names.index(parameter.name)
+    index = structure.names.index(parameter.name)
     for value, colour, dashes in zip(parameter_steps(parameter), ramp(STEPS), RAMP_DASHES, strict=True):
         table = base.copy()
-        table[place] = value
+        table[index] = value
         label = f"{plain_number(value)} {unit_text(parameter.unit)}".strip()
         with np.errstate(divide="ignore"):
             trace = trace_of(Curve(label=label, structure=structure, values=table), channel[0], omega, channel[1])
@@ -152,10 +152,10 @@ def _limit(pair: "tuple[Axes, Axes]", data: "FrequencyResponse | None", channel:
     pair[0].set_ylim(max(low, high - DEPTH_DB), high)
     if data is None:
         return
-    place = channel_of(data.outputs, data.inputs, *channel)
+    index = channel_of(data.outputs, data.inputs, *channel)
     for axes, points, beyond in (
-        (pair[0], measured_points(data, place).magnitude_db, BEYOND_DATA_DB),
-        (pair[1], measured_phase_deg(data, place), BEYOND_DATA_DEG),
+        (pair[0], measured_points(data, index).magnitude_db, BEYOND_DATA_DB),
+        (pair[1], measured_phase_deg(data, index), BEYOND_DATA_DEG),
     ):
         low, high = axes.get_ylim()
         least, most = float(points.min()), float(points.max())

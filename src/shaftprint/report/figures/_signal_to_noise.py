@@ -41,13 +41,13 @@ def plot_signal_to_noise(spectra: "Spectra", *, aliasing_limit_hz: float | None 
     ratios = spectra.signal_to_noise
     response = spectra.response
     omega = 2.0 * np.pi * np.array([window.frequency_hz for window in spectra.windows])
-    known = dict(zip(response.lines, response.used, strict=True))
-    used = np.array([bool(known.get(line, False)) for line in ratios.lines])
+    line_used = dict(zip(response.lines, response.used, strict=True))
+    used = np.array([bool(line_used.get(line, False)) for line in ratios.lines])
     with house_style():
         figure = new_figure(8.0)
         axes = figure.subplots()
-        for place, channel in enumerate(ratios.channels):
-            _draw(axes, omega, ratios.local_db[:, place], used, look(place), mathtext(channel))
+        for index, channel in enumerate(ratios.channels):
+            _draw(axes, omega, ratios.local_db[:, index], used, look(index), mathtext(channel))
         axes.axhline(THESIS_LIMIT_DB, color="black", linewidth=0.9, label=f"{THESIS_LIMIT_DB:g} dB, the thesis' limit")
         if aliasing_limit_hz is not None:
             axes.axvline(

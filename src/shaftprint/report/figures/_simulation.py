@@ -88,8 +88,8 @@ def plot_simulation(
                     axes.plot(*envelope(time_s, guest.values), **style, label=mathtext(guest.title), zorder=1.8)
             if not signal.is_input:
                 _draw(axes, time_s, signal, name, 0)
-                for place, (other, theirs) in enumerate((beside or {}).items(), start=1):
-                    _draw(axes, time_s, next(s for s in theirs if s.title == signal.title), other, place)
+                for index, (other, theirs) in enumerate((beside or {}).items(), start=1):
+                    _draw(axes, time_s, next(s for s in theirs if s.title == signal.title), other, index)
             axes.set_ylabel(with_unit(mathtext(signal.title), signal.unit) if signal.unit else mathtext(signal.title))
         panels[-1].set_xlim(time_s[0], time_s[-1])
         panels[-1].set_xlabel("time [s]")

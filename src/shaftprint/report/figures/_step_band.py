@@ -34,19 +34,19 @@ def plot_step_band(identification: "Identification", *, duration_s: float = DURA
     with house_style():
         figure = new_figure(7.5)
         panels = figure.subplots(1, len(channels), squeeze=False)[0]
-        for place, (axes, (output, cause)) in enumerate(zip(panels, channels, strict=True)):
+        for index, (axes, (output, cause)) in enumerate(zip(panels, channels, strict=True)):
             style = look(0)
-            if np.isfinite(band.lower[place]).all():
+            if np.isfinite(band.lower[index]).all():
                 axes.fill_between(
                     band.time_s,
-                    band.lower[place],
-                    band.upper[place],
+                    band.lower[index],
+                    band.upper[index],
                     color=style.colour,
                     alpha=BAND_ALPHA,
                     linewidth=0.0,
                     label=f"{PERCENT * band.coverage:g} % band, at each time",
                 )
-            axes.plot(band.time_s, band.value[place], color=style.colour, label=f"{identification.structure.name}")
+            axes.plot(band.time_s, band.value[index], color=style.colour, label=f"{identification.structure.name}")
             axes.set_xlabel("time after the step [s]")
             axes.set_ylabel(f"{mathtext(output)} after a step of 1 of {mathtext(cause)}")
         letter_panels(panels, [response_label(*channel) for channel in channels])

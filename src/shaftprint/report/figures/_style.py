@@ -134,8 +134,8 @@ RAMP_DASHES: tuple[Dashes, ...] = (
 
 def letter_panels(panels: Sequence[Axes], titles: Sequence[str]) -> None:
     """Put "(a)", "(b)" ... and a title above each panel; no letter where there is one panel only."""
-    for place, (axes, title) in enumerate(zip(panels, titles, strict=True)):
-        letter = f"({chr(ord('a') + place)}) " if len(panels) > 1 else ""
+    for index, (axes, title) in enumerate(zip(panels, titles, strict=True)):
+        letter = f"({chr(ord('a') + index)}) " if len(panels) > 1 else ""
         axes.set_title(letter + title)
 
 
@@ -190,9 +190,9 @@ def save_figure(figure: Figure, path: str | Path) -> None:
 
     Letters are written as outlines, so that the picture does not depend on the reader's fonts.
     """
-    place = Path(path)
+    target = Path(path)
     metadata: dict[str, str | None]
-    match place.suffix:
+    match target.suffix:
         case ".svg":
             metadata = {"Date": None, "Creator": None}
         case ".png":
@@ -200,14 +200,14 @@ def save_figure(figure: Figure, path: str | Path) -> None:
         case _:
             metadata = {"CreationDate": None}
     with mpl.rc_context(_SETTINGS | {"svg.fonttype": "path", "svg.hashsalt": "shaftprint"}):
-        figure.savefig(place, format=place.suffix[1:], dpi=PNG_DPI, metadata=metadata)
-    match place.suffix:
+        figure.savefig(target, format=target.suffix[1:], dpi=PNG_DPI, metadata=metadata)
+    match target.suffix:
         case ".svg":
-            place.write_text(shorter_svg(place.read_text(encoding="utf-8")), encoding="utf-8")
+            target.write_text(shorter_svg(target.read_text(encoding="utf-8")), encoding="utf-8")
         case ".png":
-            with Image.open(place) as picture:
+            with Image.open(target) as picture:
                 few = picture.convert("RGB").quantize(PNG_COLOURS, dither=Image.Dither.NONE)
-            few.save(place, "PNG", optimize=True)
+            few.save(target, "PNG", optimize=True)
 
 
 def shorter_svg(svg: str) -> str:

@@ -51,7 +51,7 @@ def plot_excitation(signals: "Signals", excitations: Sequence["Excitation"]) -> 
                 (values, "response", RESPONSE),
                 (set_point, f"set point {mathtext('n_set')}", look(0).colour),
             )
-            for shown, label, colour in (both[place] for place in order):
+            for shown, label, colour in (both[index] for index in order):
                 axes.plot(*envelope(time, shown), color=colour, linewidth=0.8, label=label)
             for joint in joints:
                 axes.axvline(joint, color="black", linewidth=0.8, linestyle=(0.0, (4.0, 2.0)))

@@ -70,10 +70,10 @@ def plot_validation(
     with house_style():
         figure = new_figure(12.0)
         panels = figure.subplots(2, 1, sharex=True)
-        for place, (axes, (output, _)) in enumerate(zip(panels, WHAT, strict=True)):
-            _draw_data(axes, validations[0], shown[0], place, set_point=set_point and place == 0)
+        for index, (axes, (output, _)) in enumerate(zip(panels, WHAT, strict=True)):
+            _draw_data(axes, validations[0], shown[0], index, set_point=set_point and index == 0)
             for number, (validation, parts) in enumerate(zip(validations, shown, strict=True)):
-                _draw_model(axes, validation, parts, place, number)
+                _draw_model(axes, validation, parts, index, number)
             axes.set_ylabel(f"{mathtext(output)}, deviation over\nworking point [-]")
         first, last = shown[0][0].excerpt, shown[0][-1].excerpt
         begin, end = first.start_s, last.stop_s
@@ -161,13 +161,13 @@ def plot_validation_summary(validation: "Validation") -> "Figure":
         axes = figure.subplots()
         allowed = PERCENT * validation.settings.largest_error
         axes.axvline(allowed, color=REFERENCE, linewidth=1.0, linestyle=(0.0, (4.0, 2.0)), label="allowed")
-        for place, (output, words) in enumerate((("n", "engine speed"), ("M_s", "shaft torque"))):
-            style = look(place)
-            errors = [PERCENT * comparison.misfits[place].error for comparison in comparisons]
-            ends = PERCENT * np.array([comparison.misfits[place].error_interval for comparison in comparisons])
+        for index, (output, words) in enumerate((("n", "engine speed"), ("M_s", "shaft torque"))):
+            style = look(index)
+            errors = [PERCENT * comparison.misfits[index].error for comparison in comparisons]
+            ends = PERCENT * np.array([comparison.misfits[index].error_interval for comparison in comparisons])
             axes.errorbar(
                 errors,
-                rows + (2 * place - 1) * APART,
+                rows + (2 * index - 1) * APART,
                 xerr=[np.maximum(errors - ends[:, 0], 0.0), np.maximum(ends[:, 1] - errors, 0.0)],
                 fmt=style.marker,
                 color=style.colour,

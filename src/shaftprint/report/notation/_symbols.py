@@ -12,10 +12,10 @@ _NAME = re.compile(r"[A-Za-z]+(?:_[A-Za-z0-9]+)?")
 def name_parts(formula: str) -> list[tuple[str, str, str]]:
     """Return a formula cut into ``(text before, symbol, subscript)``; the last part may hold text only."""
     parts, end = [], 0
-    for found in _NAME.finditer(formula):
-        base, _, index = found.group().partition("_")
-        parts.append((formula[end : found.start()], base, index))
-        end = found.end()
+    for match in _NAME.finditer(formula):
+        base, _, index = match.group().partition("_")
+        parts.append((formula[end : match.start()], base, index))
+        end = match.end()
     if formula[end:]:
         parts.append((formula[end:], "", ""))
     return parts

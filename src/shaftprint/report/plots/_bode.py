@@ -70,8 +70,8 @@ def bode_plot(
         drawn = _column(grid, column, curves, data, (output, cause), span)
         traces += drawn
         for row, beyond in ((0, BEYOND_DB), (1, BEYOND_DEG)):
-            own = [trace for trace in drawn if trace["yaxis"] == grid.place(row, 0 + column)["yaxis"]]
-            limits = _limits(own, beyond)
+            panel_traces = [trace for trace in drawn if trace["yaxis"] == grid.place(row, 0 + column)["yaxis"]]
+            limits = _limits(panel_traces, beyond)
             layout[grid.axis("y", row, column)]["range"] = limits
             if aliasing_limit_hz is not None and 2.0 * np.pi * aliasing_limit_hz < span[1]:
                 text = f"aliasing limit of the speed, {aliasing_limit_hz:.2f} Hz"
@@ -100,16 +100,16 @@ def _column(
     """Return all that is drawn of one output: magnitude above, phase below."""
     omega = np.geomspace(*span, GRID_POINTS)
     traces = [trace_of(curve, channel[0], omega, channel[1]) for curve in curves]
-    found: list[Json] = []
-    for place, (curve, trace) in enumerate(zip(curves, traces, strict=True)):
-        found += _model(grid, column, curve, trace, channel, place)
-    for place, (label, response) in enumerate(data.items()):
-        found += _data(grid, column, response, traces, channel, (place, len(data)), label)
-    return found
+    drawn: list[Json] = []
+    for index, (curve, trace) in enumerate(zip(curves, traces, strict=True)):
+        drawn += _model(grid, column, curve, trace, channel, index)
+    for index, (label, response) in enumerate(data.items()):
+        drawn += _data(grid, column, response, traces, channel, (index, len(data)), label)
+    return drawn
 
 
 def _model(grid: Grid, column: int, curve: "Curve", trace: "Trace", channel: tuple[str, str], place: int) -> list[Json]:
-    found: list[Json] = []
+    drawn: list[Json] = []
     label = label_text(curve.label)
     panels = [grid.place(row, column) for row in (0, 1)]
     if curve.covariance is not None:
@@ -123,10 +123,10 @@ def _model(grid: Grid, column: int, curve: "Curve", trace: "Trace", channel: tup
             (1, trace.phase_deg[few], (around.phase_upper_deg - around.phase_deg)[at]),
         ):
             legend = column == 0 and row == 0
-            found += band(omega, middle - half, middle + half, name, place, panels[row], legend=legend)
+            drawn += band(omega, middle - half, middle + half, name, place, panels[row], legend=legend)
     for row, values in enumerate((trace.magnitude_db, trace.phase_deg)):
-        found.append(line(trace.omega_rad_s, values, label, place, panels[row], legend=column == 0 and row == 0))
-    return found
+        drawn.append(line(trace.omega_rad_s, values, label, place, panels[row], legend=column == 0 and row == 0))
+    return drawn
 
 
 def _data(
@@ -143,7 +143,7 @@ def _data(
     phase = measured_phase_deg(response, at, traces)
     below = np.minimum(measured.below_db, ENDLESS_DB)
     shade = "@data" if place[1] == 1 else colour(place[0])
-    found: list[Json] = []
+    drawn: list[Json] = []
     for chosen, filled, text in (
         (response.used, True, f"{label_text(label)}, 95 % interval"),
         (~response.used, False, f"{label_text(label)}, line not used"),
@@ -155,7 +155,7 @@ def _data(
             (0, measured.magnitude_db, (below, measured.above_db)),
             (1, phase, (measured.phase_half_deg, measured.phase_half_deg)),
         ):
-            found.append(
+            drawn.append(
                 points(
                     response.omega_rad_s[chosen],
                     middle[chosen],
@@ -169,7 +169,7 @@ def _data(
                     legend=column == 0 and row == 0,
                 )
             )
-    return found
+    return drawn
 
 
 def _limits(traces: Sequence[Json], beyond: float) -> list[float]:

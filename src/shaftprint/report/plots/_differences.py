@@ -29,15 +29,15 @@ def difference_plot(found: Mapping[str, Sequence["Difference"]]) -> Plot:
     grid = Grid(x_titles=[heading], left_px=room_px(order))
     axes = grid.place(0, 0)
     traces = []
-    for place, (label, differences) in enumerate(found.items()):
+    for index, (label, differences) in enumerate(found.items()):
         shown = [(d, percent) for d in differences if (percent := shown_percent(d)) is not None]
         drawn = points(
             [percent[0] for _, percent in shown],
             [],
             label_text(label),
             axes,
-            shade=colour(place),
-            marker=MARKERS[place % len(MARKERS)],
+            shade=colour(index),
+            marker=MARKERS[index % len(MARKERS)],
             words=[d.outcome for d, _ in shown],
         )
         drawn["y"] = [name_text(d.first.name) for d, _ in shown]
@@ -46,7 +46,7 @@ def difference_plot(found: Mapping[str, Sequence["Difference"]]) -> Plot:
             "symmetric": False,
             "array": numbers([high - value for _, (value, _, high) in shown]),
             "arrayminus": numbers([value - low for _, (value, low, _) in shown]),
-            "color": colour(place),
+            "color": colour(index),
             "thickness": 1.4,
             "width": 4,
         }

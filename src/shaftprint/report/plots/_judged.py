@@ -38,16 +38,16 @@ def profile_plot(identification: "Identification") -> Plot:
     curves = [profile_curve(identification, name) for name in names]
     rows, columns = -(-len(names) // COLUMNS), min(COLUMNS, len(names))
     titles = [axis_text(curve.name, curve.unit) for curve in curves]
-    rises = ["rise of the cost [-]" if place % columns == 0 else "" for place in range(rows * columns)]
+    rises = ["rise of the cost [-]" if index % columns == 0 else "" for index in range(rows * columns)]
     grid = Grid(rows=rows, columns=columns, titles=titles, y_titles=rises, linked="none")
     layout = grid.layout()
-    for place in range(len(names), rows * columns):
+    for index in range(len(names), rows * columns):
         for which in ("xaxis", "yaxis"):
-            layout.pop(f"{which}{place + 1}")
+            layout.pop(f"{which}{index + 1}")
     traces: list[Json] = []
-    for place, curve in enumerate(curves):
-        row, column = divmod(place, columns)
-        axes, legend = grid.place(row, column), place == 0
+    for index, curve in enumerate(curves):
+        row, column = divmod(index, columns)
+        axes, legend = grid.place(row, column), index == 0
         top = ROOM * curve.limit
         layout[grid.axis("y", row, column)]["range"] = [0.0, top]
         layout[grid.axis("x", row, column)]["nticks"] = 5
@@ -143,9 +143,9 @@ def signal_to_noise_plot(spectra: "Spectra", *, aliasing_limit_hz: float | None 
     grid = Grid(x_titles=["frequency [rad/s]"], y_titles=["local signal-to-noise ratio [dB]"], x_log=True)
     axes = grid.place(0, 0)
     traces: list[Json] = []
-    for place, channel in enumerate(ratios.channels):
-        drawn = line(omega, ratios.local_db[:, place], name_text(channel), place, axes)
-        marker = {"color": colour(place), "size": 7, "symbol": MARKERS[place % len(MARKERS)]}
+    for index, channel in enumerate(ratios.channels):
+        drawn = line(omega, ratios.local_db[:, index], name_text(channel), index, axes)
+        marker = {"color": colour(index), "size": 7, "symbol": MARKERS[index % len(MARKERS)]}
         traces.append(drawn | {"mode": "lines+markers", "marker": marker, "text": list(ratios.lines)})
     ends = [float(omega.min()), float(omega.max())]
     traces.append(straight(f"{THESIS_LIMIT_DB:g} dB, the thesis' limit", axes, ends, [THESIS_LIMIT_DB] * 2))

@@ -29,7 +29,7 @@ def nyquist_plot(curve: "Curve") -> Plot:
     StructureError
         If the structure has no feedback loop.
     """
-    found = margins(curve.structure, curve.values)
+    loop_margins = margins(curve.structure, curve.values)
     grid = Grid(x_titles=["real part of L [-]"], y_titles=["imaginary part of L [-]"], below_px=120)
     axes = grid.place(0, 0)
     omega = np.geomspace(*SPAN_RAD_S, POINTS)
@@ -42,11 +42,11 @@ def nyquist_plot(curve: "Curve") -> Plot:
     named = _loop(curve, np.array(NAMED_RAD_S))
     traces = [
         _circle("|L| = 1", axes, 0.0, 1.0),
-        *_margin_circle(found, axes),
+        *_margin_circle(loop_margins, axes),
         gain_line,
         _named(named, axes),
         points([-1.0], [0.0], "critical point −1", axes, shade="@ink", marker="cross-thin", filled=False),
-        *_marks(curve, found, axes),
+        *_marks(curve, loop_margins, axes),
     ]
     return Plot(traces=traces, layout=layout, height_px=680)
 
@@ -71,9 +71,9 @@ def _margin_circle(found: Margins, axes: Json) -> list[Json]:
 
 
 def _named(places: ComplexArray, axes: Json) -> Json:
-    found = points(places.real, places.imag, "frequency [rad/s]", axes, shade="@0")
+    trace = points(places.real, places.imag, "frequency [rad/s]", axes, shade="@0")
     words = [f"{value:g}" for value in NAMED_RAD_S]
-    return found | {"mode": "markers+text", "text": words, "textposition": "middle left"}
+    return trace | {"mode": "markers+text", "text": words, "textposition": "middle left"}
 
 
 def _marks(curve: "Curve", found: Margins, axes: Json) -> list[Json]:
@@ -82,10 +82,10 @@ def _marks(curve: "Curve", found: Margins, axes: Json) -> list[Json]:
         text = f"gain margin {found.gain_margin:.2f} at {found.gain_margin_rad_s:.1f} rad/s"
         marks.append(points([-1.0 / found.gain_margin], [0.0], text, axes, shade="@1", marker="square"))
     if np.isfinite(found.phase_margin_rad):
-        (place,) = _loop(curve, np.array([found.phase_margin_rad_s]))
+        (point,) = _loop(curve, np.array([found.phase_margin_rad_s]))
         degrees = np.degrees(found.phase_margin_rad)
         text = f"phase margin {degrees:.1f}° at {found.phase_margin_rad_s:.1f} rad/s"
-        marks.append(points([place.real], [place.imag], text, axes, shade="@2", marker="triangle-up"))
+        marks.append(points([point.real], [point.imag], text, axes, shade="@2", marker="triangle-up"))
     state = "stable" if found.stable else "UNSTABLE"
     marks.append(
         points([None], [None], f"delay margin {found.delay_margin_s:.3f} s, {state}", axes)  # type: ignore[list-item]

@@ -50,18 +50,18 @@ class Grid:
 
     def layout(self, **more: Any) -> Json:
         """Return the layout of the figure, with further entries of plotly."""
-        found: Json = {
+        entries: Json = {
             "font": {"family": FONT, "size": FONT_PX},
             "margin": {"l": self.left_px, "r": RIGHT_PX, "t": 34, "b": self.below_px},
             "legend": {"orientation": "h", "yref": "container", "y": 0, "yanchor": "bottom", "x": 0, "xanchor": "left"},
             "hovermode": "closest",
             "dragmode": "zoom",
-            "annotations": [self._heading(place) for place in range(len(self.titles))],
+            "annotations": [self._heading(index) for index in range(len(self.titles))],
         }
         for row in range(self.rows):
             for column in range(self.columns):
-                found |= self._axes(row, column)
-        return found | more
+                entries |= self._axes(row, column)
+        return entries | more
 
     def place(self, row: int, column: int) -> Json:
         """Return the names of the axes of a panel, as a trace takes them."""
@@ -110,13 +110,13 @@ class Grid:
 
     def _heading(self, place: int) -> Json:
         row, column = divmod(place, self.columns)
-        left, _ = self._domain(column, self.columns, BETWEEN_COLUMNS)
+        x, _ = self._domain(column, self.columns, BETWEEN_COLUMNS)
         top, _ = self._domain(row, self.rows, BETWEEN_ROWS)
         return {
             "text": f"<b>{self.titles[place]}</b>",
             "xref": "paper",
             "yref": "paper",
-            "x": left,
+            "x": x,
             "y": 1.0 - top,
             "xanchor": "left",
             "yanchor": "bottom",

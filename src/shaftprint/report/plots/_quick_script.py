@@ -49,10 +49,10 @@ def _with_few_kinds(text: str) -> str:
 
 def _modules(text: str) -> dict[str, str]:
     """Return the text of each module by its name; none of a name that is given twice."""
-    found = list(_MODULE.finditer(text))
-    ends = [after.start() for after in found[1:]] + [len(text)]
+    matches = list(_MODULE.finditer(text))
+    ends = [after.start() for after in matches[1:]] + [len(text)]
     modules: dict[str, str] = {}
-    for start, end in zip(found, ends, strict=True):
+    for start, end in zip(matches, ends, strict=True):
         modules[start.group(1)] = "" if start.group(1) in modules else text[start.end() : end]
     return modules
 
@@ -77,8 +77,8 @@ def _trace_type(name: str, modules: dict[str, str]) -> str | None:
 
 
 def _in_parentheses(text: str) -> str:
-    whole = text.rstrip()
-    if text.count(_WRAPPER) != 1 or not whole.endswith(_END):
+    stripped = text.rstrip()
+    if text.count(_WRAPPER) != 1 or not stripped.endswith(_END):
         return text
-    opened = whole.replace(_WRAPPER, _WRAPPER.replace("() =>", "(() =>"))
-    return f"{opened.removesuffix(_END)}}}){_END[1:]}{text[len(whole) :]}"
+    opened = stripped.replace(_WRAPPER, _WRAPPER.replace("() =>", "(() =>"))
+    return f"{opened.removesuffix(_END)}}}){_END[1:]}{text[len(stripped) :]}"

@@ -22,11 +22,11 @@ def plotly_script() -> bytes:
     ReportError
         If the package is not installed or does not hold the script.
     """
-    found = find_spec(PACKAGE)
-    places = [] if found is None else list(found.submodule_search_locations or ())
-    for place in places:
+    spec = find_spec(PACKAGE)
+    places = [] if spec is None else list(spec.submodule_search_locations or ())
+    for folder in places:
         try:
-            return (Path(place) / SCRIPT).read_bytes()
+            return (Path(folder) / SCRIPT).read_bytes()
         except OSError:
             continue
     where = f"in {places[0]}" if places else "installed"
@@ -38,8 +38,8 @@ def plotly_script() -> bytes:
 
 def plotly_version(script: bytes) -> str:
     """Return the version that a script of plotly names in its first lines; ``unknown`` where it names none."""
-    found = _VERSION.search(script[:_HEAD].decode("utf-8", errors="replace"))
-    return found.group(1) if found else "unknown"
+    match = _VERSION.search(script[:_HEAD].decode("utf-8", errors="replace"))
+    return match.group(1) if match else "unknown"
 
 
 def plotly_sheets(script: bytes) -> tuple[str, ...]:

@@ -70,14 +70,14 @@ def _model(
     traces = comparison.traces
     name = label_text(validation.model.name)
     half = deviations(validation.settings.coverage) * traces.model_std[row]
-    found: list[Json] = []
+    bands: list[Json] = []
     if np.any(half > 0.0):
         every = slice(None, None, max(1, half.size // BAND_POINTS))
         middle, around = traces.model[row, every], half[every]
         text = f"{PERCENT * validation.settings.coverage:g} % band of {name}"
-        found += band(traces.time_s[every], middle - around, middle + around, text, number, axes, legend=row == 0)
+        bands += band(traces.time_s[every], middle - around, middle + around, text, number, axes, legend=row == 0)
     drawn = line([], [], name, number, axes, legend=row == 0)
-    return [*found, drawn | _samples(traces.time_s[few], traces.model[row, few])]
+    return [*bands, drawn | _samples(traces.time_s[few], traces.model[row, few])]
 
 
 def excitation_plot(signals: "Signals", tests: Sequence["Excitation"]) -> Plot:
@@ -110,17 +110,17 @@ def excitation_plot(signals: "Signals", tests: Sequence["Excitation"]) -> Plot:
 
 def step_plot(identification: "Identification") -> Plot:
     """Return what the identified linear model does after a step of 1 of its input, with its 95 % band."""
-    found = step_band(identification, np.linspace(0.0, DURATION_S, STEP_POINTS))
+    response = step_band(identification, np.linspace(0.0, DURATION_S, STEP_POINTS))
     channels = identification.structure.channels
     titles = [over_text(*channel) for channel in channels]
     grid = Grid(columns=len(channels), titles=titles, x_titles=["time after the step [s]"], y_titles=["response [-]"])
     traces: list[Json] = []
     name = label_text(identification.structure.name)
-    for place in range(len(channels)):
-        axes = grid.place(0, place)
-        text = f"{PERCENT * found.coverage:g} % band"
-        traces += band(found.time_s, found.lower[place], found.upper[place], text, 0, axes, legend=place == 0)
-        traces.append(line(found.time_s, found.value[place], name, 0, axes, legend=place == 0))
+    for index in range(len(channels)):
+        axes = grid.place(0, index)
+        text = f"{PERCENT * response.coverage:g} % band"
+        traces += band(response.time_s, response.lower[index], response.upper[index], text, 0, axes, legend=index == 0)
+        traces.append(line(response.time_s, response.value[index], name, 0, axes, legend=index == 0))
     return Plot(traces=traces, layout=grid.layout(), height_px=440)
 
 
@@ -132,8 +132,8 @@ def _grid(below: str) -> Grid:
 def _signal(
     time: FloatArray, values: FloatArray, name: str, shade: str, axes: Json, row: int, *, width: float = 1.2
 ) -> Json:
-    found = line([], [], name, 0, axes, legend=row == 0) | _samples(time, values)
-    return found | {"line": {"color": shade, "width": width}}
+    trace = line([], [], name, 0, axes, legend=row == 0) | _samples(time, values)
+    return trace | {"line": {"color": shade, "width": width}}
 
 
 def _samples(time: FloatArray, values: FloatArray) -> Json:

@@ -73,7 +73,7 @@ def points(
     legend: bool = True,
 ) -> Json:
     """Return points, hollow or filled, with error bars down and up where given and a word at each when pointed at."""
-    found: Json = {
+    trace: Json = {
         "type": "scatter",
         "mode": "markers",
         "x": numbers(x),
@@ -90,9 +90,9 @@ def points(
         **axes,
     }
     if words:
-        found |= {"text": list(words)}
+        trace |= {"text": list(words)}
     if bars is not None:
-        found["error_y"] = {
+        trace["error_y"] = {
             "type": "data",
             "symmetric": False,
             "arrayminus": numbers(bars[0]),
@@ -101,7 +101,7 @@ def points(
             "thickness": 1.2,
             "width": 3,
         }
-    return found
+    return trace
 
 
 def straight(name: str, axes: Json, x: Values, y: Values, *, shade: str = "@reference", legend: bool = True) -> Json:

@@ -18,16 +18,16 @@ UNEVEN = 2.0
 
 def clock_sentences(clock: "LoggerClock", influence: "ClockInfluence") -> str:
     """Return in words how the clock of one logger was, how well that is known, and what it does to the result."""
-    found = clock.alignment
-    offset_std, drift_std, _ = clock_deviations(found)
-    offset = with_deviation(MILLI * abs(found.map.offset_s), MILLI * offset_std)
-    drift = with_deviation(PPM * abs(found.map.drift), PPM * drift_std)
-    behind = "behind" if found.map.offset_s >= 0.0 else "ahead of"
-    slow = "slow" if found.map.drift >= 0.0 else "fast"
+    fit = clock.alignment
+    offset_std, drift_std, _ = clock_deviations(fit)
+    offset = with_deviation(MILLI * abs(fit.map.offset_s), MILLI * offset_std)
+    drift = with_deviation(PPM * abs(fit.map.drift), PPM * drift_std)
+    behind = "behind" if fit.map.offset_s >= 0.0 else "ahead of"
+    slow = "slow" if fit.map.drift >= 0.0 else "fast"
     return (
         f"{_listed(clock.channels)} {'was' if len(clock.channels) == 1 else 'were'} logged by {clock.logger}, whose "
-        f"clock was {offset} ms {behind} that of {clock.reference} at {plain(found.map.middle_s, 0)} s and ran {drift} "
-        f"ppm {slow}. {_rest(found)} {_influence(influence)}"
+        f"clock was {offset} ms {behind} that of {clock.reference} at {plain(fit.map.middle_s, 0)} s and ran {drift} "
+        f"ppm {slow}. {_rest(fit)} {_influence(influence)}"
     )
 
 

@@ -70,29 +70,29 @@ def not_alike(first: "Fingerprint", name: str, other: "Fingerprint") -> list[str
     name
         Name of the second.
     """
-    found = []
+    sentences = []
     for quantity, before in (
         (other.conditions.engine_speed, first.conditions.engine_speed),
         (other.conditions.shaft_torque, first.conditions.shaft_torque),
     ):
         if abs(quantity.value / before.value - 1.0) > SAME_WORKING_POINT:
-            found.append(
+            sentences.append(
                 f"{name}: {quantity.meaning} is {plain(quantity.value, 0)} instead of {plain(before.value, 0)} "
                 f"{unit_text(before.unit)}; go by the physical values, since normalised ones move with it."
             )
     if other.structure != first.structure:
-        found.append(f"{name}: structure {other.structure} instead of {first.structure}.")
+        sentences.append(f"{name}: structure {other.structure} instead of {first.structure}.")
     if other.conditions.mode != first.conditions.mode:
-        found.append(f"{name}: signals prepared in {other.conditions.mode} mode, not {first.conditions.mode} mode.")
-    return found
+        sentences.append(f"{name}: signals prepared in {other.conditions.mode} mode, not {first.conditions.mode} mode.")
+    return sentences
 
 
 def _changed(name: str, found: "Sequence[Difference]") -> Card:
     question = f"Has anything changed: {name}?"
     of_the_ship = [one for one in found if not one.normalised]
     changed = any(one.outcome == "differs" for one in of_the_ship)
-    told = any(one.p_value is not None for one in of_the_ship)
-    state: State = "look" if changed else "fine" if told else "open"
+    comparable = any(one.p_value is not None for one in of_the_ship)
+    state: State = "look" if changed else "fine" if comparable else "open"
     return Card(question=question, state=state, sentence=change_in_words(found))
 
 

@@ -20,12 +20,12 @@ OPENING = (
 def inertia_section(inputs: Inputs) -> list[Section]:
     """Return the inertia by calculation beside the identified, and the modes where the vessel file has links."""
     vessel = inputs.vessel
-    expected, beside = inertia_beside(inputs.fingerprint, vessel)
-    tables = [expected_inertia_table(expected, beside), inertia_budget_table(expected), water_table(expected)]
+    expected, comparisons = inertia_beside(inputs.fingerprint, vessel)
+    tables = [expected_inertia_table(expected, comparisons), inertia_budget_table(expected), water_table(expected)]
     pictures = []
     if vessel.links:
-        found = modes(torsional_line(vessel))
-        tables.append(mode_table(found))
+        vibrations = modes(torsional_line(vessel))
+        tables.append(mode_table(vibrations))
         pictures.append(
             Picture(
                 name="modes",
@@ -34,7 +34,7 @@ def inertia_section(inputs: Inputs) -> list[Section]:
                     "as one."
                 ),
                 alt="One panel for each mode with the amplitude of every mass along the line.",
-                draw=lambda: plot_modes(found),
+                draw=lambda: plot_modes(vibrations),
             )
         )
     return [

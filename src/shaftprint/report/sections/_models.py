@@ -155,10 +155,10 @@ def fit_pictures(
 
 def _selected(curves: Mapping[str, Curve]) -> list[Curve]:
     """Return the sets that the thesis compares: CL3, CL4, OL1+OL4, OL1+OL5."""
-    found = [curves[name] for name in ("CL3", "CL4") if name in curves]
+    selected = [curves[name] for name in ("CL3", "CL4") if name in curves]
     if "OL1" in curves:
-        found += [closed_loop_curve(curves["OL1"], curves[name]) for name in ("OL4", "OL5") if name in curves]
-    return found
+        selected += [closed_loop_curve(curves["OL1"], curves[name]) for name in ("OL4", "OL5") if name in curves]
+    return selected
 
 
 def sensitivity_section(inputs: Inputs) -> list[Section]:

@@ -57,8 +57,8 @@ def quality_section(inputs: Inputs) -> Section:
 
 def _clocks(inputs: Inputs) -> list[str]:
     """Return what is known of the clock of every logger that was merged into the recording."""
-    found = clock_influences(inputs.clocks, spectra=inputs.spectra, signals=inputs.signals)
-    return [clock_sentences(clock, influence) for clock, influence in zip(inputs.clocks, found, strict=True)]
+    influences = clock_influences(inputs.clocks, spectra=inputs.spectra, signals=inputs.signals)
+    return [clock_sentences(clock, influence) for clock, influence in zip(inputs.clocks, influences, strict=True)]
 
 
 def _aliasing(inputs: Inputs) -> str:
@@ -78,19 +78,19 @@ def _weakest(inputs: Inputs) -> str:
     used = {line for line, is_used in zip(response.lines, response.used, strict=True) if is_used}
     # the output n of the response is the speed of the pick-up that was identified
     wanted = {*response.inputs, *response.outputs, inputs.spectra.speed}
-    found = [
+    used_ratios = [
         (float(value), line, channel)
         for line, values in zip(ratios.lines, ratios.local_db, strict=True)
         for channel, value in zip(ratios.channels, values, strict=True)
         if line in used and channel in wanted
     ]
-    if not found:
+    if not used_ratios:
         return "No signal-to-noise ratio is known of the lines that were used."
-    value, line, channel = min(found)
-    weak = sum(1 for other, _, _ in found if other < THESIS_LIMIT_DB)
+    value, line, channel = min(used_ratios)
+    weak = sum(1 for other, _, _ in used_ratios if other < THESIS_LIMIT_DB)
     name = "".join(f"{before}{base}{f'_{index}' if index else ''}" for before, base, index in name_parts(channel))
     few = "none" if not weak else str(weak)
     return (
         f"Of the lines that were used, {line} of {name} stands out of the noise least, by {plain(value, 1)} dB; {few} "
-        f"of {len(found)} ratios {'are' if weak != 1 else 'is'} below {THESIS_LIMIT_DB:g} dB."
+        f"of {len(used_ratios)} ratios {'are' if weak != 1 else 'is'} below {THESIS_LIMIT_DB:g} dB."
     )

@@ -73,11 +73,11 @@ def _explained(fingerprint: "Fingerprint") -> str:
 
 
 def _well_known(fingerprint: "Fingerprint") -> list[str]:
-    found = (*(q for q in fingerprint.parameters if q.name not in fingerprint.priors), *fingerprint.combinations)
-    known = [q for q in found if _share(q) <= WELL_KNOWN]
-    if not known:
+    quantities = (*(q for q in fingerprint.parameters if q.name not in fingerprint.priors), *fingerprint.combinations)
+    well_known = [q for q in quantities if _share(q) <= WELL_KNOWN]
+    if not well_known:
         return []
-    listed = "; ".join(f"{q.name} = {with_deviation(q.value, q.std)} {unit_text(q.unit)}".strip() for q in known)
+    listed = "; ".join(f"{q.name} = {with_deviation(q.value, q.std)} {unit_text(q.unit)}".strip() for q in well_known)
     return [f"This test knows to better than {plain(100.0 * WELL_KNOWN, 0)} % (one standard deviation): {listed}."]
 
 
@@ -129,12 +129,12 @@ def parameter_section(inputs: Inputs) -> Section:
 
 def _given(fingerprint: "Fingerprint") -> tuple[str, ...]:
     """Return what the fit was told instead of finding it."""
-    known = "; ".join(f"{name} = {with_deviation(p.mean, p.std)}" for name, p in fingerprint.priors.items())
+    priors = "; ".join(f"{name} = {with_deviation(p.mean, p.std)}" for name, p in fingerprint.priors.items())
     held = ", ".join(f"{name} = {value:g}" for name, value in fingerprint.held.items())
     sentences = []
-    if known:
+    if priors:
         sentences.append(
-            f"Priors, from the vessel file or as given: {known}. Where the standard deviation below is hardly smaller "
+            f"Priors, from the vessel file or as given: {priors}. Where the standard deviation below is hardly smaller "
             "than this one, the test adds nothing to the prior."
         )
     if held:

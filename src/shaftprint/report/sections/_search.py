@@ -19,12 +19,12 @@ MOST_OPTIMA = 8
 def search_section(inputs: Inputs) -> Section:
     """Return the optima that the starts of the search reached, and the cost along the delay of the loop."""
     fit = inputs.identification
-    found = report_search(fit)
+    search = report_search(fit)
     return Section(
         key="search",
         title="Search",
-        points=found.sentences,
-        tables=(_optima(fit, found.optima),),
+        points=search.sentences,
+        tables=(_optima(fit, search.optima),),
         pictures=[
             Picture(
                 name=f"scan_{name}",
@@ -60,18 +60,18 @@ def _optima(fit: "Identification", optima: "tuple[Optimum, ...]") -> Table:
             rounded(optimum.cost),
             "–" if number == 0 else rounded(optimum.distance),
             "yes" if optimum.stable else "no",
-            *(rounded(float(optimum.values[place])) for place in fit.objective.free),
+            *(rounded(float(optimum.values[index])) for index in fit.objective.free),
         )
         for number, optimum in enumerate(optima[:MOST_OPTIMA])
     )
-    left = len(optima) - len(rows)
+    not_shown = len(optima) - len(rows)
     return Table(
         title="Optima of the search",
         columns=columns,
         rows=rows,
         note=(
             "The deviance is twice the fall of the log-likelihood; an optimum less than 3.84 above the result fits as "
-            f"well within the noise.{f' {left} more of higher cost are not shown.' if left else ''}"
+            f"well within the noise.{f' {not_shown} more of higher cost are not shown.' if not_shown else ''}"
         ),
     )
 

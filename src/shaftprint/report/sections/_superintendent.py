@@ -96,7 +96,7 @@ def _stable(fingerprint: "Fingerprint") -> list[Card]:
     loop = fingerprint.verdict.loop
     if loop is None:
         return []
-    found = [q for q in fingerprint.margins if q.name == "gain margin"]
+    margins = [q for q in fingerprint.margins if q.name == "gain margin"]
     if loop == "unstable":
         state: State = "bad"
         words = "The identified line is unstable."
@@ -105,8 +105,8 @@ def _stable(fingerprint: "Fingerprint") -> list[Card]:
         words = "The governed line is stable" + (
             " with room to spare." if loop == "ample" else ", with little to spare."
         )
-    if found and loop != "unstable":
-        words += f" The governor gain may grow by {_ranged(found[0])} before the speed hunts; 2 or more is usual."
+    if margins and loop != "unstable":
+        words += f" The governor gain may grow by {_ranged(margins[0])} before the speed hunts; 2 or more is usual."
     question = "Does the engine hold its speed without hunting?"
     doubt = _doubt(fingerprint, "gain margin")
     if doubt and loop != "unstable":
@@ -124,11 +124,11 @@ def _ranged(quantity: "Quantity") -> str:
 
 def _inertia(fingerprint: "Fingerprint") -> list[Card]:
     """Return whether the inertia behind the gauge is the calculated one; nothing where the test did not measure it."""
-    found = [q for q in fingerprint.physical if q.name == "I_dn" and q.expected is not None]
-    parameter = fingerprint.multiplied(found[0]) if found else None
-    if not found or (parameter is not None and parameter.name in fingerprint.priors):
+    inertias = [q for q in fingerprint.physical if q.name == "I_dn" and q.expected is not None]
+    parameter = fingerprint.multiplied(inertias[0]) if inertias else None
+    if not inertias or (parameter is not None and parameter.name in fingerprint.priors):
         return []
-    (quantity,) = found
+    (quantity,) = inertias
     question = "Is the inertia of propeller and shaft as calculated?"
     words = (
         f"Measured {with_deviation(quantity.value, quantity.std)} {unit_text(quantity.unit)}, by the torsional "
@@ -146,10 +146,10 @@ def _inertia(fingerprint: "Fingerprint") -> list[Card]:
 
 def _propeller(fingerprint: "Fingerprint") -> list[Card]:
     """Return whether the propeller takes the torque that the vessel file expects; nothing where it expects none."""
-    found = [q for q in fingerprint.physical if q.name == "K_Q" and q.expected]
-    if not found:
+    coefficients = [q for q in fingerprint.physical if q.name == "K_Q" and q.expected]
+    if not coefficients:
         return []
-    (quantity,) = found
+    (quantity,) = coefficients
     question = "Does the propeller take the torque that it should?"
     share = PERCENT * (quantity.value / (quantity.expected or quantity.value) - 1.0)
     words = (
@@ -184,10 +184,10 @@ def _doubt(fingerprint: "Fingerprint", name: str) -> str:
 
 def _gauge(fingerprint: "Fingerprint") -> list[Card]:
     """Return whether the zero of the torque gauge is in order; nothing where the test cannot tell."""
-    found = [q for q in fingerprint.physical if q.name == GAUGE_ZERO]
-    if not found:
+    zeros = [q for q in fingerprint.physical if q.name == GAUGE_ZERO]
+    if not zeros:
         return []
-    (zero,) = found
+    (zero,) = zeros
     question = "Is the torque gauge in order?"
     half = NORMAL_95 * zero.std
     words = (
@@ -215,14 +215,14 @@ def _predicts(validations: "Sequence[Validation]") -> Card:
 
 def _measured(fingerprint: "Fingerprint") -> Card:
     conditions, quality = fingerprint.conditions, fingerprint.quality
-    used, left = len(conditions.lines_used), len(conditions.lines_left_out)
+    used, left_out = len(conditions.lines_used), len(conditions.lines_left_out)
     repairs = sum(quality.repairs.values())
-    words = f"{used} of {used + left} test lines could be used"
+    words = f"{used} of {used + left_out} test lines could be used"
     words += f", {repairs} {'place was' if repairs == 1 else 'places were'} repaired." if repairs else "; no repairs."
-    many = left > LEFT_OUT * (used + left)
+    many = left_out > LEFT_OUT * (used + left_out)
     if many:
         reasons = "; ".join(f"{line}: {why}" for line, why in list(conditions.lines_left_out.items())[:2])
-        words += f" Left out: {reasons}{' and others' if left > 2 else ''}."
+        words += f" Left out: {reasons}{' and others' if left_out > 2 else ''}."
     if quality.remarks:
         remark = quality.remarks[0].rstrip(".")
         words += f" {remark[:1].upper()}{remark[1:]}."

@@ -234,17 +234,17 @@ def _line_steps(thesis: "ThesisMode", gauge: "Identification", response: "Freque
     speed, torque = (response.response[response.outputs.index(name), 0, chosen] for name in ("n", "M_s"))
     # e inside the ship: the governor has the set point later than the logger, and with its true scale
     measured = torque * np.exp(s * gauge_latency) / (scale * np.exp(-s * set_point_latency) - speed)
-    found = _damping(thesis, gauge, omega[chosen])
+    curves = _damping(thesis, gauge, omega[chosen])
     return tuple(
         LineStep(
             line=response.lines[line],
             omega_rad_s=float(omega[line]),
             measured=complex(measured[i]),
-            governor=complex(found.governor[i]),
-            inertia=complex(found.inertia[i]),
+            governor=complex(curves.governor[i]),
+            inertia=complex(curves.inertia[i]),
             speed=float(abs(speed[i])),
-            speed_gauge_aware=float(found.speed_gauge_aware[i]),
-            speed_thesis=float(found.speed_thesis[i]),
+            speed_gauge_aware=float(curves.speed_gauge_aware[i]),
+            speed_thesis=float(curves.speed_thesis[i]),
         )
         for i, line in enumerate(chosen)
     )

@@ -36,13 +36,13 @@ def _inertia(thesis: "ThesisMode", vessel: "Vessel") -> list[str]:
     core = thesis.identifications.get("OL1")
     if core is None:
         return []
-    found = core.of_role(ShipRole.INERTIA).value
+    tau_n = core.of_role(ShipRole.INERTIA).value
     calculated = calculated_inertia_time_s(thesis, vessel)
     below = calculated * vessel.inertia_downstream_kg_m2 / vessel.inertia_upstream_kg_m2
     sensor = thesis.signals.engine_speed.delay_s
     return [
-        f"OL1 finds tau_n = {rounded(found)} s where the torsional vibration calculation upstream of the gauge gives "
-        f"{rounded(calculated)} s: a factor {plain(calculated / found, 2)}. The two are not the same inertia. The "
+        f"OL1 finds tau_n = {rounded(tau_n)} s where the torsional vibration calculation upstream of the gauge gives "
+        f"{rounded(calculated)} s: a factor {plain(calculated / tau_n, 2)}. The two are not the same inertia. The "
         "response from shaft torque to speed sees only what lies downstream of the gauge (flange, shaft, propeller, "
         f"entrained water), for which the vessel file gives {rounded(below)} s. The rest of the difference comes from "
         f"the speed sensor, whose value is {plain(1000.0 * sensor, 1)} ms late in thesis mode and looks like inertia."
