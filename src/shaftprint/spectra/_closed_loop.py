@@ -55,9 +55,9 @@ def plant_from_closed_loop(
         line = joint.lines[int(np.argmax(u == 0.0))]
         raise ResponseError(f"{line}: expected {input} to differ from 0, found 0: leave the line out.")
     plant = y / u
-    own = np.broadcast_to(np.eye(len(outputs)), (u.size, len(outputs), len(outputs)))
-    jacobian = np.concatenate([-plant.T[:, :, np.newaxis], own], axis=2) / u[:, np.newaxis, np.newaxis]
-    found = converted(joint, plant[:, np.newaxis], jacobian, inputs=(input,), outputs=outputs)
+    identity = np.broadcast_to(np.eye(len(outputs)), (u.size, len(outputs), len(outputs)))
+    jacobian = np.concatenate([-plant.T[:, :, np.newaxis], identity], axis=2) / u[:, np.newaxis, np.newaxis]
+    plant_response = converted(joint, plant[:, np.newaxis], jacobian, inputs=(input,), outputs=outputs)
     half = 1 + len(outputs)
     share = (joint.covariance[:, 0, 0] + joint.covariance[:, half, half]) / np.abs(u) ** 2
     # second order: noise that makes u large makes the stated covariance small
@@ -65,6 +65,6 @@ def plant_from_closed_loop(
     remark = f"{input} is only {{:.1f}} times its noise, too little to divide by"
     lost = np.flatnonzero(share * _LEAST_INPUT_STD**2 > 1.0).tolist()
     return without_lines(
-        replace(found, covariance=change[:, np.newaxis, np.newaxis] * found.covariance),
-        {place: remark.format(share[place] ** -0.5) for place in lost},
+        replace(plant_response, covariance=change[:, np.newaxis, np.newaxis] * plant_response.covariance),
+        {index: remark.format(share[index] ** -0.5) for index in lost},
     )

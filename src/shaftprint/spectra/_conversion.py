@@ -67,8 +67,8 @@ def without_lines(response: FrequencyResponse, lost: Mapping[int, str]) -> Frequ
     The response; a remark that a line has already is kept before the new one.
     """
     used, remarks = response.used.copy(), dict(response.remarks)
-    for place, remark in lost.items():
-        line = response.lines[place]
-        used[place] = False
+    for index, remark in lost.items():
+        line = response.lines[index]
+        used[index] = False
         remarks[line] = "; ".join(filter(None, (remarks.get(line, ""), remark)))
     return replace(response, used=used, remarks=remarks)

@@ -148,7 +148,7 @@ class FrequencyResponse:
         """
         places = _places("output", names, self.outputs)
         inputs, count = len(self.inputs), len(self.outputs) * len(self.inputs)
-        rows = np.array([place * inputs + i for place in places for i in range(inputs)])
+        rows = np.array([index * inputs + i for index in places for i in range(inputs)])
         both = np.concatenate([rows, rows + count])
         change = weight_change(self.degrees_of_freedom, len(self.outputs), len(names))
         return replace(
@@ -204,7 +204,7 @@ class FrequencyResponse:
         return self._at_lines(places)
 
     def _at_lines(self, places: list[int]) -> "FrequencyResponse":
-        names = tuple(self.lines[place] for place in places)
+        names = tuple(self.lines[index] for index in places)
         return replace(
             self,
             frequency_hz=self.frequency_hz[places],

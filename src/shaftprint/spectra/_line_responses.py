@@ -81,8 +81,8 @@ def response_of_lines(
     common = np.zeros_like(response)
     covariance = np.empty((len(measurements), 2 * len(outputs), 2 * len(outputs)))
     for row, line in enumerate(measurements):
-        known = _known_outputs(signals, line, outputs)
-        rows = (excitation, sensor, *(signals.channels[name] for name in known[1:]))
+        measured_names = _known_outputs(signals, line, outputs)
+        rows = (excitation, sensor, *(signals.channels[name] for name in measured_names[1:]))
         amplitude, noise = _amplitudes(line, rows, thesis=signals.mode == "thesis", load=load[row])
         samples = line.noise.complex_samples
         values, spread = response_of_line(amplitude, noise, complex_samples=samples, weighted=len(outputs))
@@ -90,9 +90,9 @@ def response_of_lines(
         more = weight_factor(samples, len(outputs)) / weight_factor(samples, _SPEED_AND_TORQUE)
         share = excitation.scale_std * np.sqrt(more)
         spread = with_common_error(spread, values, share)
-        common[[outputs.index(name) for name in known], 0, row] = share * values
+        common[[outputs.index(name) for name in measured_names], 0, row] = share * values
         for position, name in enumerate(outputs):
-            if name not in known:
+            if name not in measured_names:
                 values, spread = _with_unknown_output(values, spread, position)
         if len(outputs) > _SPEED_AND_TORQUE:
             # a speed that is known well beside an output that is not: rounding must leave the matrix positive definite

@@ -130,9 +130,9 @@ def _without_lost_lines(
     opened: FrequencyResponse, response: FrequencyResponse, values: ComplexArray, *, signal: str = "e"
 ) -> FrequencyResponse:
     """Mark the lines whose error signal or rack is lost in noise as not used."""
-    place, name = (0, "error signal") if signal == "e" else (response.outputs.index(signal), "fuel rack")
+    index, name = (0, "error signal") if signal == "e" else (response.outputs.index(signal), "fuel rack")
     half = len(response.outputs)
-    std = np.sqrt(response.covariance[:, place, place] + response.covariance[:, half + place, half + place])
+    std = np.sqrt(response.covariance[:, index, index] + response.covariance[:, half + index, half + index])
     lost: BoolArray = np.abs(values) < _LEAST_ERROR_STD * std
     remark = f"{name} is lost in noise (|{signal}/n_set| = {{:.2g}})"
     return without_lines(opened, {row: remark.format(abs(values[row])) for row in np.flatnonzero(lost).tolist()})

@@ -41,8 +41,8 @@ def shift_reasons(response: "FrequencyResponse") -> tuple[Reason, ...]:
     variance = np.diagonal(response.covariance, axis1=1, axis2=2)[used]
     half = len(response.outputs)
     share = sum(
-        (variance[:, place] + variance[:, half + place]) / np.abs(value) ** 2
-        for place, value in zip(places, (speed, torque), strict=True)
+        (variance[:, row] + variance[:, half + row]) / np.abs(value) ** 2
+        for row, value in zip(places, (speed, torque), strict=True)
     )
     ratio = torque / speed
     fall = _chi_squares(response.omega_rad_s[used], ratio, np.abs(ratio) * np.sqrt(share / 2.0), response.load[used])
@@ -66,12 +66,12 @@ def shift_reasons(response: "FrequencyResponse") -> tuple[Reason, ...]:
 def _chi_squares(omega_rad_s: FloatArray, ratio: FloatArray, std: FloatArray, load: FloatArray) -> FloatArray:
     """Return the lowest chi-square for each delay, shape (delays,); infinite where the best fit is impossible."""
     chi_square = np.full(_DELAYS_S.size, np.inf)
-    for place, delay_s in enumerate(_DELAYS_S):
+    for index, delay_s in enumerate(_DELAYS_S):
         seen = ratio * np.exp(1j * omega_rad_s * delay_s) / std
         # the real part is the load, the imaginary part the inertia
         load_row, inertia_row = load / std, omega_rad_s / std
         k = float(load_row @ seen.real / (load_row @ load_row))
         tau = float(inertia_row @ seen.imag / (inertia_row @ inertia_row))
         if _LOADS[0] < k < _LOADS[1] and 0.0 <= tau < _LONGEST_S:
-            chi_square[place] = np.sum((seen.real - k * load_row) ** 2 + (seen.imag - tau * inertia_row) ** 2)
+            chi_square[index] = np.sum((seen.real - k * load_row) ** 2 + (seen.imag - tau * inertia_row) ** 2)
     return chi_square

@@ -243,10 +243,10 @@ def _measure(signals: "Signals", cut: WindowSamples, moved: "ExcitationSignal", 
     window = cut.window
     finite = np.isfinite(cut.values)
     if not finite.all():
-        channel, place = np.argwhere(~finite)[0]
+        channel, sample = np.argwhere(~finite)[0]
         raise ResponseError(
             f"{window.line}: expected numbers in {cut.channels[channel]}, found one that is not finite at "
-            f"{window.start_s + cut.time_s[place]:.3f} s: repair the signal before."
+            f"{window.start_s + cut.time_s[sample]:.3f} s: repair the signal before."
         )
     for name in cut.channels:
         if name != moved.name and np.ptp(cut.of(name)) == 0.0:
@@ -295,10 +295,10 @@ def _judge(
     """Collect remarks on each line and say which lines have a clean excitation and a speed without aliasing."""
     remarks = {}
     usable = np.ones(len(measurements), dtype=bool)
-    for place, line in enumerate(measurements):
+    for row, line in enumerate(measurements):
         frequency = line.window.frequency_hz
         expected = _expected_amplitude(moved, campaign, line)
-        finding = check_set_point(line, expected=expected, local_db=local_db, place=place, moved=moved)
+        finding = check_set_point(line, expected=expected, local_db=local_db, place=row, moved=moved)
         lines = list(finding.remarks)
         aliased = frequency > sensor.nyquist_hz
         if aliased:
@@ -312,5 +312,5 @@ def _judge(
         ]
         if lines:
             remarks[line.window.line] = "; ".join(lines)
-        usable[place] = finding.usable and not aliased
+        usable[row] = finding.usable and not aliased
     return remarks, usable

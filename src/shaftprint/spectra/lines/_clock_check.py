@@ -56,10 +56,10 @@ def clock_reasons(
     reasons = []
     if recording_ratio is not None and abs(recording_ratio - 1.0) > _TOLERANCE:
         reasons.append(_recording(recording_ratio))
-    for place, name in enumerate(channels):
-        if place:
-            spread = np.hypot(std[:, place], std[:, 0])
-            offset = _weighted(ratio[:, place] / ratio[:, 0] - 1.0, spread)
+    for column, name in enumerate(channels):
+        if column:
+            spread = np.hypot(std[:, column], std[:, 0])
+            offset = _weighted(ratio[:, column] / ratio[:, 0] - 1.0, spread)
             if offset is not None and abs(offset) > _TOLERANCE:
                 reasons.append(_channel(name, offset))
     return tuple(reasons)
@@ -152,10 +152,10 @@ def sine_frequency_hz(values: FloatArray, rate_hz: float, near_hz: float) -> flo
 
     reach = min(6.0, 0.3 * near_hz / bin_hz)
     coarse = near_hz + bin_hz * np.arange(-reach, reach + 0.25, 0.5)
-    place = int(np.argmax(magnitude(coarse)))
-    if place in (0, coarse.size - 1):
+    peak = int(np.argmax(magnitude(coarse)))
+    if peak in (0, coarse.size - 1):
         return float("nan")
-    frequency = float(coarse[place])
+    frequency = float(coarse[peak])
     for step in (0.5, 0.1, 0.02):
         left, top, right = np.log(magnitude(frequency + step * bin_hz * np.arange(-1.0, 2.0)))
         curvature = left - 2.0 * top + right

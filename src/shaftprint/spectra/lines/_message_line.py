@@ -155,8 +155,8 @@ def _residual_at_bins(fit: LineFit, samples: WindowSamples, bins: int) -> Comple
     turn = np.exp((-2j * np.pi * samples.rate_hz / count) * (fit.samples.time_s - samples.time_s[0]))
     wave = turn**first
     spectrum = np.zeros((1, bins), dtype=np.complex128)
-    for place in range(first, last + 1):
-        spectrum[0, place] = fit.residual[0] @ wave
+    for index in range(first, last + 1):
+        spectrum[0, index] = fit.residual[0] @ wave
         wave *= turn
     spectrum *= 2.0 / fit.samples.time_s.size
     return spectrum

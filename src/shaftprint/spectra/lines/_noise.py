@@ -141,18 +141,18 @@ def _own_torque(values: ComplexArray, relation: ShaftRelation, neighbours: Neigh
     """
     torque, speed = values[relation.torque], values[relation.speed]
     turning = relation.turn(np.expm1(neighbours.log_ratio)) * speed
-    own, share = torque, 0j
+    independent, share = torque, 0j
     # weights of the mean over the bins, first with the slope of the torque as it is, then of what it has of its own
     for _ in range(_ROUNDS):
-        slopes = local_slope(np.abs(np.stack([own, speed])) ** 2, neighbours)
+        slopes = local_slope(np.abs(np.stack([independent, speed])) ** 2, neighbours)
         weight = neighbours.weight * np.exp(0.5 * slopes.sum() * neighbours.log_ratio)
         power = float(weight @ np.abs(speed) ** 2) + _NOTHING
         bend = turning - complex(weight * speed.conj() @ turning) / power * speed
         present = float((weight * bend.conj() @ torque).real) / (float(weight @ np.abs(bend) ** 2) + _NOTHING)
         unrelated = torque - min(max(present, 0.0), 1.0) * turning
         share = complex(weight * speed.conj() @ unrelated) / power
-        own = unrelated - share * speed
-    return own, share
+        independent = unrelated - share * speed
+    return independent, share
 
 
 def _levelled(values: ComplexArray, neighbours: Neighbours) -> ComplexArray:
@@ -170,12 +170,12 @@ def _neighbours(bins: int, periods: int, order: int) -> Neighbours:
     # the drift in the fit has taken most of the power of the first bin
     lowest = 2 if lowest == 1 and line > 3 else lowest
     highest = min(line + reach, int(line * reach_ratio), bins - 1)
-    place = np.arange(lowest, highest + 1)
-    place = place[place % periods != 0].astype(np.float64)
-    log_ratio = np.log(place / line)
+    number = np.arange(lowest, highest + 1)
+    number = number[number % periods != 0].astype(np.float64)
+    log_ratio = np.log(number / line)
     octaves = 1.0 - (log_ratio / np.log(1.05 * reach_ratio)) ** 2
-    distance = 1.0 - ((place - line) / (reach + 1.0)) ** 2
-    return Neighbours(bins=place, log_ratio=log_ratio, weight=octaves * distance)
+    distance = 1.0 - ((number - line) / (reach + 1.0)) ** 2
+    return Neighbours(bins=number, log_ratio=log_ratio, weight=octaves * distance)
 
 
 def _kept_by_drift(place: FloatArray) -> FloatArray:

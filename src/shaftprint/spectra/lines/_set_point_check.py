@@ -65,12 +65,12 @@ def check_frequency_unit(measurements: Sequence["LineMeasurement"]) -> None:
         )
     if not np.any(ratio == 1.0):
         first = measurements[0]
-        found = (
+        motion = (
             "a set point that does not move" if np.all(np.isnan(ratio)) else f"{first.excitation_frequency_hz:.3g} Hz"
         )
         raise ResponseError(
             f"{first.window.line}: expected the set point to move at {first.window.frequency_hz:g} "
-            f"Hz between {first.window.start_s:g} and {first.window.stop_s:g} s, found {found}, and "
+            f"Hz between {first.window.start_s:g} and {first.window.stop_s:g} s, found {motion}, and "
             "no other sine of the campaign is in the recording either: check that campaign and "
             "recording belong together and that the set-point channel is the right one."
         )
@@ -196,8 +196,8 @@ def _stretch_s(line: "LineMeasurement") -> float:
 def _frequency_offset_hz(line: "LineMeasurement") -> float:
     """Difference between true and stated frequency, from the turning of the phase over the window."""
     turn = np.unwrap(np.angle(line.excited_stretches / line.of(line.amplitude, line.excitation)))
-    place = np.arange(turn.size) - 0.5 * (turn.size - 1)
-    slope_rad = float((place @ turn) / (place @ place))
+    centred = np.arange(turn.size) - 0.5 * (turn.size - 1)
+    slope_rad = float((centred @ turn) / (centred @ centred))
     return slope_rad / (2.0 * np.pi * _stretch_s(line))
 
 
@@ -212,16 +212,16 @@ def _disturbed_stretches(line: "LineMeasurement") -> np.ndarray[tuple[int, ...],
 
 def _stretch_remark(line: "LineMeasurement", disturbed: np.ndarray[tuple[int, ...], np.dtype[np.bool_]]) -> str:
     length_s = _stretch_s(line)
-    place = np.flatnonzero(disturbed)
-    first_s = line.window.start_s + length_s * place[0]
-    last_s = line.window.start_s + length_s * (place[-1] + 1)
+    indices = np.flatnonzero(disturbed)
+    first_s = line.window.start_s + length_s * indices[0]
+    last_s = line.window.start_s + length_s * (indices[-1] + 1)
     return (
-        f"set-point sine is disturbed in {place.size} of {disturbed.size} parts of the window, "
+        f"set-point sine is disturbed in {indices.size} of {disturbed.size} parts of the window, "
         f"between {first_s:.1f} and {last_s:.1f} s"
     )
 
 
 def _typical_db(local_db: FloatArray, place: int) -> float:
     """Median of up to two lines on each side; the line's own where it has no neighbour."""
-    beside = np.delete(local_db, place)[max(place - 2, 0) : place + 2]
-    return float(np.median(beside)) if beside.size else float(local_db[place])
+    neighbours = np.delete(local_db, place)[max(place - 2, 0) : place + 2]
+    return float(np.median(neighbours)) if neighbours.size else float(local_db[place])

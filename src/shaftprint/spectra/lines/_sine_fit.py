@@ -55,8 +55,8 @@ def _harmonic_waves(samples: WindowSamples, orders: int) -> ComplexArray:
 
 def _drift_columns(samples: WindowSamples) -> FloatArray:
     """Legendre polynomials over the window: their mean is 0, so that the offset stays the mean."""
-    place = 2.0 * samples.time_s / samples.window.duration_s - 1.0
-    columns = [np.ones_like(place), place]
+    scaled_time = 2.0 * samples.time_s / samples.window.duration_s - 1.0
+    columns = [np.ones_like(scaled_time), scaled_time]
     if samples.window.periods >= _PERIODS_FOR_PARABOLA:
-        columns.append(1.5 * place**2 - 0.5)
+        columns.append(1.5 * scaled_time**2 - 0.5)
     return np.stack(columns)

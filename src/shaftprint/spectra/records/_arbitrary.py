@@ -86,7 +86,7 @@ class Arbitrary(Excitation):
             parents = self._parents(bands, limits, step)
             chosen = [band for low, high in parents for band in _split(bands, low, high, _MOST_SPLITS)]
         else:
-            chosen = [self._around(bands, place, limits) for place in range(len(self.lines_hz))]
+            chosen = [self._around(bands, line, limits) for line in range(len(self.lines_hz))]
         return _fitted(bands, chosen)
 
     def _parents(self, bands: Bands, limits: tuple[float, float], step: float) -> list[tuple[float, float]]:
@@ -136,8 +136,8 @@ def _transform(run: int, values: FloatArray, rate_hz: float, *, drift: bool) -> 
         raise ResponseError(f"record {run + 1}: expected at least {_FEWEST_SAMPLES} samples, found {count}.")
     deviation = values - values.mean(axis=1, keepdims=True)
     if drift:
-        place = np.arange(count) - 0.5 * (count - 1)
-        deviation -= np.outer(deviation @ place / (place @ place), place)
+        centred = np.arange(count) - 0.5 * (count - 1)
+        deviation -= np.outer(deviation @ centred / (centred @ centred), centred)
     spectrum = np.fft.rfft(deviation, axis=1)[:, 1 : (count + 1) // 2] / np.sqrt(count)
     return Transform(resolution_hz=rate_hz / count, values=spectrum)
 
@@ -202,9 +202,9 @@ def _seen(power: FloatArray, variance: FloatArray) -> BoolArray:
     lines = power.shape[1]
     for line in range(lines):
         first = min(max(line - _NEIGHBOURS, 0), max(lines - 2 * _NEIGHBOURS - 1, 0))
-        beside = [place for place in range(first, min(first + 2 * _NEIGHBOURS + 1, lines)) if place != line]
-        if beside:
-            mean = ratio[:, beside].mean(axis=1)
-            level = ratio[:, beside].sum(axis=1) / (1.0 / variance[:, beside]).sum(axis=1)
+        neighbours = [index for index in range(first, min(first + 2 * _NEIGHBOURS + 1, lines)) if index != line]
+        if neighbours:
+            mean = ratio[:, neighbours].mean(axis=1)
+            level = ratio[:, neighbours].sum(axis=1) / (1.0 / variance[:, neighbours]).sum(axis=1)
             seen[line] |= bool(np.any((mean > _LEAST_SEEN) & (level > _LEAST_SEEN * variance[:, line])))
     return seen

@@ -125,14 +125,14 @@ class Bands:
 
     def in_band(self, low_hz: float, high_hz: float) -> dict[int, tuple[int, int]]:
         """Return the bins of a band in each record that has more than its own transient takes."""
-        found = {}
+        bins = {}
         for record, transform in enumerate(self.transforms):
             step, count = transform.resolution_hz, transform.values.shape[1]
             start = min(max(int(np.ceil(low_hz / step - 1e-9)) - 1, 0), count)
             stop = min(max(int(np.ceil(high_hz / step - 1e-9)) - 1, start), count)
             if stop - start > self.order + 3:
-                found[record] = (start, stop)
-        return found
+                bins[record] = (start, stop)
+        return bins
 
 
 def _least_squares(columns: ComplexArray, y: ComplexArray, inputs: int, count: int) -> BandFit:
@@ -141,20 +141,21 @@ def _least_squares(columns: ComplexArray, y: ComplexArray, inputs: int, count: i
     scale = np.where(length == 0.0, 1.0, length)
     # of the triangle, the part beside the columns holds the projections of the outputs, that below what is left of them
     triangle = _triangle(np.concatenate([columns / scale, y], axis=1))
-    own, beside = slice(count - inputs, count), triangle[:, columns.shape[1] :]
-    last, projected, left, finer = triangle[own, own], beside[own], beside[count:], beside[columns.shape[1] :]
-    known = bool(np.all(length[own] > 0.0) and np.abs(np.diag(last)).min() > _LEAST_REST)
+    of_response, projections = slice(count - inputs, count), triangle[:, columns.shape[1] :]
+    last, projected = triangle[of_response, of_response], projections[of_response]
+    residual, finer = projections[count:], projections[columns.shape[1] :]
+    identified = bool(np.all(length[of_response] > 0.0) and np.abs(np.diag(last)).min() > _LEAST_REST)
     inverse = np.zeros((inputs, inputs), dtype=np.complex128)
-    if known:
-        inverse[:] = np.linalg.inv(last) / scale[own, np.newaxis]
+    if identified:
+        inverse[:] = np.linalg.inv(last) / scale[of_response, np.newaxis]
     return BandFit(
         response=(inverse @ projected).T,
         inverse=inverse @ inverse.conj().T,
-        noise=left.T @ left.conj(),
+        noise=residual.T @ residual.conj(),
         finer=finer.T @ finer.conj(),
         power=(np.abs(y) ** 2).sum(axis=0),
         excess=len(y) - count,
-        known=known,
+        known=identified,
     )
 
 
@@ -162,9 +163,9 @@ def _triangle(table: ComplexArray) -> ComplexArray:
     """Return the triangle of a QR decomposition; tall tables block by block, which keeps them in the cache."""
     columns = table.shape[1]
     while len(table) >= 2 * _BLOCK > 4 * columns:
-        whole = len(table) // _BLOCK * _BLOCK
-        triangles = np.asarray(np.linalg.qr(table[:whole].reshape(-1, _BLOCK, columns), mode="r"))
-        table = np.concatenate([triangles.reshape(-1, columns), table[whole:]])
+        rows = len(table) // _BLOCK * _BLOCK
+        triangles = np.asarray(np.linalg.qr(table[:rows].reshape(-1, _BLOCK, columns), mode="r"))
+        table = np.concatenate([triangles.reshape(-1, columns), table[rows:]])
     triangle: ComplexArray = np.asarray(np.linalg.qr(table, mode="r"))
     return triangle
 

@@ -87,9 +87,9 @@ class Periodic(Excitation):
                 f"between_records: expected more records than inputs, found {runs} for {inputs}: leave it out."
             )
         length = self._samples_a_period(records.rate_hz)
-        whole = [self._whole_periods(run, values, length, drift=drift) for run, values in enumerate(records.values)]
+        periods = [self._whole_periods(run, values, length, drift=drift) for run, values in enumerate(records.values)]
         frequency: FloatArray = np.arange(1.0, (length + 1) // 2) * (records.rate_hz / length)
-        return self._combined([_spectrum(values) for values in whole], inputs, frequency, band_hz)
+        return self._combined([_spectrum(values) for values in periods], inputs, frequency, band_hz)
 
     def _samples_a_period(self, rate_hz: float) -> int:
         exact = self.period_s * rate_hz
@@ -115,12 +115,12 @@ class Periodic(Excitation):
                 f"after {self.settling_periods} settling, found {max(periods, 0)} in {values.shape[1]} samples."
             )
         begin = self.settling_periods * length
-        whole = values[:, begin : begin + periods * length].reshape(-1, periods, length)
+        samples = values[:, begin : begin + periods * length].reshape(-1, periods, length)
         if drift:
-            place = np.arange(periods) - 0.5 * (periods - 1)
-            slope = whole.mean(axis=2) @ place / (place @ place * length)
-            whole = whole - (place[:, np.newaxis] * length + np.arange(length)) * slope[:, np.newaxis, np.newaxis]
-        return whole
+            centred = np.arange(periods) - 0.5 * (periods - 1)
+            slope = samples.mean(axis=2) @ centred / (centred @ centred * length)
+            samples = samples - (centred[:, np.newaxis] * length + np.arange(length)) * slope[:, np.newaxis, np.newaxis]
+        return samples
 
     def _places(self, frequency: FloatArray, excited: BoolArray, band_hz: tuple[float, float]) -> IntArray:
         """Return the bins of the lines to take."""
@@ -154,24 +154,24 @@ class Periodic(Excitation):
         places = self._places(frequency, excited, band_hz)
         u, y = mean[places, :inputs], mean[places, inputs:]
         gram = mean[places] @ _adjoint(u)
-        beside = np.concatenate([spectrum.beside for spectrum in spectra], axis=1)
-        if beside.size:
+        between_lines = np.concatenate([spectrum.beside for spectrum in spectra], axis=1)
+        if between_lines.size:
             where = np.concatenate([spectrum.beside_place for spectrum in spectra]) * frequency[0]
             order = np.argsort(where, kind="stable")
             fewest = sum(spectrum.periods - 1 for spectrum in spectra)
-            noise, samples = pooled_noise(beside[:, order], where[order], frequency[places], fewest=fewest)
+            noise, samples = pooled_noise(between_lines[:, order], where[order], frequency[places], fewest=fewest)
             # products of noisy means hold their noise; as many records as inputs fit exactly, without such an error
             gram -= (len(spectra) - inputs) * noise[:, :, :inputs]
         inverse: ComplexArray = np.asarray(np.linalg.inv(gram[:, :inputs]), dtype=np.complex128)
         response = gram[:, inputs:] @ inverse
         if self.between_records:
-            rest = _without_inputs(y, u)
+            residual = _without_inputs(y, u)
             where = np.repeat(frequency[places], len(spectra) - inputs)
-            error, samples = pooled_noise(rest, where, frequency[places], fewest=len(spectra) - inputs)
+            error, samples = pooled_noise(residual, where, frequency[places], fewest=len(spectra) - inputs)
         else:
             outputs = y.shape[1]
-            own = np.broadcast_to(np.eye(outputs), (places.size, outputs, outputs))
-            change = np.concatenate([-response, own], axis=2)
+            identity = np.broadcast_to(np.eye(outputs), (places.size, outputs, outputs))
+            change = np.concatenate([-response, identity], axis=2)
             error = change @ noise @ _adjoint(change)
         error = error + rounding_floor((np.abs(y) ** 2).sum(axis=2))
         return LineEstimates(
@@ -205,9 +205,9 @@ def _adjoint(matrices: ComplexArray) -> ComplexArray:
 
 def _without_inputs(y: ComplexArray, u: ComplexArray) -> ComplexArray:
     """Return what the inputs leave of the outputs, shape (outputs, lines times (runs - inputs))."""
-    rest = np.linalg.qr(_adjoint(u), mode="complete").Q[:, :, u.shape[1] :]
-    left: ComplexArray = np.moveaxis(y @ rest, 0, 1).reshape(y.shape[1], -1)
-    return left
+    null_space = np.linalg.qr(_adjoint(u), mode="complete").Q[:, :, u.shape[1] :]
+    residual: ComplexArray = np.moveaxis(y @ null_space, 0, 1).reshape(y.shape[1], -1)
+    return residual
 
 
 def _excited(u: ComplexArray, noise: FloatArray) -> BoolArray:
@@ -235,9 +235,9 @@ def _level(spectra: list[_Spectrum]) -> FloatArray:
         return power
     log = np.log(power / count + np.finfo(np.float64).tiny)
     total = np.concatenate([np.zeros((1, channels)), np.cumsum(log, axis=0)])
-    place = np.arange(lines)
-    reach = np.clip(np.minimum(place, lines - 1 - place), _LEAST_LEVEL_REACH, _LEVEL_REACH)
-    first, stop = np.maximum(place - reach, 0), np.minimum(place + reach + 1, lines)
+    line = np.arange(lines)
+    reach = np.clip(np.minimum(line, lines - 1 - line), _LEAST_LEVEL_REACH, _LEVEL_REACH)
+    first, stop = np.maximum(line - reach, 0), np.minimum(line + reach + 1, lines)
     mean = (total[stop] - total[first]) / (stop - first)[:, np.newaxis]
     # the logarithm of a mean of so many squared magnitudes lies this much below that of its expectation
     level: FloatArray = np.exp(mean + 0.5 / count + 1.0 / (12.0 * count**2))

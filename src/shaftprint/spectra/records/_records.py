@@ -62,13 +62,13 @@ def read_records(
         raise ResponseError(f"{', '.join(sorted(both))}: expected a channel among inputs or outputs, found it in both.")
     values = []
     for run, channels in enumerate(zip(all_inputs, all_outputs, strict=True)):
-        for kind, found, expected in zip(("inputs", "outputs"), channels, names, strict=True):
-            if set(found) != set(expected):
+        for kind, present, expected in zip(("inputs", "outputs"), channels, names, strict=True):
+            if set(present) != set(expected):
                 raise ResponseError(
                     f"record {run + 1}, {kind}: expected {', '.join(expected)} as in record 1, found "
-                    f"{', '.join(found) or 'none'}."
+                    f"{', '.join(present) or 'none'}."
                 )
-        rows = [_row(f"record {run + 1}, {n}", c[n]) for c, own in zip(channels, names, strict=True) for n in own]
+        rows = [_row(f"record {run + 1}, {n}", c[n]) for c, side in zip(channels, names, strict=True) for n in side]
         lengths = {row.size for row in rows}
         if len(lengths) > 1:
             raise ResponseError(
@@ -105,9 +105,9 @@ def _row(name: str, samples: ArrayLike) -> FloatArray:
         )
     lost = ~np.isfinite(row)
     if lost.any():
-        place = int(np.argmax(lost))
+        index = int(np.argmax(lost))
         raise ResponseError(
-            f"{name}: expected finite numbers, found {row[place]} at sample {place} ({int(lost.sum())} such samples): "
+            f"{name}: expected finite numbers, found {row[index]} at sample {index} ({int(lost.sum())} such samples): "
             "fill them in or cut the record there."
         )
     if np.ptp(row) == 0.0:
