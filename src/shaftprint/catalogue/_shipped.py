@@ -67,4 +67,4 @@ def _shipped_roles() -> dict[tuple[str, str], Role]:
 
 
 def _attribute(role: Role) -> str:
-    return next(name for name, known in vars(ShipRole).items() if known is role)
+    return next(name for name, candidate in vars(ShipRole).items() if candidate is role)

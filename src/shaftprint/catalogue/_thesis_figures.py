@@ -41,9 +41,9 @@ def thesis_families() -> tuple[Family, ...]:
 
 def _open_loop(initial: Structure) -> Structure:
     """Return ``n / e`` of thesis eq. 4.4: the initial linear model without feedback and with ``g = 0``."""
-    known = {parameter.name: parameter for parameter in initial.parameters}
-    governor = PIGovernor(known["K_p"], known["K_i"]) * Gain(known["v"])
-    core = Shaft((known["tau_n"],), known["k_q"])
+    by_name = {parameter.name: parameter for parameter in initial.parameters}
+    governor = PIGovernor(by_name["K_p"], by_name["K_i"]) * Gain(by_name["v"])
+    core = Shaft((by_name["tau_n"],), by_name["k_q"])
     return Structure(
         name="OPEN-LOOP", title="open loop of the initial linear model", input="e", outputs={"n": governor * core}
     )

@@ -85,10 +85,10 @@ def physical_quantities(
         direct = {item.number.name: item.direct for item in numbers}
         shifts = shifts_of_working_point(identification, working_point)
         stated = budget(identification, [item.number for item in numbers], direct=direct, shifts=shifts)
-    found = []
+    quantities = []
     for item in numbers:
         row = stated.row(item.number.name)
-        found.append(
+        quantities.append(
             Quantity(
                 name=row.name,
                 unit=row.unit,
@@ -100,7 +100,7 @@ def physical_quantities(
                 role=item.number.role,
             )
         )
-    return tuple(found)
+    return tuple(quantities)
 
 
 def _physical_forms(

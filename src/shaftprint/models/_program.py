@@ -217,9 +217,9 @@ class _Resolver:
         if leaf.operation == "past" and leaf.place not in self._drifting:
             # a signal that is late of itself goes round a loop, which stands still in steady running
             self._drifting.add(leaf.place)
-            found = self.drift(self(self._flow.pasts[leaf.place].signal))
+            slope = self.drift(self(self._flow.pasts[leaf.place].signal))
             self._drifting.discard(leaf.place)
-            return found
+            return slope
         return None
 
     def _slope_in_time(self, leaf: Formula) -> Formula | None:

@@ -105,7 +105,7 @@ class Structure:
 
     def named_as(self, role: Role) -> str | None:
         """Return the name of the parameter of a role, tied or not; None where there is none."""
-        return next((name for name, own in self.roles.items() if own == role), None)
+        return next((name for name, candidate in self.roles.items() if candidate == role), None)
 
     def path(self, output: str) -> Expression:
         """Return the response of an output to the first input, as an expression.

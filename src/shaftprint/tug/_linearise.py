@@ -79,17 +79,17 @@ def linearised_response(
     response = np.empty((len(outputs), 1, s.size), dtype=np.complex128)
     for line, value in enumerate(s):
         delay = np.exp(-value * plant.delay_s)
-        # (s I - A) x - B_delayed e^{-s t_d} (given) = B_demand e^{-s t_sp} n_set
-        given, gauge = slope[_GIVEN], slope[_GAUGE]
+        # (s I - A) x - B_delayed e^{-s t_d} (rack_given) = B_demand e^{-s t_sp} n_set
+        rack_given, gauge = slope[_GIVEN], slope[_GAUGE]
         inner = slope[states, _RACK_DELAYED] * delay
-        system = value * np.eye(inner.size) - slope[np.ix_(states, states)] - np.outer(inner, given[states])
+        system = value * np.eye(inner.size) - slope[np.ix_(states, states)] - np.outer(inner, rack_given[states])
         moved, size, late = _excitation(tug, input, value, speed)
-        right = slope[states, moved] + inner * given[moved]
+        right = slope[states, moved] + inner * rack_given[moved]
         x = np.linalg.solve(system, right) * late
         responses = {
             "n": plant.gear_ratio * x[SPEED] * size / speed,
             "M_s": (gauge[states] @ x + gauge[moved] * late) * size / torque,
-            "X": (given[states] @ x + given[moved] * late) * size / rack,
+            "X": (rack_given[states] @ x + rack_given[moved] * late) * size / rack,
         }
         if plant.sails:
             responses["v_s"] = x[-1] * size / way
@@ -117,11 +117,11 @@ def _slopes(plant: Plant, engine_speed_rev_s: float) -> FloatArray:
     size[WAY] = max(size[WAY], 1e-4)
     size[_PITCH] = 1e-4
     slope = np.empty((_RATES, _SIZE))
-    for place in range(_SIZE):
+    for index in range(_SIZE):
         shift = np.zeros(_SIZE)
-        shift[place] = size[place]
+        shift[index] = size[index]
         difference = _rates(plant, centre + shift) - _rates(plant, centre - shift)
-        slope[:, place] = difference / (2.0 * size[place])
+        slope[:, index] = difference / (2.0 * size[index])
     return slope
 
 

@@ -47,9 +47,9 @@ def sail_as(
     expect_known_ending(path)
     if path.suffix.lower() in NATIVE_ENDINGS:
         return sail(vessel, campaign, path, tug=tug, seed=seed, overwrite=overwrite, progress=progress)
-    for place in (path, truth_path(path)):
-        if place.exists() and not overwrite:
-            raise RecordingError(f"{place} exists already; choose another name or delete it first.")
+    for file in (path, truth_path(path)):
+        if file.exists() and not overwrite:
+            raise RecordingError(f"{file} exists already; choose another name or delete it first.")
     try:
         with tempfile.TemporaryDirectory(prefix=".shaftprint-", dir=path.parent) as folder:
             native = Path(folder) / "recording.nc"

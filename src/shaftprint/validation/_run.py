@@ -97,23 +97,23 @@ class Run:
 
     def compared(self, excerpt: Excerpt) -> list[tuple[Compared, Compared]]:
         """Return data and model of speed and of torque in an excerpt, raw and through the low-pass."""
-        own, there = self.excerpt(excerpt), self.data.places(excerpt.start_s, excerpt.stop_s)
+        in_model, in_data = self.excerpt(excerpt), self.data.places(excerpt.start_s, excerpt.stop_s)
         # the median: a step spends most of its excerpt at the level that it ends at
-        load = max(1.0 + float(np.median(self.data.smooth[1, there])), LEAST_LOAD)
+        load = max(1.0 + float(np.median(self.data.smooth[1, in_data])), LEAST_LOAD)
         pairs = []
         for measured, model, noise in (
             (self.data.raw, self.raw, self.data.raw_noise),
             (self.data.smooth, self.smooth, self.data.noise),
         ):
-            like = noise.like(there.stop - there.start, load)
+            like = noise.like(in_data.stop - in_data.start, load)
             pairs.append(
                 [
                     Compared(
                         output=output,
                         place=row,
-                        measured=measured[row, there],
-                        model=model[row, own],
-                        slopes=self.slopes[:, row, own],
+                        measured=measured[row, in_data],
+                        model=model[row, in_model],
+                        slopes=self.slopes[:, row, in_model],
                         noise=like,
                         offset_variance=load**2 * float(noise.offset_variance[row]),
                     )

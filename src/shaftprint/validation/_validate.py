@@ -188,14 +188,14 @@ def _time(excerpt: Excerpt, run: Run) -> "np.ndarray[tuple[int], np.dtype[np.flo
 
 
 def _traces(excerpt: Excerpt, run: Run, model: Model) -> ExcerptTraces:
-    own, there = run.excerpt(excerpt), run.data.places(excerpt.start_s, excerpt.stop_s)
-    slopes = run.slopes[:, :, own]
+    in_model, in_data = run.excerpt(excerpt), run.data.places(excerpt.start_s, excerpt.stop_s)
+    slopes = run.slopes[:, :, in_model]
     variance = np.einsum("iot,ij,jot->ot", slopes, model.covariance, slopes, optimize=True)
     return ExcerptTraces(
         time_s=frozen_float(_time(excerpt, run)),
-        set_point=frozen_float(run.data.set_point[there]),
-        measured=frozen_float(run.data.smooth[:, there]),
-        model=frozen_float(run.smooth[:, own]),
+        set_point=frozen_float(run.data.set_point[in_data]),
+        measured=frozen_float(run.data.smooth[:, in_data]),
+        model=frozen_float(run.smooth[:, in_model]),
         model_std=frozen_float(np.sqrt(np.maximum(variance, 0.0))),
     )
 

@@ -42,7 +42,7 @@ AFFECTED: Mapping[ReasonKind, tuple[frozenset[Basis], str]] = {
 }
 """For each kind of reason, the most important first: what depends on it, and why, as a clause."""
 
-WEIGHT = {kind: place for place, kind in enumerate(AFFECTED)}
+WEIGHT = {kind: weight for weight, kind in enumerate(AFFECTED)}
 
 
 def by_weight(reasons: Sequence[Reason]) -> tuple[Reason, ...]:

@@ -62,12 +62,12 @@ class PitchActuator:
             return values
         values[0] = self._pitch
         half_steps = np.arange(self._count + 1, self._count + 2 * steps + 1, dtype=np.float64)
-        asked = self._deviation(self._start_s + self._half_step_s * half_steps)
-        last = float(asked[-1])
-        _lag(asked, self._asked, self._pitch, self._kept, self._ramp)
-        values[1:] = asked
+        pitch = self._deviation(self._start_s + self._half_step_s * half_steps)
+        last = float(pitch[-1])
+        _lag(pitch, self._asked, self._pitch, self._kept, self._ramp)
+        values[1:] = pitch
         self._count += 2 * steps
-        self._pitch, self._asked = float(asked[-1]), last
+        self._pitch, self._asked = float(pitch[-1]), last
         return values
 
     def _deviation(self, time_s: FloatArray) -> FloatArray:

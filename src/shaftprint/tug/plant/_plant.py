@@ -157,9 +157,11 @@ def governor_rack(speed_s, integral, demand, plant, air=1.0):  # type: ignore[no
     wanted = plant.proportional_s * _felt(demand - speed, plant) + integral
     lowest, highest = torque_limits(speed, plant)
     highest *= air
-    rest = plant.speed_slope_nm_s * speed + plant.rack_offset_nm
-    given = min(max(wanted, (lowest - rest) / plant.rack_slope_nm), (highest - rest) / plant.rack_slope_nm)
-    return wanted, given
+    without_rack = plant.speed_slope_nm_s * speed + plant.rack_offset_nm
+    rack_given = min(
+        max(wanted, (lowest - without_rack) / plant.rack_slope_nm), (highest - without_rack) / plant.rack_slope_nm
+    )
+    return wanted, rack_given
 
 
 @compiled(inline="always")
@@ -169,13 +171,13 @@ def derivatives(  # type: ignore[no-untyped-def]
     """Return rates of the first five states, rack given, ``M_s``, ``M_b``, whether it is limited, rate of the ship."""
     speed_s, integral, rack, rack_rate, slipstream = state[0], state[1], state[2], state[3], state[4]
     speed = plant.gear_ratio * speed_s
-    wanted, given = governor_rack(speed_s, integral, demand, plant, air)
+    wanted, rack_given = governor_rack(speed_s, integral, demand, plant, air)
     if plant.delay_s == 0.0:
-        rack_delayed = given
-    asked = plant.speed_slope_nm_s * speed + plant.rack_slope_nm * rack + plant.rack_offset_nm
+        rack_delayed = rack_given
+    unlimited = plant.speed_slope_nm_s * speed + plant.rack_slope_nm * rack + plant.rack_offset_nm
     lowest, highest = torque_limits(speed, plant)
     highest *= air
-    brake = min(max(asked, lowest), highest)
+    brake = min(max(unlimited, lowest), highest)
     load = plant.propeller_nm_s2 * speed_s * abs(speed_s)
     way_rate = 0.0
     if plant.sails:
@@ -189,17 +191,17 @@ def derivatives(  # type: ignore[no-untyped-def]
     drive = plant.gear_ratio * plant.efficiency * brake + load * engine_noise
     acceleration = (drive - propeller) / (2.0 * np.pi * (plant.inertia_upstream_kg_m2 + plant.inertia_downstream_kg_m2))
     gauge = propeller + 2.0 * np.pi * plant.inertia_downstream_kg_m2 * acceleration
-    integral_rate = plant.integral * _felt(demand - speed, plant) + (given - wanted) / plant.anti_windup_s
+    integral_rate = plant.integral * _felt(demand - speed, plant) + (rack_given - wanted) / plant.anti_windup_s
     omega = plant.natural_frequency_rad_s
     rack_acceleration = omega * (omega * (rack_delayed - rack) - 2.0 * plant.damping_ratio * rack_rate)
-    limited = given != wanted or brake != asked
+    limited = rack_given != wanted or brake != unlimited
     return (
         acceleration,
         integral_rate,
         rack_rate,
         rack_acceleration,
         slipstream_rate,
-        given,
+        rack_given,
         gauge,
         brake,
         limited,
@@ -323,7 +325,7 @@ def advance(  # type: ignore[no-untyped-def]
     for j in range(traces.limited.size):
         propeller = (propeller_noise[j], 0.5 * (propeller_noise[j] + propeller_noise[j + 1]), propeller_noise[j + 1])
         engine = (engine_noise[j], 0.5 * (engine_noise[j] + engine_noise[j + 1]), engine_noise[j + 1])
-        asked = (demand[2 * j], demand[2 * j + 1], demand[2 * j + 2])
+        demands = (demand[2 * j], demand[2 * j + 1], demand[2 * j + 2])
         blades = (pitch[2 * j], pitch[2 * j + 1], pitch[2 * j + 2])
         past = (
             _past(history, mask, k + delay.first[0], delay.weights[0]),
@@ -331,22 +333,22 @@ def advance(  # type: ignore[no-untyped-def]
             _past(history, mask, k + delay.first[2], delay.weights[2]),
         )
         air = plant.air_share + (1.0 - plant.air_share) * carried.boost[0]
-        rates = derivatives(x, asked[0], past[0], propeller[0], engine[0], plant, air, blades[0])
+        rates = derivatives(x, demands[0], past[0], propeller[0], engine[0], plant, air, blades[0])
         # the limiter of the rate keeps no state of its own: it starts from the rack that it gave last
         last = history[(k - 1) & mask]
-        given = min(max(rates[5], last - largest_change), last + largest_change)
-        history[k & mask] = given
+        rack_given = min(max(rates[5], last - largest_change), last + largest_change)
+        history[k & mask] = rack_given
         traces.shaft_speed_rev_s[j] = x[0]
         traces.shaft_angle_rev[j] = x[5]
-        traces.rack_given[j] = given
+        traces.rack_given[j] = rack_given
         traces.shaft_torque_nm[j] = rates[6]
         traces.brake_torque_nm[j] = rates[7]
-        traces.limited[j] = rates[8] or given != rates[5]
+        traces.limited[j] = rates[8] or rack_given != rates[5]
         traces.ship_speed_m_s[j] = x[6]
         if plant.air_share < 1.0:
             _, full_load = torque_limits(plant.gear_ratio * x[0], plant)
             carried.boost[0] += step_s / plant.turbocharger_lag_s * (rates[7] / full_load - carried.boost[0])
-        x = _runge_kutta(step_s, x, rates, asked, past, propeller, engine, plant, air, blades)
+        x = _runge_kutta(step_s, x, rates, demands, past, propeller, engine, plant, air, blades)
         k += 1
     state[0], state[1], state[2], state[3], state[4], state[5], state[6] = x
     carried.counter[0] = k

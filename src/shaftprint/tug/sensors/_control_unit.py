@@ -51,12 +51,12 @@ class ControlUnit:
         self._passed += leg.rack_given.size
         most = int(self._passed / (self.cycle_s * self._rate_hz)) + 2
         message = self.start_s + self.cycle_s * np.arange(self._sent, most)
-        place = (message - self._latency_s) * self._rate_hz
-        place = place[(message * self._rate_hz < self._passed) & (place < self._passed - 1)]
-        self._sent += place.size
+        position = (message - self._latency_s) * self._rate_hz
+        position = position[(message * self._rate_hz < self._passed) & (position < self._passed - 1)]
+        self._sent += position.size
         # in samples since the start, so that the result does not depend on how the time is cut into legs
-        before = np.floor(place).astype(np.int64)
-        part = place - before
+        before = np.floor(position).astype(np.int64)
+        part = position - before
         percent = 100.0 * ((1.0 - part) * rack[before - begin] + part * rack[before - begin + 1])
         # all that a later message can ask for: its latency, its own cycle and the sample before
         kept = int(np.ceil((self._latency_s + self.cycle_s) * self._rate_hz)) + 2

@@ -78,15 +78,15 @@ def _read_out(  # type: ignore[no-untyped-def]
     torque, angle, speed, broadband, telemetry, memory, spikes, dropouts, counts
 ) -> None:
     """Fill the counts of one chunk: late torque, orders and noise through the low-pass filter, then the faults."""
-    history, place = memory.history, memory.place
+    history, counters = memory.history, memory.place
     mask = history.size - 1
-    whole = int(np.floor(telemetry.delay))
-    part = telemetry.delay - whole
+    delay = int(np.floor(telemetry.delay))
+    part = telemetry.delay - delay
     smooth = memory.smooth[0]
-    sample, spike, drop, last = place[0], place[1], place[2], place[3]
+    sample, spike, drop, last = counters[0], counters[1], counters[2], counters[3]
     for j in range(torque.size):
         history[sample & mask] = torque[j]
-        late = (1.0 - part) * history[(sample - whole) & mask] + part * history[(sample - whole - 1) & mask]
+        late = (1.0 - part) * history[(sample - delay) & mask] + part * history[(sample - delay - 1) & mask]
         load = telemetry.load_nm_s2 * speed[j] * speed[j]
         disturbed = late + load * (_ripple(angle[j], telemetry) + broadband[j])
         smooth += telemetry.smoothing * (disturbed - smooth)
@@ -102,7 +102,7 @@ def _read_out(  # type: ignore[no-untyped-def]
         counts[j] = count
         sample += 1
     memory.smooth[0] = smooth
-    place[0], place[1], place[2], place[3] = sample, spike, drop, last
+    counters[0], counters[1], counters[2], counters[3] = sample, spike, drop, last
 
 
 class TorqueGauge:

@@ -54,11 +54,11 @@ class SpeedLog:
         self._passed += leg.ship_speed_m_s.size
         most = int(self._passed / (self.cycle_s * self._rate_hz)) + 2
         time = self.start_s + self.cycle_s * np.arange(self._sent, most)
-        place = (time - self._latency_s) * self._rate_hz
-        place = place[(time * self._rate_hz < self._passed) & (place < self._passed - 1)]
-        self._sent += place.size
-        before = np.floor(place).astype(np.int64)
-        part = place - before
+        position = (time - self._latency_s) * self._rate_hz
+        position = position[(time * self._rate_hz < self._passed) & (position < self._passed - 1)]
+        self._sent += position.size
+        before = np.floor(position).astype(np.int64)
+        part = position - before
         shown = (1.0 - part) * speed[before - begin] + part * speed[before - begin + 1]
         shown += self._noise_m_s * self._rng.standard_normal(shown.size)
         self._tail = speed[-self._kept() :]

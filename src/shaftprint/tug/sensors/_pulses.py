@@ -68,14 +68,14 @@ def _middle(strip, strips):  # type: ignore[no-untyped-def]
 @compiled(inline="always")
 def _fault_of(time, edge_s, view):  # type: ignore[no-untyped-def]
     """Return the kind of the pulse that comes into view, and note the time of its edge where it is a fault."""
-    place = view.place
-    if place[2] < view.missing_s.size and time >= view.missing_s[place[2]]:
-        view.missing_s[place[2]] = edge_s
-        place[2] += 1
+    counters = view.place
+    if counters[2] < view.missing_s.size and time >= view.missing_s[counters[2]]:
+        view.missing_s[counters[2]] = edge_s
+        counters[2] += 1
         return _MISSING
-    if place[3] < view.doubled_s.size and time >= view.doubled_s[place[3]]:
-        view.doubled_s[place[3]] = edge_s
-        place[3] += 1
+    if counters[3] < view.doubled_s.size and time >= view.doubled_s[counters[3]]:
+        view.doubled_s[counters[3]] = edge_s
+        counters[3] += 1
         return _DOUBLED
     return _NORMAL
 
@@ -83,9 +83,9 @@ def _fault_of(time, edge_s, view):  # type: ignore[no-untyped-def]
 @compiled(nogil=True)
 def _pulse_train(angle, speed, noise_v, strips, view, counts) -> None:  # type: ignore[no-untyped-def]
     """Fill the counts of one chunk from the angle and speed of the propeller shaft."""
-    place = view.place
+    counters = view.place
     width = strips.width_rev
-    strip, kind, shift = place[0], place[1], view.shift_rev[0]
+    strip, kind, shift = counters[0], counters[1], view.shift_rev[0]
     middle, following = _middle(strip, strips), _middle(strip + 1, strips)
     for j in range(angle.size):
         now = strips.phase_rev + strips.turns * angle[j]
@@ -94,7 +94,7 @@ def _pulse_train(angle, speed, noise_v, strips, view, counts) -> None:  # type: 
             middle, following = following, _middle(strip + 1, strips)
             turning = strips.turns * speed[j]
             shift = turning * view.jitter_s[strip % view.jitter_s.size]
-            time = (place[4] + j) / strips.rate_hz
+            time = (counters[4] + j) / strips.rate_hz
             kind = _fault_of(time, time + (middle - 0.5 * width + shift - now) / turning, view)
         light = 0.0
         if kind != _MISSING:
@@ -105,8 +105,8 @@ def _pulse_train(angle, speed, noise_v, strips, view, counts) -> None:  # type: 
                 light = max(light, _reflection(behind, _GHOST_WIDTH * width, _GHOST_RAMP * width))
         volt = _LOW_V + (_HIGH_V - _LOW_V) * light + noise_v[j]
         counts[j] = np.int16(np.rint(volt / VOLT_PER_COUNT))
-    place[0], place[1] = strip, kind
-    place[4] += angle.size
+    counters[0], counters[1] = strip, kind
+    counters[4] += angle.size
     view.shift_rev[0] = shift
 
 
@@ -165,8 +165,8 @@ class PickUp:
         kinds = (("missing pulse", self._view.missing_s, 2), ("doubled pulse", self._view.doubled_s, 3))
         return [
             Fault(channel=self.channel, kind=kind, time_s=float(time))
-            for kind, times, place in kinds
-            for time in times[: self._view.place[place]]
+            for kind, times, index in kinds
+            for time in times[: self._view.place[index]]
         ]
 
 
