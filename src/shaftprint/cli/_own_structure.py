@@ -195,9 +195,9 @@ def _one_sentence(path: Path, *, prefix: str | None = None) -> Iterator[None]:
         raise StructureError(f"{where}: {message.rstrip('.')}.") from None
 
 
-def _expect_different_names(found: dict[str, Structure]) -> None:
+def _expect_different_names(structures: dict[str, Structure]) -> None:
     owners: dict[str, str] = {}
-    for text, chosen in found.items():
+    for text, chosen in structures.items():
         other = owners.setdefault(chosen.name.upper(), text)
         if other != text:
             one, two = (Path(source).name for source in (other, text))

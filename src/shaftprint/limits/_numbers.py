@@ -116,29 +116,29 @@ class Units:
                 return (Scale(name, "s", "time in which the integrator is led back at a limit"),)
 
 
-def numbers_of(found: Fitted, spread: LevelScatter, units: Units) -> tuple[LimitEstimate, ...]:
+def numbers_of(fit: Fitted, spread: LevelScatter, units: Units) -> tuple[LimitEstimate, ...]:
     """Return the numbers of all limits, with profile intervals."""
     by_kind = {candidate.kind: candidate for candidate in CANDIDATES}
     done = set[str]()
     rows: list[LimitEstimate] = []
-    for kind in found.kinds:
-        if kind is Kind.HELD and found.messages is not None:
-            rows.append(_cycle(found.messages))
+    for kind in fit.kinds:
+        if kind is Kind.HELD and fit.messages is not None:
+            rows.append(_cycle(fit.messages))
             continue
         for name in (by_kind[kind].level, *by_kind[kind].companions):
             if name not in done:
                 done.add(name)
-                rows += _printed(found, spread, units, kind, name)
+                rows += _printed(fit, spread, units, kind, name)
     return tuple(rows)
 
 
-def _printed(found: Fitted, spread: LevelScatter, units: Units, kind: Kind, name: str) -> Iterator[LimitEstimate]:
-    parameter = next(p for p in found.term.structure.free if p.name == name)
-    value = found.values[name]
+def _printed(fit: Fitted, spread: LevelScatter, units: Units, kind: Kind, name: str) -> Iterator[LimitEstimate]:
+    parameter = next(p for p in fit.term.structure.free if p.name == name)
+    value = fit.values[name]
     at_bound = value in (parameter.lower, parameter.upper)
-    interval = profile_interval(found, spread, name)
+    interval = profile_interval(fit, spread, name)
     doubt = _doubt(value, interval, at_bound=at_bound)
-    line_std = found.priors[GovernorSymbol.SET_POINT_OFFSET].std
+    line_std = fit.priors[GovernorSymbol.SET_POINT_OFFSET].std
     if kind in (Kind.TORQUE, Kind.SMOKE) and line_std > LARGEST_LINE_STD:
         doubt = doubt or (
             f"the speed fell behind the set point so often that their line is known to {100.0 * line_std:.2g} % only, "

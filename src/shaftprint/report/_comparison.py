@@ -87,7 +87,7 @@ def render_comparison(
 
 def _sections(
     fingerprints: "Mapping[str, Fingerprint]",
-    found: Mapping[str, Sequence[Difference]],
+    comparisons: Mapping[str, Sequence[Difference]],
     structures: "Mapping[str, Structure]",
     load_repeatability: float,
 ) -> list[Section]:
@@ -103,8 +103,8 @@ def _sections(
             f"{PERCENT * load_repeatability:g} %, one standard deviation, beside what a test itself shows.",
             *_vessel_files(fingerprints),
         ),
-        tables=_difference_tables(first, found, normalised=False),
-        pictures=_difference_pictures(found),
+        tables=_difference_tables(first, comparisons, normalised=False),
+        pictures=_difference_pictures(comparisons),
     )
     moving = Section(
         key="normalised",
@@ -114,7 +114,7 @@ def _sections(
             "value tells the same without the working point, they are not compared; the others are judged by "
             "themselves and are of the test and its sensors rather than of the ship.",
         ),
-        tables=_difference_tables(first, found, normalised=True),
+        tables=_difference_tables(first, comparisons, normalised=True),
     )
     side_by_side = Section(
         key="numbers",
@@ -131,21 +131,21 @@ def _sections(
     return [changed, *_responses(fingerprints, structures), moving, side_by_side, conditions]
 
 
-def _difference_tables(first: str, found: Mapping[str, Sequence[Difference]], *, normalised: bool) -> list[Table]:
-    chosen = {name: [one for one in rows if one.normalised == normalised] for name, rows in found.items()}
+def _difference_tables(first: str, comparisons: Mapping[str, Sequence[Difference]], *, normalised: bool) -> list[Table]:
+    chosen = {name: [one for one in rows if one.normalised == normalised] for name, rows in comparisons.items()}
     return [difference_table(first, name, rows) for name, rows in chosen.items() if rows]
 
 
-def _difference_pictures(found: Mapping[str, Sequence[Difference]]) -> list[Picture]:
-    if not shown_names(found):
+def _difference_pictures(comparisons: Mapping[str, Sequence[Difference]]) -> list[Picture]:
+    if not shown_names(comparisons):
         return []
     return [
         Picture(
             name="differences",
             caption="Difference of each number from the first fingerprint, in percent of it.",
             alt="Points with intervals, a row for each number, about a vertical line at zero difference.",
-            draw=partial(plot_differences, found),
-            plot=partial(difference_plot, found),
+            draw=partial(plot_differences, comparisons),
+            plot=partial(difference_plot, comparisons),
         )
     ]
 

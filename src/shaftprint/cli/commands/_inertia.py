@@ -83,10 +83,10 @@ def command(vessel: str, found: Path | None, drawing: Path | None, force: bool) 
         echo(drawing)
 
 
-def _expected(ship: Vessel, found: Path | None) -> tuple[ExpectedInertia, tuple[InertiaComparison, ...]]:
-    if found is None:
+def _expected(ship: Vessel, fingerprint_path: Path | None) -> tuple[ExpectedInertia, tuple[InertiaComparison, ...]]:
+    if fingerprint_path is None:
         return expected_inertia(ship), ()
-    fingerprint = fingerprint_at(found)
+    fingerprint = fingerprint_at(fingerprint_path)
     if fingerprint.conditions.vessel != ship.name:
         echo(f"Mind: the fingerprint is of {fingerprint.conditions.vessel}, the vessel file of {ship.name}.\n")
     return inertia_beside(fingerprint, ship)
@@ -98,11 +98,11 @@ def _draw(vibrations: Modes, path: Path) -> None:
 
 
 def _print(
-    ship: Vessel, expected: ExpectedInertia, beside: tuple[InertiaComparison, ...], vibrations: Modes | None
+    ship: Vessel, expected: ExpectedInertia, comparisons: tuple[InertiaComparison, ...], vibrations: Modes | None
 ) -> None:
     tables = (
         mass_table(ship),
-        expected_inertia_table(expected, beside),
+        expected_inertia_table(expected, comparisons),
         inertia_budget_table(expected),
         water_table(expected),
     )

@@ -31,27 +31,27 @@ def command(recording: Path, vessel: str, campaign: str, no_progress: bool) -> N
     print_limits(limits)
 
 
-def print_limits(found: LimitFit) -> None:
+def print_limits(limits: LimitFit) -> None:
     """Print the answer first: limits with their levels, what may be trusted, then the tables."""
-    print_findings("Limits", [found.sentence, *(_answer(found, number) for number in _first_numbers(found))])
-    print_findings("Not seen", list(found.not_seen.values()))
-    print_tables([_number_table(found), _governor_table(found)])
-    trusted = ", ".join(number.name for number in found.trusted) or "none"
-    doubted = [f"{number.name}: {number.doubt}." for number in found.numbers if not number.trusted]
+    print_findings("Limits", [limits.sentence, *(_answer(limits, number) for number in _first_numbers(limits))])
+    print_findings("Not seen", list(limits.not_seen.values()))
+    print_tables([_number_table(limits), _governor_table(limits)])
+    trusted = ", ".join(number.name for number in limits.trusted) or "none"
+    doubted = [f"{number.name}: {number.doubt}." for number in limits.numbers if not number.trusted]
     print_findings("Verdict", [f"Numbers that can be trusted: {trusted}.", *doubted])
 
 
-def _first_numbers(found: LimitFit) -> list[LimitEstimate]:
+def _first_numbers(limits: LimitFit) -> list[LimitEstimate]:
     """Return the number by which each limit is known."""
-    return [next(number for number in found.numbers if number.kind is kind) for kind in found.kinds]
+    return [next(number for number in limits.numbers if number.kind is kind) for kind in limits.kinds]
 
 
-def _answer(found: LimitFit, number: LimitEstimate) -> str:
+def _answer(limits: LimitFit, number: LimitEstimate) -> str:
     unit = "" if number.unit == "-" else f" {number.unit}"
     trust = "trusted" if number.trusted else f"not trusted, {number.doubt}"
     return (
         f"{number.kind.value}: {number.name} = {number.value:.4g}{unit}, 95 % interval {_interval(number)}{unit} "
-        f"({trust}). Likelihood-ratio statistic {found.gains[number.kind]:.0f}."
+        f"({trust}). Likelihood-ratio statistic {limits.gains[number.kind]:.0f}."
     )
 
 
@@ -59,7 +59,7 @@ def _interval(number: LimitEstimate) -> str:
     return f"{number.lower:.4g} to {number.upper:.4g}"
 
 
-def _number_table(found: LimitFit) -> Table:
+def _number_table(limits: LimitFit) -> Table:
     rows = tuple(
         (
             Symbol(number.name),
@@ -69,20 +69,20 @@ def _number_table(found: LimitFit) -> Table:
             "yes" if number.trusted else number.doubt,
             number.meaning,
         )
-        for number in found.numbers
+        for number in limits.numbers
     )
     columns = (*texts("symbol"), *numbers("value ± std", "95 % interval"), *texts("unit", "trusted", "meaning"))
     return Table(title="Numbers of the limits", columns=columns, rows=rows)
 
 
-def _governor_table(found: LimitFit) -> Table:
+def _governor_table(limits: LimitFit) -> Table:
     rows = tuple(
         (
             Symbol(estimate.name),
             with_deviation(estimate.value, estimate.std) + (" (at its bound)" if estimate.at_bound else ""),
             unit_text(estimate.unit),
         )
-        for estimate in found.governor
+        for estimate in limits.governor
     )
     columns = (*texts("symbol"), *numbers("value ± std"), *texts("unit"))
     return Table(title="Governor that goes with them", columns=columns, rows=rows)

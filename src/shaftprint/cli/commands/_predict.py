@@ -168,10 +168,10 @@ def _working_point(vessel: Vessel) -> WorkingPoint:
     )
 
 
-def _values_of(chosen: Structure, known: Mapping[str, Prior]) -> dict[str, float]:
+def _values_of(chosen: Structure, priors: Mapping[str, Prior]) -> dict[str, float]:
     """Return the means of what is known beforehand, within the bounds."""
     bounds = {parameter.name: (parameter.lower, parameter.upper) for parameter in chosen.free}
-    return {name: float(np.clip(prior.mean, *bounds[name])) for name, prior in known.items() if name in bounds}
+    return {name: float(np.clip(prior.mean, *bounds[name])) for name, prior in priors.items() if name in bounds}
 
 
 def _planned(chosen: Structure, campaign: Campaign, noise: NoiseLevels) -> FrequencyResponse:

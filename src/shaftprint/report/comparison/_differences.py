@@ -106,15 +106,15 @@ def _is_of_line(number: "Quantity") -> bool:
     return number.role is not None and number.role.is_of_line
 
 
-def _moving(found: Difference, physical: "Sequence[Quantity]") -> Difference:
+def _moving(difference: Difference, physical: "Sequence[Quantity]") -> Difference:
     """Return a number that is normalised with the working point, uncompared where a physical value says the same."""
-    found = replace(found, normalised=True)
-    role = found.first.role
+    difference = replace(difference, normalised=True)
+    role = difference.first.role
     twin = next((number.name for number in physical if role is not None and number.role == role), "")
     if not twin and (role is None or role.physical is None):
-        return found
+        return difference
     because = "moving with the working point" + (f"; see {twin}" if twin else "")
-    return replace(found, interval_95=None, p_value=None, outcome="cannot be compared", because=because)
+    return replace(difference, interval_95=None, p_value=None, outcome="cannot be compared", because=because)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -190,12 +190,12 @@ def _told(fingerprint: "Fingerprint", name: str, common: Collection[str]) -> dic
     return {source: math.sqrt(max(variances[source], 0.0)) for source in common if source in variances}
 
 
-def _own_share(fingerprint: "Fingerprint", name: str, told: dict[str, float]) -> float:
+def _own_share(fingerprint: "Fingerprint", name: str, common_std: dict[str, float]) -> float:
     """Return the share of the variance that is of the test itself."""
     total = sum(_variances(fingerprint, name).values())
-    if not told or total <= 0.0:
+    if not common_std or total <= 0.0:
         return 1.0
-    return max(1.0 - sum(std**2 for std in told.values()) / total, 0.0)
+    return max(1.0 - sum(std**2 for std in common_std.values()) / total, 0.0)
 
 
 def _variances(fingerprint: "Fingerprint", name: str) -> dict[str, float]:

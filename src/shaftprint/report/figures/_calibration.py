@@ -139,9 +139,9 @@ def _earlier_deg(strip: "StripAngles", vessel: "Vessel | None") -> "FloatArray |
     return None
 
 
-def _turned(earlier: "FloatArray", found: "FloatArray") -> "FloatArray":
+def _turned(earlier: "FloatArray", identified_deg: "FloatArray") -> "FloatArray":
     """Return the earlier angles from the strip on that was counted first now, which no recording shows."""
-    if earlier.size != found.size:
+    if earlier.size != identified_deg.size:
         return earlier
     turns = [np.roll(earlier, shift) for shift in range(earlier.size)]
-    return min(turns, key=lambda angles: float(np.abs(angles - found).max()))
+    return min(turns, key=lambda angles: float(np.abs(angles - identified_deg).max()))

@@ -103,8 +103,8 @@ def _host(signal: SimulatedSignal, outputs: Sequence[SimulatedSignal]) -> Simula
     return next((output for output in outputs if signal.unit and output.unit == signal.unit), None)
 
 
-def _draw(axes: "Axes", time_s: FloatArray, signal: SimulatedSignal, name: str, place: int) -> None:
-    style = look(place)
+def _draw(axes: "Axes", time_s: FloatArray, signal: SimulatedSignal, name: str, index: int) -> None:
+    style = look(index)
     if signal.std is not None and np.any(signal.std > 0.0):
         half = deviations(COVERAGE) * signal.std
         # of a long band the outer ends of each stretch, so that it keeps its width

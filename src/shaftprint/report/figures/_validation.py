@@ -95,13 +95,13 @@ def _found(validation: "Validation", record: str, titles: Sequence[str]) -> "lis
 
 
 def _draw_data(
-    axes: "Axes", validation: "Validation", parts: "list[ExcerptComparison]", place: int, *, set_point: bool
+    axes: "Axes", validation: "Validation", parts: "list[ExcerptComparison]", index: int, *, set_point: bool
 ) -> None:
     for part in parts:
         traces = part.traces
         few = worthwhile(traces.time_s, validation.settings.highest_hz)
         axes.plot(
-            *envelope(traces.time_s[few], traces.measured[place, few]),
+            *envelope(traces.time_s[few], traces.measured[index, few]),
             color=MEASURED,
             linewidth=2.6,
             label="measured",
@@ -118,15 +118,15 @@ def _draw_data(
 
 
 def _draw_model(
-    axes: "Axes", validation: "Validation", parts: "list[ExcerptComparison]", place: int, number: int
+    axes: "Axes", validation: "Validation", parts: "list[ExcerptComparison]", index: int, number: int
 ) -> None:
     style = look(number)
     wide = deviations(validation.settings.coverage)
     for part in parts:
         traces = part.traces
         few = worthwhile(traces.time_s, validation.settings.highest_hz)
-        time, middle = traces.time_s[few], np.asarray(traces.model[place, few])
-        half: FloatArray = wide * traces.model_std[place, few]
+        time, middle = traces.time_s[few], np.asarray(traces.model[index, few])
+        half: FloatArray = wide * traces.model_std[index, few]
         if np.any(half > 0.0):
             axes.fill_between(
                 time,

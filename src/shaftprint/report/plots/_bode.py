@@ -108,7 +108,7 @@ def _column(
     return drawn
 
 
-def _model(grid: Grid, column: int, curve: "Curve", trace: "Trace", channel: tuple[str, str], place: int) -> list[Json]:
+def _model(grid: Grid, column: int, curve: "Curve", trace: "Trace", channel: tuple[str, str], index: int) -> list[Json]:
     drawn: list[Json] = []
     label = label_text(curve.label)
     panels = [grid.place(row, column) for row in (0, 1)]
@@ -123,9 +123,9 @@ def _model(grid: Grid, column: int, curve: "Curve", trace: "Trace", channel: tup
             (1, trace.phase_deg[few], (around.phase_upper_deg - around.phase_deg)[at]),
         ):
             legend = column == 0 and row == 0
-            drawn += band(omega, middle - half, middle + half, name, place, panels[row], legend=legend)
+            drawn += band(omega, middle - half, middle + half, name, index, panels[row], legend=legend)
     for row, values in enumerate((trace.magnitude_db, trace.phase_deg)):
-        drawn.append(line(trace.omega_rad_s, values, label, place, panels[row], legend=column == 0 and row == 0))
+        drawn.append(line(trace.omega_rad_s, values, label, index, panels[row], legend=column == 0 and row == 0))
     return drawn
 
 

@@ -108,12 +108,12 @@ class Grid:
         width = (1.0 - between * (count - 1)) / count
         return place * (width + between), place * (width + between) + width
 
-    def _heading(self, place: int) -> Json:
-        row, column = divmod(place, self.columns)
+    def _heading(self, index: int) -> Json:
+        row, column = divmod(index, self.columns)
         x, _ = self._domain(column, self.columns, BETWEEN_COLUMNS)
         top, _ = self._domain(row, self.rows, BETWEEN_ROWS)
         return {
-            "text": f"<b>{self.titles[place]}</b>",
+            "text": f"<b>{self.titles[index]}</b>",
             "xref": "paper",
             "yref": "paper",
             "x": x,

@@ -39,10 +39,10 @@ def _with_few_kinds(text: str) -> str:
         return text
     modules = _modules(text)
 
-    def shorter(found: re.Match[str]) -> str:
-        calls = found.group().split(",")
+    def shorter(match: re.Match[str]) -> str:
+        calls = match.group().split(",")
         kept = [call for call in calls if _trace_type(call[:-2], modules) in {None, *TRACE_TYPES}]
-        return ",".join(kept) if kept else found.group()
+        return ",".join(kept) if kept else match.group()
 
     return _LIST.sub(shorter, text)
 

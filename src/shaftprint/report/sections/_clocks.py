@@ -31,30 +31,30 @@ def clock_sentences(clock: "LoggerClock", influence: "ClockInfluence") -> str:
     )
 
 
-def _rest(found: "Alignment") -> str:
-    worst = f"nowhere in the recording is that known worse than to {rounded(MILLI * found.worst_std_s, 2)} ms"
-    if found.scatter is None:
+def _rest(fit: "Alignment") -> str:
+    worst = f"nowhere in the recording is that known worse than to {rounded(MILLI * fit.worst_std_s, 2)} ms"
+    if fit.scatter is None:
         return f"This was given, not found from what both saw; {worst}."
-    count = len(found.stretches)
+    count = len(fit.stretches)
     if count == 1:
         return f"One minute was compared; {worst}."
-    words = f"The {count} minutes that were compared scatter {plain(found.scatter, 2)} times as far as their "
-    if found.scatter > UNEVEN:
+    words = f"The {count} minutes that were compared scatter {plain(fit.scatter, 2)} times as far as their "
+    if fit.scatter > UNEVEN:
         return f"{words}noise explains: the clock did not run evenly. Widened by as much, {worst}."
     return f"{words}noise explains; {worst}."
 
 
-def _influence(found: "ClockInfluence") -> str:
-    if not found.moved:
+def _influence(effect: "ClockInfluence") -> str:
+    if not effect.moved:
         return "The result does not depend on it: it moves none of set point, speed and torque against the others."
-    outputs, degrees = _listed(found.moved), math.degrees(found.phase_rad)
+    outputs, degrees = _listed(effect.moved), math.degrees(effect.phase_rad)
     words = (
         f"An error of that size turns the phase of {outputs} over the set point by {rounded(degrees, 2)}° at "
-        f"{found.line} ({rounded(found.frequency_hz, 3)} Hz), the highest line that was used. All lines together "
-        f"determine such a delay to {rounded(MILLI * found.delay_std_s, 2)} ms, so that it moves no parameter by more "
-        f"than {rounded(found.shift, 2)} of its standard deviation."
+        f"{effect.line} ({rounded(effect.frequency_hz, 3)} Hz), the highest line that was used. All lines together "
+        f"determine such a delay to {rounded(MILLI * effect.delay_std_s, 2)} ms, so that it moves no parameter by more "
+        f"than {rounded(effect.shift, 2)} of its standard deviation."
     )
-    if found.shift > NOTABLE_SHIFT:
+    if effect.shift > NOTABLE_SHIFT:
         return f"{words} The standard deviations of this report do not hold it and are too small."
     return f"{words} The standard deviations of this report do not hold it."
 

@@ -87,13 +87,13 @@ def not_alike(first: "Fingerprint", name: str, other: "Fingerprint") -> list[str
     return sentences
 
 
-def _changed(name: str, found: "Sequence[Difference]") -> Card:
+def _changed(name: str, differences: "Sequence[Difference]") -> Card:
     question = f"Has anything changed: {name}?"
-    of_the_ship = [one for one in found if not one.normalised]
+    of_the_ship = [one for one in differences if not one.normalised]
     changed = any(one.outcome == "differs" for one in of_the_ship)
     comparable = any(one.p_value is not None for one in of_the_ship)
     state: State = "look" if changed else "fine" if comparable else "open"
-    return Card(question=question, state=state, sentence=change_in_words(found))
+    return Card(question=question, state=state, sentence=change_in_words(differences))
 
 
 def change_in_words(found: "Sequence[Difference]") -> str:
@@ -104,28 +104,28 @@ def change_in_words(found: "Sequence[Difference]") -> str:
     found
         Differences of two fingerprints.
     """
-    found = [one for one in found if not one.normalised]
-    differing = [one for one in found if one.outcome == "differs"]
+    of_the_ship = [one for one in found if not one.normalised]
+    differing = [one for one in of_the_ship if one.outcome == "differs"]
     if differing:
         return f"Yes: {_listed(differing)}."
-    compared = sum(one.p_value is not None for one in found)
+    compared = sum(one.p_value is not None for one in of_the_ship)
     if not compared:
         return "It cannot be told: the two share no number that stands for the ship and can be compared."
     many = (
         f"{compared} numbers that stand for the ship agree" if compared > 1 else "one number stands for it, and agrees"
     )
     words = f"No: {many} within chance"
-    alone = [one for one in found if one.outcome == "perhaps"]
+    alone = [one for one in of_the_ship if one.outcome == "perhaps"]
     if not alone:
         return f"{words}."
     return f"{words}. Alone, {_listed(alone)} would be unlikely; among so many numbers it is not."
 
 
-def _listed(found: "Sequence[Difference]") -> str:
+def _listed(differences: "Sequence[Difference]") -> str:
     words = []
     # margins last: they follow from the other numbers
-    found = sorted(found, key=lambda one: (one.first.name.endswith(" margin"), one.p_value or 0.0))
-    for one in found[:MOST_NAMED]:
+    differences = sorted(differences, key=lambda one: (one.first.name.endswith(" margin"), one.p_value or 0.0))
+    for one in differences[:MOST_NAMED]:
         percent = in_percent(one)
         by = (
             ""
@@ -133,5 +133,5 @@ def _listed(found: "Sequence[Difference]") -> str:
             else f" by {plain(percent[0], 1)} % ({plain(percent[1], 1)} to {plain(percent[2], 1)} %)"
         )
         words.append(f"{one.first.name}{by}")
-    more = len(found) - MOST_NAMED
+    more = len(differences) - MOST_NAMED
     return "; ".join(words) + (f"; and {more} more" if more > 0 else "")
