@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 from scipy.signal import freqz, upfirdn
 
 from shaftprint.errors import SignalError
-from shaftprint.signals.conditioning import Grid, decimated, filter_grid, low_pass_taps
+from shaftprint.signals.conditioning import SampleGrid, decimated, filter_grid, low_pass_taps
 
 RNG = np.random.default_rng(8)
 SIGNAL = RNG.standard_normal(5000)
@@ -33,7 +33,7 @@ def test_equals_the_plain_filter_with_its_delay_removed():
     half = taps.size // 2
     padded = np.concatenate([np.full(half, SIGNAL[0]), SIGNAL, np.full(half, SIGNAL[-1])])
     plain = upfirdn(taps, padded, down=1)[2 * half : 2 * half + SIGNAL.size : 10]
-    found = decimated([SIGNAL], Grid(first=0.0, step=10.0, count=500), channel="X")
+    found = decimated([SIGNAL], SampleGrid(first=0.0, step=10.0, count=500), channel="X")
     assert found == pytest.approx(plain, abs=1e-12)
 
 
@@ -42,7 +42,7 @@ def test_sine_comes_out_at_the_instants_of_the_grid(first, step):
     frequency = 0.0173
     samples = np.sin(2 * np.pi * frequency * np.arange(5000))
     count = 480
-    found = decimated([samples], Grid(first=first, step=step, count=count), channel="X")
+    found = decimated([samples], SampleGrid(first=first, step=step, count=count), channel="X")
     expected = np.sin(2 * np.pi * frequency * (first + step * np.arange(count)))
     inside = slice(12, -30)
     # ripple, and a time that is right to a thousandth of a sample
@@ -52,13 +52,13 @@ def test_sine_comes_out_at_the_instants_of_the_grid(first, step):
 @settings(deadline=None, max_examples=40)
 @given(size=st.integers(1, 3000), first=st.sampled_from([0.0, 12.0, 3.37, -5.2]))
 def test_cut_into_blocks_does_not_matter(cut, size, first):
-    grid = Grid(first=first, step=10.0, count=500)
+    grid = SampleGrid(first=first, step=10.0, count=500)
     whole = decimated([SIGNAL], grid, channel="X")
     assert np.array_equal(decimated(cut(SIGNAL, size), grid, channel="X"), whole)
 
 
 def test_constant_stays_beyond_both_ends():
-    found = decimated([np.full(40, 3.5)], Grid(first=-200.0, step=10.0, count=60), channel="X")
+    found = decimated([np.full(40, 3.5)], SampleGrid(first=-200.0, step=10.0, count=60), channel="X")
     assert found == pytest.approx(np.full(60, 3.5), rel=1e-14)
 
 
@@ -75,4 +75,4 @@ def test_compiled_and_plain_kernels_agree():
 
 def test_grid_finer_than_the_samples():
     with pytest.raises(SignalError, match=r"channel M_s: expected at least the rate of the signals, found 0\.5 times"):
-        decimated([SIGNAL], Grid(first=0.0, step=0.5, count=10), channel="M_s")
+        decimated([SIGNAL], SampleGrid(first=0.0, step=0.5, count=10), channel="M_s")

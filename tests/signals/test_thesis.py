@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from shaftprint.signals.conditioning import Grid, previous_neighbours, pulse_period_speed
+from shaftprint.signals.conditioning import SampleGrid, previous_neighbours, pulse_period_speed
 from shaftprint.signals.pulses import number_pulses
 
 
@@ -11,13 +11,13 @@ from shaftprint.signals.pulses import number_pulses
 @given(size=st.integers(1, 700), first=st.sampled_from([0.0, 3.0, 4.99, -12.5]), step=st.sampled_from([10.0, 9.7, 1.0]))
 def test_previous_neighbours(cut, size, first, step):
     samples = np.random.default_rng(1).standard_normal(1000)
-    grid = Grid(first=first, step=step, count=120)
+    grid = SampleGrid(first=first, step=step, count=120)
     place = np.clip(np.floor(first + step * np.arange(120) + 1e-9).astype(int), 0, 999)
     assert np.array_equal(previous_neighbours(cut(samples, size), grid), samples[place])
 
 
 def test_after_the_last_sample_the_last_one_is_held():
-    found = previous_neighbours([np.arange(10.0)], Grid(first=5.0, step=2.0, count=6))
+    found = previous_neighbours([np.arange(10.0)], SampleGrid(first=5.0, step=2.0, count=6))
     assert found.tolist() == [5.0, 7.0, 9.0, 9.0, 9.0, 9.0]
 
 

@@ -6,7 +6,7 @@ from threading import Lock
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, Advance
-from shaftprint.signals.conditioning import Grid
+from shaftprint.signals.conditioning import SampleGrid
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
@@ -38,9 +38,9 @@ class Clock:
         """Return how much of a stated latency is taken off [s]: the thesis' way leaves it in."""
         return 0.0 if self.mode == "thesis" else stated_s
 
-    def grid(self, channel: "Channel", latency_s: float = 0.0) -> Grid:
+    def grid(self, channel: "Channel", latency_s: float = 0.0) -> SampleGrid:
         """Return the grid in samples of a channel that shows everything late by a latency [s]."""
-        return Grid(
+        return SampleGrid(
             first=(self.start_s + latency_s - channel.start_s) * channel.rate_hz,
             step=channel.rate_hz / self.rate_hz,
             count=self.count,

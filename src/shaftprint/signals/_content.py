@@ -9,7 +9,7 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, blocks
 from shaftprint.signals._gaps import joined
-from shaftprint.signals.conditioning import Grid, conditioned, fault_limits
+from shaftprint.signals.conditioning import SampleGrid, conditioned, fault_limits
 from shaftprint.signals.kinds import read_pick_up
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ def content_of(channel: "Channel", sensor: "SpeedSensor | None" = None, *, rate_
         values, rate_hz = joined(counts) * channel.scale + channel.offset, channel.rate_hz
     elif sensor is None:
         step = channel.rate_hz / rate_hz
-        grid = Grid(first=0.0, step=step, count=int((channel.count - 1) / step) + 1)
+        grid = SampleGrid(first=0.0, step=step, count=int((channel.count - 1) / step) + 1)
         limits = fault_limits(channel, holds=False)
         values = conditioned(channel, limits, grid, mode="shaftprint", block_samples=DEFAULT_BLOCK_SAMPLES).values
     else:

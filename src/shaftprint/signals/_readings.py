@@ -10,7 +10,7 @@ from shaftprint.signals._channel_signals import ChannelRole
 from shaftprint.signals._gaps import Coverage, Gap, within
 from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning import Reading
-from shaftprint.signals.kinds import PickUp
+from shaftprint.signals.kinds import PulseReading
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
@@ -38,9 +38,9 @@ class Readings:
     """What the reader should know of the channels."""
 
     @property
-    def pick_ups(self) -> tuple[PickUp, ...]:
+    def pick_ups(self) -> tuple[PulseReading, ...]:
         """The speed channels; the first is the one that is identified."""
-        return tuple(reading for reading in self.by_name.values() if isinstance(reading, PickUp))
+        return tuple(reading for reading in self.by_name.values() if isinstance(reading, PulseReading))
 
     @property
     def set_point(self) -> "FloatArray":
@@ -98,8 +98,8 @@ def read_all(sources: "Sequence[Source[Any]]", clock: "Clock") -> Readings:
         pool.shutdown(cancel_futures=True)
     used = tuple(source for source in sources if source.name in by_name)
     readings = {source.name: by_name[source.name] for source in used}
-    pick_ups = [reading for reading in readings.values() if isinstance(reading, PickUp)]
-    others = [reading for reading in readings.values() if not isinstance(reading, PickUp)]
+    pick_ups = [reading for reading in readings.values() if isinstance(reading, PulseReading)]
+    others = [reading for reading in readings.values() if not isinstance(reading, PulseReading)]
     return Readings(
         clock=clock,
         sources=used,

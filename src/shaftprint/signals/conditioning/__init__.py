@@ -1,7 +1,7 @@
 """What is done to a channel before it is a signal: outliers, repairs, decimation, and the thesis' own way."""
 
 from shaftprint.signals.conditioning._condition import Reading, conditioned
-from shaftprint.signals.conditioning._decimate import Grid, decimated, filter_grid, low_pass_taps
+from shaftprint.signals.conditioning._decimate import SampleGrid, decimated, filter_grid, low_pass_taps
 from shaftprint.signals.conditioning._outliers import (
     GOOD,
     HOLD,
@@ -23,9 +23,9 @@ __all__ = [
     "RAIL",
     "SPIKE",
     "FaultLimits",
-    "Grid",
     "Patcher",
     "Reading",
+    "SampleGrid",
     "conditioned",
     "decimated",
     "fault_limits",

@@ -8,7 +8,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.signals._channels import Advance, blocks
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps
 from shaftprint.signals._signals import Repair
-from shaftprint.signals.conditioning._decimate import Grid, decimated, reach_samples
+from shaftprint.signals.conditioning._decimate import SampleGrid, decimated, reach_samples
 from shaftprint.signals.conditioning._outliers import FaultLimits, flagged
 from shaftprint.signals.conditioning._patch import Patcher
 from shaftprint.signals.conditioning._thesis import previous_neighbours
@@ -34,7 +34,7 @@ class Reading:
 def conditioned(
     channel: "Channel",
     limits: FaultLimits,
-    grid: Grid,
+    grid: SampleGrid,
     *,
     mode: Literal["shaftprint", "thesis"],
     block_samples: int,

@@ -28,7 +28,7 @@ _NEGLIGIBLE = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
-class Grid:
+class SampleGrid:
     """Instants of an outgoing signal, in samples of the incoming one."""
 
     first: float
@@ -76,7 +76,7 @@ def low_pass_taps(step: float, phases: int) -> FloatArray:
     return taps
 
 
-def decimated(samples: Iterable[FloatArray], grid: Grid, *, channel: str) -> FloatArray:
+def decimated(samples: Iterable[FloatArray], grid: SampleGrid, *, channel: str) -> FloatArray:
     """Return the low-passed signal at the instants of the grid, shape (grid.count,).
 
     Parameters

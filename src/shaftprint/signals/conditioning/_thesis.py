@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.signals.conditioning._decimate import Grid
+from shaftprint.signals.conditioning._decimate import SampleGrid
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _ROUNDING = 1e-6
 
 
-def previous_neighbours(samples: Iterable[FloatArray], grid: Grid) -> FloatArray:
+def previous_neighbours(samples: Iterable[FloatArray], grid: SampleGrid) -> FloatArray:
     """Return the last sample at or before each instant of the grid, shape (grid.count,).
 
     Before the first sample the first one is taken, after the last one the last.

@@ -3,7 +3,7 @@
 from shaftprint.signals.kinds._compare import LARGEST_DIFFERENCE, compare_speeds
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.kinds._kinds import KINDS, find_sources
-from shaftprint.signals.kinds._pick_up import PickUp, numbered_strips, pulse_gaps, pulse_repairs, read_pick_up
+from shaftprint.signals.kinds._pick_up import PulseReading, numbered_strips, pulse_gaps, pulse_repairs, read_pick_up
 from shaftprint.signals.kinds._rack import rack_signal, read_rack
 from shaftprint.signals.kinds._set_point import read_voltage
 from shaftprint.signals.kinds._ship_speed import read_ship_speed, ship_speed_signal
@@ -13,7 +13,7 @@ __all__ = [
     "KINDS",
     "LARGEST_DIFFERENCE",
     "ChannelKind",
-    "PickUp",
+    "PulseReading",
     "Source",
     "SteadyState",
     "compare_speeds",

@@ -38,7 +38,7 @@ _REACH_PULSES = 4
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class PickUp(Reading):
+class PulseReading(Reading):
     """What one pulse channel gives: the speed on the grid and its pulses."""
 
     name: str
@@ -72,7 +72,7 @@ class Speed(ChannelKind[SpeedSensor]):
             for sensor in vessel.sensors.speed
         )
 
-    def read(self, source: Source[SpeedSensor], clock: "Clock") -> PickUp:
+    def read(self, source: Source[SpeedSensor], clock: "Clock") -> PulseReading:
         """Return the engine-side speed on the grid."""
         return read_pick_up(
             source.channel,
@@ -88,7 +88,7 @@ class Speed(ChannelKind[SpeedSensor]):
 
     def signal(self, source: Source[SpeedSensor], reading: Reading, steady: SteadyState) -> SpeedSignal | None:
         """Return the speed over that of the working point."""
-        if not isinstance(reading, PickUp):
+        if not isinstance(reading, PulseReading):
             return None
         return SpeedSignal(
             name=source.name,
@@ -114,7 +114,7 @@ def read_pick_up(
     count: int,
     block_samples: int,
     advance: Advance | None = None,
-) -> PickUp:
+) -> PulseReading:
     """Return the engine-side speed of one pick-up on the grid.
 
     Parameters
@@ -156,7 +156,7 @@ def read_pick_up(
         period = 0.0
     bridge(speed, gaps, start_s=start_s, rate_hz=rate_hz)
     speed *= ratio
-    return PickUp(
+    return PulseReading(
         name=sensor.name,
         channel=channel.name,
         values=speed,

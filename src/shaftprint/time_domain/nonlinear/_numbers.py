@@ -73,8 +73,8 @@ def _numbers(estimate: Estimate, point: WorkingPoint, vessel: Vessel) -> Iterato
     in_nm = (doubt, estimate.value * gauge)
     match estimate.name:
         case GovernorSymbol.TORQUE_LIMIT:
-            own = ((estimate.value - 1.0) * doubt,)
-            yield number(estimate.name, "-", "torque limit over the brake torque of the working point", shares=own)
+            relative = ((estimate.value - 1.0) * doubt,)
+            yield number(estimate.name, "-", "torque limit over the brake torque of the working point", shares=relative)
             yield number(
                 "M_max", "N m", "torque limit of the engine at the working-point speed", scale=brake_nm, shares=in_nm
             )
@@ -83,15 +83,15 @@ def _numbers(estimate: Estimate, point: WorkingPoint, vessel: Vessel) -> Iterato
                 "share", "-", "the same over the full-load curve of the vessel file", scale=share, shares=in_nm
             )
         case GovernorSymbol.MOTORING_LIMIT:
-            own = ((estimate.value - 1.0) * doubt,)
-            yield number(estimate.name, "-", "lowest brake torque over that of the working point", shares=own)
+            relative = ((estimate.value - 1.0) * doubt,)
+            yield number(estimate.name, "-", "lowest brake torque over that of the working point", shares=relative)
             yield number(
                 "M_min", "N m", "torque of the motored engine at the working-point speed", scale=brake_nm, shares=in_nm
             )
         case GovernorSymbol.RACK_RATE:
-            own = (estimate.value * doubt,)
+            relative = (estimate.value * doubt,)
             yield number(
-                estimate.name, "1/s", "fastest change of the fuel rack over that of the working point", shares=own
+                estimate.name, "1/s", "fastest change of the fuel rack over that of the working point", shares=relative
             )
             yield number("R_x", "N m/s", "the same as brake torque", scale=brake_nm, shares=(estimate.value * gauge,))
         case GovernorSymbol.DEADBAND:

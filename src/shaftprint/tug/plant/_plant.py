@@ -248,7 +248,7 @@ class Carried(NamedTuple):
     """Boost as the share of the full-load torque to which it belongs in steady running, shape (1,)."""
 
 
-class Delay(NamedTuple):
+class DelayTaps(NamedTuple):
     """Where the delayed rack is found at the start, middle and end of a step."""
 
     first: IntArray

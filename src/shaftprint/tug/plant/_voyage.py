@@ -13,7 +13,7 @@ from shaftprint.tug.plant._demand import Demand
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._physics import build_plant, equilibrium, steady_boost
 from shaftprint.tug.plant._pitch import PitchActuator
-from shaftprint.tug.plant._plant import RACK, Carried, Delay, Traces, advance, interpolation_weights
+from shaftprint.tug.plant._plant import RACK, Carried, DelayTaps, Traces, advance, interpolation_weights
 from shaftprint.vessel import Vessel
 
 
@@ -113,9 +113,9 @@ def voyage(
         done += count
 
 
-def _delay(steps: float) -> Delay:
+def _delay(steps: float) -> DelayTaps:
     """Return where the delayed rack is found at the stages of a step, for a delay in steps."""
     parts = [interpolation_weights(stage - steps) for stage in (0.0, 0.5, 1.0)]
-    return Delay(
+    return DelayTaps(
         first=np.array([node for node, _ in parts], dtype=np.int64), weights=np.array([weight for _, weight in parts])
     )
