@@ -27,8 +27,9 @@ def test_what_has_changed_is_said_and_reported(run, demo, later, tmp_path):
     assert " no difference seen " in row
     assert "Has the ship changed? Yes: I_dn by 50.0 %" in result.output
     moving = result.output.partition("normalised numbers, which move with the working point")[2].splitlines()
-    left_out = [line.split()[0] for line in moving if "cannot be compared: moving with the working point" in line]
+    left_out = [line.split()[0] for line in moving if "cannot be compared" in line]
     assert left_out == ["K_p", "K_i", "tau_dn", "tau_up", "k_q"]
+    assert "Not compared, moving with the working point: K_p (see governor proportional action), " in result.output
     assert (tmp_path / "out" / "index.html").is_file()
 
 

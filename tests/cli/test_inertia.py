@@ -37,7 +37,7 @@ def test_beside_a_fingerprint(run, demo):
     # the simulated tug has what its vessel file says: 0.320 s
     assert float(down[2].split(" +/-")[0]) == pytest.approx(0.320, abs=0.03)
     assert abs(float(down[3])) < 3.0
-    assert up[3] == "told beforehand"
+    assert up[3] == "assumed"
 
 
 def test_fingerprint_of_another_ship(run, demo):

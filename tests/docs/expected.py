@@ -233,10 +233,10 @@ def expect_comparison(folder, printed, words):
     assert "result-2026 compared with result-2025" in printed
     said = {line.split()[0]: line for line in printed.splitlines() if line.split()}
     # half as much inertia again behind the gauge, and nothing else
-    assert said["I_dn"].split()[-1] == "differs"
+    assert " differs " in said["I_dn"]
     for name in ("I_up", "K_Q", "gain", "K_p"):
-        assert said[name].rstrip().endswith(("no difference seen", "cannot be compared")), name
-    assert said["I_up"].rstrip().endswith("no difference seen")
+        assert " no difference seen " in said[name] or " cannot be compared " in said[name], name
+    assert " no difference seen " in said["I_up"]
     assert (folder / after(words, "-o") / "index.html").is_file()
 
 

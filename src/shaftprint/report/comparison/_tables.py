@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from shaftprint.distributions import NORMAL_95
 from shaftprint.tables import (
     MEANING,
+    Column,
     Symbol,
     Table,
     decimals_of,
@@ -45,7 +46,7 @@ def difference_table(first: str, other: str, found: "Sequence[Difference]") -> T
             with_deviation(one.first.value, one.first.std),
             with_deviation(one.other.value, one.other.std),
             *_apart(one),
-            f"{one.outcome}: {one.because}" if one.because else one.outcome,
+            one.outcome,
             unit_text(one.first.unit),
             one.first.meaning,
         )
@@ -55,12 +56,25 @@ def difference_table(first: str, other: str, found: "Sequence[Difference]") -> T
         title=f"{other} compared with {first}{MOVING if all(one.normalised for one in found) else ''}",
         columns=(
             *texts("quantity"),
-            *numbers(first, other, "difference", "95 % interval", "%", "p"),
+            *numbers(first, other, "difference", "95 % interval"),
+            Column("%", number=True, spare=True),
+            *numbers("p"),
             *texts("outcome", "unit"),
             MEANING,
         ),
         rows=rows,
+        note=_not_compared(found),
     )
+
+
+def _not_compared(differences: "Sequence[Difference]") -> str:
+    """Return why numbers are not compared, each reason once with their names; empty where all are."""
+    names: dict[str, list[str]] = {}
+    for one in differences:
+        reason, _, instead = one.because.partition("; ")
+        if reason:
+            names.setdefault(reason, []).append(f"{one.first.name} ({instead})" if instead else one.first.name)
+    return " ".join(f"Not compared, {reason}: {', '.join(listed)}." for reason, listed in names.items())
 
 
 def _apart(one: "Difference") -> tuple[str, str, str, str]:
