@@ -66,7 +66,8 @@ def test_example_of_ones_own_structure_on_the_command_line(run, beside_demo):
     given = ("--vessel", "demo/vessel.toml", "--campaign", "demo/campaign.toml", "--no-progress")
     result = run("identify", "demo/recording.nc", *given, "--structure", own, "-o", "elastic")
     assert result.exit_code == 0, result.stderr
-    assert "ELASTIC-CORE: parameters" in result.output
+    assert "ELASTIC-CORE explains" in result.output
+    assert "Identified parameters" in result.output
     assert "compliance of the shaft" in result.output
 
 

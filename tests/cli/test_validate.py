@@ -70,7 +70,7 @@ def test_a_record_of_the_identification_is_refused(run, recording, demo):
         "validate", recording, *GIVEN, "--fingerprint", demo[0], "--record", "St1", "--used", "St1", "--allow-in-sample"
     )
     assert marked.exit_code == 0
-    assert "(seen)" in marked.output
+    assert "(identified from it)" in marked.output
     assert "Nothing is proved" in marked.output
 
 

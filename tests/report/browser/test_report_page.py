@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from shaftprint.report import _render as render_module
-from shaftprint.report import render_report
+from shaftprint.report import render_report, sections
 from shaftprint.validation import ValidationSettings, validate
 
 pytestmark = pytest.mark.slow
@@ -34,14 +34,14 @@ def report(browser, tmp_path_factory, survey, identification, signals, campaign)
     settings = ValidationSettings(rest_s=6.0, zoom_after_s=8.0)
     rng = np.random.default_rng(1)
     validation = validate(identification, signals, campaign, rng=rng, records=("St1",), settings=settings)
-    made = [getattr(render_module, f"{name}_section") for name in SECTIONS]
+    made = [getattr(sections, f"{name}_section") for name in SECTIONS]
 
     def chosen(inputs):
-        found = [make(inputs) for make in made]
-        return [section for one in found for section in (one if isinstance(one, list) else [one])]
+        groups = [make(inputs) for make in made]
+        return [section for group in groups for section in (group if isinstance(group, list) else [group])]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(render_module, "_sections", chosen)
+        patch.setattr(render_module, "page_sections", chosen)
         return render_report(
             tmp_path_factory.mktemp("browser") / "report",
             replace(survey, validations=(validation,)),
