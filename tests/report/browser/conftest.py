@@ -48,7 +48,7 @@ class Visit:
         return self.page.evaluate(f"document.getElementById('plot-{name}')._fullLayout.{axis}.range.map(Number)")
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def browser():
     if not CHROMIUM.exists():
         pytest.skip(f"{CHROMIUM} is the browser; apt-get install chromium")
@@ -59,7 +59,7 @@ def browser():
         started.close()
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def visit(browser):
     """Give what opens a page of the disk in a fresh context."""
     return lambda path, **context: _visit(browser, path, **context)

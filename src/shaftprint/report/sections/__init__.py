@@ -6,10 +6,13 @@ from shaftprint.report.sections._cover import Cover
 from shaftprint.report.sections._inertia import inertia_section
 from shaftprint.report.sections._measurement import time_section
 from shaftprint.report.sections._order import page_sections
+from shaftprint.report.sections._quality import quality_section
 from shaftprint.report.sections._results import fit_section, stability_section, summary_section, verdict_section
 from shaftprint.report.sections._search import comparison_section, search_section
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 from shaftprint.report.sections._superintendent import cover_of
+from shaftprint.report.sections._uncertainty import uncertainty_section
+from shaftprint.report.sections._validation import validation_section
 
 __all__ = [
     "Cover",
@@ -25,9 +28,12 @@ __all__ = [
     "inertia_section",
     "not_alike",
     "page_sections",
+    "quality_section",
     "search_section",
     "stability_section",
     "summary_section",
     "time_section",
+    "uncertainty_section",
+    "validation_section",
     "verdict_section",
 ]
