@@ -79,6 +79,8 @@ def test_recording_of_another_format(run, recording, tmp_path):
         (("--prior", "g=0"), 2, "its standard deviation such as g=0+-0.1, found 'g=0'"),
         (("--starts", "0"), 2, "0 is not in the range x>=1"),
         (("--mode", "guess"), 2, "'guess' is not one of 'shaftprint', 'thesis'"),
+        (("--tested-at", "yesterday"), 2, "'yesterday' does not match the format"),
+        (("--previous", "2025"), 1, "2025: expected a fingerprint in JSON"),
         (("--colour", "red"), 2, "No such option '--colour'"),
         (("--campaign", "thesis"), 1, "found a recording from 0.0 to 860.0 s"),
         (("--campaign", "trip.toml"), 1, "trip.toml: expected a settings file, found nothing there"),

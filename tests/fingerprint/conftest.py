@@ -34,6 +34,8 @@ TRUTH = {
 FREQUENCY_HZ = np.geomspace(0.005, 6.0, 14)
 LINES = tuple(f"S{number}" for number in range(1, 15))
 NOW = datetime(2026, 3, 14, 9, 30, tzinfo=UTC)
+# loggers often state no time zone
+BEGAN = datetime(2026, 3, 13, 14, 5)  # noqa: DTZ001
 
 
 def exact_response(model, values, share, **changes):
@@ -89,7 +91,7 @@ def vessel():
 
 @pytest.fixture(scope="session")
 def campaign():
-    return SimpleNamespace(name="Test around -5 V")
+    return SimpleNamespace(name="Test around -5 V", place="Quay 12, Rotterdam")
 
 
 @pytest.fixture(scope="session")
@@ -167,6 +169,7 @@ def take(signals, signal_to_noise, vessel, campaign):
                 SourceFile(role="campaign", name="test.toml", sha256="ef" * 32),
             ),
             now=now,
+            tested_at=BEGAN,
         )
 
     return fingerprint

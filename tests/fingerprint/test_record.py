@@ -36,6 +36,12 @@ def test_loads_back_equal(fingerprint, path):
     assert written_and_read(fingerprint, path) == fingerprint
 
 
+def test_place_and_date_of_the_test_are_kept(fingerprint, path):
+    conditions = written_and_read(fingerprint, path).conditions
+    assert conditions.place == "Quay 12, Rotterdam"
+    assert conditions.tested_at.isoformat() == "2026-03-13T14:05:00"
+
+
 def test_loads_back_equal_with_all_that_a_number_can_be(fingerprint, path):
     odd = Quantity(
         name="t_d",

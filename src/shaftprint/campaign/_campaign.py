@@ -21,6 +21,8 @@ class Campaign(Settings):
 
     name: Name
     """Name of the test."""
+    place: Name | None = None
+    """Where it is made, such as the harbour; shown on the first page of the report."""
     duration_s: PositiveNumber
     """Length of the recording that it needs [s]."""
     offset_v: Number

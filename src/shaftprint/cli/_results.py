@@ -5,7 +5,7 @@ from pathlib import Path
 
 from shaftprint.cli._terminal import echo, print_findings
 from shaftprint.cli.output import FINGERPRINT, REPORT, Steps, print_tables
-from shaftprint.fingerprint import write_fingerprint
+from shaftprint.fingerprint import Fingerprint, write_fingerprint
 from shaftprint.identify.comparison import StructureComparison
 from shaftprint.recording import read_recording
 from shaftprint.report import render_report
@@ -22,6 +22,7 @@ def write_results(
     steps: Steps,
     thesis: ThesisMode | None = None,
     truth: Mapping[str, float] | None = None,
+    previous: Fingerprint | None = None,
 ) -> None:
     """Write fingerprint, figures and report of a survey into a folder.
 
@@ -37,6 +38,8 @@ def write_results(
         The same recording done the thesis' way, to compare.
     truth
         True values by name, where they are known.
+    previous
+        Fingerprint of an earlier test, with which the first page compares.
     """
     write_fingerprint(survey.fingerprint, folder / FINGERPRINT)
     steps.begin("Drawing the figures of the report", total=1.0)
@@ -49,6 +52,7 @@ def write_results(
             truth=truth,
             line_selection=_line_selection(survey),
             sensitivity=(survey.identification.structure,),
+            previous=previous,
             progress=steps.reach,
         )
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from datetime import datetime
 from typing import Annotated, Final, Literal, Self, TypeAlias
 
 import numpy as np
@@ -133,6 +134,10 @@ class Conditions(_Record):
     """Name of the vessel and shaft line."""
     campaign: str
     """Name of the test."""
+    place: str | None = None
+    """Where it was made; None where the campaign file does not say."""
+    tested_at: datetime | None = None
+    """When the recording began, by the logger's clock or as stated; None where neither says."""
     engine_speed: Quantity
     """Working-point engine speed."""
     shaft_torque: Quantity

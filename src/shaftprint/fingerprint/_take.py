@@ -57,6 +57,7 @@ def take_fingerprint(
     campaign: "Campaign",
     settings_files: tuple[SourceFile, ...],
     now: datetime,
+    tested_at: datetime | None = None,
 ) -> Fingerprint:
     """Return the fingerprint of an identified line.
 
@@ -70,6 +71,8 @@ def take_fingerprint(
         Vessel and campaign file with their hashes.
     now
         Time of making, with time zone.
+    tested_at
+        When the recording began, where that is known.
 
     Raises
     ------
@@ -88,7 +91,7 @@ def take_fingerprint(
     left_out = _left_out(identification)
     profiled = profile(identification, margins) if identification.is_likelihood else None
     reported = _Reported(stated, {} if profiled is None else profiled.intervals, _meanings(identification))
-    conditions = _conditions(identification, signals, vessel, campaign, left_out)
+    conditions = _conditions(identification, signals, vessel, campaign, left_out, tested_at)
     margin = margin_quantities(identification, profiled, stated)
     verdict = assess(
         identification,
@@ -167,11 +170,14 @@ def _conditions(
     vessel: "Vessel",
     campaign: "Campaign",
     left_out: dict[str, str],
+    tested_at: datetime | None,
 ) -> Conditions:
     speed, torque = _working_point(signals.working_point)
     return Conditions(
         vessel=vessel.name,
         campaign=campaign.name,
+        place=campaign.place,
+        tested_at=tested_at,
         engine_speed=speed,
         shaft_torque=torque,
         set_point_v=signals.working_point.set_point_v,

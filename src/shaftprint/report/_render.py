@@ -13,6 +13,7 @@ from shaftprint.report.sections import Inputs, Section, cover_of, page_sections
 from shaftprint.tables import Table, texts
 
 if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint
     from shaftprint.models import Structure
     from shaftprint.recording import Recording
     from shaftprint.spectra import FrequencyResponse
@@ -29,6 +30,7 @@ def render_report(
     truth: Mapping[str, float] | None = None,
     line_selection: "Mapping[str, FrequencyResponse] | None" = None,
     sensitivity: "Sequence[Structure]" = (),
+    previous: "Fingerprint | None" = None,
     interactive: bool = True,
     overwrite: bool = False,
     progress: Callable[[float], None] | None = None,
@@ -55,6 +57,8 @@ def render_report(
         Responses by other ways to measure the sines, by name of the way, the spectra's own among them.
     sensitivity
         Structures whose Bode families are shown.
+    previous
+        Fingerprint of an earlier test of the line; the first page says what has changed since.
     interactive
         Whether figures can be zoomed; without it the page runs no script.
     overwrite
@@ -85,6 +89,7 @@ def render_report(
         line_selection=line_selection or {},
         comparisons=survey.comparisons,
         sensitivity=sensitivity,
+        previous=previous,
         validations=survey.validations,
         clocks=() if recording is None else logger_clocks(recording),
     )

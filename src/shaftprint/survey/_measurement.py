@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from datetime import datetime
 from pathlib import Path
 
 from shaftprint.clocks import logger_clocks
@@ -37,6 +38,8 @@ class Measurement:
     """What structures are fitted to: the measured response, what follows from it, and that to further excitations."""
     further: Mapping[str, Spectra] = field(default_factory=dict)
     """Spectra of what was moved beside the set point of the speed, by its symbol."""
+    began: datetime | None = None
+    """When the recording began, where its file or its user says so."""
 
 
 def measure(
@@ -51,7 +54,7 @@ def measure(
     """
     progress.begin(f"Reading the recording ({mode} mode)", total=1.0)
     with read_recording(recording) as opened:
-        clocks = logger_clocks(opened)
+        clocks, began = logger_clocks(opened), opened.began
         signals = prepare_signals(opened, trial.vessel, trial.campaign, mode=mode, progress=progress.reach)
     progress.begin("Measuring the test lines")
     method = ExactBin() if mode == "thesis" else WholePeriodSine()
@@ -70,6 +73,7 @@ def measure(
         spectra=spectra,
         responses=(*responses, *(one.response for one in further.values())),
         further=further,
+        began=began,
     )
 
 

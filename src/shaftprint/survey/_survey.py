@@ -91,6 +91,7 @@ def run(
     sources: Sequence[SourceFile] = (),
     rng: np.random.Generator | None = None,
     now: datetime | None = None,
+    tested_at: datetime | None = None,
     progress: Progress = SILENT,
 ) -> Survey:
     """Identify a line from a recording: all that ``shaftprint identify`` does, before anything is written.
@@ -113,6 +114,8 @@ def run(
         For the starts of the searches; seed 1, as in the program, where it is not given.
     now
         When the fingerprint is made.
+    tested_at
+        When the recording began; where it is not given, by the logger's clock if its file says so.
 
     Raises
     ------
@@ -124,6 +127,8 @@ def run(
     trial = replace(trial, sources=(*trial.sources, *sources))
     chosen = tuple(one if isinstance(one, Structure) else shipped_structure(one) for one in structures)
     measurement = measure(recording, trial, mode=mode, progress=progress)
+    if tested_at is not None:
+        measurement = replace(measurement, began=tested_at)
     by_name = settings_by_name(chosen, measurement, trial, settings or _with_priors)
     fits = fit(chosen, measurement, settings=by_name, rng=rng, progress=progress)
     return survey_of(fits, measurement, trial, rng=rng, now=now, progress=progress)
@@ -141,6 +146,7 @@ def fingerprint_of(
         campaign=trial.campaign,
         settings_files=trial.sources,
         now=now or datetime.now(UTC),
+        tested_at=measurement.began,
     )
 
 

@@ -9,6 +9,7 @@ from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
 from shaftprint.cli._options import campaign_option, structure_sources, vessel_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
+from shaftprint.cli._report_options import ReportOptions, report_options
 from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._terminal import echo, print_findings
 from shaftprint.cli.output import force_option, no_progress_option, output_folder, print_table, progress
@@ -31,6 +32,7 @@ from shaftprint.tables import fits_table
 )
 @fit_options
 @click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the results.")
+@report_options
 @force_option
 @no_progress_option
 def command(
@@ -40,6 +42,7 @@ def command(
     names: tuple[TypedName, ...],
     options: FitOptions,
     output: Path,
+    about: ReportOptions,
     force: bool,
     no_progress: bool,
 ) -> None:
@@ -61,9 +64,10 @@ def command(
             mode=options.mode,
             sources=(*trial.sources, *structure_sources(names)),
             rng=np.random.default_rng(options.seed),
+            tested_at=about.tested_at,
             progress=steps,
         )
-        write_results(folder, recording, survey, steps=steps)
+        write_results(folder, recording, survey, steps=steps, previous=about.previous)
     for remark in survey.remarks:
         echo(remark)
     print_fingerprint(survey.fingerprint)

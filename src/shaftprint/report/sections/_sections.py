@@ -44,6 +44,7 @@ class Inputs:
     sensitivity: Sequence["Structure"]
     validations: Sequence["Validation"] = ()
     clocks: Sequence["LoggerClock"] = ()
+    previous: "Fingerprint | None" = None
 
     @property
     def aliasing_limit_hz(self) -> float:

@@ -1,0 +1,49 @@
+"""Options of ``identify`` for the report: what the recording does not say of itself, and what to compare it with."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import datetime
+from functools import wraps
+from pathlib import Path
+from typing import Any
+
+import click
+
+from shaftprint.cli.output import fingerprint_at
+from shaftprint.fingerprint import Fingerprint
+
+DATE_FORMATS = ["%Y-%m-%d", "%Y-%m-%dT%H:%M", "%Y-%m-%d %H:%M", "%Y-%m-%dT%H:%M:%S"]
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class ReportOptions:
+    """What a user says of a test for its report."""
+
+    tested_at: datetime | None
+    """When the recording began; None where its file may say so."""
+    previous: Fingerprint | None
+    """Fingerprint of an earlier test, with which this one is compared."""
+
+
+def report_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add the options ``--tested-at`` and ``--previous``, handed over as ``about``."""
+
+    @wraps(command)
+    def with_options(*, tested_at: datetime | None, previous: Path | None, **options: Any) -> Any:
+        # read before anything is made: a file that cannot be used leaves no folder
+        earlier = None if previous is None else fingerprint_at(previous)
+        return command(about=ReportOptions(tested_at=tested_at, previous=earlier), **options)
+
+    tested_option = click.option(
+        "--tested-at",
+        type=click.DateTime(DATE_FORMATS),
+        metavar="DATE",
+        help="When the recording began, such as 2026-03-31 or 2026-03-31T09:30; by default as its file says.",
+    )
+    previous_option = click.option(
+        "--previous",
+        type=click.Path(path_type=Path),
+        metavar="RESULT",
+        help="Result of an earlier test, a folder or a fingerprint: the report says what has changed since.",
+    )
+    return tested_option(previous_option(with_options))
