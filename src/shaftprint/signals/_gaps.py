@@ -8,7 +8,7 @@ break, but nothing may be measured there. Whatever uses a window of the recordin
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Self
 
 import numpy as np
 
@@ -67,6 +67,11 @@ class Coverage:
     """Time from one sample to the next [s]: a window may begin or end so much outside by rounding."""
     gaps: tuple[Gap, ...] = ()
     """The gaps, in order of time."""
+
+    @classmethod
+    def of_grid(cls, *, start_s: float, samples: int, rate_hz: float, gaps: tuple[Gap, ...]) -> Self:
+        """Return what a uniform time grid covers."""
+        return cls(start_s=start_s, stop_s=start_s + samples / rate_hz, step_s=1.0 / rate_hz, gaps=gaps)
 
     def missing(self, start_s: float, stop_s: float, *, channel: str | None = None) -> str:
         """Say why a window cannot be used; nothing where it can.

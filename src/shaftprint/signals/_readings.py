@@ -62,8 +62,7 @@ class Readings:
     def coverage(self) -> Coverage:
         """What the grid covers."""
         clock = self.clock
-        stop_s = clock.start_s + clock.count / clock.rate_hz
-        return Coverage(start_s=clock.start_s, stop_s=stop_s, step_s=1.0 / clock.rate_hz, gaps=self.gaps)
+        return Coverage.of_grid(start_s=clock.start_s, samples=clock.count, rate_hz=clock.rate_hz, gaps=self.gaps)
 
 
 def logger_channels(sources: "Sequence[Source[Any]]") -> "list[Channel]":

@@ -169,8 +169,7 @@ class Signals:
     @property
     def coverage(self) -> Coverage:
         """What the signals cover: ask it before a window of the recording is used."""
-        stop_s = self.start_s + self.samples / self.rate_hz
-        return Coverage(start_s=self.start_s, stop_s=stop_s, step_s=1.0 / self.rate_hz, gaps=self.gaps)
+        return Coverage.of_grid(start_s=self.start_s, samples=self.samples, rate_hz=self.rate_hz, gaps=self.gaps)
 
     @property
     def samples(self) -> int:

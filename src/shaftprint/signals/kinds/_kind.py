@@ -1,6 +1,7 @@
 """What a kind of channel is: where the vessel file names it, what it is to a test, how it is read and normalised."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Generic, Protocol, TypeVar
 
@@ -9,6 +10,7 @@ from shaftprint.signals._channels import find_channel
 from shaftprint.signals.conditioning import Reading
 
 if TYPE_CHECKING:
+    from shaftprint.arrays import FloatArray
     from shaftprint.recording import Channel, Recording
     from shaftprint.signals._clock import Clock
     from shaftprint.signals._signals import SetPointCalibration, WorkingPoint
@@ -64,6 +66,15 @@ class SteadyState:
     """The line from set-point voltage to speed."""
     scale: "DcScale"
     """By how much that line was stretched."""
+
+
+def steady_parts(values: "FloatArray", clock: "Clock", stretches: "Sequence[SteadyStretch]") -> "list[FloatArray]":
+    """Return the values of a signal on the grid in each of some steady stretches."""
+
+    def sample(time_s: float) -> int:
+        return round((time_s - clock.start_s) * clock.rate_hz)
+
+    return [values[sample(stretch.start_s) : sample(stretch.stop_s)] for stretch in stretches]
 
 
 class ChannelKind(ABC, Generic[SensorT]):

@@ -8,7 +8,7 @@ from shaftprint.arrays import frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, ExcitationSignal
 from shaftprint.signals.conditioning import FaultLimits, Reading, fault_limits
-from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
+from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, steady_parts
 from shaftprint.signals.kinds._set_point import read_voltage
 from shaftprint.vessel import PitchSetPointSensor
 
@@ -36,13 +36,7 @@ class PitchSetPoint(ChannelKind[PitchSetPointSensor]):
 
     def signal(self, source: Source[PitchSetPointSensor], reading: Reading, steady: SteadyState) -> ExcitationSignal:
         """Return the pitch over its mean in the stretches at the working point."""
-        start_s, rate_hz = steady.clock.start_s, steady.clock.rate_hz
-        inside = [
-            slice(round((s.start_s - start_s) * rate_hz), round((s.stop_s - start_s) * rate_hz))
-            for s in steady.stretches
-        ]
-        still = np.concatenate([reading.values[part] for part in inside])
-        mean = float(still.mean())
+        mean = float(np.concatenate(steady_parts(reading.values, steady.clock, steady.stretches)).mean())
         if not mean > 0.0:
             raise SignalError(
                 f"channel {source.channel.name}: expected a pitch ahead while the line stands still, found P/D = "

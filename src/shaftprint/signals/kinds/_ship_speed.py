@@ -14,7 +14,7 @@ from shaftprint.signals._channel_signals import ChannelRole, ChannelSignal
 from shaftprint.signals._channels import blocks, time_of
 from shaftprint.signals._gaps import Gap, clock_gaps, joined, runs_of
 from shaftprint.signals.conditioning import Reading
-from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
+from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, steady_parts
 from shaftprint.signals.levels import SteadyStretch, mean_of_stretches
 from shaftprint.vessel import ShipSpeedSensor
 
@@ -117,14 +117,9 @@ def ship_speed_signal(
     stretches
         Where the line stands still at the working point.
     """
-    inside = [
-        speed_m_s[
-            round((s.start_s - clock.start_s) * clock.rate_hz) : round((s.stop_s - clock.start_s) * clock.rate_hz)
-        ]
-        for s in stretches
-    ]
     block = max(round(clock.rate_hz), 1)
-    means = [part[: part.size - part.size % block].reshape(-1, block).mean(axis=1) for part in inside]
+    parts = steady_parts(speed_m_s, clock, stretches)
+    means = [part[: part.size - part.size % block].reshape(-1, block).mean(axis=1) for part in parts]
     mean, std = mean_of_stretches(
         [float(part.mean()) for part in means],
         [float(part.std(ddof=1) / np.sqrt(part.size)) for part in means],
