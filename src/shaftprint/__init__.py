@@ -37,25 +37,16 @@ from typing import Any
 __version__ = "0.1.0"
 
 _ROOMS = (
-    "arguments",
-    "arrays",
     "campaign",
     "catalogue",
     "clocks",
-    "distributions",
     "errors",
-    "escape",
     "export",
-    "files",
     "fingerprint",
     "identify",
-    "kernels",
     "limits",
     "models",
-    "normalisation",
     "propeller",
-    "publication",
-    "reasons",
     "recording",
     "report",
     "settings",
@@ -72,6 +63,20 @@ _ROOMS = (
     "vessel",
 )
 
+_INNER_ROOMS = (
+    "arguments",
+    "arrays",
+    "distributions",
+    "escape",
+    "files",
+    "kernels",
+    "normalisation",
+    "notebook",
+    "publication",
+    "reasons",
+)
+"""What the rooms are made with; no word of the field, so a session does not offer it."""
+
 _VERB = "open_survey"
 """All of ``shaftprint identify`` in one call, ``survey.run``."""
 
@@ -82,13 +87,20 @@ def __getattr__(name: str) -> Any:
     Raises
     ------
     AttributeError
-        If there is no room of that name.
+        If there is no room of that name; the message says where names like it are.
     """
     if name == _VERB:
         return importlib.import_module("shaftprint.survey").run
-    if name not in _ROOMS:
-        raise AttributeError(f"module 'shaftprint' has no attribute {name!r}; its rooms are {', '.join(_ROOMS)}.")
-    return importlib.import_module(f"shaftprint.{name}")
+    if name in _ROOMS or name in _INNER_ROOMS:
+        return importlib.import_module(f"shaftprint.{name}")
+    message = f"module 'shaftprint' has no attribute {name!r}"
+    if name.startswith("_"):
+        # what copy, pickle, inspect and notebooks ask every object for
+        raise AttributeError(message)
+    answers = importlib.import_module("shaftprint.notebook").closest_names(name)
+    if answers:
+        raise AttributeError(f"{message}; is {' or '.join(answers)} meant?")
+    raise AttributeError(f"{message}; its rooms are {', '.join(_ROOMS)}.")
 
 
 def __dir__() -> list[str]:

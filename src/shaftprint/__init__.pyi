@@ -15,6 +15,7 @@ from shaftprint import kernels as kernels
 from shaftprint import limits as limits
 from shaftprint import models as models
 from shaftprint import normalisation as normalisation
+from shaftprint import notebook as notebook
 from shaftprint import propeller as propeller
 from shaftprint import publication as publication
 from shaftprint import reasons as reasons
@@ -32,5 +33,6 @@ from shaftprint import tug as tug
 from shaftprint import units as units
 from shaftprint import validation as validation
 from shaftprint import vessel as vessel
+from shaftprint.survey import run as open_survey  # noqa: F401
 
 __version__: str

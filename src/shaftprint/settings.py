@@ -17,6 +17,7 @@ from pydantic_core import ErrorDetails
 
 from shaftprint.errors import SettingsError
 from shaftprint.files import written_whole
+from shaftprint.notebook import field_words
 from shaftprint.publication import complete
 
 # Larger than anything on a ship in any unit, and small enough that products and squares stay numbers.
@@ -50,6 +51,10 @@ class Settings(BaseModel):
     """Base of every table of a settings file: frozen, and unknown keys are refused."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+    def __dir__(self) -> list[str]:
+        """Return the words of the field; pydantic's stay out of what a session completes."""
+        return field_words(super().__dir__(), BaseModel)
 
 
 _Model = TypeVar("_Model", bound=Settings)

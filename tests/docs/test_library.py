@@ -17,17 +17,40 @@ ROOMS = {room.name for room in pkgutil.iter_modules(sp.__path__)} - {"__main__",
 LIBRARY = (ROOT / "docs" / "library.md").read_text(encoding="utf-8")
 
 
+# what the rooms are made with: given, but not offered to who completes a name in a session
+INNER = {
+    *("arguments", "arrays", "distributions", "escape", "files"),
+    *("kernels", "normalisation", "notebook", "publication", "reasons"),
+}
+
+
 def test_every_room_is_given_by_the_package_and_known_to_type_checkers():
-    assert set(dir(sp)) == ROOMS | {"__version__", "open_survey"}
+    assert set(dir(sp)) == (ROOMS - INNER) | {"__version__", "open_survey"}
     stub = Path(sp.__file__).with_suffix(".pyi").read_text(encoding="utf-8")
     assert set(re.findall(r"^from shaftprint import (\w+) as \1$", stub, flags=re.MULTILINE)) == ROOMS
     for room in ROOMS:
         assert getattr(sp, room) is importlib.import_module(f"shaftprint.{room}")
 
 
-def test_a_room_that_is_not_there_is_refused():
-    with pytest.raises(AttributeError, match="has no attribute 'gearbox'; its rooms are arguments, arrays"):
-        _ = sp.gearbox
+def test_a_name_that_is_not_there_is_refused_with_the_rooms():
+    with pytest.raises(AttributeError, match="has no attribute 'turbine'; its rooms are campaign, catalogue"):
+        _ = sp.turbine
+
+
+@pytest.mark.parametrize(
+    ("guess", "right"),
+    [
+        ("load_fingerprint", "sp.fingerprint.read_fingerprint"),
+        ("read_vessel", "sp.vessel.load_vessel"),
+        ("load_recording", "sp.recording.read_recording"),
+        ("plot_bodes", "sp.report.plot_bode"),
+        ("Vessel", "sp.vessel.Vessel"),
+        ("open", "sp.open_survey"),
+    ],
+)
+def test_a_name_that_somebody_guesses_is_answered_with_the_right_one(guess, right):
+    with pytest.raises(AttributeError, match=f"has no attribute '{guess}'; is .*{re.escape(right)}.* meant"):
+        getattr(sp, guess)
 
 
 def test_the_import_loads_no_room():

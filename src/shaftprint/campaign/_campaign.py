@@ -11,12 +11,13 @@ from pydantic import Field, model_validator
 from shaftprint.arguments import refusing_none
 from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
 from shaftprint.errors import SettingsError
+from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.settings import Name, Number, PositiveNumber, Settings, load_settings
 
 Excitation: TypeAlias = Sine | Chirp | Staircase
 
 
-class Campaign(Settings):
+class Campaign(Shown, Settings):
     """A test of one shaft line: excitations one after the other around a constant set point."""
 
     name: Name
@@ -37,6 +38,20 @@ class Campaign(Settings):
     """Logarithmic sweeps."""
     staircases: tuple[Staircase, ...] = ()
     """Steps between constant levels."""
+
+    def summary(self) -> Summary:
+        """Return the tests, their band and how long they take."""
+        hertz = [sine.frequency_hz for sine in self.sines]
+        facts = {
+            "length": f"{self.duration_s:g} s ({self.duration_s / 60.0:.3g} min)",
+            "sines": f"{shortened(s.name for s in self.sines)}: {min(hertz):.3g} to {max(hertz):.3g} Hz"
+            if hertz
+            else "",
+            "chirps": shortened(chirp.name for chirp in self.chirps),
+            "staircases": shortened(staircase.name for staircase in self.staircases),
+            "set point": f"{self.offset_v:g} V in the middle",
+        }
+        return Summary(title=f"Campaign {self.name}", facts=facts)
 
     @property
     def excitations(self) -> tuple[Excitation, ...]:

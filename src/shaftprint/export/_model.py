@@ -10,10 +10,11 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import ExportError
 from shaftprint.fingerprint import Fingerprint, identified_model, named_structure
 from shaftprint.models import Structure
+from shaftprint.notebook import Shown
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ExportedModel:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class ExportedModel(Shown):
     """A structure with values, its working point, and the covariance of what was identified."""
 
     title: str

@@ -33,12 +33,7 @@ def parameter_rows(fingerprint: Fingerprint, structure: Structure) -> list[Row]:
 
 def number_rows(fingerprint: Fingerprint) -> list[Row]:
     """Return a row for each combination, physical value, margin and calibration."""
-    kinds = {
-        "combination": fingerprint.combinations,
-        "physical value": fingerprint.physical,
-        "margin": fingerprint.margins,
-        "calibration": fingerprint.calibration,
-    }
+    kinds = {kind: numbers for kind, numbers in fingerprint.numbers.items() if kind != "parameter"}
     return [{"kind": kind, **quantity_row(quantity)} for kind, quantities in kinds.items() for quantity in quantities]
 
 
@@ -48,18 +43,14 @@ def quantity_row(quantity: Quantity) -> Row:
     The 95 % interval is that of the profile likelihood where there is one, else the first-order one; an end that the
     data did not set is None.
     """
-    low, high = quantity.interval_95 or (
-        quantity.value - NORMAL_95 * quantity.std,
-        quantity.value + NORMAL_95 * quantity.std,
-    )
-    open_low, open_high = quantity.interval_open
+    low, high = quantity.limits_95
     return {
         "name": quantity.name,
         "unit": quantity.unit,
         "value": _finite(quantity.value),
         "std": _finite(quantity.stated_std),
-        "lower_95": None if open_low else _finite(low),
-        "upper_95": None if open_high else _finite(high),
+        "lower_95": _finite(low),
+        "upper_95": _finite(high),
         "interval_from_profile": quantity.interval_95 is not None,
         "at_bound": quantity.at_bound,
         "expected": _finite(quantity.expected),

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from shaftprint.export._library import library
 from shaftprint.export._model import ExportedModel, exported_model
 from shaftprint.export._model_response import model_response
 from shaftprint.fingerprint import Fingerprint
+from shaftprint.notebook import library
 
 if TYPE_CHECKING:
     from xarray import Dataset

@@ -14,19 +14,14 @@ gauge zero share    %           zero offset of the torque gauge over the working
 """
 
 from shaftprint.fingerprint._clock_influence import NOTABLE_SHIFT, ClockInfluence, clock_findings, clock_influences
-from shaftprint.fingerprint._fingerprint import (
-    Conditions,
-    Fingerprint,
-    Quality,
-    Quantity,
-    SourceFile,
-)
+from shaftprint.fingerprint._fingerprint import Conditions, Fingerprint, Quality, SourceFile
 from shaftprint.fingerprint._inertia import inertia_beside
 from shaftprint.fingerprint._json_file import fingerprint_sha256, read_fingerprint, write_fingerprint
 from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._model import IdentifiedModel, identified_model, named_structure
 from shaftprint.fingerprint._physical import GAUGE_ZERO, physical_numbers, physical_quantities
+from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._take import take_fingerprint
 from shaftprint.fingerprint._vessel_fields import BEHIND, TVC, FieldValue, stated_behind, vessel_fields
 

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.fingerprint._fingerprint import Quantity
+from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from shaftprint.fingerprint._fingerprint import Quantity
+from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.reasons import Reason
 
 if TYPE_CHECKING:

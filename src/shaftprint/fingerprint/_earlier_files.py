@@ -4,8 +4,9 @@ from collections.abc import Mapping
 
 from shaftprint.catalogue import ROLES, ShipRole, shipped_structure
 from shaftprint.errors import StructureError
-from shaftprint.fingerprint._fingerprint import Fingerprint, Quantity
+from shaftprint.fingerprint._fingerprint import Fingerprint
 from shaftprint.fingerprint._physical import GAUGE_ZERO
+from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.models import Role
 
 PHYSICAL: Mapping[str, Role] = {

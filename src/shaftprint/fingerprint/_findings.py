@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from shaftprint.fingerprint._fingerprint import Quantity
 from shaftprint.fingerprint._physical import GAUGE_ZERO
+from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER
 from shaftprint.identify import Identification
 from shaftprint.identify.fit import Estimate

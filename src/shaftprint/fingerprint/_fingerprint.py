@@ -1,122 +1,27 @@
 """The noun of the room: what is kept of one test, as a JSON record."""
 
-import math
 from collections.abc import Sequence
 from datetime import datetime
-from typing import Annotated, Final, Literal, Self, TypeAlias
+from typing import Final, Literal, Self
 
 import numpy as np
-from pydantic import (
-    AfterValidator,
-    AwareDatetime,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    PlainSerializer,
-    model_validator,
-)
+from pydantic import AwareDatetime, Field, model_validator
 
 from shaftprint.arrays import FloatArray
-from shaftprint.catalogue import ROLES, ShipRole
-from shaftprint.distributions import NORMAL_95
+from shaftprint.catalogue import ShipRole
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._covariance_check import covariance_fault
+from shaftprint.fingerprint._labelled_numbers import labelled_numbers
+from shaftprint.fingerprint._quantity import FrozenRecord, Quantity
 from shaftprint.fingerprint._vessel_fields import FieldValue
 from shaftprint.identify import Prior, Verdict
 from shaftprint.identify.uncertainty import Budget
-from shaftprint.models import Role
+from shaftprint.notebook import Labelled, LabelledData, Shown, Summary, shortened
 
 SCHEMA_VERSION: Final = 1
-# An end of the interval further than this share of its width from the end that a standard deviation gives: only the
-# interval is shown.
-ENDS_ALIKE: Final = 0.25
 
 
-class _Record(BaseModel):
-    """A frozen part of a fingerprint; fields that it does not know are refused."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", ser_json_inf_nan="strings", strict=False)
-
-
-def _not_negative(std: float) -> float:
-    if std < 0.0:
-        raise ValueError(f"expected a standard deviation that is not negative, found {std:g}")
-    return std
-
-
-Deviation: TypeAlias = Annotated[float, AfterValidator(_not_negative)]
-"""A standard deviation; it may be infinite."""
-
-
-def _role_of(name: object) -> object:
-    """Return the role of a name that stands in a file."""
-    if not isinstance(name, str):
-        return name
-    if name not in ROLES:
-        raise ValueError(f"expected one of {', '.join(ROLES)}, found {name!r}")
-    return ROLES[name]
-
-
-def _name_of(role: Role | None) -> str | None:
-    """Return the name of a role for a file; none for a role that only an own structure knows."""
-    return role.name if role is not None and role.name in ROLES else None
-
-
-NamedRole: TypeAlias = Annotated[
-    Role | None,
-    BeforeValidator(_role_of),
-    PlainSerializer(_name_of, return_type=str | None),
-]
-"""A role, in files by its name."""
-
-
-class Quantity(_Record):
-    """A number with its unit and uncertainty."""
-
-    name: str
-    """Field term or formula, such as ``K_p`` or ``t_d + t_sp``."""
-    unit: str
-    """Unit, ``-`` where there is none."""
-    value: float
-    """Estimate."""
-    std: Deviation
-    """Standard deviation to first order; infinite where the test says nothing about it."""
-    interval_95: tuple[float, float] | None = None
-    """95 % interval from the profile likelihood; None where there is none."""
-    interval_open: tuple[bool, bool] = (False, False)
-    """Whether an end of the interval is only a bound of the search: the data set none."""
-    at_bound: bool = False
-    """Whether the search stopped at a bound."""
-    expected: float | None = None
-    """Value from another source, such as the torsional vibration calculation."""
-    expected_std: Deviation | None = None
-    """Standard deviation of that value."""
-    meaning: str = ""
-    """What it stands for."""
-    role: NamedRole = None
-    """What it is in the line, one of ``catalogue.ROLES``; None where it has none, as in files of earlier versions."""
-
-    @property
-    def stated_std(self) -> float | None:
-        """The standard deviation where it tells what the interval tells; None where only the interval should be shown.
-
-        To first order a standard deviation at a bound, or where the likelihood is far from a parabola, is several times
-        too large or too small, and says nothing about the side on which most of the interval lies.
-        """
-        if self.at_bound:
-            return None
-        if self.interval_95 is None or not math.isfinite(self.std) or any(self.interval_open):
-            return self.std
-        lower, upper = self.interval_95
-        tolerance = ENDS_ALIKE * (upper - lower)
-        alike = (
-            abs(self.value - NORMAL_95 * self.std - lower) <= tolerance
-            and abs(self.value + NORMAL_95 * self.std - upper) <= tolerance
-        )
-        return self.std if alike else None
-
-
-class SourceFile(_Record):
+class SourceFile(FrozenRecord):
     """A file that went into the fingerprint."""
 
     role: Literal["recording", "vessel", "campaign", "structure"]
@@ -127,7 +32,7 @@ class SourceFile(_Record):
     """SHA-256 of its content."""
 
 
-class Conditions(_Record):
+class Conditions(FrozenRecord):
     """Under which conditions the fingerprint holds."""
 
     vessel: str
@@ -154,7 +59,7 @@ class Conditions(_Record):
     """Test lines that were not, with the reason."""
 
 
-class Quality(_Record):
+class Quality(FrozenRecord):
     """How well the model explains the data, and how good the data were."""
 
     weighting: str
@@ -185,7 +90,7 @@ class Quality(_Record):
     """What was found on the signals, and on test lines that were fitted all the same."""
 
 
-class Fingerprint(_Record):
+class Fingerprint(Shown, Labelled, FrozenRecord):
     """Physical and normalised parameters of one propulsion line with uncertainty, margins and conditions."""
 
     schema_version: Literal[1] = SCHEMA_VERSION
@@ -217,7 +122,7 @@ class Fingerprint(_Record):
     budget: Budget
     """Which source contributes how much to the variance of parameters, combinations, physical values and margins; a
     number of which the test says nothing is left out."""
-    vessel_fields: dict[str, FieldValue] = {}
+    vessel_fields: dict[str, FieldValue] = Field(default_factory=dict)
     """What the vessel file states, field by field, so that two tests know which errors they share; empty in the file of
     an earlier version."""
     calibration: tuple[Quantity, ...]
@@ -229,12 +134,43 @@ class Fingerprint(_Record):
     findings: tuple[str, ...]
     """What a reader must know, in words."""
 
+    def summary(self) -> Summary:
+        """Return of what it is, the verdict, and which numbers may be used."""
+        verdict, test = self.verdict, self.conditions
+        facts = {
+            "test": f"{test.campaign}, structure {self.structure}",
+            "place": test.place or "",
+            "date": "" if test.tested_at is None else f"{test.tested_at:%Y-%m-%d}",
+            "made": f"{self.created:%Y-%m-%d %H:%M %Z}, shaftprint {self.shaftprint_version}",
+            "verdict": verdict.reason,
+            "known well enough": f"{len(verdict.trusted)} of {len(verdict.trusted) + len(verdict.not_trusted)}: "
+            + shortened(verdict.trusted),
+            "findings": str(len(self.findings)),
+        }
+        return Summary(title=f"Fingerprint of {test.vessel}", facts=facts)
+
     @model_validator(mode="after")
     def _expect_covariance(self) -> Self:
         fault = covariance_fault(self.covariance, [quantity.std for quantity in self.parameters])
         if fault:
             raise ValueError(f"covariance: {fault}")
         return self
+
+    @property
+    def numbers(self) -> dict[str, tuple[Quantity, ...]]:
+        """All numbers, by what they are."""
+        return {
+            "parameter": self.parameters,
+            "combination": self.combinations,
+            "physical value": self.physical,
+            "margin": self.margins,
+            "calibration": self.calibration,
+        }
+
+    def labelled(self) -> LabelledData:
+        """Return a row for each number, with its interval and what was expected; and the covariance of parameters."""
+        facts = {"vessel": self.conditions.vessel, "campaign": self.conditions.campaign, "structure": self.structure}
+        return labelled_numbers(self.numbers, np.array(self.covariance), facts | {"created": self.created.isoformat()})
 
     def quantity(self, name: str) -> Quantity:
         """Return a parameter, combination, physical value, margin or calibration by its name.
@@ -244,7 +180,7 @@ class Fingerprint(_Record):
         FingerprintError
             If there is none of that name.
         """
-        quantities = (*self.parameters, *self.combinations, *self.physical, *self.margins, *self.calibration)
+        quantities = [quantity for kind in self.numbers.values() for quantity in kind]
         for quantity in quantities:
             if quantity.name == name:
                 return quantity

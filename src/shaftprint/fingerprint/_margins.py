@@ -3,8 +3,8 @@
 import numpy as np
 
 from shaftprint.catalogue import ShipRole
-from shaftprint.fingerprint._fingerprint import Quantity
 from shaftprint.fingerprint._margin_numbers import MEANINGS, margin_numbers, margin_values
+from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._working_point_share import std_of_working_point, widened
 from shaftprint.identify import Identification
 from shaftprint.identify.uncertainty import Budget, Profile, budget

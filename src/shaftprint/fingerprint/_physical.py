@@ -22,7 +22,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import ROLES, ShipRole
-from shaftprint.fingerprint._fingerprint import Quantity
+from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER, shares_over_torque, shifts_of_working_point
 from shaftprint.identify import Identification
 from shaftprint.identify.likelihood import inertia_from_vessel

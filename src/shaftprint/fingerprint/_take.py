@@ -17,16 +17,11 @@ from shaftprint.fingerprint._assumptions import assumptions_of
 from shaftprint.fingerprint._calibration import calibration_quantities
 from shaftprint.fingerprint._contradictions import contradictions
 from shaftprint.fingerprint._findings import findings_of
-from shaftprint.fingerprint._fingerprint import (
-    Conditions,
-    Fingerprint,
-    Quality,
-    Quantity,
-    SourceFile,
-)
+from shaftprint.fingerprint._fingerprint import Conditions, Fingerprint, Quality, SourceFile
 from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._physical import physical_numbers, physical_quantities
+from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._vessel_fields import vessel_fields
 from shaftprint.fingerprint._working_point_share import (
     shifts_of_working_point,

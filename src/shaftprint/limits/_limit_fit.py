@@ -7,6 +7,7 @@ from shaftprint.identify import Identification
 from shaftprint.identify.fit import Estimate
 from shaftprint.limits._candidates import STRUCTURE_LIMITS, Kind, parameters_of
 from shaftprint.limits.prediction import PredictedTorque
+from shaftprint.notebook import Shown, Summary, shortened
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -40,8 +41,8 @@ class LimitEstimate:
         return not self.doubt
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class LimitFit:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class LimitFit(Shown):
     """The limits of a line."""
 
     numbers: tuple[LimitEstimate, ...]
@@ -54,6 +55,13 @@ class LimitFit:
     """For each limit that does not act: up to which level the data exclude it, in words."""
     identification: Identification
     """The fit."""
+
+    def summary(self) -> Summary:
+        """Return the limits with their intervals."""
+        facts = {
+            one.name: f"{one.value:.4g}, 95 % {one.lower:.4g} to {one.upper:.4g} {one.unit}" for one in self.numbers
+        }
+        return Summary(title="LimitFit", facts={**facts, "not seen": shortened(str(kind) for kind in self.not_seen)})
 
     @property
     def kinds(self) -> tuple[Kind, ...]:

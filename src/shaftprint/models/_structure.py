@@ -22,10 +22,11 @@ from shaftprint.models._expression import Expression, Walk
 from shaftprint.models._parameter import Parameter
 from shaftprint.models._role import Role
 from shaftprint.models._tied_parameter import Tie, through_ties
+from shaftprint.notebook import Shown, Summary, shortened
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False, weakref_slot=True)
-class Structure:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, weakref_slot=True, repr=False)
+class Structure(Shown):
     """A grey-box model structure with one or more inputs and outputs, and its parameters."""
 
     name: str
@@ -56,6 +57,18 @@ class Structure:
     """Role of each parameter that has one, by name, tied ones included."""
     loop: Expression | None = field(init=False)
     """Loop gain of the outermost feedback in this structure; None where there is none."""
+
+    def summary(self) -> Summary:
+        """Return what goes in and comes out, and the parameters."""
+        facts = {
+            "what": self.title,
+            "from": shortened(self.inputs),
+            "to": shortened(self.outputs),
+            "free": shortened(parameter.name for parameter in self.free),
+            "held": shortened(f"{one.name} = {one.value:g}" for one in self.parameters if one.held),
+            "tied": shortened(tie.name for tie in self.ties),
+        }
+        return Summary(title=f"Structure {self.name}", facts=facts)
 
     def __post_init__(self) -> None:
         """Collect channels, blocks, their parameters and the feedback loop.

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.errors import PropellerError
+from shaftprint.notebook import Shown
 from shaftprint.propeller._polynomial import Polynomial
 
 # Where rounding leaves an advance ratio a little beyond the end of the curve.
@@ -41,8 +42,8 @@ class OpenWaterPoint:
         return self.advance * self.thrust / (2.0 * math.pi * self.torque)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class OpenWaterCurve:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class OpenWaterCurve(Shown):
     """Open-water curves ``K_T``, ``K_TN`` and ``K_Q`` over advance ratio and pitch ratio, from 0 to zero thrust."""
 
     name: str

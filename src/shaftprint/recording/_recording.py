@@ -9,15 +9,18 @@ from types import TracebackType
 from typing import Self
 
 from shaftprint.errors import RecordingError
+from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._levels import Levels, levels_of
 
 CLOCK_MAPS = "clock_maps"
 """Name of the attribute that holds the clock maps of a recording that was merged of several."""
+MOST_CHANNELS = 8
+"""Channels that a summary lists one by one."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Recording:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Recording(Shown):
     """A raw logger file, open for reading; close it or use it in a ``with`` statement."""
 
     path: Path
@@ -36,6 +39,22 @@ class Recording:
     """Facts on the whole recording by their names, such as the vessel; those of the native container."""
     release: Callable[[], None] = field(repr=False, default=lambda: None)
     """What ``close`` does."""
+
+    def summary(self) -> Summary:
+        """Return file, format, date and channels, each with its unit, rate and length."""
+        channels = {
+            name: f"{one.unit}, {one.rate_hz:g} Hz, {one.count / one.rate_hz:,.1f} s from {one.start_s:g} s"
+            for name, one in self.channels.items()
+        }
+        facts = {
+            "file": str(self.path),
+            "format": self.format,
+            "began": "" if self.began is None else self.began.isoformat(sep=" ", timespec="seconds"),
+            **dict(list(channels.items())[:MOST_CHANNELS]),
+            "further channels": shortened(list(channels)[MOST_CHANNELS:]),
+            "left out": shortened(self.left_out),
+        }
+        return Summary(title=f"Recording {self.path.name}", facts=facts)
 
     def channel(self, name: str) -> Channel:
         """Return a channel by its name.

@@ -4,10 +4,21 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
+import numpy as np
+
 from shaftprint.arrays import FloatArray
+from shaftprint.notebook import Labelled, LabelledData, Shown, Summary, Variable, shortened
 from shaftprint.reasons import Reason
 from shaftprint.signals._channel_signals import ChannelSignal, ExcitationSignal, MessageSignal, SpeedSignal
 from shaftprint.signals._gaps import Coverage, Gap
+
+_UNITS = {
+    "n_set": ("rev/s", "set point of the engine speed"),
+    "M_s": ("N m", "shaft torque at the gauge"),
+    "X": ("-", "fuel rack, share of the full rack"),
+    "theta_set": ("-", "pitch set point, P/D"),
+    "v_s": ("m/s", "speed of the ship"),
+}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -91,8 +102,8 @@ class StepDelay:
         return self.speed_time_s - self.set_point_time_s
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Signals:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Signals(Shown, Labelled):
     """A recording in physical units on one uniform time grid, with every repair and calibration listed.
 
     In a gap the signals are straight lines: nothing may be measured there (``coverage`` says where).
@@ -131,6 +142,36 @@ class Signals:
     """SHA-256 of the raw file."""
     recording_name: str
     """File name of the raw recording."""
+
+    def summary(self) -> Summary:
+        """Return length, channels, working point and how much was repaired."""
+        point = self.working_point
+        facts = {
+            "length": f"{self.samples / self.rate_hz:,.1f} s at {self.rate_hz:g} Hz from {self.start_s:g} s",
+            "channels": shortened(self.channels),
+            "working point": f"{60.0 * point.engine_speed_rev_s:.1f} rpm, {point.shaft_torque_nm:.0f} N m",
+            "repairs": f"{len(self.repairs)}, gaps {len(self.gaps)}",
+            "prepared": f"{self.mode} mode",
+            "findings": str(len(self.findings)),
+        }
+        return Summary(title=f"Signals of {self.recording_name}", facts=facts)
+
+    def labelled(self) -> LabelledData:
+        """Return the channels over time; messages, which have a clock of their own, over theirs."""
+        grid_s = self.start_s + np.arange(self.samples) / self.rate_hz
+        variables, coordinates = {}, {"time_s": Variable(dims=("time_s",), values=grid_s, unit="s", meaning="time")}
+        for name, one in self.channels.items():
+            clock = "time_s"
+            if isinstance(one, MessageSignal):
+                clock = f"time_of_{name}_s"
+                message_s = one.start_s + np.arange(one.values.size) / one.rate_hz
+                coordinates[clock] = Variable(dims=(clock,), values=message_s, unit="s", meaning=f"time of {name}")
+            unit, meaning = _UNITS.get(name, ("rev/s", "speed") if isinstance(one, SpeedSignal) else ("", name))
+            variables[name] = Variable(
+                dims=(clock,), values=one.values, unit=unit, meaning=f"{meaning}, channel {one.channel}"
+            )
+        attributes = {"recording": self.recording_name, "sha256": self.recording_sha256, "mode": self.mode}
+        return LabelledData(rows=("time_s",), variables=variables, coordinates=coordinates, attributes=attributes)
 
     @property
     def excitations(self) -> Mapping[str, ExcitationSignal]:

@@ -10,12 +10,13 @@ from numpy.typing import ArrayLike
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import StructureError
 from shaftprint.models import Program, Structure
+from shaftprint.notebook import Shown
 from shaftprint.simulation._compiled_structure import build
 from shaftprint.simulation._steady import Steady
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Equilibrium:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Equilibrium(Shown):
     """Steady running at constant inputs."""
 
     inputs: Mapping[str, float]

@@ -8,12 +8,13 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.models import Leaves, SmallSignal, Structure
+from shaftprint.notebook import Shown
 from shaftprint.simulation._compiled_structure import build
 from shaftprint.simulation._equilibrium import Equilibrium, held_zeros, input_vector
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Linearisation:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Linearisation(Shown):
     """The response to small signals about steady running, with exact delays."""
 
     equilibrium: Equilibrium

@@ -10,13 +10,14 @@ from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import StructureError
 from shaftprint.models import Structure
+from shaftprint.notebook import Shown
 from shaftprint.simulation._compiled_structure import build
 from shaftprint.simulation._equilibrium import held_zeros
 from shaftprint.simulation._march import March
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Trace:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Trace(Shown):
     """What a structure does in time."""
 
     time_s: FloatArray

@@ -15,12 +15,13 @@ from shaftprint.arrays import (
     frozen_float,
 )
 from shaftprint.errors import ResponseError
+from shaftprint.notebook import Labelled, LabelledData, Shown, Summary, Variable, shortened
 from shaftprint.reasons import Reason
 from shaftprint.spectra._response_covariance import weight_change
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class FrequencyResponse:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class FrequencyResponse(Shown, Labelled):
     """A response from one or more inputs to one or more outputs at given lines, with full covariance.
 
     The covariance of a line is that of the real vector ``[Re H, Im H]``, where ``H`` runs over the outputs (and, for
@@ -65,6 +66,53 @@ class FrequencyResponse:
     """Delay of the speed output behind the true speed [s]."""
     reasons: tuple[Reason, ...] = ()
     """What speaks against the response: what was found on the signals and lines that it was made of."""
+
+    def summary(self) -> Summary:
+        """Return what answers to what, at which lines."""
+        hertz = self.frequency_hz
+        facts = {
+            "from": shortened(self.inputs),
+            "to": shortened(self.outputs),
+            "lines": shortened(self.lines),
+            "band": f"{hertz.min():.4g} to {hertz.max():.4g} Hz" if hertz.size else "",
+            "not used": shortened(name for name, used in zip(self.lines, self.used, strict=True) if not used),
+        }
+        return Summary(title=f"FrequencyResponse of {len(self.lines)} lines", facts=facts)
+
+    def labelled(self) -> LabelledData:
+        """Return response, standard deviations and covariance over output, input and line."""
+        shape, axes = self.response.shape, ("output", "input", "line")
+        std = np.sqrt(np.diagonal(self.covariance, axis1=1, axis2=2)).T.reshape(2, *shape)
+        components = [
+            f"{part} {out}/{source}" for part in ("Re", "Im") for out in self.outputs for source in self.inputs
+        ]
+        degrees = np.degrees(np.unwrap(np.angle(self.response)))
+        along = {
+            "frequency_hz": Variable(dims=("line",), values=self.frequency_hz, unit="Hz", meaning="frequency"),
+            "used": Variable(dims=("line",), values=self.used, meaning="whether a fit uses it by default"),
+            "response": Variable(dims=axes, values=self.response, unit="-", meaning="output over input"),
+            "magnitude": Variable(dims=axes, values=np.abs(self.response), unit="-", meaning="magnitude"),
+            "phase_deg": Variable(dims=axes, values=degrees, unit="deg", meaning="phase, unwrapped"),
+            "real_std": Variable(dims=axes, values=std[0], unit="-", meaning="standard deviation of the real part"),
+            "imaginary_std": Variable(
+                dims=axes, values=std[1], unit="-", meaning="standard deviation of the imaginary part"
+            ),
+            "covariance": Variable(
+                dims=("line", "component", "component_too"),
+                values=self.covariance,
+                unit="-",
+                meaning="covariance of all real, then all imaginary parts",
+            ),
+        }
+        names = {
+            "output": self.outputs,
+            "input": self.inputs,
+            "line": self.lines,
+            "component": components,
+            "component_too": components,
+        }
+        coordinates = {name: Variable(dims=(name,), values=np.array(labels)) for name, labels in names.items()}
+        return LabelledData(rows=axes, variables=along, coordinates=coordinates)
 
     def __post_init__(self) -> None:
         """Check shapes and make all arrays read-only.

@@ -8,6 +8,7 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ResponseError
+from shaftprint.notebook import Shown
 from shaftprint.reasons import Reason
 from shaftprint.spectra._frequency_response import FrequencyResponse
 from shaftprint.spectra._line_responses import response_of_lines
@@ -47,8 +48,8 @@ _HIGHEST_SHARE_OF_RATE = 0.45
 _SILENT_SHARE = 1e-3
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Spectra:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Spectra(Shown):
     """All that the sines of a campaign tell about one shaft line."""
 
     response: FrequencyResponse

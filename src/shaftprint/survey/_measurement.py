@@ -10,6 +10,7 @@ from shaftprint.errors import StructureError
 from shaftprint.fingerprint import clock_findings, clock_influences
 from shaftprint.identify.fit import has_measured_inputs
 from shaftprint.models import Structure
+from shaftprint.notebook import Shown
 from shaftprint.recording import read_recording
 from shaftprint.signals import Mode, Signals, prepare_signals
 from shaftprint.spectra import (
@@ -26,8 +27,8 @@ from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._trial import Trial
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Measurement:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Measurement(Shown):
     """What a recording gives before any model is fitted."""
 
     signals: Signals

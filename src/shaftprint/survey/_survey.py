@@ -9,13 +9,16 @@ from typing import TypeAlias
 
 import numpy as np
 
+from shaftprint.arguments import refusing_none
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import shipped_structure
+from shaftprint.errors import SettingsError
 from shaftprint.fingerprint import Fingerprint, SourceFile, take_fingerprint
 from shaftprint.identify import Identification, Settings
 from shaftprint.identify.comparison import StructureComparison
 from shaftprint.limits import limit_hints
 from shaftprint.models import Structure
+from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.signals import Mode, Signals
 from shaftprint.spectra import Spectra
 from shaftprint.survey._fits import comparisons_of, fit, priors_of
@@ -30,8 +33,8 @@ SettingsOf: TypeAlias = Callable[[Structure, Measurement, Trial], Settings]
 """Gives how a structure is fitted to a measurement of a trial."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Survey:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Survey(Shown):
     """A recording, what was tested, and all that follows from both."""
 
     trial: Trial
@@ -48,6 +51,20 @@ class Survey:
     """The first structure held against records that it has not seen."""
     remarks: tuple[str, ...] = ()
     """What could not be done, in words."""
+
+    def summary(self) -> Summary:
+        """Return what was tested, what was fitted and what came out."""
+        verdict = self.fingerprint.verdict
+        facts = {
+            "vessel": self.vessel.name,
+            "campaign": self.campaign.name,
+            "structures": shortened(one.structure.name for one in self.fits),
+            "verdict": verdict.reason,
+            "known well enough": shortened(verdict.trusted),
+            "validation": shortened(f"{one.model.name} {one.outcome}" for one in self.validations),
+            "remarks": shortened(self.remarks),
+        }
+        return Summary(title=f"Survey of {self.signals.recording_name}", facts=facts)
 
     @property
     def vessel(self) -> Vessel:
@@ -80,6 +97,7 @@ class Survey:
         return limit_hints(self.spectra.harmonics, failed_steps(self.validations))
 
 
+@refusing_none(SettingsError)
 def run(
     recording: str | Path,
     vessel: str | Path | Vessel,

@@ -8,12 +8,13 @@ from typing import Literal
 
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.fingerprint import SourceFile
+from shaftprint.notebook import Shown
 from shaftprint.settings import shipped_names
 from shaftprint.vessel import Vessel, load_vessel
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Trial:
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class Trial(Shown):
     """What was tested: the vessel, the campaign and the files that describe them."""
 
     vessel: Vessel

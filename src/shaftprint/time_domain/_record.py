@@ -8,11 +8,12 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
 from shaftprint.errors import SignalError
+from shaftprint.notebook import Shown
 from shaftprint.time_domain._decimator import Decimator
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Record:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Record(Shown):
     """Inputs and outputs on one uniform grid, with what drives the model beside them, on a finer one.
 
     Deviations are normalised with the working point. Where a record has gaps the model runs through them, and the

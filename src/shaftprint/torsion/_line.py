@@ -9,6 +9,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SettingsError, StructureError
+from shaftprint.notebook import Shown
 from shaftprint.units import rev_s_from_rpm
 
 if TYPE_CHECKING:
@@ -41,8 +42,8 @@ class LineLink:
         return self.damping_nm_s_rad + self.stiffness_nm_rad * self.relative_damping / (2.0 * math.pi * omega_rad_s)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class TorsionalLine:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class TorsionalLine(Shown):
     """A tree of bodies joined by springs and dampers, referred to the propeller shaft."""
 
     bodies: tuple[str, ...]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from shaftprint.campaign import Campaign
 from shaftprint.errors import RecordingError
+from shaftprint.notebook import Shown
 from shaftprint.tug._sailing import sailing_truth, way_of
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import build_plant, shaft_time_constant_s, working_point, working_point_rack
@@ -30,8 +31,8 @@ class StripTruth:
     """Angle of the shaft at the start, from the marked edge of strip 1 [degree]."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Truth:
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class Truth(Shown):
     """Everything that was put into a simulated recording."""
 
     vessel: str

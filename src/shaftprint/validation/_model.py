@@ -9,10 +9,11 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.identify import Identification
 from shaftprint.identify.likelihood import FittedResponse
 from shaftprint.models import Structure
+from shaftprint.notebook import Shown
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Model:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Model(Shown):
     """A structure with its values, how well they are known, and what they were identified from."""
 
     name: str

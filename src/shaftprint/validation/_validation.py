@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from shaftprint.arrays import FloatArray
+from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.validation._model import Model
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber
@@ -10,8 +11,8 @@ from shaftprint.validation._validation_records import Excerpt
 from shaftprint.validation.measures import Misfit, Outcome, RemainingDelay
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ExcerptTraces:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class ExcerptTraces(Shown):
     """Data and model of one excerpt through the low-pass, for figures; deviations from the working point."""
 
     time_s: FloatArray
@@ -26,8 +27,8 @@ class ExcerptTraces:
     """Standard deviation of the model by its parameters, shape (2, samples)."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class ExcerptComparison:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class ExcerptComparison(Shown):
     """Model and data in one excerpt."""
 
     excerpt: Excerpt
@@ -48,8 +49,8 @@ class ExcerptComparison:
         return "fails" if "fails" in outcomes else "passes" if outcomes == {"passes"} else "undecided"
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Validation:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Validation(Shown):
     """What a model is worth on records that it was not identified from."""
 
     model: Model
@@ -64,6 +65,16 @@ class Validation:
     """The outcome in words, the verdict first."""
     findings: tuple[str, ...]
     """What the reader should know of how this was found."""
+
+    def summary(self) -> Summary:
+        """Return the outcome and the records that it rests on."""
+        facts = {
+            "outcome": self.sentences[0] if self.sentences else "",
+            "excerpts": f"{len(self.comparisons)}, of which {len(self.failed)} fail",
+            "records": shortened(dict.fromkeys(one.excerpt.record for one in self.comparisons)),
+            "findings": str(len(self.findings)),
+        }
+        return Summary(title=f"Validation of {self.model.name}: {self.outcome}", facts=facts)
 
     @property
     def failed(self) -> tuple[ExcerptComparison, ...]:

@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import SettingsError
+from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.settings import Name, PositiveNumber, Settings, load_settings
 from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
@@ -18,7 +19,7 @@ from shaftprint.vessel._sensors import Logger, Sensors
 from shaftprint.vessel._usual import INERTIA_STD
 
 
-class Vessel(Settings):
+class Vessel(Shown, Settings):
     """One shaft line of a ship, with its sensors."""
 
     name: Name
@@ -43,6 +44,22 @@ class Vessel(Settings):
     """The ship around the shaft lines, for tests underway."""
     logger: Logger | None = None
     """The instrument that recorded."""
+
+    def summary(self) -> Summary:
+        """Return engine, gearbox, propeller, working point, inertias and sensors."""
+        engine, gearbox, propeller, point = self.engine, self.gearbox, self.propeller, self.working_point
+        channels = [speed.channel for speed in self.sensors.speed]
+        channels += [self.sensors.shaft_torque.channel, self.sensors.set_point.channel]
+        facts = {
+            "engine": f"{engine.rated_power_kw:g} kW at {engine.rated_speed_rpm:g} rpm, {engine.cylinders} cylinders",
+            "gearbox": f"ratio {gearbox.ratio:g}, efficiency {gearbox.efficiency:g}",
+            "propeller": f"{propeller.blades} blades, {propeller.diameter_m:g} m, P/D {propeller.pitch_ratio:g}",
+            "working point": f"{point.engine_speed_rpm:g} rpm, {point.shaft_torque_nm:g} N m",
+            "inertia": f"{self.inertia_upstream_kg_m2:.3g} kg m2 before, {self.inertia_downstream_kg_m2:.3g} kg m2 "
+            "behind the torque gauge, at the propeller shaft",
+            "channels": shortened(channels),
+        }
+        return Summary(title=f"Vessel {self.name}", facts=facts)
 
     @model_validator(mode="after")
     def _masses_make_a_line(self) -> Self:

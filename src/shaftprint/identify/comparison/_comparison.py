@@ -9,6 +9,7 @@ from shaftprint.identify.comparison._criteria import Criteria
 from shaftprint.identify.comparison._hold_out import HoldOut
 from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio
 from shaftprint.identify.fit import Identification
+from shaftprint.notebook import Shown, Summary, shortened
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -28,8 +29,8 @@ class Candidate:
         return self.identification.structure.name
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class StructureComparison:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class StructureComparison(Shown):
     """Several structures fitted to the same data, the best first."""
 
     candidates: tuple[Candidate, ...]
@@ -40,6 +41,15 @@ class StructureComparison:
     """Likelihood-ratio tests of every structure within a larger one."""
     sentences: tuple[str, ...]
     """Which structure wins and why, in words."""
+
+    def summary(self) -> Summary:
+        """Return which structure wins, and the belief in each."""
+        facts = {
+            "outcome": self.sentences[0] if self.sentences else "",
+            "belief": shortened(f"{name} {100.0 * share:.1f} %" for name, share in self.weights.items()),
+            "failed": shortened(self.failed),
+        }
+        return Summary(title=f"StructureComparison: {self.best.name} of {len(self.candidates)}", facts=facts)
 
     @property
     def best(self) -> Candidate:

@@ -1,7 +1,8 @@
 """What a fit found."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from shaftprint.identify.fit._fit_test import FitTest
 from shaftprint.identify.likelihood import FittedResponse, FittedTerm, LineTest, Objective
 from shaftprint.identify.search import Settings
 from shaftprint.models import Margins, Role, Structure, margins
+from shaftprint.notebook import Labelled, LabelledData, Shown, Summary, labelled_rows, shortened
 from shaftprint.spectra import FrequencyResponse
 
 
@@ -53,8 +55,8 @@ class Estimate:
         return self.value - NORMAL_95 * self.std, self.value + NORMAL_95 * self.std
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Identification:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Identification(Shown, Labelled):
     """What a fit found: parameters with covariance, how well the model explains the data, how unique the optimum is."""
 
     parts: tuple[FittedTerm, ...]
@@ -73,6 +75,38 @@ class Identification:
     """Whether the structure explains the data."""
     clusters: tuple[Cluster, ...]
     """Optima of the search, lowest cost first; those that won or would have won are checked for stability."""
+
+    def summary(self) -> Summary:
+        """Return what was fitted to what, and how well."""
+        p_value = self.p_value
+        facts = {
+            "fitted to": shortened(part.name for part in self.parts),
+            "parameters": shortened(f"{one.name} {one.value:.4g}" for one in self.parameters),
+            "at a bound": shortened(one.name for one in self.parameters if one.at_bound),
+            "FitPercent": shortened(f"{name} {value:.1f}" for name, value in self.fit_percent.items()),
+            "chi-square": f"{self.chi_square:.1f} at {self.degrees_of_freedom} degrees of freedom"
+            + ("" if p_value is None else f", p = {p_value:.2g}"),
+            "search": f"{self.reached} of {self.settings.starts} starts reached it",
+        }
+        return Summary(title=f"Identification of {self.objective.name}", facts=facts)
+
+    def labelled(self) -> LabelledData:
+        """Return the free parameters with their standard deviations and covariance."""
+        estimates = self.parameters
+        texts = {
+            "parameter": [one.name for one in estimates],
+            "unit": [one.unit for one in estimates],
+            "meaning": [parameter.meaning for parameter in self.objective.free_parameters],
+        }
+        columns: dict[str, tuple[Sequence[Any], str]] = {
+            "value": ([one.value for one in estimates], "estimate"),
+            "std": ([one.std for one in estimates], "standard deviation"),
+            "at_bound": ([one.at_bound for one in estimates], "whether the search stopped at a bound"),
+        }
+        facts = {"structure": self.objective.name}
+        return labelled_rows(
+            "parameter", texts, columns, uncertain=texts["parameter"], covariance=self.covariance, facts=facts
+        )
 
     @property
     def experiments(self) -> tuple[FittedResponse, ...]:

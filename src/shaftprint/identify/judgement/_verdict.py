@@ -40,6 +40,7 @@ from shaftprint.identify.judgement._requirements import Requirements
 from shaftprint.identify.judgement._suspects import Suspect, suspects_of
 from shaftprint.identify.uncertainty import Profile
 from shaftprint.identify.uncertainty import profile as find_profile
+from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.reasons import Reason, ReasonKind
 
 if TYPE_CHECKING:
@@ -58,8 +59,8 @@ QUESTIONS: tuple[tuple[ReasonKind, Callable[[Evidence], str]], ...] = (
 )
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Verdict:
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class Verdict(Shown):
     """Which numbers of a fit may be used, and why the others may not."""
 
     trustworthy: bool
@@ -82,6 +83,17 @@ class Verdict:
     """What speaks against numbers, the most important first; empty where nothing but their own deviation does."""
     assumptions: tuple[str, ...] = ()
     """What the numbers rest on and no recording can show, in sentences."""
+
+    def summary(self) -> Summary:
+        """Return the reason, and which numbers may be used."""
+        title = "the trusted numbers may be used" if self.trustworthy else "no number may be used"
+        facts = {
+            "reason": self.reason,
+            "trusted": shortened(self.trusted),
+            "not trusted": shortened(self.not_trusted),
+            "cautions": str(len(self.cautions)),
+        }
+        return Summary(title=f"Verdict: {title}", facts=facts)
 
 
 @refusing_none(IdentificationError)

@@ -19,6 +19,7 @@ from shaftprint.identify.likelihood._term import Repeats, Term, TermTest
 from shaftprint.identify.likelihood._tested_lines import tested_lines
 from shaftprint.identify.likelihood._weighting import Weighting
 from shaftprint.identify.likelihood._wishart import estimated_shapes
+from shaftprint.notebook import Shown
 from shaftprint.spectra import FrequencyResponse
 
 
@@ -42,8 +43,8 @@ class ResponseRepeats(Repeats):
 AS_MEASURED = ResponseRepeats(measured=None, weights=None)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Experiment(Term):
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Experiment(Shown, Term):
     """A structure and a response to fit it to."""
 
     response: FrequencyResponse

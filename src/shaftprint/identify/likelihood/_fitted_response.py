@@ -7,11 +7,12 @@ from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.identify.likelihood._term import FittedTerm
 from shaftprint.identify.likelihood._term_check import TermCheck
 from shaftprint.models import Structure
+from shaftprint.notebook import Shown
 from shaftprint.spectra import FrequencyResponse
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class FittedResponse(FittedTerm):
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class FittedResponse(Shown, FittedTerm):
     """One response of a fit, with its structure."""
 
     structure: Structure

@@ -14,6 +14,7 @@ from shaftprint.arrays import BoolArray, FloatArray, IntArray
 from shaftprint.identify.likelihood._experiment import Experiment
 from shaftprint.identify.likelihood._term import Repeats, Term
 from shaftprint.models import Combination, Parameter, Structure
+from shaftprint.notebook import Shown
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -32,8 +33,8 @@ class Redrawn:
         )
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Objective:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Objective(Shown):
     """A fit problem: terms and prior rows, ready to be evaluated for many parameter sets at once."""
 
     parameters: tuple[Parameter, ...]

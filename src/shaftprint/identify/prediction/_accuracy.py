@@ -17,6 +17,7 @@ from shaftprint.identify.fit import Estimate, estimate_covariance, variance_alon
 from shaftprint.identify.likelihood import MaximumLikelihood, Objective, Prior, build_joint_objective
 from shaftprint.identify.prediction._inseparable_groups import Group, inseparable_groups
 from shaftprint.models import Combination, Structure
+from shaftprint.notebook import Shown
 from shaftprint.spectra import FrequencyResponse
 
 # Standard deviations over the value that the words tell apart.
@@ -27,8 +28,8 @@ NOTHING_NEW = 0.8
 STEP = 1e-6
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Accuracy:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Accuracy(Shown):
     """Standard deviations and correlations that a test would give."""
 
     objective: Objective

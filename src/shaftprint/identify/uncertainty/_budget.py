@@ -10,6 +10,7 @@ from shaftprint.identify.fit import Identification
 from shaftprint.identify.uncertainty._numbers import Numbers
 from shaftprint.identify.uncertainty._propagation import propagation
 from shaftprint.models import Combination
+from shaftprint.notebook import Shown
 
 Direct = Mapping[str, Mapping[str, float]]
 NO_DIRECT: Direct = {}
@@ -41,8 +42,8 @@ class BudgetRow:
         return {name: part / total for name, part in self.variances.items()} if total > 0.0 else {}
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Budget:
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class Budget(Shown):
     """Which source contributes how much to the uncertainty of every number, to first order."""
 
     sources: tuple[str, ...]

@@ -18,6 +18,7 @@ from shaftprint.identify.fit import SAME_PLACE, Identification
 from shaftprint.identify.uncertainty._contour import furthest
 from shaftprint.identify.uncertainty._numbers import Numbers, all_numbers
 from shaftprint.models import Combination
+from shaftprint.notebook import Shown
 
 # No curve of a profile rises by more.
 MOST_RISE = 4.0
@@ -41,8 +42,8 @@ class Interval:
     """Whether the data set no upper end: a bound of the search stands there."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Profile:
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Profile(Shown):
     """Profile-likelihood intervals, and the parameter sets at their ends."""
 
     intervals: Mapping[str, Interval]

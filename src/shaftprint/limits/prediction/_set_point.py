@@ -14,7 +14,7 @@ from shaftprint.kernels import compiled
 from shaftprint.time_domain import Record
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class GovernorRecord(Record):
     """A record whose set point may have a limited rate."""
 
