@@ -12,7 +12,7 @@ PYTHON ?= $(shell for p in $(PYTHONS); do \
 ROOMS := signals spectra models catalogue simulation identify
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-all lint docs bench wheel lock clean
+.PHONY: help demo test test-all lint docs bench wheel offline lock clean
 
 help: ## Say what can be made
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(firstword $(MAKEFILE_LIST))
@@ -44,8 +44,11 @@ bench: $(VENV)/benchmark ## Run shaftprint beside its peers and print the ratios
 	$(BIN)/python -m benchmarks
 
 wheel: $(VENV)/run ## Build the wheel into dist/
-	rm -rf dist
+	rm -f dist/*.whl
 	$(BIN)/python -m hatchling build -t wheel
+
+offline: wheel ## Write a zip that installs without a network; OPTIONS=--help
+	$(BIN)/python requirements/offline.py $(OPTIONS)
 
 lock: $(VENV)/bin/python ## Choose new versions for requirements/ (needs the network)
 	$(PIP) install --quiet uv
