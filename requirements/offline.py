@@ -1,8 +1,8 @@
 """Write one zip with all that an installation without a network needs: ``make offline``.
 
-It holds the wheel in ``dist/``, the wheels of all that it needs with the extra ``readers``, which cannot be fetched later,
-``requirements.txt`` with the hash of each, and ``INSTALL.txt`` with the commands. Run with ``--help`` for other platforms
-than this computer's.
+It holds the wheel in ``dist/``, the wheels of all that it needs with the extra ``readers`` (nobody can fetch it later),
+``requirements.txt`` with the hash of each, and ``INSTALL.txt`` with the commands. Run with ``--help`` for other
+platforms than this computer's.
 """
 
 import argparse
