@@ -1,7 +1,10 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from shaftprint.signals import inspect_channels
+from shaftprint.recording import watch_levels
+from shaftprint.signals import channel_reports, find_tests, inspect_channels, prepare_signals, read_channels
 
 
 def test_what_each_channel_holds(ship, vessel):
@@ -58,3 +61,33 @@ def test_faults_are_listed(spoiled, vessel):
         ("outlier", 25.0, 1),
         ("outlier", 45.0005, 1),
     ]
+
+
+def test_a_channel_is_unpacked_once_for_levels_sensors_tests_and_signals(ship, vessel, campaign):
+    read = dict.fromkeys(ship.recording().channels, 0)
+
+    def counted(channel):
+        def source(start, stop):
+            read[channel.name] += stop - start
+            return channel.source(start, stop)
+
+        return replace(channel, source=source)
+
+    raw = ship.recording()
+    recording = replace(raw, channels={name: counted(channel) for name, channel in raw.channels.items()})
+    watch = watch_levels(recording)
+    readings = read_channels(watch.recording, vessel)
+    reports = channel_reports(readings, watch.levels())
+    tests = find_tests(recording, vessel, campaign, readings=readings)
+    signals = prepare_signals(recording, vessel, campaign, readings=readings)
+    # besides, four stretches of a thirtieth of a second to half a minute say what levels and noise there are
+    stretches = 4 * 65_536
+    for name, channel in recording.channels.items():
+        assert channel.count <= read[name] <= channel.count + 3 * stretches, name
+    assert tests == find_tests(raw, vessel, campaign)
+    assert reports == inspect_channels(raw, vessel)
+    apart = prepare_signals(raw, vessel, campaign)
+    for name, signal in apart.channels.items():
+        np.testing.assert_array_equal(signals.channels[name].values, signal.values)
+    # what was read is still the voltage: another campaign may be tried on it
+    assert find_tests(recording, vessel, campaign, readings=readings) == tests

@@ -1,7 +1,7 @@
 """Roughly how far two clocks are apart, by comparing what both loggers have seen from begin to end."""
 
 import numpy as np
-from scipy import signal
+import scipy
 
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.errors import ClockError
@@ -67,7 +67,7 @@ def _changes(content: Content) -> FloatArray:
     """Return how a content changes from one value to the next at the common rate."""
     time_s = np.arange(content.start_s, content.time_s[-1], 1.0 / RATE_HZ)
     width = max(round(content.rate_hz / RATE_HZ), 1)
-    smooth = signal.oaconvolve(content.values - content.values[0], np.full(width, 1.0 / width), mode="same")
+    smooth = scipy.signal.oaconvolve(content.values - content.values[0], np.full(width, 1.0 / width), mode="same")
     return np.diff(np.interp(time_s, content.time_s, smooth))
 
 
@@ -76,7 +76,7 @@ def _correlation(still: FloatArray, moved: FloatArray) -> tuple[FloatArray, Floa
     ones, others = np.ones(still.size), np.ones(moved.size)
 
     def slid(a: FloatArray, b: FloatArray) -> FloatArray:
-        return np.asarray(signal.correlate(a, b, mode="full", method="fft"))
+        return np.asarray(scipy.signal.correlate(a, b, mode="full", method="fft"))
 
     count = np.maximum(np.rint(slid(ones, others)), 1.0)
     energy = np.maximum(slid(still**2, others), 0.0) * np.maximum(slid(ones, moved**2), 0.0)

@@ -8,8 +8,8 @@ generalized correlation method for estimation of time delay", 1976, equation 32;
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy import signal
 
 from shaftprint.arrays import FloatArray
 
@@ -33,11 +33,11 @@ def shared_band(slow: FloatArray, fast: FloatArray, rate_hz: float) -> tuple[Flo
         Their rate [Hz].
     """
     length = min(round(SEGMENT_S * rate_hz), slow.size // 3)
-    straight_slow, straight_fast = signal.detrend(slow), signal.detrend(fast)
-    frequency_hz, both = signal.csd(straight_fast, straight_slow, rate_hz, nperseg=length)
+    straight_slow, straight_fast = scipy.signal.detrend(slow), scipy.signal.detrend(fast)
+    frequency_hz, both = scipy.signal.csd(straight_fast, straight_slow, rate_hz, nperseg=length)
     both = _smooth(both)
-    own_slow = _smooth(signal.welch(straight_slow, rate_hz, nperseg=length)[1])
-    own_fast = _smooth(signal.welch(straight_fast, rate_hz, nperseg=length)[1])
+    own_slow = _smooth(scipy.signal.welch(straight_slow, rate_hz, nperseg=length)[1])
+    own_fast = _smooth(scipy.signal.welch(straight_fast, rate_hz, nperseg=length)[1])
     segments = max(2.0 * slow.size / length - 1.0, 1.0) * NEIGHBOURS / 2.0
     likely = own_slow * own_fast
     coherence = np.abs(both) ** 2 / np.maximum(likely, FLOOR * likely.max() + TINY)

@@ -9,8 +9,7 @@ covariance matrix", 1987, equation 5).
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import signal
-from scipy.interpolate import CubicSpline
+import scipy
 
 from shaftprint.arrays import FloatArray
 from shaftprint.clocks._shared_band import shared_band
@@ -66,9 +65,9 @@ def delays_of(slow: Content, fast: Content, expected: FloatArray, within_s: floa
     length = max(round(STRETCH_S * slow.rate_hz), FEWEST)
     if time_s.size < length:
         return []
-    there = CubicSpline(fast.time_s, fast.values)(time_s + expected)
+    there = scipy.interpolate.CubicSpline(fast.time_s, fast.values)(time_s + expected)
     slow_band, there = shared_band(slow.values[inside], there, slow.rate_hz)
-    spline = CubicSpline(time_s, there)
+    spline = scipy.interpolate.CubicSpline(time_s, there)
     delays = []
     for first in range(0, time_s.size - length + 1, length):
         part = slice(first, first + length)
@@ -85,7 +84,9 @@ def delays_of(slow: Content, fast: Content, expected: FloatArray, within_s: floa
     return delays
 
 
-def _left(spline: CubicSpline, time_s: FloatArray, values: FloatArray, within_s: float) -> tuple[float, float]:
+def _left(
+    spline: "scipy.interpolate.CubicSpline", time_s: FloatArray, values: FloatArray, within_s: float
+) -> tuple[float, float]:
     """Return what is left of the delay of one stretch and its standard deviation, infinite where undetermined."""
     line, _ = np.linalg.qr(np.stack([np.ones(time_s.size), time_s - time_s[0]], axis=1))
     detrended = values - line @ (line.T @ values)
@@ -111,13 +112,17 @@ def _left(spline: CubicSpline, time_s: FloatArray, values: FloatArray, within_s:
 
 
 def _correlation(one: FloatArray, two: FloatArray) -> float:
-    one, two = signal.detrend(one), signal.detrend(two)
+    one, two = scipy.signal.detrend(one), scipy.signal.detrend(two)
     size = float(np.sqrt((one @ one) * (two @ two)))
     return float(one @ two) / size if size > 0.0 else 0.0
 
 
 def _searched(
-    spline: CubicSpline, time_s: FloatArray, detrended: FloatArray, line: FloatArray, within_s: float
+    spline: "scipy.interpolate.CubicSpline",
+    time_s: FloatArray,
+    detrended: FloatArray,
+    line: FloatArray,
+    within_s: float,
 ) -> float:
     """Return the delay on a raster at which the contents are most alike."""
     places = np.arange(-np.ceil(within_s / STEP_S), np.ceil(within_s / STEP_S) + 1) * STEP_S

@@ -15,6 +15,7 @@ Files are opened read-only. Values that are not numbers are passed on as they ar
 from shaftprint.recording._channel import Channel, ClockJump
 from shaftprint.recording._cut import cut
 from shaftprint.recording._from_arrays import Samples, recording_from_arrays
+from shaftprint.recording._level_watch import LevelWatch, watch_levels
 from shaftprint.recording._levels import Levels
 from shaftprint.recording._read import read_recording
 from shaftprint.recording._recording import CLOCK_MAPS, Recording
@@ -38,6 +39,7 @@ __all__ = [
     "READERS",
     "Channel",
     "ClockJump",
+    "LevelWatch",
     "Levels",
     "Reader",
     "ReaderFunction",
@@ -48,6 +50,7 @@ __all__ = [
     "expect_known_ending",
     "read_recording",
     "recording_from_arrays",
+    "watch_levels",
     "write_by_ending",
     "write_csv",
     "write_mat_v5",

@@ -1,11 +1,12 @@
 """What levels the raw channels of a recording reach, before a vessel file says what they are."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from shaftprint.arrays import FloatArray
 from shaftprint.recording._channel import Channel
 
 BLOCK_SAMPLES = 262_144
@@ -37,41 +38,64 @@ class Levels:
     """Whether almost all values lie near the lowest or the highest, and few of them near one of these."""
 
 
-class _Counted:
-    """What has been seen of a channel so far."""
+class Tally:
+    """What has been seen of a channel so far; it counts along while something else reads the channel."""
 
     def __init__(self, channel: Channel) -> None:
         self.channel = channel
-        self.lowest, self.highest, self.total, self.count = np.inf, -np.inf, 0.0, 0
-        self.at_lowest = self.at_highest = 0
-        self.is_pulses = False
+        self.watched = replace(channel, source=self._read)
+        self._lowest, self._highest, self._total, self._count = np.inf, -np.inf, 0.0, 0
+        self._at_lowest = self._at_highest = self._seen = 0
+        self._is_pulses = False
 
-    def add(self, start: int) -> None:
-        """Look at the block that begins at a sample."""
-        values = self.channel.values(start, min(start + BLOCK_SAMPLES, self.channel.count))
-        finite = values[np.isfinite(values)]
-        if not finite.size:
-            return
-        self.is_pulses = _are_pulses(finite) if self.count == 0 else self.is_pulses
-        lowest, highest = min(self.lowest, float(finite.min())), max(self.highest, float(finite.max()))
-        # what was lowest so far counts no longer where something lower has come
-        self.at_lowest = (self.at_lowest if lowest == self.lowest else 0) + int(np.count_nonzero(finite == lowest))
-        self.at_highest = (self.at_highest if highest == self.highest else 0) + int(np.count_nonzero(finite == highest))
-        self.lowest, self.highest = lowest, highest
-        self.total, self.count = self.total + float(finite.sum()), self.count + finite.size
+    def read_on(self, stop: int) -> None:
+        """Read what nobody has read before a sample."""
+        while self._seen < min(stop, self.channel.count):
+            self.watched.read(self._seen, min(self._seen + BLOCK_SAMPLES, self.channel.count))
 
     def levels(self) -> Levels:
-        """Return the levels of all blocks."""
-        has_samples = self.count > 0
+        """Return the levels of the whole channel; what nobody has read is read now."""
+        self.read_on(self.channel.count)
+        has_samples = self._count > 0
+        ends = [self._value(self._lowest), self._value(self._highest)] if has_samples else [np.nan, np.nan]
+        at_ends = [share / self._count if has_samples else 0.0 for share in (self._at_lowest, self._at_highest)]
+        if self.channel.scale < 0.0:
+            ends, at_ends = ends[::-1], at_ends[::-1]
         return Levels(
-            lowest=self.lowest if has_samples else np.nan,
-            mean=self.total / self.count if has_samples else np.nan,
-            highest=self.highest if has_samples else np.nan,
-            at_lowest=self.at_lowest / self.count if has_samples else 0.0,
-            at_highest=self.at_highest / self.count if has_samples else 0.0,
-            missing=self.channel.count - self.count,
-            is_pulses=self.is_pulses,
+            lowest=ends[0],
+            mean=self._value(self._total / self._count) if has_samples else np.nan,
+            highest=ends[1],
+            at_lowest=at_ends[0],
+            at_highest=at_ends[1],
+            missing=self.channel.count - self._count,
+            is_pulses=self._is_pulses,
         )
+
+    def _value(self, counts: float) -> float:
+        return counts * self.channel.scale + self.channel.offset
+
+    def _read(self, start: int, stop: int) -> NDArray[Any]:
+        counts = self.channel.source(start, stop)
+        # whoever looks at a few samples only comes again for the rest
+        if start == self._seen and (stop - start >= BLOCK_SAMPLES or stop == self.channel.count):
+            self._add(counts)
+            self._seen = stop
+        return counts
+
+    def _add(self, counts: NDArray[Any]) -> None:
+        is_finite = np.isfinite(counts) if counts.dtype.kind == "f" else None
+        finite = counts if is_finite is None or is_finite.all() else counts[is_finite]
+        if not finite.size:
+            return
+        self._is_pulses = _are_pulses(finite) if self._count == 0 else self._is_pulses
+        lowest, highest = min(self._lowest, float(finite.min())), max(self._highest, float(finite.max()))
+        # what was lowest so far counts no longer where something lower has come
+        self._at_lowest = (self._at_lowest if lowest == self._lowest else 0) + int(np.count_nonzero(finite == lowest))
+        same_highest = self._at_highest if highest == self._highest else 0
+        self._at_highest = same_highest + int(np.count_nonzero(finite == highest))
+        self._lowest, self._highest = lowest, highest
+        exact = np.int64 if counts.dtype == np.int16 else np.float64
+        self._total, self._count = self._total + float(finite.sum(dtype=exact)), self._count + finite.size
 
 
 def levels_of(channels: Sequence[Channel], *, reach: Callable[[float], None] | None = None) -> list[Levels]:
@@ -89,23 +113,27 @@ def levels_of(channels: Sequence[Channel], *, reach: Callable[[float], None] | N
     RecordingError
         If the file cannot be read.
     """
-    counted = [_Counted(channel) for channel in channels]
-    most = max((channel.count for channel in channels), default=0)
+    tallies = [Tally(channel) for channel in channels]
+    read_on(tallies, reach=reach)
+    return [tally.levels() for tally in tallies]
+
+
+def read_on(tallies: Sequence[Tally], *, reach: Callable[[float], None] | None = None) -> None:
+    """Read what nobody has read of some channels, block by block."""
+    most = max((tally.channel.count for tally in tallies), default=0)
     for start in range(0, most, BLOCK_SAMPLES):
-        for item in counted:
-            if start < item.channel.count:
-                item.add(start)
+        for tally in tallies:
+            tally.read_on(start + BLOCK_SAMPLES)
         if reach is not None:
             reach(min((start + BLOCK_SAMPLES) / most, 1.0))
-    return [item.levels() for item in counted]
 
 
-def _are_pulses(values: FloatArray) -> bool:
-    """Return whether values stand at two levels, and cross the middle between them at least four times."""
-    low, high = (float(level) for level in np.percentile(values, [0.5, 99.5]))
+def _are_pulses(counts: NDArray[Any]) -> bool:
+    """Return whether counts stand at two levels, and cross the middle between them at least four times."""
+    low, high = (float(level) for level in np.percentile(counts, [0.5, 99.5]))
     if not high > low:
         return False
-    share = (values - low) / (high - low)
+    share = (counts - low) / (high - low)
     between = float(np.mean((share > BETWEEN[0]) & (share < BETWEEN[1])))
     crossings = int(np.count_nonzero(np.diff(share > 0.5)))
     return between < MOST_BETWEEN and crossings >= FEWEST_CROSSINGS

@@ -15,12 +15,13 @@ deviation             1        ``(x - x_0) / x_0`` from the working point
 ===================== ======== ====================================================================
 """
 
+from shaftprint.signals._channel_readings import ChannelReadings, read_channels
 from shaftprint.signals._channel_signals import ChannelRole, ChannelSignal, ExcitationSignal, MessageSignal, SpeedSignal
 from shaftprint.signals._clock import Mode
 from shaftprint.signals._content import Content, content_of
 from shaftprint.signals._contradictions import contradictions
 from shaftprint.signals._gaps import Coverage, Gap
-from shaftprint.signals._inspect import ChannelReport, PulseReport, inspect_channels
+from shaftprint.signals._inspect import ChannelReport, PulseReport, channel_reports, inspect_channels
 from shaftprint.signals._prepare import find_tests, prepare_signals
 from shaftprint.signals._signals import Repair, SetPointCalibration, Signals, StepDelay, StripAngles, WorkingPoint
 from shaftprint.signals.excitation import FoundTest, common_shift_s, proposed_campaign
@@ -30,6 +31,7 @@ from shaftprint.signals.levels import deviation
 __all__ = [
     "KINDS",
     "ChannelKind",
+    "ChannelReadings",
     "ChannelReport",
     "ChannelRole",
     "ChannelSignal",
@@ -48,6 +50,7 @@ __all__ = [
     "StepDelay",
     "StripAngles",
     "WorkingPoint",
+    "channel_reports",
     "common_shift_s",
     "content_of",
     "contradictions",
@@ -56,4 +59,5 @@ __all__ = [
     "inspect_channels",
     "prepare_signals",
     "proposed_campaign",
+    "read_channels",
 ]

@@ -1,21 +1,16 @@
 """What is in a recording, channel by channel, before anything is made of it."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from shaftprint.errors import SignalError
+from shaftprint.recording import Levels, watch_levels
+from shaftprint.signals._channel_readings import ChannelReadings, read_channels
 from shaftprint.signals._channel_signals import ChannelRole
-from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, Counts, blocks
-from shaftprint.signals._clock import clock_of
-from shaftprint.signals._gaps import Gap, clock_gaps
+from shaftprint.signals._gaps import Gap
 from shaftprint.signals._signals import Repair
-from shaftprint.signals.conditioning import FaultLimits, Patcher, flagged
-from shaftprint.signals.kinds import find_sources, judge_saturation, numbered_strips, pulse_gaps, pulse_repairs
-from shaftprint.signals.pulses import find_edges, pulse_levels
-from shaftprint.vessel import SpeedSensor
+from shaftprint.signals.kinds import PulseReading
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel, Recording
@@ -87,109 +82,35 @@ def inspect_channels(recording: "Recording", vessel: "Vessel") -> tuple[ChannelR
     Raises
     ------
     SignalError
-        If a channel is missing, empty, in another unit, or holds no numbers.
+        If a channel is missing, empty, or in another unit.
     """
-    sources = sorted(find_sources(recording, vessel), key=lambda source: _ORDER.index(source.kind.role))
-    return tuple(report for source in sources for report in _inspected(source))
+    watch = watch_levels(recording)
+    readings = read_channels(watch.recording, vessel)
+    return channel_reports(readings, watch.levels())
 
 
-def _inspected(source: "Source[Any]") -> tuple[ChannelReport, ...]:
-    limits = source.kind.limits(source)
-    if limits is not None:
-        return (_inspect_values(source, limits),)
-    if source.kind.own_clock:
-        return (_inspect_messages(source),)
-    return (_inspect_pulses(source),) if isinstance(source.sensor, SpeedSensor) else ()
+def channel_reports(readings: ChannelReadings, levels: Mapping[str, Levels]) -> tuple[ChannelReport, ...]:
+    """Return what each channel that was read holds: speeds and torque first, then what a test moves.
+
+    Parameters
+    ----------
+    readings
+        What every channel gave, from `read_channels`.
+    levels
+        Levels of the raw channels by name.
+    """
+    sources = sorted(readings.sources, key=lambda source: _ORDER.index(source.kind.role))
+    return tuple(_report(source, readings, levels[source.channel.name]) for source in sources)
 
 
-class _Extremes:
-    """Smallest and largest count of the blocks that pass by, and their mean."""
-
-    def __init__(self) -> None:
-        self.lowest, self.highest = np.inf, -np.inf
-        self._total, self._samples = 0.0, 0
-
-    def watched(self, channel: "Channel") -> Iterator[Counts]:
-        # a channel that cannot be used is looked at once more, from its beginning
-        self._total, self._samples = 0.0, 0
-        for block in blocks(channel, DEFAULT_BLOCK_SAMPLES):
-            # fmin and fmax pass over what is not a number
-            self.lowest = min(self.lowest, float(np.fmin.reduce(block)))
-            self.highest = max(self.highest, float(np.fmax.reduce(block)))
-            self._total += float(np.nansum(block, dtype=np.float64))
-            self._samples += int(np.count_nonzero(np.isfinite(block)))
-            yield block
-
-    @property
-    def mean(self) -> float:
-        return self._total / self._samples if self._samples else np.nan
-
-
-def _inspect_pulses(source: "Source[SpeedSensor]") -> ChannelReport:
-    channel, sensor = source.channel, source.sensor
-    extremes = _Extremes()
-    pulses, problem = None, None
-    faults: tuple[Repair, ...] = ()
-    gaps: tuple[Gap, ...] = ()
-    try:
-        levels = pulse_levels(channel, edge=sensor.edge)
-        train, strips = numbered_strips(find_edges(extremes.watched(channel), levels), sensor)
-        gaps = pulse_gaps(channel, train, sensor.pulses_per_revolution)
-        faults = pulse_repairs(channel, train, gaps)
-        rate = train.number[-1] / (train.position[-1] - train.position[0]) * channel.rate_hz
-        pulses = PulseReport(
-            low=levels.low * channel.scale + channel.offset,
-            high=levels.high * channel.scale + channel.offset,
-            per_second=float(rate),
-            strip_angles_deg=((360.0,) if strips is None else tuple((strips.angle_rev * 360.0).tolist())),
-        )
-    except SignalError as error:
-        problem = str(error)
-        _exhaust(extremes.watched(channel))
-    return _report(source, extremes, pulses, faults, gaps, problem)
-
-
-def _inspect_values(source: "Source[Any]", limits: FaultLimits) -> ChannelReport:
-    channel = source.channel
-    extremes = _Extremes()
-    repairs: list[Repair] = []
-    gaps = clock_gaps(channel)
-    problem = None
-    try:
-        patcher = Patcher(channel=channel, limits=limits, repairs=repairs, gaps=gaps)
-        _exhaust(patcher.patched(flagged(extremes.watched(channel), limits)))
-        judge_saturation(channel, repairs)
-    except SignalError as error:
-        problem = str(error)
-        _exhaust(extremes.watched(channel))
-    return _report(source, extremes, None, tuple(repairs), tuple(gaps), problem)
-
-
-def _inspect_messages(source: "Source[Any]") -> ChannelReport:
-    extremes = _Extremes()
-    _exhaust(extremes.watched(source.channel))
-    try:
-        reading = source.kind.read(source, clock_of(source.channel))
-    except SignalError as error:
-        return _report(source, extremes, None, (), (), str(error))
-    return _report(source, extremes, None, tuple(reading.repairs), reading.gaps, None)
-
-
-def _exhaust(passing: Iterable[object]) -> None:
-    for _ in passing:
-        pass
-
-
-def _report(
-    source: "Source[Any]",
-    extremes: _Extremes,
-    pulses: PulseReport | None,
-    faults: tuple[Repair, ...],
-    gaps: tuple[Gap, ...],
-    problem: str | None,
-) -> ChannelReport:
-    channel = source.channel
-    ends = [count * channel.scale + channel.offset for count in (extremes.lowest, extremes.highest)]
+def _report(source: "Source[Any]", readings: ChannelReadings, levels: Levels) -> ChannelReport:
+    channel, reading = source.channel, readings.by_name.get(source.name)
+    problem = readings.problems.get(source.name)
+    if reading is not None:
+        try:
+            source.kind.judge(source, reading)
+        except SignalError as error:
+            problem = error
     return ChannelReport(
         channel=channel.name,
         use=source.kind.use,
@@ -197,11 +118,21 @@ def _report(
         rate_hz=channel.rate_hz,
         start_s=channel.start_s,
         duration_s=channel.duration_s,
-        lowest=min(ends),
-        highest=max(ends),
-        mean=extremes.mean * channel.scale + channel.offset,
-        pulses=pulses,
-        faults=faults,
-        gaps=tuple(sorted(gaps, key=lambda gap: gap.start_s)),
-        problem=problem,
+        lowest=levels.lowest,
+        highest=levels.highest,
+        mean=levels.mean,
+        pulses=_pulse_report(channel, reading) if isinstance(reading, PulseReading) else None,
+        faults=() if reading is None else tuple(reading.repairs),
+        gaps=() if reading is None else tuple(sorted(reading.gaps, key=lambda gap: gap.start_s)),
+        problem=None if problem is None else str(problem),
+    )
+
+
+def _pulse_report(channel: "Channel", reading: PulseReading) -> PulseReport:
+    strips = reading.strips
+    return PulseReport(
+        low=reading.levels.low * channel.scale + channel.offset,
+        high=reading.levels.high * channel.scale + channel.offset,
+        per_second=reading.pulse_rate_hz,
+        strip_angles_deg=(360.0,) if strips is None else tuple((strips.angle_rev * 360.0).tolist()),
     )

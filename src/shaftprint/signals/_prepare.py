@@ -1,6 +1,7 @@
 """The verb of the room: from a raw recording to signals in physical units."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.arguments import refusing_none
@@ -8,12 +9,13 @@ from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
 from shaftprint.reasons import Reason
+from shaftprint.signals._channel_readings import ChannelReadings, logger_channels, read_channels
 from shaftprint.signals._channel_signals import ChannelSignal
 from shaftprint.signals._channels import find_channel
-from shaftprint.signals._clock import Mode, clock_of, common_clock
+from shaftprint.signals._clock import Mode, clock_of
 from shaftprint.signals._gaps import Coverage
 from shaftprint.signals._rates import expect_one_rate
-from shaftprint.signals._readings import Readings, logger_channels, read_all
+from shaftprint.signals._readings import Readings, usable_readings
 from shaftprint.signals._signals import SetPointCalibration, Signals
 from shaftprint.signals.excitation import FoundTest, expect_campaign, find_step_delays, found_tests, left_out
 from shaftprint.signals.kinds import (
@@ -21,7 +23,6 @@ from shaftprint.signals.kinds import (
     SteadyState,
     compare_speeds,
     expect_moving_torque,
-    find_sources,
     read_voltage,
 )
 from shaftprint.signals.levels import (
@@ -57,6 +58,7 @@ def prepare_signals(
     rate_hz: float = 200.0,
     chunk_s: float | None = None,
     progress: Callable[[float], None] | None = None,
+    readings: ChannelReadings | None = None,
 ) -> Signals:
     """Turn a raw recording into speeds, torque and set point in physical units on one grid.
 
@@ -77,6 +79,8 @@ def prepare_signals(
         The result is the same, bit for bit, for any value.
     progress
         Is told the finished share of the reading, from 0 to 1; it may be called from other threads.
+    readings
+        What `read_channels` gave of the same recording, vessel, mode and rate, so that it is not read again.
 
     Raises
     ------
@@ -86,11 +90,20 @@ def prepare_signals(
     """
     if mode not in ("shaftprint", "thesis"):
         raise SignalError(f'mode: expected "shaftprint" or "thesis", found "{mode}".')
-    sources = find_sources(recording, vessel)
-    channels = logger_channels(sources)
-    clock = common_clock(channels, mode=mode, rate_hz=rate_hz, chunk_s=chunk_s, progress=progress)
-    readings = read_all(sources, clock)
-    reasons = [*expect_one_rate(recording, channels), *_cut_crests(sources)]
+    if readings is None:
+        channels = read_channels(recording, vessel, mode=mode, rate_hz=rate_hz, chunk_s=chunk_s, progress=progress)
+        return _prepared(recording, vessel, campaign, usable_readings(channels))
+    usable = usable_readings(readings)
+    # a set point becomes a speed in place, and what was read belongs to the caller
+    voltage = usable.by_name["n_set"]
+    own = replace(voltage, values=voltage.values.copy())
+    return _prepared(recording, vessel, campaign, replace(usable, by_name={**usable.by_name, "n_set": own}))
+
+
+def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, readings: Readings) -> Signals:
+    """Return the signals of what was read; its set point becomes a speed in place."""
+    clock = readings.clock
+    reasons = [*expect_one_rate(recording, logger_channels(readings.sources)), *_cut_crests(readings.sources)]
     lost, mismatches = _differences_from_campaign(recording, vessel, campaign, readings)
     differences = compare_speeds(readings.pick_ups, vessel)
     steady, strange, unsteady = _steady_state(vessel, campaign, readings)
@@ -116,7 +129,7 @@ def prepare_signals(
         step_delays=delays,
         repairs=readings.repairs,
         gaps=readings.gaps,
-        mode=mode,
+        mode=clock.mode,
         findings=(*lost, *readings.findings, *mismatches, *strange, *differences, *scale.findings, *absent, *missed),
         reasons=(*reasons, *unsteady),
         recording_sha256=recording.sha256,
@@ -124,7 +137,9 @@ def prepare_signals(
     )
 
 
-def find_tests(recording: "Recording", vessel: "Vessel", campaign: Campaign) -> tuple[FoundTest, ...]:
+def find_tests(
+    recording: "Recording", vessel: "Vessel", campaign: Campaign, *, readings: ChannelReadings | None = None
+) -> tuple[FoundTest, ...]:
     """Return when and how every test of a campaign was really made, from the recorded set point alone.
 
     Parameters
@@ -135,6 +150,8 @@ def find_tests(recording: "Recording", vessel: "Vessel", campaign: Campaign) -> 
         Says which channel is the set point.
     campaign
         What was asked of the ship; its times may be off by the same amount, or each by a few seconds.
+    readings
+        What `read_channels` gave of the same recording and vessel, so that it is not read again.
 
     Returns
     -------
@@ -145,6 +162,9 @@ def find_tests(recording: "Recording", vessel: "Vessel", campaign: Campaign) -> 
     SignalError
         If the channel of the set point is missing, in another unit, or holds no numbers.
     """
+    if readings is not None and "n_set" in readings.by_name:
+        values, clock = readings.by_name["n_set"].values, readings.clock
+        return found_tests(values, campaign.of_input(), rate_hz=clock.rate_hz, start_s=clock.start_s)
     sensor = vessel.sensors.set_point
     channel = find_channel(recording, sensor.channel, unit=sensor.unit, use="set point")
     rate_hz = min(_SET_POINT_HZ, channel.rate_hz)

@@ -1,12 +1,11 @@
-"""All channels of a recording, read two at a time."""
+"""What was read of a recording, as far as a test can be made of it."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from shaftprint.errors import SignalError
-from shaftprint.signals._channel_signals import ChannelRole
+from shaftprint.signals._channel_readings import ChannelReadings
 from shaftprint.signals._gaps import Coverage, Gap, within
 from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning import Reading
@@ -14,12 +13,8 @@ from shaftprint.signals.kinds import PulseReading
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
-    from shaftprint.recording import Channel
     from shaftprint.signals._clock import Clock
     from shaftprint.signals.kinds import Source
-
-# One thread computes while the other waits for the file; more would only queue for the file.
-_THREADS = 2
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -65,36 +60,27 @@ class Readings:
         return Coverage.of_grid(start_s=clock.start_s, samples=clock.count, rate_hz=clock.rate_hz, gaps=self.gaps)
 
 
-def logger_channels(sources: "Sequence[Source[Any]]") -> "list[Channel]":
-    """Return the channels of the logger, which span the grid; side signals come seldom."""
-    return [source.channel for source in sources if source.kind.role is not ChannelRole.SIDE]
-
-
-def read_all(sources: "Sequence[Source[Any]]", clock: "Clock") -> Readings:
-    """Read every channel, two at a time; a spare sensor that fails is left out.
+def usable_readings(channels: ChannelReadings) -> Readings:
+    """Return what a test can be made of; a spare sensor that fails is left out.
 
     Raises
     ------
     SignalError
-        If a channel cannot be used.
+        If a channel that is no spare cannot be used.
     """
+    read, sources, clock = channels.by_name, channels.sources, channels.clock
     by_name: dict[str, Reading] = {}
     failed: list[str] = []
-    pool = ThreadPoolExecutor(max_workers=_THREADS)
-    try:
-        jobs = {source.name: pool.submit(source.kind.read, source, clock) for source in sources}
-        for source in sources:
-            if not source.spare:
-                by_name[source.name] = jobs[source.name].result()
-        gaps = [gap for s in sources if s.name in by_name and not s.kind.own_clock for gap in by_name[s.name].gaps]
-        for source in sources:
-            if source.spare:
-                try:
-                    by_name[source.name] = _without_gaps_of_its_own(jobs[source.name].result(), gaps)
-                except SignalError as error:
-                    failed.append(f"{source.name} was left out: {error}")
-    finally:
-        pool.shutdown(cancel_futures=True)
+    for source in sources:
+        if not source.spare:
+            by_name[source.name] = _usable(source, channels)
+    gaps = [gap for s in sources if s.name in by_name and not s.kind.own_clock for gap in read[s.name].gaps]
+    for source in sources:
+        if source.spare:
+            try:
+                by_name[source.name] = _without_gaps_of_its_own(_usable(source, channels), gaps)
+            except SignalError as error:
+                failed.append(f"{source.name} was left out: {error}")
     used = tuple(source for source in sources if source.name in by_name)
     readings = {source.name: by_name[source.name] for source in used}
     pick_ups = [reading for reading in readings.values() if isinstance(reading, PulseReading)]
@@ -106,6 +92,20 @@ def read_all(sources: "Sequence[Source[Any]]", clock: "Clock") -> Readings:
         gaps=tuple(sorted((gap for gap in gaps if gap.last_s > clock.start_s), key=lambda gap: gap.start_s)),
         findings=(*_findings(others), *failed, *_findings(pick_ups)),
     )
+
+
+def _usable(source: "Source[Any]", channels: ChannelReadings) -> Reading:
+    """Return what a channel gave, with what the reader should know of it.
+
+    Raises
+    ------
+    SignalError
+        If it cannot be used.
+    """
+    if source.name in channels.problems:
+        raise channels.problems[source.name]
+    reading = channels.by_name[source.name]
+    return replace(reading, findings=source.kind.judge(source, reading))
 
 
 def _findings(readings: Iterable[Reading]) -> Iterator[str]:

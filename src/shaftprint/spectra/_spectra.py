@@ -1,6 +1,6 @@
 """The verb of the room: from signals and campaign to responses, signal-to-noise ratios and harmonics."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -34,6 +34,7 @@ from shaftprint.spectra.lines import (
     plan_windows,
     shape_reasons,
     signal_to_noise,
+    window_slice,
 )
 
 if TYPE_CHECKING:
@@ -130,8 +131,8 @@ def estimate_spectra(
     moved = _excitation(signals, excitation)
     campaign = campaign.of_input(moved.input)
     names = _channels_on_grid(signals, moved)
-    cuts, left_out = _cut_windows(signals, campaign, names)
-    measurements = [_measure(signals, cut, moved, method) for cut in cuts]
+    windows, left_out = _windows_inside(signals, campaign, names)
+    measurements = [_measure(signals, cut, moved, method) for cut in _cuts(signals, windows, names)]
     check_frequency_unit(measurements)
     measurements, silent = _without_silent(moved, campaign, measurements)
     ratios = signal_to_noise(
@@ -154,7 +155,7 @@ def estimate_spectra(
         hold_s=sensor.hold_s,
         pick_up_delay_s=sensor.delay_s,
     )
-    against = () if thesis else _against(cuts, measurements, sensor, moved, response)
+    against = () if thesis else _against(_cuts(signals, windows, names), measurements, sensor, moved, response)
     return Spectra(
         response=replace(response, reasons=(*signals.reasons, *against)),
         windows=tuple(line.window for line in measurements),
@@ -167,7 +168,7 @@ def estimate_spectra(
 
 
 def _against(
-    cuts: Sequence[WindowSamples],
+    cuts: Iterable[WindowSamples],
     lines: Sequence[LineMeasurement],
     sensor: "SpeedSignal",
     moved: "ExcitationSignal",
@@ -204,13 +205,23 @@ def _speed_signal(signals: "Signals", speed: str | None) -> "SpeedSignal":
     return signals.speeds[speed]
 
 
-def _cut_windows(
-    signals: "Signals", campaign: "Campaign", names: Sequence[str]
-) -> tuple[list[WindowSamples], dict[str, str]]:
-    """Cut every line out of the normalised channels; say which lines the recording does not hold."""
+def _cuts(signals: "Signals", windows: Sequence[Window], names: Sequence[str]) -> Iterator[WindowSamples]:
+    """Cut one line after the other out of the normalised channels: all together would need much memory."""
     channels = {name: signals.channels[name].values for name in names}
     scale = np.array([[1.0 / signals.channels[name].reference] for name in names])
-    cuts, left_out = [], {}
+    for window in windows:
+        cut = cut_window(window, channels, rate_hz=signals.rate_hz, start_s=signals.start_s)
+        if cut is not None:
+            np.multiply(cut.values, scale, out=cut.values)
+            yield cut
+
+
+def _windows_inside(
+    signals: "Signals", campaign: "Campaign", names: Sequence[str]
+) -> tuple[list[Window], dict[str, str]]:
+    """Return the window of every line that the recording holds, and why others are left out."""
+    count = min(signals.channels[name].values.size for name in names)
+    windows, left_out = [], {}
     for window in plan_windows(campaign):
         if window.frequency_hz > _HIGHEST_SHARE_OF_RATE * signals.rate_hz:
             left_out[window.line] = (
@@ -223,21 +234,19 @@ def _cut_windows(
         if missing:
             left_out[window.line] = f"left out: {missing}"
             continue
-        cut = cut_window(window, channels, rate_hz=signals.rate_hz, start_s=signals.start_s)
-        if cut is None:
+        if window_slice(window, count, rate_hz=signals.rate_hz, start_s=signals.start_s) is None:
             left_out[window.line] = (
                 f"left out: its window from {window.start_s:g} to {window.stop_s:g} s is not inside the recording"
             )
             continue
-        np.multiply(cut.values, scale, out=cut.values)
-        cuts.append(cut)
-    if not cuts:
+        windows.append(window)
+    if not windows:
         line, remark = next(iter(left_out.items()))
         raise ResponseError(
             f"{signals.recording_name}: expected at least one sine of campaign {campaign.name}, "
             f"found none ({line} {remark}): check that campaign and recording belong together."
         )
-    return cuts, left_out
+    return windows, left_out
 
 
 def _measure(signals: "Signals", cut: WindowSamples, moved: "ExcitationSignal", method: SineMethod) -> LineMeasurement:

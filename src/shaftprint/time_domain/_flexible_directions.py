@@ -1,7 +1,7 @@
 """What a structure may lack, as directions in which its residuals may lie, each of shape (samples, outputs)."""
 
 import numpy as np
-from scipy.signal import lfilter
+import scipy
 
 from shaftprint.arrays import FloatArray
 from shaftprint.time_domain._input_response import delayed_inputs
@@ -69,7 +69,7 @@ def _lagged(record: Record, rows: FloatArray) -> FloatArray:
     lagged = [rows]
     for lag_s in np.geomspace(2.0 / rate, max(LONGEST_SHARE * record.samples, 4.0) / rate, LAGS):
         pole = np.exp(-1.0 / (rate * lag_s))
-        lagged.append(lfilter([1.0 - pole], [1.0, -pole], rows, zi=pole * rows[:, :1])[0])
+        lagged.append(scipy.signal.lfilter([1.0 - pole], [1.0, -pole], rows, zi=pole * rows[:, :1])[0])
     return np.concatenate(lagged)
 
 

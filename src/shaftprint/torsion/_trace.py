@@ -4,8 +4,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.linalg import expm
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import StructureError
@@ -115,7 +115,7 @@ def _march(matrix: FloatArray, gain: FloatArray, torque: FloatArray, step: float
     augmented[:states, :states] = matrix * step
     augmented[:states, states : states + inputs] = gain * step
     augmented[states : states + inputs, states + inputs :] = np.eye(inputs)
-    onward = expm(augmented)
+    onward = scipy.linalg.expm(augmented)
     level, ramp = onward[:states, states : states + inputs], onward[:states, states + inputs :]
     pushed = torque[:-1] @ level.T + np.diff(torque, axis=0) @ ramp.T
     states_in_time = np.empty((torque.shape[0], states))

@@ -1,5 +1,6 @@
 """``shaftprint inspect``: what is in a recording, and whether it is good enough."""
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import click
@@ -13,10 +14,19 @@ from shaftprint.cli._signal_tables import print_lines, print_signals
 from shaftprint.cli._terminal import echo, print_findings
 from shaftprint.cli.output import no_progress_option, print_table, print_tables, progress
 from shaftprint.clocks import logger_clocks
+from shaftprint.errors import SignalError
 from shaftprint.fingerprint import clock_findings, clock_influences
 from shaftprint.limits import limit_hints
-from shaftprint.recording import Recording, read_recording
-from shaftprint.signals import ChannelReport, contradictions, find_tests, inspect_channels, prepare_signals
+from shaftprint.recording import Levels, LevelWatch, Recording, read_recording, watch_levels
+from shaftprint.signals import (
+    ChannelReadings,
+    ChannelReport,
+    channel_reports,
+    contradictions,
+    find_tests,
+    prepare_signals,
+    read_channels,
+)
 from shaftprint.spectra import Spectra, estimate_spectra
 from shaftprint.tables import Table, clock_map_table, numbers, texts
 from shaftprint.vessel import Vessel, load_vessel
@@ -50,24 +60,41 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
     planned = None if campaign is None else load_campaign(campaign)
     with read_recording(recording, **hints_of(**said)) as opened:
         clocks = logger_clocks(opened)
-        seen = _print_channels(opened, hidden=no_progress)
+        watch = watch_levels(opened)
+        readings = None if ship is None else _read(watch, ship, hidden=no_progress)
+        levels = _levels(watch, hidden=no_progress)
+        seen = _print_channels(opened, levels)
         print_tables([clock_map_table(clocks)])
-        if ship is None:
+        if ship is None or readings is None:
             print_findings("Left out", [f"{name}: {reason}" for name, reason in opened.left_out.items()])
             echo("Proposal for the vessel file; lines that begin with # are for you to fill in\n")
             for line in proposed_sensors(seen):
                 echo(line)
             return
-        _print_sensors(opened, ship, hidden=no_progress)
+        _print_sensors(channel_reports(readings, levels), ship)
         if planned is not None:
-            _print_test(opened, ship, planned, hidden=no_progress)
+            _print_test(opened, ship, planned, readings, hidden=no_progress)
 
 
-def _print_channels(opened: Recording, *, hidden: bool) -> list[Seen]:
-    rows, seen = [], []
+def _read(watch: LevelWatch, ship: Vessel, *, hidden: bool) -> ChannelReadings:
+    """Read the channels of the vessel file, counting their levels; where one is not there, the table says which are."""
+    try:
+        with progress(hidden=hidden) as steps:
+            steps.begin("Reading the channels", total=1.0)
+            return read_channels(watch.recording, ship, progress=steps.reach)
+    except SignalError:
+        _print_channels(watch.recording, _levels(watch, hidden=hidden))
+        raise
+
+
+def _levels(watch: LevelWatch, *, hidden: bool) -> dict[str, Levels]:
     with progress(hidden=hidden) as steps:
-        steps.begin("Reading the channels", total=1.0)
-        levels_of = opened.levels(steps.reach)
+        steps.begin("Reading the other channels", total=1.0)
+        return watch.levels(steps.reach)
+
+
+def _print_channels(opened: Recording, levels_of: Mapping[str, Levels]) -> list[Seen]:
+    rows, seen = [], []
     for name, channel in opened.channels.items():
         levels = levels_of[name]
         seen.append(Seen(channel=channel, is_pulses=levels.is_pulses))
@@ -85,10 +112,7 @@ def _print_channels(opened: Recording, *, hidden: bool) -> list[Seen]:
     return seen
 
 
-def _print_sensors(opened: Recording, ship: Vessel, *, hidden: bool) -> None:
-    with progress(hidden=hidden) as steps:
-        steps.begin("Looking at the sensors")
-        reports = inspect_channels(opened, ship)
+def _print_sensors(reports: Sequence[ChannelReport], ship: Vessel) -> None:
     columns = (
         *texts("channel", "used for", "levels"),
         *numbers("pulses [1/s]"),
@@ -119,12 +143,12 @@ def _sensor_row(report: ChannelReport) -> tuple[str, ...]:
     )
 
 
-def _print_test(opened: Recording, ship: Vessel, asked: Campaign, *, hidden: bool) -> None:
+def _print_test(opened: Recording, ship: Vessel, asked: Campaign, readings: ChannelReadings, *, hidden: bool) -> None:
     # before the signals are prepared: where they are refused, this says what the campaign should be
-    print_found_tests(find_tests(opened, ship, asked), asked)
+    print_found_tests(find_tests(opened, ship, asked, readings=readings), asked)
     with progress(hidden=hidden) as steps:
-        steps.begin("Preparing the signals", total=1.0)
-        signals = prepare_signals(opened, ship, asked, progress=steps.reach)
+        steps.begin("Preparing the signals")
+        signals = prepare_signals(opened, ship, asked, readings=readings)
         steps.begin("Measuring the test lines")
         spectra = estimate_spectra(signals, asked)
     print_signals(signals)

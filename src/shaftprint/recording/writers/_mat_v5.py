@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, BinaryIO
 
-import scipy.io
+import scipy
 
 from shaftprint.errors import RecordingError
 from shaftprint.files import written_whole

@@ -7,7 +7,6 @@ changes over from the constant to the sine: two change points, found exactly by 
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.fft import next_fast_len, rfft
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Sine
@@ -21,6 +20,8 @@ _SAME_BINS = 0.1
 LEAST_EXPLAINED = 0.5
 # The ends of a window of which the begin is not known are left out of the fit.
 _TRIMMED_SHARE, _TRIMMED_S = 0.1, 3.0
+# Steps of the search for a frequency: how many at most, the longest in periods over the window, and which ends it.
+_STEPS, _LONGEST_STEP, _SMALLEST_STEP = 12, 0.1, 1e-7
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -53,7 +54,7 @@ def found_sine(grid: SetPointGrid, sine: Sine, shift_s: float, first_s: float, l
     frequency = _frequency_hz(time, values, sine.frequency_hz)
     if abs(frequency - sine.frequency_hz) * (time[-1] - time[0]) < _SAME_BINS:
         frequency = sine.frequency_hz
-    (cosine, sinus, mean), explained = _fitted(time, values, frequency)
+    (cosine, sinus, mean), explained = _fitted(values, _design(time, frequency))
     if explained < LEAST_EXPLAINED:
         return _not_found(sine)
     amplitude = float(np.hypot(cosine, sinus))
@@ -99,29 +100,40 @@ def _begin_and_end(
 
 
 def _frequency_hz(time_s: FloatArray, values: FloatArray, near_hz: float) -> float:
-    """Return the frequency of the strongest sine in a window [Hz], refined by least squares."""
-    rate_hz = (time_s.size - 1) / (time_s[-1] - time_s[0])
-    size = next_fast_len(8 * values.size, real=True)
-    taper = np.hanning(values.size)
-    power = np.abs(rfft((values - values.mean()) * taper, size))
+    """Return the frequency of the strongest sine in a window [Hz], refined by least squares.
+
+    Gauss-Newton steps on cosine, sine, mean and frequency together (IEEE Std 1057-2017, annex B: four-parameter sine
+    fit), none longer than a tenth of a period over the window.
+    """
+    length_s = time_s[-1] - time_s[0]
+    rate_hz = (time_s.size - 1) / length_s
+    size = 1 << (8 * values.size - 1).bit_length()
+    power = np.abs(np.fft.rfft((values - values.mean()) * np.hanning(values.size), size))
     frequencies = np.arange(power.size) * rate_hz / size
     # slower than a period in the window is drift; the campaign's own frequency always counts
-    slowest = min(1.0 / (time_s[-1] - time_s[0]), 0.5 * near_hz)
+    slowest = min(1.0 / length_s, 0.5 * near_hz)
     allowed = (frequencies >= slowest) & (frequencies <= _HIGHEST * near_hz)
     frequency_hz = float(frequencies[allowed][np.argmax(power[allowed])])
-    step = 0.1 / (time_s[-1] - time_s[0])
-    for _ in range(12):
-        shares = [_fitted(time_s, values, frequency_hz + side * step)[1] for side in (-1.0, 0.0, 1.0)]
-        bend = shares[0] - 2.0 * shares[1] + shares[2]
-        move = 0.5 * (shares[0] - shares[2]) / bend if bend < 0.0 else float(np.argmax(shares) - 1)
-        frequency_hz += float(np.clip(move, -1.0, 1.0)) * step
-        step *= 0.5
+    longest_hz = _LONGEST_STEP / length_s
+    for _ in range(_STEPS):
+        design = _design(time_s, frequency_hz)
+        (cosine, sinus, _), _ = _fitted(values, design)
+        slope = 2.0 * np.pi * (time_s - time_s[0]) * (sinus * design[:, 0] - cosine * design[:, 1])
+        coefficients, _ = _fitted(values, np.column_stack([design, slope]))
+        move = float(np.clip(coefficients[3], -longest_hz, longest_hz))
+        frequency_hz += move
+        if abs(move) < _SMALLEST_STEP * longest_hz:
+            break
     return frequency_hz
 
 
-def _fitted(time_s: FloatArray, values: FloatArray, frequency_hz: float) -> tuple[FloatArray, float]:
-    """Return cosine, sine and mean from the first time on, and the share of the variance that they explain."""
+def _design(time_s: FloatArray, frequency_hz: float) -> FloatArray:
+    """Return cosine, sine and one as columns, from the first time on, shape (samples, 3)."""
     phase = 2.0 * np.pi * frequency_hz * (time_s - time_s[0])
-    design = np.column_stack([np.cos(phase), np.sin(phase), np.ones(phase.size)])
+    return np.column_stack([np.cos(phase), np.sin(phase), np.ones(phase.size)])
+
+
+def _fitted(values: FloatArray, design: FloatArray) -> tuple[FloatArray, float]:
+    """Return the coefficients of the columns, and the share of the variance that they explain."""
     coefficients = np.linalg.solve(design.T @ design, design.T @ values)
     return coefficients, 1.0 - float(np.var(values - design @ coefficients) / np.var(values))

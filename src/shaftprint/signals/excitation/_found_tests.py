@@ -6,7 +6,7 @@ sine is fitted, and staircases and chirps are shifted until they correlate best.
 """
 
 import numpy as np
-from scipy.fft import irfft, next_fast_len, rfft
+from numpy.fft import irfft, rfft
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign, Excitation, Sine, setpoint
@@ -98,7 +98,7 @@ def _likely_shift_s(grid: SetPointGrid, campaign: Campaign) -> float:
     sub = time_s[0][np.newaxis, ::8] + step_s * places[:, np.newaxis]
     measured = _envelope(blocks - np.median(grid.set_point_v))
     planned = _envelope(setpoint(campaign, sub) - campaign.offset_v)
-    size = next_fast_len(measured.size + planned.size, real=True)
+    size = 1 << (measured.size + planned.size - 1).bit_length()
     product = irfft(rfft(measured - measured.mean(), size) * rfft(planned - planned.mean(), size).conj(), size)
     # place k of the planned is block k - before of the recording
     lags = np.arange(size)
@@ -138,7 +138,7 @@ def _found_course(grid: SetPointGrid, test: Excitation, campaign: Campaign, shif
 
 def _correlations(values: FloatArray, course: FloatArray) -> FloatArray:
     """Return the correlation coefficient of a course with the values from each place on, shape (places,)."""
-    size = next_fast_len(values.size + course.size, real=True)
+    size = 1 << (values.size + course.size - 1).bit_length()
     about, centred = values - values.mean(), course - course.mean()
     products = irfft(rfft(about, size) * rfft(centred, size).conj(), size)[: values.size - course.size + 1]
     sums, squares = (

@@ -3,11 +3,11 @@
 from shaftprint.signals.kinds._compare import LARGEST_DIFFERENCE, compare_speeds
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.kinds._kinds import KINDS, find_sources
-from shaftprint.signals.kinds._pick_up import PulseReading, numbered_strips, pulse_gaps, pulse_repairs, read_pick_up
+from shaftprint.signals.kinds._pick_up import PulseReading, read_pick_up
 from shaftprint.signals.kinds._rack import rack_signal, read_rack
 from shaftprint.signals.kinds._set_point import read_voltage
 from shaftprint.signals.kinds._ship_speed import read_ship_speed, ship_speed_signal
-from shaftprint.signals.kinds._torque import expect_moving_torque, judge_saturation
+from shaftprint.signals.kinds._torque import expect_moving_torque
 
 __all__ = [
     "KINDS",
@@ -19,10 +19,6 @@ __all__ = [
     "compare_speeds",
     "expect_moving_torque",
     "find_sources",
-    "judge_saturation",
-    "numbered_strips",
-    "pulse_gaps",
-    "pulse_repairs",
     "rack_signal",
     "read_pick_up",
     "read_rack",

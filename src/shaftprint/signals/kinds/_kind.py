@@ -126,6 +126,16 @@ class ChannelKind(ABC, Generic[SensorT]):
             If the channel cannot be used.
         """
 
+    def judge(self, source: Source[SensorT], reading: Reading) -> tuple[str, ...]:
+        """Return what the reader should know of a channel that was read.
+
+        Raises
+        ------
+        SignalError
+            If what was read cannot be used.
+        """
+        return reading.findings
+
     @abstractmethod
     def signal(self, source: Source[SensorT], reading: Reading, steady: SteadyState) -> ChannelSignal | None:
         """Return the signal with its working point; nothing where the channel says nothing in this test.

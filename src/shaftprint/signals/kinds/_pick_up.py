@@ -14,6 +14,7 @@ from shaftprint.signals._signals import Repair, StripAngles
 from shaftprint.signals.conditioning import Reading, pulse_period_speed
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.pulses import (
+    PulseLevels,
     PulseTrain,
     find_edges,
     find_strips,
@@ -51,6 +52,8 @@ class PulseReading(Reading):
     """Time over which a value is a mean and is held, and by which it is late [s]; 0 where the spline removes it."""
     strips: StripAngles | None
     """Angles between the strips, where there are several."""
+    levels: PulseLevels
+    """The two levels between which the channel jumps."""
 
 
 class Speed(ChannelKind[SpeedSensor]):
@@ -163,6 +166,7 @@ def read_pick_up(
         pulse_rate_hz=sensor.pulses_per_revolution / turn_s,
         period_s=period,
         strips=strips,
+        levels=levels,
         repairs=pulse_repairs(channel, train, gaps),
         gaps=gaps,
         findings=_upside_down(sensor, levels.duty),

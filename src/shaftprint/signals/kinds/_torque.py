@@ -55,8 +55,11 @@ class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
             reading,
             values=sensor.torque_nm(reading.values),
             gaps=tuple(gaps),
-            findings=judge_saturation(channel, reading.repairs),
         )
+
+    def judge(self, source: Source[ShaftTorqueSensor], reading: Reading) -> tuple[str, ...]:
+        """Return a finding where crests are cut off; too many are refused."""
+        return judge_saturation(source.channel, reading.repairs)
 
     def signal(self, source: Source[ShaftTorqueSensor], reading: Reading, steady: SteadyState) -> ChannelSignal:
         """Return the torque over that of the working point."""

@@ -4,7 +4,7 @@ from shaftprint.spectra.lines._bin_selection import ExactBin, HighestPeak
 from shaftprint.spectra.lines._clock_check import clock_reasons
 from shaftprint.spectra.lines._cross_term import without_cross_term
 from shaftprint.spectra.lines._harmonics import Harmonics, collect_harmonics
-from shaftprint.spectra.lines._line_fit import LineFit, SineMethod, WindowSamples, cut_window
+from shaftprint.spectra.lines._line_fit import LineFit, SineMethod, WindowSamples, cut_window, window_slice
 from shaftprint.spectra.lines._line_measurement import LineMeasurement, measure_line, strongest_frequency_hz
 from shaftprint.spectra.lines._load_drift import LoadDrift, load_drift
 from shaftprint.spectra.lines._message_line import cut_messages
@@ -57,6 +57,7 @@ __all__ = [
     "signal_to_noise",
     "strongest_frequency_hz",
     "whole_period_window",
+    "window_slice",
     "without_cross_term",
     "without_modulation",
 ]

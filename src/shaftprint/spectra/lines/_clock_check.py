@@ -6,7 +6,7 @@ the campaign file); if speed or torque differ from the set point, so does the cl
 is off is a wrong entry of the campaign file, of which the remark of that line tells.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -33,7 +33,7 @@ _PERCENT = 100.0
 
 
 def clock_reasons(
-    cuts: "Sequence[WindowSamples]", lines: "Sequence[LineMeasurement]", *, channels: Mapping[str, str]
+    cuts: "Iterable[WindowSamples]", lines: "Sequence[LineMeasurement]", *, channels: Mapping[str, str]
 ) -> tuple[Reason, ...]:
     """Return a reason for each clock that the frequencies of the sines contradict.
 
@@ -44,14 +44,15 @@ def clock_reasons(
     channels
         Name of each channel, by what a reader calls it; the first is what was excited.
     """
-    samples = {cut.window.line: cut for cut in cuts}
-    long_enough = [line for line in lines if line.window.periods >= _FEWEST_PERIODS]
+    long_enough = {line.window.line: line for line in lines if line.window.periods >= _FEWEST_PERIODS}
     if len(long_enough) < _FEWEST_LINES:
         return ()
     names = list(channels.values())
-    frequencies = np.array([_frequencies(samples[line.window.line], line, names) for line in long_enough])
+    frequencies = np.array(
+        [_frequencies(cut, long_enough[cut.window.line], names) for cut in cuts if cut.window.line in long_enough]
+    )
     ratio, std = frequencies[:, 0], frequencies[:, 1]
-    planned = np.array([line.window.frequency_hz for line in long_enough])
+    planned = np.array([line.window.frequency_hz for line in long_enough.values()])
     recording_ratio = _common_ratio(ratio[:, 0] / planned)
     reasons = []
     if recording_ratio is not None and abs(recording_ratio - 1.0) > _TOLERANCE:

@@ -93,15 +93,31 @@ def cut_window(
     -------
     The samples with ``start <= t < stop``, or None where the channels do not cover the window.
     """
-    first = int(np.ceil((window.start_s - start_s) * rate_hz - _EDGE_SAMPLES))
-    last = int(np.ceil((window.stop_s - start_s) * rate_hz - _EDGE_SAMPLES))
-    if first < 0 or last > min(channel.size for channel in values.values()):
+    inside = window_slice(window, min(channel.size for channel in values.values()), rate_hz=rate_hz, start_s=start_s)
+    if inside is None:
         return None
-    time_s = start_s - window.start_s + np.arange(first, last) / rate_hz
+    time_s = start_s - window.start_s + np.arange(inside.start, inside.stop) / rate_hz
     return WindowSamples(
         window=window,
         rate_hz=rate_hz,
         time_s=time_s,
         channels=tuple(values),
-        values=np.stack([channel[first:last] for channel in values.values()]),
+        values=np.stack([channel[inside] for channel in values.values()]),
     )
+
+
+def window_slice(window: "Window", count: int, *, rate_hz: float, start_s: float) -> slice | None:
+    """Return which of so many samples are in a window, ``start <= t < stop``, or None where some of them are not there.
+
+    Parameters
+    ----------
+    window
+        The window.
+    count
+        Number of samples.
+    rate_hz, start_s
+        Their rate [Hz] and the time of the first [s].
+    """
+    first = int(np.ceil((window.start_s - start_s) * rate_hz - _EDGE_SAMPLES))
+    last = int(np.ceil((window.stop_s - start_s) * rate_hz - _EDGE_SAMPLES))
+    return None if first < 0 or last > count else slice(first, last)

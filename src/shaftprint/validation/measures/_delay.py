@@ -10,8 +10,7 @@ and its slope.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.fft import next_fast_len
-from scipy.interpolate import CubicSpline
+import scipy
 
 from shaftprint.arrays import FloatArray
 
@@ -71,7 +70,7 @@ def remaining_delay(
         Samples by which the model goes beyond the data at either end: the longest delay that is looked for.
     """
     unknown = RemainingDelay(output=output, delay_s=np.nan, noise_std_s=np.nan, model_std_s=np.nan)
-    spline = CubicSpline(np.arange(model.size) / rate_hz, model)
+    spline = scipy.interpolate.CubicSpline(np.arange(model.size) / rate_hz, model)
     time = (margin + np.arange(measured.size)) / rate_hz
     delay = _best_sample(measured, model, margin) / rate_hz
     longest = (margin - 1) / rate_hz
@@ -99,14 +98,14 @@ def remaining_delay(
     )
 
 
-def _columns(spline: CubicSpline, time_s: FloatArray) -> FloatArray:
+def _columns(spline: "scipy.interpolate.CubicSpline", time_s: FloatArray) -> FloatArray:
     return np.column_stack([np.ones(time_s.size), spline(time_s), spline(time_s, 1)])
 
 
 def _best_sample(measured: FloatArray, model: FloatArray, margin: int) -> int:
     """Return the whole number of samples by which the data come later, at the largest correlation coefficient."""
     samples = measured.size
-    size = next_fast_len(model.size + samples, real=True)
+    size = scipy.fft.next_fast_len(model.size + samples, real=True)
     centred = measured - measured.mean()
     spectrum = np.fft.rfft(centred, size).conj() * np.fft.rfft(model, size)
     products = np.fft.irfft(spectrum, size)[: 2 * margin + 1]
@@ -120,7 +119,7 @@ def _best_sample(measured: FloatArray, model: FloatArray, margin: int) -> int:
 
 def _quadratic(row: FloatArray, autocovariance: FloatArray) -> float:
     """Return ``w^T R w`` for the covariance matrix that an autocovariance makes."""
-    size = next_fast_len(2 * row.size, real=True)
+    size = scipy.fft.next_fast_len(2 * row.size, real=True)
     products = np.fft.irfft(np.abs(np.fft.rfft(row, size)) ** 2, size)[: row.size]
     lags = min(autocovariance.size, row.size)
     return float(products[0] * autocovariance[0] + 2.0 * (products[1:lags] @ autocovariance[1:lags]))

@@ -1,7 +1,7 @@
 """The low-pass that data and model go through alike before they are compared: linear phase, taken off again."""
 
 import numpy as np
-from scipy.signal import firwin, oaconvolve
+import scipy
 
 from shaftprint.arrays import FloatArray
 
@@ -24,6 +24,8 @@ def low_pass(values: FloatArray, rate_hz: float, highest_hz: float) -> FloatArra
     if highest_hz >= rate_hz / 2.0:
         return values
     half = int(np.ceil(0.5 * _LENGTH_TIMES_CUT_OFF * rate_hz / highest_hz))
-    taps = firwin(2 * half + 1, highest_hz, fs=rate_hz)
+    taps = scipy.signal.firwin(2 * half + 1, highest_hz, fs=rate_hz)
     wide = np.pad(values, [(0, 0)] * (values.ndim - 1) + [(half, half)], mode="edge")
-    return np.asarray(oaconvolve(wide, taps.reshape((1,) * (values.ndim - 1) + (-1,)), mode="valid", axes=-1))
+    return np.asarray(
+        scipy.signal.oaconvolve(wide, taps.reshape((1,) * (values.ndim - 1) + (-1,)), mode="valid", axes=-1)
+    )

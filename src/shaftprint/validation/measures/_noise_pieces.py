@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy.fft import next_fast_len
+import scipy
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign import Campaign, Staircase
@@ -108,7 +108,7 @@ class QuietNoise:
 def correlated(one: FloatArray, other: FloatArray) -> FloatArray:
     """Return the sums of products at lags from 0 on, along the last axis."""
     samples = one.shape[-1]
-    size = next_fast_len(2 * samples, real=True)
+    size = scipy.fft.next_fast_len(2 * samples, real=True)
     spectrum = np.fft.rfft(one, size).conj() * np.fft.rfft(other, size)
     return np.asarray(np.fft.irfft(spectrum, size)[..., :samples])
 

@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy.io
-import scipy.sparse
+import scipy
 from numpy.typing import NDArray
 
 from shaftprint.recording._recording import Recording

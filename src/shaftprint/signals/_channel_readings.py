@@ -1,0 +1,77 @@
+"""All channels of a recording that the vessel file names, read two at a time, once."""
+
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from shaftprint.errors import SignalError
+from shaftprint.signals._channel_signals import ChannelRole
+from shaftprint.signals._clock import Clock, Mode, common_clock
+from shaftprint.signals.conditioning import Reading
+from shaftprint.signals.kinds import find_sources
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel, Recording
+    from shaftprint.signals.kinds import Source
+    from shaftprint.vessel import Vessel
+
+# One thread computes while the other waits for the file; more would only queue for the file.
+_THREADS = 2
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class ChannelReadings:
+    """What every channel of the vessel file gave or why it gave nothing, before a campaign says what was asked."""
+
+    clock: Clock
+    """The common grid."""
+    sources: "tuple[Source[Any], ...]"
+    """What was read, in the order of the kinds."""
+    by_name: Mapping[str, Reading]
+    """What each gave, without those that failed."""
+    problems: Mapping[str, SignalError]
+    """Why the others gave nothing."""
+
+
+def read_channels(
+    recording: "Recording",
+    vessel: "Vessel",
+    *,
+    mode: Mode = "shaftprint",
+    rate_hz: float = 200.0,
+    chunk_s: float | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> ChannelReadings:
+    """Read every channel that the vessel file names.
+
+    Parameters
+    ----------
+    recording, vessel, mode, rate_hz, chunk_s, progress
+        As for `prepare_signals`.
+
+    Raises
+    ------
+    SignalError
+        If a channel is missing, empty, or in another unit.
+    """
+    sources = find_sources(recording, vessel)
+    clock = common_clock(logger_channels(sources), mode=mode, rate_hz=rate_hz, chunk_s=chunk_s, progress=progress)
+    by_name: dict[str, Reading] = {}
+    problems: dict[str, SignalError] = {}
+    pool = ThreadPoolExecutor(max_workers=_THREADS)
+    try:
+        jobs = {source.name: pool.submit(source.kind.read, source, clock) for source in sources}
+        for name, job in jobs.items():
+            try:
+                by_name[name] = job.result()
+            except SignalError as error:
+                problems[name] = error
+    finally:
+        pool.shutdown(cancel_futures=True)
+    return ChannelReadings(clock=clock, sources=sources, by_name=by_name, problems=problems)
+
+
+def logger_channels(sources: "Sequence[Source[Any]]") -> "list[Channel]":
+    """Return the channels of the logger, which span the grid; side signals come seldom."""
+    return [source.channel for source in sources if source.kind.role is not ChannelRole.SIDE]
