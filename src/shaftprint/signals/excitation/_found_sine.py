@@ -135,5 +135,5 @@ def _design(time_s: FloatArray, frequency_hz: float) -> FloatArray:
 
 def _fitted(values: FloatArray, design: FloatArray) -> tuple[FloatArray, float]:
     """Return the coefficients of the columns, and the share of the variance that they explain."""
-    coefficients = np.linalg.solve(design.T @ design, design.T @ values)
+    coefficients = np.asarray(np.linalg.solve(design.T @ design, design.T @ values), dtype=np.float64)
     return coefficients, 1.0 - float(np.var(values - design @ coefficients) / np.var(values))
