@@ -20,12 +20,14 @@ help: ## Say what can be made
 demo: $(VENV)/run ## Sail the simulated tug and identify it; results in demo/
 	$(BIN)/shaftprint demo -o demo
 
-# each core has a worker of its own
+# each core has a worker of its own; only the tests of the calculating rooms are traced, which doubles their time
+QUICK := not slow and not wrong_recordings
 test test-all: export OPENBLAS_NUM_THREADS ?= 1
 test: $(VENV)/test ## Run the tests that a change needs, with the coverage of the calculating rooms
-	$(BIN)/python -m pytest -n auto --dist loadfile -m "not slow and not wrong_recordings" \
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "$(QUICK)" $(ROOMS:%=tests/%) \
 		$(ROOMS:%=--cov=shaftprint.%) --cov-branch --cov-report=
 	$(BIN)/python -m coverage report --skip-covered --fail-under 95
+	$(BIN)/python -m pytest -n auto --dist loadfile -m "$(QUICK)" $(ROOMS:%=--ignore=tests/%)
 
 test-all: test ## Run the slow tests and every wrong recording too
 	$(BIN)/python -m pytest -n auto --dist loadfile -m slow

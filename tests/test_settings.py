@@ -63,7 +63,7 @@ def test_all_errors_of_a_file_are_told_at_once(tmp_path):
         (
             "offset_v = -5.0",
             "colour = 1",
-            "colour: expected no such key; the known keys are name, duration_s, offset_v",
+            "colour: expected no such key; the known keys are name, place, duration_s, offset_v",
         ),
         ("frequency_hz = 1.0", "frequency_hz = true", "frequency_hz (S1): expected a number, found True."),
         ('name = "S1"', "name = 1", "expected text in quotes, found 1."),

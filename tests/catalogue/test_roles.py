@@ -1,6 +1,7 @@
 """Roles: what a parameter stands for is known in the catalogue, and nowhere by its name."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -29,6 +30,7 @@ LETTERS = {"zeta", "kappa", "sigma"}
 HOMES = {"catalogue", "tug"}
 
 
+@cache
 def shipped_names():
     """Symbols of the catalogue's parameters; of one letter they cannot be told from a format or a unit."""
     structures = [*(build() for build in STRUCTURES.values()), limited(*LIMITS), limited_governor(*LIMITS)]

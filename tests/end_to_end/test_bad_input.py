@@ -63,6 +63,7 @@ def refused(tmp_path):
     return run
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("spoilt", "sentence"), RECORDINGS.values(), ids=RECORDINGS)
 def test_spoilt_recording(spoil, refused, identified, short_campaign, tmp_path, spoilt, sentence):
     path = spoil(tmp_path / "spoilt.nc", **spoilt)
@@ -106,6 +107,7 @@ def test_truth_of_a_simulation_is_no_recording(short_trip, refused):
     assert search(r'short\.truth\.json, line \d+: expected a column "time \[s\]", found', sentence)
 
 
+@pytest.mark.slow
 def test_campaign_in_rad_per_second(short_trip, refused, tmp_path):
     path = tmp_path / "rad.toml"
     angular = sub(

@@ -9,6 +9,7 @@ import pytest
 from shaftprint.tug import Tug, sail
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("offset", [0.03, 0.0, -0.02])
 def test_zero_of_the_gauge_is_found_within_half_a_percentage_point(
     vessel, short_campaign, identified, tmp_path, offset

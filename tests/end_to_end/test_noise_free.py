@@ -138,6 +138,7 @@ def test_parameters_are_the_truth(sailed):
     assert all(percent > 99.999 for percent in fit.fit_percent.values())
 
 
+@pytest.mark.slow
 def test_whole_measurement_chain_adds_nothing(vessel, short_campaign, tmp_path):
     """Pulses, telemetry, set-point line and all, but no noise: the response is that of the linearised tug.
 

@@ -37,6 +37,7 @@ def fine(vessel, **changes):
     return Vessel.model_validate(content)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sensor", [{}, {"cycle_s": 0.1, "latency_s": 0.043}, {"cycle_s": 0.02}])
 def test_without_noise_the_rack_is_that_of_the_linear_line(found, with_bus, sensor):
     ship, tug = fine(with_bus, **sensor), Tug(noise=QUIET)
@@ -55,6 +56,7 @@ def test_without_noise_the_rack_is_that_of_the_linear_line(found, with_bus, sens
     assert np.abs(np.angle(ratio[-2:]) / governor.omega_rad_s[-2:]).max() < 1e-4
 
 
+@pytest.mark.slow
 def test_latency_that_the_vessel_does_not_know_of_stays_in_the_rack(found, with_bus):
     ship, tug = fine(with_bus), Tug(noise=QUIET, rack_latency_s=0.018)
     _, spectra = found(ship, tug)
@@ -80,6 +82,7 @@ def test_thesis_mode_leaves_all_of_the_latency_in(found, with_bus):
     assert np.isfinite(speed).all()
 
 
+@pytest.mark.slow
 def test_governor_is_found_as_well_as_stated(found, with_bus):
     """All noise, steps of 1 %: the line from ``e`` to ``X`` holds whatever the load does."""
     tug = Tug()

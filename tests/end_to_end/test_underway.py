@@ -85,6 +85,7 @@ def with_combinations(truth):
     }
 
 
+@pytest.mark.slow
 def test_working_point_is_that_of_the_ship(trip):
     signals, _, truth = trip
     assert signals.channels["v_s"].reference == pytest.approx(truth["v_0"], rel=2e-3)
@@ -169,6 +170,7 @@ def test_slow_log_leaves_fast_lines_out(trip, tmp_path):
     assert response.response[:2] == pytest.approx(found["without"].response.response, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_log_at_the_quay_is_left_out(tmp_path):
     campaign = load_campaign("short")
     vessel = logged(load_vessel("stan-tug-1205"))

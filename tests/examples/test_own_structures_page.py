@@ -25,6 +25,7 @@ def defined(tmp_path_factory):
     return names
 
 
+@pytest.mark.slow
 def test_the_fan_is_found(defined):
     found = defined["profiled"].intervals
     for name, true in (("K", 12.0), ("T", 0.8), ("t_d", 0.05)):

@@ -91,6 +91,7 @@ def test_equal_models_give_equal_files(exported, tmp_path):
 # ---- functions and state ----
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", [2, 3])
 def test_binary_has_every_function_of_the_standard(fmu, declared_functions, tmp_path, version):
     with zipfile.ZipFile(fmu(*GAUGE, version=version)) as archive:
@@ -115,6 +116,7 @@ def test_versions_agree(fmu, slave, solved):
     assert same(*found)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", [2, 3])
 def test_state_is_taken_and_restored(fmu, slave, version):
     middle = 30
@@ -152,6 +154,7 @@ def test_reset_begins_anew(fmu, slave):
 # ---- parameters ----
 
 
+@pytest.mark.slow
 def test_parameters_that_are_set_are_those_of_another_export(fmu, slave):
     changed = {"K_p": 1.7, "t_d": 0.0291, "tau_dn": 0.3, "omega_n": 11.0}
     chosen, values = GAUGE
@@ -163,6 +166,7 @@ def test_parameters_that_are_set_are_those_of_another_export(fmu, slave):
         assert same(own.run(TIME, SET_POINT), found)
 
 
+@pytest.mark.slow
 def test_parameters_are_tuned_during_the_run(fmu, slave):
     """At the working point a governor's gains and a delay change nothing; the step that follows shows the new ones."""
     chosen, values = GAUGE
@@ -210,6 +214,7 @@ def test_no_limit_that_is_no_number(fmu, slave, exported, tmp_path, value):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_step_is_refined_for_fast_parameters(fmu, slave):
     """A lag of half a millisecond is out of reach of a step of 1 ms: 2.8 times the lag is the end of stability."""
     chosen = structure("GAUGE-CLOSED").free_between(T_filter=(1e-4, 1.0))

@@ -86,6 +86,7 @@ def test_library_for_windows(zig_fmu, declared_functions, version):
     assert word(library, place(name)) == "model.dll"
 
 
+@pytest.mark.slow
 def test_library_for_windows_needs_nothing_that_windows_has_not(zig_fmu):
     """The kernel and the Universal C Runtime, which is part of Windows 10."""
     library = binary_of(zig_fmu(*TORQUE), "win64", 2)

@@ -180,6 +180,7 @@ def test_binary_gives_the_same_numbers_elsewhere(reference, zig_fmu, run, model,
         assert largest_share(tables[kind], expected[kind]) < SHARE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("system", SYSTEMS)
 @pytest.mark.parametrize("version", [2, 3])
 def test_wrong_token_is_refused_in_words(zig_fmu, run, version, system):
@@ -191,6 +192,7 @@ def test_wrong_token_is_refused_in_words(zig_fmu, run, version, system):
     assert "belongs to another binary" in message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", [2, 3])
 def test_limits_act_in_what_is_compared(reference, version):
     """By hand: a quadratic propeller asks 1.44 times the torque at 1.2 times the speed, the engine has 1.1 times."""

@@ -136,6 +136,7 @@ def test_steps_of_any_length(fmu, slave, seed):
         assert abs(found[name][-1] - other[name][-1]) < 1e-7 * size
 
 
+@pytest.mark.slow
 def test_rate_limit_of_every_step_is_that_of_ever_shorter_steps(fmu, slave):
     chosen = limited("torque", "rate")
     values = {"t_d": 0.0437, "t_sp": 0.1133, "m_max": 1.3, "r_x": 1.5}
@@ -154,6 +155,7 @@ def test_rate_limit_of_every_step_is_that_of_ever_shorter_steps(fmu, slave):
         assert np.abs(found[name] - expected).max() < SHARE * np.ptp(expected)
 
 
+@pytest.mark.slow
 def test_computer_with_a_period(fmu, slave):
     chosen = limited("torque", "rate", period_s=0.02, name="PERIOD")
     values = {"t_d": 0.0437, "t_sp": 0.1133, "m_max": 1.3, "r_x": 1.5}

@@ -211,6 +211,7 @@ def test_torque_coefficient_off_the_vessel_file(sharp, judged, working_point):
     assert none(judged(sharp, replace(working_point, shaft_torque_nm=1.05 * 1725.0)), "K_Q")
 
 
+@pytest.mark.slow
 def test_lines_left_out_are_named_with_their_reason(sharp, fit, take, fingerprint):
     assert found(sharp, left_out={"S15": "aliased"})[-1] == "Line S15 is left out: aliased."
     used = np.arange(14) != 13

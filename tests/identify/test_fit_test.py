@@ -55,6 +55,7 @@ def test_distance_over_an_estimated_covariance_is_hotellings(noisy):
     assert found.chi_square == pytest.approx(2.0 * found.cost, rel=1e-9)
 
 
+@pytest.mark.slow
 def test_moments_of_the_sum_are_those_of_simulated_distances(noisy):
     """Wishart estimates of 6 and of 15 complex samples, noise beside them, no fit: mean and variance of the shares."""
     draw = np.random.default_rng(5)

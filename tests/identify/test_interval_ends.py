@@ -11,6 +11,7 @@ from benchmarks.interval_ends import SAME_END, Compared, fitted, scanned
 from shaftprint.identify import profile
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("case", "name"),
     [

@@ -21,6 +21,7 @@ def repeated(make_response, truth, wanted, *, count=25, noise=0.03, settings=SET
     return np.array([f.square for f in found]), np.array([f.expected for f in found])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["OL2", "CL1"])
 @pytest.mark.parametrize("weighting", [Settings().weighting, Unweighted()], ids=["covariance", "unweighted"])
 def test_the_true_structure_predicts_as_well_as_is_expected(make_response, name, weighting):

@@ -44,6 +44,7 @@ def exact(name, rng, *, share=1e-6, spread=0.0):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("spread", [0.0, 2.0], ids=["even", "uneven"])
 @pytest.mark.parametrize("name", TRUTHS)
 def test_fifty_starts_find_the_truth(name, spread):

@@ -107,6 +107,7 @@ def test_a_prior_that_is_pulled_is_named(gauge):
     assert "t_d + t_sp" in verdict.not_trusted
 
 
+@pytest.mark.slow
 def test_without_profiles_they_are_made(gauge):
     fit = gauge[0]()
     assert assess(fit) == assess(fit, profile=profile(fit))

@@ -99,6 +99,7 @@ def brute_force(identification, parameter, value, rng):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "parameter", "closed"),
     [

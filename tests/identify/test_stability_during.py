@@ -59,6 +59,7 @@ def best_on_the_border(response):
     return best
 
 
+@pytest.mark.slow
 def test_the_best_stable_model_is_found_beside_the_border(make_response):
     """The lowest cost of all is unstable; sorting afterwards leaves a stable optimum of four times the cost."""
     own = delayed_loop()

@@ -62,6 +62,7 @@ def test_without_bad_lines_variances_are_at_most_a_tenth_above_the_least(tests):
     assert np.all(plain / robust < 1.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("line", ["S3", "S8"])
 def test_one_line_20_deviations_off_moves_only_the_plain_fit(tests, line):
     """In standard deviations of the plain fit without it, on average over noise; the last lines alone fix the lag."""

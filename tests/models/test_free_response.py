@@ -56,10 +56,12 @@ def left_over(name, truth, outputs, step):
     return shares
 
 
+@pytest.mark.slow
 def test_free_responses_of_a_loop_with_delay_follow_any_start():
     assert max(left_over("CL4", TRUTH, free_motion(0.39, None, TRUTH), 1e-4)) < 1e-4
 
 
+@pytest.mark.slow
 def test_free_responses_know_the_gauge():
     motion = free_motion(1.32, 0.32, GAUGE, duration_s=60.0)
     assert max(left_over("GAUGE-CLOSED", GAUGE | {"t_sp": 0.03}, motion, 1e-4)) < 1e-3

@@ -206,6 +206,7 @@ def test_a_loop_in_a_loop_is_counted_like_its_polynomial(inner, outer):
     assert unstable_poles(drive, drive.vector({"a": inner, "b": outer})) == int(np.sum(roots.real > 0.0))
 
 
+@pytest.mark.slow
 def test_an_inverse_in_the_loop_is_counted_by_its_zeros():
     # 1 / (s - a) written as an inverse, gain b around it: stable for b > a
     pole, gain = free("a"), free("b")

@@ -171,6 +171,7 @@ def test_xml_of_the_fmu_of_ssp_and_of_osp_gives_every_text_back(tmp_path_factory
     ET.parse(write_osp(model, folder / "tug.fmu", overwrite=True))  # noqa: S314
 
 
+@pytest.mark.slow
 @any_text
 def test_xml_of_any_tree(text):
     from shaftprint.export._xml import xml_document

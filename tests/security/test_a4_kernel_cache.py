@@ -190,6 +190,7 @@ def test_kernels_are_kept_in_the_private_folder(tmp_path):
     assert not list(home.rglob("*.part"))
 
 
+@pytest.mark.slow
 def test_there_is_one_way_to_compile():
     """No module has a decorator of numba's own with a cache; only the room of kernels speaks of caching."""
     found = []

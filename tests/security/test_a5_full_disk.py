@@ -22,6 +22,7 @@ def called(*arguments, **options):
 
 
 # from the first byte of the header to the last block of the second channel, which is written when the file is closed
+@pytest.mark.slow
 @pytest.mark.parametrize("limit", [0, 1, 96, 1000, 5_000, 520_000, 1_000_000, 2_000_000, 3_700_000, 3_725_000])
 @pytest.mark.parametrize("ending", [".nc", ".mat"])
 def test_every_block_may_be_the_last(tmp_path, ending, limit):

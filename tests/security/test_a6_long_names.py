@@ -53,6 +53,7 @@ def test_letters_of_several_bytes(tmp_path):
     assert path.is_file()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", [".nc", ".csv", ".mat"])
 def test_a_name_that_is_too_long_ends_convert_in_a_sentence(tmp_path, recording, ending):
     path = tmp_path / name_of(LONGEST + 1, ending)

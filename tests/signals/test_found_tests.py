@@ -38,6 +38,7 @@ def changed(campaign, **changes):
     return Campaign.model_validate(campaign.model_dump() | tests)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["short", "thesis"])
 def test_a_test_as_planned_has_nothing_to_be_said(name):
     campaign = load_campaign(name)
@@ -82,6 +83,7 @@ def sine_volts(time, volts, name, *, phase_deg=0.0, sign=1.0, frequency_hz=None,
     return np.where(inside, SHORT.offset_v + sign * sine.amplitude_v * np.sin(turn), volts)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["S1", "S4", "S7", "S10"])
 @pytest.mark.parametrize("phase_deg", [90.0, -90.0])
 def test_phase_of_slow_and_fast_sines(name, phase_deg):
@@ -103,6 +105,7 @@ def test_phase_of_slow_and_fast_sines(name, phase_deg):
         assert findings_of(volts, proposed) == ()
 
 
+@pytest.mark.slow
 def test_sign_of_one_and_of_all():
     time = grid()
     one = sine_volts(time, setpoint(SHORT, time), "S6", sign=-1.0)

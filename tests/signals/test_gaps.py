@@ -62,6 +62,7 @@ def test_thirty_seconds_of_torque_cost_one_sine(spoiled, vessel, campaign, whole
     assert missing(210.0, 251.0) == "the recording lasts from 0.0 to 250.0 s"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("start_s", "stop_s", "lost"),
     [
@@ -87,6 +88,7 @@ def test_pulses_are_not_counted_over_a_gap(spoiled, vessel, campaign, whole, sta
     assert not found.repairs
 
 
+@pytest.mark.slow
 def test_strips_are_found_again_behind_a_gap(spoiled, vessel, campaign, whole):
     """All channels lose 3.3 s in a moving part: the count over the gap is a guess, the strips are up to 8 % uneven."""
     lost = dict.fromkeys(("PTM_e", "PTM_1", "PTM_4", "M_s", "U_setpoint"), without(171.0, 174.3))

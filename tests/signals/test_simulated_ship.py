@@ -53,6 +53,7 @@ def signals(noisy, vessel, voyage):
     return prepare_signals(noisy[0], vessel, voyage)
 
 
+@pytest.mark.slow
 def test_strip_angles_within_a_tenth_of_a_degree(noisy, signals):
     (truth,) = [strips for strips in noisy[1].strips if strips.channel == "PTM_4"]
     found = signals.strips[0].angle_rev * 360.0
@@ -102,6 +103,7 @@ def test_dropouts_and_set_point_spikes_are_found_and_ripple_is_not(noisy, signal
     assert all(np.abs(true["U_setpoint", "spike"] - time).min() < 0.002 for time in found["U_setpoint"])
 
 
+@pytest.mark.slow
 def test_speed_and_torque_follow_the_truth(tmp_path, vessel, voyage):
     """Without process noise the truth is known at every instant; sensors keep their noise and faults."""
     tug = Tug(noise=Noise().without(process=True))

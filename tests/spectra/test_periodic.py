@@ -199,6 +199,7 @@ def test_records_must_tell_the_inputs_apart():
         response_from_arrays([{"a": u, "b": -u}] * 2, [{"y": u}] * 2, RATE_HZ, excitation=Periodic(period_s=20.0))
 
 
+@pytest.mark.slow
 def test_single_periods_of_many_records_are_enough(expect_honest):
     rng = np.random.default_rng(12)
     lines, found = [1, 2, 4, 7, 11, 18], []

@@ -86,6 +86,7 @@ def test_harmonics_of_a_quadratic_propeller(measured):
     assert table.expected_second_torque == pytest.approx([a**2 / 2.0])
 
 
+@pytest.mark.slow
 def test_deviation_of_a_harmonic_is_its_scatter(make_window):
     rng = np.random.default_rng(7)
     found, stated = [], []

@@ -69,6 +69,7 @@ def sailed(ship, make_signals):
     return sail
 
 
+@pytest.mark.slow
 def test_without_noise_the_response_is_the_linear_one(ship, sailed):
     vessel, campaign = ship
     tug = Tug.stan_tug_1205()
@@ -104,6 +105,7 @@ def test_with_noise_the_errors_are_as_large_as_stated(ship, sailed):
     assert np.mean(weighed) / 4.0 == pytest.approx(1.0, abs=0.35)
 
 
+@pytest.mark.slow
 def test_governor_alone_is_the_pi_of_the_truth(ship, sailed):
     """With noise and steps of 1 %: ``X / e`` is ``K_p + K_i / s`` whatever the load does, within its own covariance."""
     vessel, campaign = ship

@@ -138,6 +138,7 @@ def errors(found):
 # ---- truth ----
 
 
+@pytest.mark.slow
 def test_small_noise_from_rest_to_rest_gives_the_truth(make_record):
     found = fitted(make_record(size=0.02))
     assert max(map(abs, errors(found).values())) < 2e-3

@@ -29,6 +29,7 @@ def test_rotor_slows_down_stands_still_and_moves_on_as_its_equation_says():
     assert speed[-1] == pytest.approx(-(0.5 - 0.3) / 0.5 * (1.0 - np.exp(-199.5 * 0.5 / RATE_HZ / 0.8)), rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [7000, 7001, 7002])
 @pytest.mark.parametrize("degree", [-1, 0, 1])
 def test_linear_structure_on_a_rotor_with_dry_friction_is_refused(seed, degree):

@@ -91,6 +91,7 @@ def found(line, tests, sines):
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["records", "all"])
 def test_governor_line_and_limit_are_found(found, name):
     for estimate in found[name].parameters:

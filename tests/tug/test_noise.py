@@ -34,6 +34,7 @@ def local_snr_db(values: np.ndarray, sine: Sine) -> float:
     return 10.0 * np.log10(power(line) / around)
 
 
+@pytest.mark.slow
 def test_local_ratios_are_those_of_the_thesis_in_order_of_magnitude(vessel: Vessel) -> None:
     campaign = load_campaign("thesis")
     signals = simulate_signals(vessel, campaign, seed=1, rate_hz=RATE_HZ, stop_s=4710.0, longest_step_s=1e-3)

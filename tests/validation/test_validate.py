@@ -86,6 +86,7 @@ def outcomes(validation, record):
     return {c.excerpt.title: c.outcome for c in validation.comparisons if c.excerpt.record == record}
 
 
+@pytest.mark.slow
 def test_records_are_those_that_the_fit_has_not_seen(with_limits):
     assert {c.excerpt.record for c in with_limits.comparisons} == {"C11", "St1", "St2"}
     # S15 and S16 are aliased in a speed that is measured once a revolution, and are not fitted
@@ -168,6 +169,7 @@ def quiet_without_limits(signals_from, thesis):
     return validate(model_of(structure("GAUGE-CLOSED"), TRUTH), signals, thesis, rng=np.random.default_rng(4))
 
 
+@pytest.mark.slow
 def test_without_limits_a_noisy_ship_does_not_fail(signals_from, thesis):
     signals = sailed(signals_from, thesis, limits=False, seed=2)
     found = validate(model_of(structure("GAUGE-CLOSED"), TRUTH), signals, thesis, rng=np.random.default_rng(4))
@@ -175,6 +177,7 @@ def test_without_limits_a_noisy_ship_does_not_fail(signals_from, thesis):
     assert found.outcome != "fails"
 
 
+@pytest.mark.slow
 def test_without_the_square_of_the_speed_torque_of_large_steps_is_missed(signals_from, thesis):
     signals = sailed(signals_from, thesis, limits=False, quieter=4.0)
     found = validate(
