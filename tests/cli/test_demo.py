@@ -25,7 +25,7 @@ def test_files(demo):
 
 def test_report_has_its_figures(demo):
     folder, _ = demo
-    page = (folder / "index.html").read_text(encoding="utf-8")
+    page = "".join((folder / name).read_text(encoding="utf-8") for name in ("index.html", "thesis.html"))
     named = {name for name in (path.name for path in (folder / "figures").iterdir()) if f"figures/{name}" in page}
     assert named == {path.name for path in (folder / "figures").iterdir()}
     # a figure of many points is a PNG, so that the folder stays small

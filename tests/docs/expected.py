@@ -224,7 +224,7 @@ def expect_explanation(folder, printed, words):
     assert "GAUGE-CLOSED" in printed
     assert not set("\N{MINUS SIGN}\N{PLUS-MINUS SIGN}\N{DEGREE SIGN}") & set(printed)
     place = folder / after(words, "-o")
-    assert 'id="explanation"' in (place / "index.html").read_text(encoding="utf-8")
+    assert 'id="explanation"' in (place / "thesis.html").read_text(encoding="utf-8")
     assert (place / "figures" / "missing_damping.svg").is_file()
     assert read_fingerprint(place / "fingerprint.json").structure == "GAUGE-CLOSED"
 

@@ -1,11 +1,16 @@
 """The superintendent's questions: each answer against a fingerprint that calls for it."""
 
+import re
 from dataclasses import replace
+from datetime import datetime
+from types import SimpleNamespace
+from typing import get_args
 
 import pytest
 
-from shaftprint.reasons import Reason
-from shaftprint.report.sections import cover_of
+from shaftprint.fingerprint import Quantity
+from shaftprint.reasons import Reason, ReasonKind
+from shaftprint.report.sections import cover_of, summary_section
 
 
 def answers(fingerprint, validations=()):
@@ -58,12 +63,15 @@ def test_a_structure_without_feedback_is_not_asked_about_hunting(fingerprint):
 
 
 def test_a_fit_that_is_not_trustworthy_answers_nothing_else(fingerprint):
-    found = with_verdict(fingerprint, trustworthy=False, reason="Too few lines are good.", loop="ample")
+    few = Reason(kind="too few data", sentence="Too few lines are good.")
+    found = with_verdict(fingerprint, trustworthy=False, reason=few.sentence, reasons=(few,), loop="ample")
     cover = cover_of(found)
     assert cover.state == "bad"
     assert cover.headline.startswith("The test cannot be used")
     told = answers(found)
-    assert told["Can the result be used?"].sentence == "Too few lines are good."
+    assert told[USABLE].sentence == "Too few of the test frequencies could be measured well."
+    assert told[USABLE].action.startswith("Repeat the test with larger moves")
+    assert cover.known.startswith("0 of ")
     assert {told[question].state for question in (HUNTING, INERTIA, GAUGE)} == {"open"}
 
 
@@ -79,14 +87,68 @@ def test_many_lines_left_out_are_worth_a_look(fingerprint):
     found = fingerprint.model_copy(update={"conditions": conditions, "quality": quality})
     card = answers(found)["Were the measurements good?"]
     assert card.state == "look"
-    assert card.sentence.startswith("2 of 4 test lines could be used, 1 place was repaired. Left out: S3: no signal")
+    assert card.sentence == "2 of 4 test frequencies could be used, 1 place was repaired."
+    assert "Data quality" in card.action
 
 
-def test_a_remark_on_the_card_begins_a_sentence(fingerprint):
+def test_remarks_are_counted_and_stand_among_the_findings(fingerprint):
     remarks = ("channel M_s reaches 1.02 of its range.",)
     quality = fingerprint.quality.model_copy(update={"remarks": remarks, "repairs": {"M_s: outlier": 156}})
-    card = answers(fingerprint.model_copy(update={"quality": quality}))["Were the measurements good?"]
-    assert card.sentence.endswith("156 places were repaired. Channel M_s reaches 1.02 of its range.")
+    remarked = fingerprint.model_copy(update={"quality": quality})
+    card = answers(remarked)["Were the measurements good?"]
+    assert card.sentence.endswith("156 places were repaired. There is one remark on the signals.")
+    assert "Findings" in card.action
+    assert summary_section(SimpleNamespace(fingerprint=remarked)).points[-1] == remarks[0]
+
+
+def test_every_point_that_is_not_fine_says_what_to_do(fingerprint):
+    """Over all reasons that a verdict may have, loops, gauges and propellers, with and without an earlier test."""
+    for kind in get_args(ReasonKind):
+        for trustworthy in (True, False):
+            reason = Reason(kind=kind, sentence="GAUGE-CLOSED misses S3 of M_s.", where="M_s")
+            doubted = with_verdict(fingerprint, trustworthy=trustworthy, reasons=(reason,), loop="small")
+            doubted = with_physical(doubted, "K_Q", value=0.03, std=0.001, expected=0.0494, expected_std=None)
+            cover = cover_of(doubted, previous=fingerprint)
+            assert not [card.question for card in cover.cards if (card.state == "fine") == bool(card.action)]
+            words = " ".join(f"{card.question} {card.sentence} {card.action}" for card in cover.cards)
+            assert not re.search(r"GAUGE-|\bS\d|M_s|I_dn|K_Q|\blines\b", words), words
+
+
+def test_what_contradicts_the_vessel_file_is_on_the_first_page(fingerprint):
+    """An inertia upstream 12 deviations from the calculated one, of which no question of its own asks."""
+    question = "Does all else agree with the vessel file?"
+    found = with_verdict(fingerprint, trustworthy=True, not_trusted={})
+    assert question not in answers(with_physical(found, "I_up", value=54.0, std=1.0, expected=54.0, expected_std=1.0))
+    card = answers(with_physical(found, "I_up", value=71.0, std=1.0, expected=54.0, expected_std=1.0))[question]
+    assert card.state == "look"
+    assert "71 kg m² (69 to 73)" in card.sentence
+
+
+def test_numbers_have_no_more_digits_than_their_interval_leaves(fingerprint):
+    """By hand: half an interval of 2.85 ms leaves whole milliseconds, one of 0.06 hundredths."""
+    delay = Quantity(name="t_d + t_sp", unit="s", value=0.1216, std=0.002, interval_95=(0.1197, 0.1254))
+    margin = Quantity(name="gain margin", unit="-", value=1.5382, std=0.03, interval_95=(1.5241, 1.6462))
+    made = fingerprint.model_copy(update={"combinations": (delay,), "margins": (margin,), "physical": ()})
+    (table,) = cover_of(made).tables
+    assert [row[1:3] for row in table.rows] == [("122 ms", "120 to 125"), ("1.54", "1.52 to 1.65")]
+
+
+def test_date_and_place_are_facts_of_the_first_page(fingerprint):
+    stated = {"tested_at": datetime.fromisoformat("2026-03-13T14:05"), "place": "Quay 12"}
+    told = fingerprint.model_copy(update={"conditions": fingerprint.conditions.model_copy(update=stated)})
+    assert dict(cover_of(told).facts) == {"Tested": "2026-03-13 14:05", "Place": "Quay 12", "Test": "short test"}
+    assert dict(cover_of(fingerprint).facts)["Tested"] == "date not stated"
+
+
+def test_an_earlier_test_is_compared_in_the_headline(fingerprint):
+    earlier = with_verdict(with_physical(fingerprint, "I_dn", value=12.0), trustworthy=True)
+    later = with_verdict(fingerprint, trustworthy=True)
+    cover = cover_of(later, previous=earlier)
+    assert cover.change.startswith("Has anything changed since 2026-01-02? Yes: the inertia of propeller and shaft by ")
+    same = cover_of(later, previous=later)
+    assert "? No: " in same.change
+    doubtful = cover_of(later, previous=with_verdict(earlier, trustworthy=False))
+    assert "It cannot be told: the earlier test is not trustworthy." in doubtful.change
 
 
 def test_the_headline_counts_what_is_worth_a_look(fingerprint):
@@ -139,5 +201,6 @@ def test_there_is_no_room_to_spare_where_the_scale_of_the_gauge_is_in_doubt(fing
     told = answers(found)
     assert told[USABLE].state == "look"
     assert "The scale of the torque gauge is in doubt." in told[USABLE].sentence
+    assert told[USABLE].action.startswith("Calibrate the torque gauge")
     assert told[HUNTING].state == told[INERTIA].state == "open"
     assert told[HUNTING].sentence.startswith("It cannot be told: it depends on the scale of the torque gauge.")

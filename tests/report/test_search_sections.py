@@ -10,9 +10,16 @@ from shaftprint.catalogue import structure
 from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.identify.comparison import compare_fits
 from shaftprint.identify.fit import scan
+from shaftprint.reasons import Reason
 from shaftprint.report import plot_scan
 from shaftprint.report.notation import cell_html
-from shaftprint.report.sections import comparison_section, search_section, verdict_section
+from shaftprint.report.sections import (
+    comparison_section,
+    number_section,
+    search_section,
+    summary_section,
+    verdict_section,
+)
 
 
 def cells(table):
@@ -25,44 +32,60 @@ def cells(table):
 def test_the_verdict_comes_in_words_the_reason_first(fingerprint):
     section = verdict_section(SimpleNamespace(fingerprint=fingerprint))
     assert section.title == "Verdict: the fit is trustworthy"
-    assert section.paragraphs == (fingerprint.verdict.reason,)
-    assert section.points == fingerprint.verdict.sentences[1:]
-    assert section.points[0].startswith("Trusted: ")
+    assert section.paragraphs[1:] == (fingerprint.verdict.reason,)
+    assert section.points == fingerprint.verdict.cautions
+    assert summary_section(SimpleNamespace(fingerprint=fingerprint)).paragraphs[0] == fingerprint.verdict.reason
+
+
+def test_the_table_of_numbers_says_what_the_verdict_says(fingerprint):
+    """One rule for what is known: a number may be used where the verdict trusts it, and else the verdict says why."""
+    verdict = fingerprint.verdict
+    (table,) = number_section(SimpleNamespace(fingerprint=fingerprint)).tables
+    told = {str(row[0]): row[-1] for row in table.rows}
+    assert {name for name, words in told.items() if words == "yes"} == {*verdict.trusted} - {"n_0", "M_s0"}
+    doubted = {name for name in verdict.not_trusted if name in told}
+    assert doubted
+    assert all(told[name] == f"no: {verdict.not_trusted[name]}" for name in doubted)
+    refused = fingerprint.model_copy(update={"verdict": replace(verdict, trustworthy=False)})
+    (table,) = number_section(SimpleNamespace(fingerprint=refused)).tables
+    assert {row[-1] for row in table.rows} == {"no"}
 
 
 def test_a_fit_that_is_not_trustworthy_says_so_in_the_heading(fingerprint):
     verdict = replace(
-        fingerprint.verdict, trustworthy=False, reason="It fails.", sentences=("It fails.", "A hint: look there.")
+        fingerprint.verdict,
+        trustworthy=False,
+        reason="It fails.",
+        reasons=(Reason(kind="misfit", sentence="It fails."), Reason(kind="suspect", sentence="A hint: look there.")),
+        cautions=(),
     )
     section = verdict_section(SimpleNamespace(fingerprint=fingerprint.model_copy(update={"verdict": verdict})))
     assert section.title == "Verdict: the fit is not trustworthy"
-    assert (section.paragraphs, section.points) == (("It fails.",), ("A hint: look there.",))
+    assert (section.paragraphs[1:], section.points) == (("It fails.",), ("A hint: look there.",))
 
 
 # ---- search ----
 
 
-def test_every_optimum_has_a_row_with_its_parameters(fits):
+def test_every_optimum_has_a_column_with_its_parameters(fits):
     section = search_section(SimpleNamespace(identification=fits["OL3"]))
     (table,) = section.tables
-    assert [column.heading for column in table.columns[:5]] == [
-        "optimum", "starts", "cost", "deviance above the result", "stable"
-    ]  # fmt: skip
-    assert [cell_html(column.heading, table) for column in table.columns[5:]] == [
+    assert [column.heading for column in table.columns[:3]] == ["optimum", "the result", "2"]
+    rows = cells(table)
+    assert [row[0] for row in rows[:4]] == ["starts", "cost", "deviance above the result", "stable"]
+    assert [cell_html(row[0], table) for row in table.rows[4:]] == [
         "<i>K</i><sub>p</sub> [-]", "<i>K</i><sub>i</sub> [s⁻¹]", "<i>t</i><sub>d</sub> [s]"
     ]  # fmt: skip
-    rows = cells(table)
-    assert rows[0][0] == "the result"
-    assert rows[0][3] == "–"
-    assert sum(int(row[1]) for row in rows) <= fits["OL3"].settings.starts
-    assert float(rows[0][5]) == pytest.approx(fits["OL3"].value("K_p"), rel=1e-3)
+    assert rows[2][1] == "–"
+    assert sum(map(int, rows[0][1:])) <= fits["OL3"].settings.starts
+    assert float(rows[4][1]) == pytest.approx(fits["OL3"].value("K_p"), rel=1e-3)
     assert section.points[0].endswith(".")
 
 
 def test_more_optima_than_fit_on_a_page_are_counted(fits, monkeypatch):
     monkeypatch.setattr("shaftprint.report.sections._search.MOST_OPTIMA", 1)
     table = search_section(SimpleNamespace(identification=fits["OL3"])).tables[0]
-    assert len(table.rows) == 1
+    assert len(table.columns) == 2
     assert "more of higher cost are not shown" in table.note
 
 

@@ -6,7 +6,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.fingerprint import Quantity
 from shaftprint.report.notation import sentence_html, symbol_html
-from shaftprint.report.sections import summary_section
+from shaftprint.report.sections import fit_section
 from shaftprint.tables import (
     Table,
     calibration_table,
@@ -22,11 +22,6 @@ from shaftprint.tables import (
     truth_of_combinations,
     window_table,
 )
-
-
-def summary(fingerprint):
-    """The paragraphs of the summary: conditions, fit, what is well known, physical values."""
-    return summary_section(SimpleNamespace(fingerprint=fingerprint)).paragraphs
 
 
 def with_parameters(fingerprint, *quantities):
@@ -68,13 +63,19 @@ def test_combinations_of_a_fingerprint(fingerprint):
     assert names[0] == "t_d + t_sp"
 
 
-def test_fit_table_without_a_likelihood(fingerprint):
+def explained(fingerprint, identification):
+    return fit_section(
+        SimpleNamespace(fingerprint=fingerprint, identification=identification, validations=())
+    ).paragraphs[0]
+
+
+def test_fit_table_without_a_likelihood(fingerprint, identification):
     quality = fingerprint.quality.model_copy(update={"chi_square": None})
     unweighted = fingerprint.model_copy(update={"quality": quality})
     assert fit_table(unweighted).note.startswith("10 of 10 starts") or "of 10 starts" in fit_table(unweighted).note
-    assert "not weighted by the noise" in summary(unweighted)[1]
+    assert "not weighted by the noise" in explained(unweighted, identification)
     bad = fingerprint.model_copy(update={"quality": fingerprint.quality.model_copy(update={"p_value": 0.009})})
-    assert "does not explain" in summary(bad)[1]
+    assert "does not explain" in explained(bad, identification)
 
 
 def test_expected_values():
@@ -115,9 +116,3 @@ def test_meaning_is_that_of_the_structure(fingerprint):
     meanings = {p.name: p.meaning for p in structure("GAUGE-CLOSED").parameters}
     table = parameter_table(fingerprint, {})
     assert table.rows[0][-1] == meanings["K_p"]
-
-
-def test_a_summary_of_what_is_not_well_known(fingerprint):
-    vague = Quantity(name="g", unit="-", value=0.0, std=0.1)
-    changed = fingerprint.model_copy(update={"parameters": (vague,), "combinations": (), "physical": ()})
-    assert len(summary(changed)) == 2

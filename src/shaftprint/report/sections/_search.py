@@ -7,7 +7,7 @@ from shaftprint.identify.judgement import report_search
 from shaftprint.models import Delay
 from shaftprint.report.figures import plot_scan
 from shaftprint.report.sections._sections import Inputs, Picture, Section
-from shaftprint.tables import Column, Symbol, Table, numbers, rounded, structure_tables, texts, unit_text
+from shaftprint.tables import Symbol, Table, numbers, rounded, structure_tables, texts, unit_text
 
 if TYPE_CHECKING:
     from shaftprint.identify import Identification
@@ -50,25 +50,22 @@ def _loop_delays(fit: "Identification") -> list[str]:
 
 
 def _optima(fit: "Identification", optima: "tuple[Optimum, ...]") -> Table:
-    parameters = fit.objective.free_parameters
-    columns = (*texts("optimum"), *numbers("starts", "cost", "deviance above the result"), *texts("stable"))
-    columns += tuple(Column(Symbol(f"{p.name} [{unit_text(p.unit) or '-'}]"), number=True) for p in parameters)
-    rows = tuple(
-        (
-            "the result" if number == 0 else str(number + 1),
-            str(optimum.starts),
-            rounded(optimum.cost),
-            "–" if number == 0 else rounded(optimum.distance),
-            "yes" if optimum.stable else "no",
-            *(rounded(float(optimum.values[index])) for index in fit.objective.free),
-        )
-        for number, optimum in enumerate(optima[:MOST_OPTIMA])
-    )
-    not_shown = len(optima) - len(rows)
+    """Return the optima side by side, a column each: there are more parameters than optima."""
+    shown = optima[:MOST_OPTIMA]
+    rows = [
+        ("starts", *(str(optimum.starts) for optimum in shown)),
+        ("cost", *(rounded(optimum.cost) for optimum in shown)),
+        ("deviance above the result", "–", *(rounded(optimum.distance) for optimum in shown[1:])),
+        ("stable", *("yes" if optimum.stable else "no" for optimum in shown)),
+    ]
+    for parameter, index in zip(fit.objective.free_parameters, fit.objective.free, strict=True):
+        name = Symbol(f"{parameter.name} [{unit_text(parameter.unit) or '-'}]")
+        rows.append((name, *(rounded(float(optimum.values[index])) for optimum in shown)))
+    not_shown = len(optima) - len(shown)
     return Table(
         title="Optima of the search",
-        columns=columns,
-        rows=rows,
+        columns=(*texts("optimum"), *numbers("the result", *(str(number) for number in range(2, len(shown) + 1)))),
+        rows=tuple(rows),
         note=(
             "The deviance is twice the fall of the log-likelihood; an optimum less than 3.84 above the result fits as "
             f"well within the noise.{f' {not_shown} more of higher cost are not shown.' if not_shown else ''}"

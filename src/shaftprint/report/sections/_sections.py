@@ -84,6 +84,8 @@ class Section:
     """Tables."""
     pictures: Sequence[Picture] = ()
     """Figures."""
+    folded: bool = False
+    """Whether it belongs to the appendix, and is read when it is opened."""
 
 
 def picture_name(*words: str) -> str:

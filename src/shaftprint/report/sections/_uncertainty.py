@@ -1,15 +1,8 @@
-"""The section of a report on the uncertainty: which source contributes what, and how far parabolas can be trusted."""
+"""The section of a report that draws the uncertainty: shares of the sources, and how far parabolas can be trusted."""
 
 from shaftprint.report.figures import plot_budget, plot_profiles
 from shaftprint.report.plots import budget_plot, profile_plot
 from shaftprint.report.sections._sections import Inputs, Picture, Section
-from shaftprint.tables import budget_table
-
-OPENING = (
-    "Every estimate depends on the noise of the measured lines and on its prior: the torsional vibration "
-    "calculation (TVC), the accuracy of the torque gauge, the latency of its telemetry, and the slope g of the engine. "
-    "More lines or longer ones lower the share of the noise only."
-)
 
 
 def uncertainty_section(inputs: Inputs) -> list[Section]:
@@ -43,9 +36,7 @@ def uncertainty_section(inputs: Inputs) -> list[Section]:
     return [
         Section(
             key="uncertainty",
-            title="Where the uncertainty comes from",
-            paragraphs=(OPENING,),
-            tables=(budget_table(budget),),
+            title="Uncertainty, drawn",
             pictures=pictures,
         )
     ]

@@ -23,6 +23,7 @@ def validation_section(inputs: Inputs) -> list[Section]:
     if not inputs.validations:
         return []
     first = inputs.validations[0]
+    shown = step_against_data(inputs)
     pictures = [
         Picture(
             name="validation_summary",
@@ -30,7 +31,7 @@ def validation_section(inputs: Inputs) -> list[Section]:
             alt="Error of speed and torque in every excerpt as points with intervals, and a line at the allowed error.",
             draw=partial(plot_validation_summary, first),
         ),
-        *(_picture(inputs.validations, comparison) for comparison in shown_excerpts(first)),
+        *(picture for picture in _excerpt_pictures(inputs) if shown is None or picture.name != shown.name),
     ]
     return [
         Section(
@@ -42,6 +43,18 @@ def validation_section(inputs: Inputs) -> list[Section]:
             pictures=pictures,
         )
     ]
+
+
+def step_against_data(inputs: Inputs) -> Picture | None:
+    """Return the largest step of the first staircase, measured and by the model; None where there is none."""
+    if not inputs.validations:
+        return None
+    steps = [c for c in shown_excerpts(inputs.validations[0]) if c.excerpt.step_s is not None]
+    return _picture(inputs.validations, steps[0]) if steps else None
+
+
+def _excerpt_pictures(inputs: Inputs) -> list[Picture]:
+    return [_picture(inputs.validations, comparison) for comparison in shown_excerpts(inputs.validations[0])]
 
 
 def _picture(validations: "Sequence[Validation]", comparison: "ExcerptComparison") -> Picture:

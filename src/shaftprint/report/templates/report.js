@@ -4,7 +4,7 @@
 (() => {
   const NEAR = "500px 0px";
   const NARROW = 600;
-  const NARROW_NUMBERS_PX = 10;
+  const NARROW_NUMBERS_PX = 11;
   const NARROW_GAP = 0.05;
   const PAN = 0.15;
   const ZOOM = 0.6;
@@ -247,6 +247,29 @@
     say();
   }
 
+  // A link to a folded section opens it; the menu of a narrow screen closes once it has been used.
+  function prepareContents() {
+    const parts = [...document.querySelectorAll("details")];
+    const openAddressed = () => {
+      const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+      const part = target && target.closest("details");
+      if (!part) return;
+      part.open = true;
+      part.scrollIntoView();
+    };
+    window.addEventListener("hashchange", openAddressed);
+    const contents = document.getElementById("contents");
+    contents.addEventListener("click", (event) => {
+      if (!event.target.closest("a")) return;
+      if (contents.matches(":popover-open")) contents.hidePopover();
+      // The address may be the one that stands already.
+      setTimeout(openAddressed);
+    });
+    const unfold = document.getElementById("unfold");
+    if (unfold) unfold.addEventListener("click", () => parts.forEach((part) => { part.open = true; }));
+    openAddressed();
+  }
+
   function prepareFigures() {
     const places = document.querySelectorAll(".plot");
     const script = document.getElementById("library");
@@ -282,6 +305,7 @@
     // All of the page is read, and plotly's script has not run yet.
     if (document.readyState !== "interactive") return;
     prepareLook();
+    prepareContents();
     prepareFigures();
   });
 })();

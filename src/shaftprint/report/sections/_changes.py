@@ -1,0 +1,24 @@
+"""The section of a report on an earlier test: what has changed since, number by number."""
+
+from shaftprint.report.comparison import difference_table, differences, vessel_file_sentences
+from shaftprint.report.sections._comparison_cover import not_alike
+from shaftprint.report.sections._sections import Inputs, Section
+
+EARLIER, LATER = "earlier test", "this test"
+
+
+def change_section(inputs: Inputs) -> list[Section]:
+    """Return the differences from an earlier test; nothing where none was named."""
+    previous, fingerprint = inputs.previous, inputs.fingerprint
+    if previous is None:
+        return []
+    tested = previous.conditions.tested_at or previous.created
+    of_the_ship = [one for one in differences(previous, fingerprint) if not one.normalised]
+    return [
+        Section(
+            key="changes",
+            title=f"Changes since {tested:%Y-%m-%d}",
+            paragraphs=(*not_alike(previous, LATER, fingerprint), *vessel_file_sentences(previous, fingerprint)),
+            tables=(difference_table(EARLIER, LATER, of_the_ship),) if of_the_ship else (),
+        )
+    ]

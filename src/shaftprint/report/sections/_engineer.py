@@ -1,0 +1,84 @@
+"""The engineer's summary: verdict, numbers, model and data, and where the uncertainty comes from, on two pages."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from shaftprint.report.sections._sections import Inputs, Section
+from shaftprint.tables import Column, budget_table, quantity_table, unit_text, with_deviation
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint
+
+BUDGET_OPENING = (
+    "Every estimate depends on the noise of the measured lines and on its prior: the torsional vibration "
+    "calculation (TVC), the accuracy of the torque gauge, the latency of its telemetry, and the slope g of the engine. "
+    "More lines or longer ones lower the share of the noise only."
+)
+
+
+def verdict_section(inputs: Inputs) -> Section:
+    """Return the verdict on the fit: what it is of, the reason, what is in doubt and what is close to it."""
+    verdict = inputs.fingerprint.verdict
+    words = "trustworthy" if verdict.trustworthy else "not trustworthy"
+    doubts = [reason.sentence for reason in verdict.reasons if reason.sentence not in verdict.reason]
+    suspects = [suspect.sentence for suspect in verdict.suspects]
+    return Section(
+        key="verdict",
+        title=f"Verdict: the fit is {words}",
+        paragraphs=(_conditions(inputs.fingerprint), verdict.reason),
+        points=tuple(dict.fromkeys((*doubts, *suspects, *verdict.cautions))),
+    )
+
+
+def _conditions(fingerprint: "Fingerprint") -> str:
+    conditions = fingerprint.conditions
+    speed, torque = conditions.engine_speed, conditions.shaft_torque
+    total = len(conditions.lines_used) + len(conditions.lines_left_out)
+    return (
+        f"{conditions.vessel}, test “{conditions.campaign}”. Working point: engine speed "
+        f"{with_deviation(speed.value, speed.std)} {unit_text(speed.unit)}, shaft torque "
+        f"{with_deviation(torque.value, torque.std)} {unit_text(torque.unit)}. The structure {fingerprint.structure} "
+        f"was fitted to {len(conditions.lines_used)} of {total} test lines."
+    )
+
+
+def number_section(inputs: Inputs) -> Section:
+    """Return all identified numbers in one table, each with whether the verdict lets it be used."""
+    fingerprint = inputs.fingerprint
+    groups = (fingerprint.parameters, fingerprint.combinations, fingerprint.physical, fingerprint.margins)
+    quantities = [quantity for group in groups for quantity in group]
+    table = quantity_table("Identified numbers", quantities)
+    usable = tuple(_usable(fingerprint, quantity.name) for quantity in quantities)
+    # the appendix has the meaning, which the last column tells, and the differences
+    kept = [place for place, column in enumerate(table.columns[:-1]) if column.heading != "difference"]
+    rows = tuple((*(row[i] for i in kept), words) for row, words in zip(table.rows, usable, strict=True))
+    columns = (*(table.columns[i] for i in kept), Column("may be used"))
+    return Section(key="numbers", title="What was identified", tables=(replace(table, columns=columns, rows=rows),))
+
+
+def _usable(fingerprint: "Fingerprint", name: str) -> str:
+    verdict = fingerprint.verdict
+    if not verdict.trustworthy:
+        return "no"
+    doubt = verdict.not_trusted.get(name)
+    return f"no: {doubt}" if doubt else "yes"
+
+
+def budget_section(inputs: Inputs) -> list[Section]:
+    """Return where the uncertainty comes from, as one table; nothing where no number is known."""
+    budget = inputs.fingerprint.budget
+    if not any(row.shares for row in budget.rows):
+        return []
+    return [
+        Section(
+            key="budget",
+            title="Where the uncertainty comes from",
+            paragraphs=(BUDGET_OPENING,),
+            tables=(budget_table(budget),),
+        )
+    ]
+
+
+def folded(section: Section) -> Section:
+    """Return a section as one of the appendix."""
+    return replace(section, folded=True)

@@ -1,0 +1,99 @@
+"""The first page from a fingerprint: every answer is one rule, and a point that is not fine says what to do."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from shaftprint.report.sections._cover import Cover, overall
+from shaftprint.report.sections.first_page._change_answer import change_answer
+from shaftprint.report.sections.first_page._line_answers import hunting, inertia, other_contradictions, propeller
+from shaftprint.report.sections.first_page._line_sketch import line_sketch
+from shaftprint.report.sections.first_page._number_table import number_table
+from shaftprint.report.sections.first_page._test_answers import gauge, measured, predicts, usable
+from shaftprint.tables import plain, unit_text
+
+if TYPE_CHECKING:
+    from datetime import datetime
+
+    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.validation import Validation
+    from shaftprint.vessel import Vessel
+
+
+def cover_of(
+    fingerprint: "Fingerprint",
+    validations: "Sequence[Validation]" = (),
+    *,
+    vessel: "Vessel | None" = None,
+    previous: "Fingerprint | None" = None,
+) -> Cover:
+    """Return the first page of a report.
+
+    Parameters
+    ----------
+    fingerprint
+        What was found.
+    validations
+        The fingerprint's model held against records that it has not seen; only the first counts.
+    vessel
+        What was tested, for the sketch.
+    previous
+        Fingerprint of an earlier test.
+    """
+    change = [] if previous is None else [change_answer(previous, fingerprint)]
+    cards = [
+        usable(fingerprint),
+        *change,
+        *hunting(fingerprint),
+        *inertia(fingerprint),
+        *propeller(fingerprint),
+        *other_contradictions(fingerprint),
+        *gauge(fingerprint),
+        predicts(validations),
+        measured(fingerprint),
+    ]
+    state, headline = overall(cards, usable=fingerprint.verdict.trustworthy)
+    return Cover(
+        headline=headline,
+        state=state,
+        opening=_opening(fingerprint),
+        cards=cards,
+        known=_known(fingerprint),
+        change=f"{change[0].question} {change[0].sentence}" if change else "",
+        facts=_facts(fingerprint),
+        tables=number_table(fingerprint),
+        sketch=None if vessel is None else line_sketch(vessel),
+    )
+
+
+def _opening(fingerprint: "Fingerprint") -> str:
+    conditions = fingerprint.conditions
+    speed, torque = conditions.engine_speed, conditions.shaft_torque
+    return (
+        f"Everything here holds at {plain(speed.value, 0)} {unit_text(speed.unit)} engine speed and "
+        f"{plain(torque.value, 0)} {unit_text(torque.unit)} shaft torque. ± is one standard deviation; where a range "
+        "is given, the true value lies in it in 95 of 100 tests."
+    )
+
+
+def _known(fingerprint: "Fingerprint") -> str:
+    """Return how many numbers the verdict trusts: the one rule for what is known."""
+    verdict = fingerprint.verdict
+    known = len(verdict.trusted) if verdict.trustworthy else 0
+    return f"{known} of {len(verdict.trusted) + len(verdict.not_trusted)} numbers are known"
+
+
+def _facts(fingerprint: "Fingerprint") -> list[tuple[str, str]]:
+    conditions = fingerprint.conditions
+    return [
+        ("Tested", _date_text(conditions.tested_at) or "date not stated"),
+        ("Place", conditions.place or "not stated"),
+        ("Test", conditions.campaign),
+    ]
+
+
+def _date_text(moment: "datetime | None") -> str:
+    """Return a date, with its time where it has one; nothing where it is not known."""
+    if moment is None:
+        return ""
+    midnight = (moment.hour, moment.minute, moment.second) == (0, 0, 0)
+    return moment.strftime("%Y-%m-%d" if midnight else "%Y-%m-%d %H:%M")

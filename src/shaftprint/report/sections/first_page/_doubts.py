@@ -1,0 +1,32 @@
+"""Whether a number of the first page may be used, by the verdict, and whether it is what the vessel file expects."""
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint, Quantity
+
+# A number may differ from the expected one by so many standard deviations of both before anyone should look, and act.
+FAR, TOO_FAR = 2.0, 3.5
+
+
+def doubt_of(fingerprint: "Fingerprint", name: str) -> str:
+    """Return that a number is not trusted, as a sentence; nothing where it is."""
+    verdict = fingerprint.verdict
+    if not verdict.trustworthy:
+        return "The model is not trustworthy."
+    reason = verdict.not_trusted.get(name)
+    return f"It cannot be told: {reason}." if reason else ""
+
+
+def deviations_apart(quantity: "Quantity") -> float | None:
+    """Return how many standard deviations of both a number is from the vessel file; None where that is not known."""
+    spread = (quantity.std**2 + (quantity.expected_std or 0.0) ** 2) ** 0.5
+    if quantity.expected is None or not 0.0 < spread < float("inf"):
+        return None
+    return float(abs(quantity.value - quantity.expected) / spread)
+
+
+def is_off(quantity: "Quantity") -> bool:
+    """Return whether a number is farther from the vessel file than its deviations let expect."""
+    apart = deviations_apart(quantity)
+    return bool(quantity.expected) and apart is not None and apart > TOO_FAR

@@ -1,0 +1,131 @@
+"""The questions of the superintendent about the line: hunting, inertia, propeller, other contradictions."""
+
+from typing import TYPE_CHECKING
+
+from shaftprint.report.sections._cover import Card, State
+from shaftprint.report.sections.first_page._doubts import FAR, TOO_FAR, deviations_apart, doubt_of, is_off
+from shaftprint.report.sections.first_page._number_table import shown
+from shaftprint.tables import expected_text, plain, unit_text, with_deviation
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint, Quantity
+
+PERCENT = 100.0
+ANSWERED_ELSEWHERE = ("I_dn", "K_Q")
+"""Physical values that have a question of their own."""
+NOT_TOLD = "Use the earlier value, and ask for a longer test if this number is needed."
+
+
+def hunting(fingerprint: "Fingerprint") -> list[Card]:
+    """Return whether the governed line is stable; nothing for a structure without feedback."""
+    loop = fingerprint.verdict.loop
+    if loop is None:
+        return []
+    question = "Does the engine hold its speed without hunting?"
+    if loop == "unstable":
+        return [
+            Card(
+                question=question,
+                state="bad",
+                sentence="The identified line is unstable.",
+                action="Do not use these numbers. If the engine does hunt, have the governor set before the next test.",
+            )
+        ]
+    state: State = "fine" if loop == "ample" else "look"
+    room = "with room to spare" if loop == "ample" else "with little to spare"
+    words = f"The governed line is stable, {room}."
+    margins = [q for q in fingerprint.margins if q.name == "gain margin"]
+    if margins:
+        value, interval = shown(margins[0])
+        words += f" The governor gain may grow by {value} ({interval}) before the speed hunts; 2 or more is usual."
+    doubt = doubt_of(fingerprint, "gain margin")
+    if doubt:
+        return [Card(question=question, state="open", sentence=f"{doubt} {words}", action=NOT_TOLD)]
+    action = "" if state == "fine" else "Do not raise the governor gain; have its setting checked at the next service."
+    return [Card(question=question, state=state, sentence=words, action=action)]
+
+
+def inertia(fingerprint: "Fingerprint") -> list[Card]:
+    """Return whether the inertia behind the gauge is the calculated one; nothing where the test did not measure it."""
+    inertias = [q for q in fingerprint.physical if q.name == "I_dn" and q.expected is not None]
+    parameter = fingerprint.multiplied(inertias[0]) if inertias else None
+    if not inertias or (parameter is not None and parameter.name in fingerprint.priors):
+        return []
+    (quantity,) = inertias
+    question = "Is the inertia of propeller and shaft as calculated?"
+    words = (
+        f"Measured {with_deviation(quantity.value, quantity.std)} {unit_text(quantity.unit)}, by the torsional "
+        f"vibration calculation {expected_text(quantity)}."
+    )
+    apart, doubt = deviations_apart(quantity), doubt_of(fingerprint, "I_dn")
+    if doubt or apart is None:
+        return [Card(question=question, state="open", sentence=f"{doubt} {words}".strip(), action=NOT_TOLD)]
+    if apart <= FAR:
+        return [Card(question=question, state="fine", sentence=words)]
+    return [
+        Card(
+            question=question,
+            state="look" if apart <= TOO_FAR else "bad",
+            sentence=f"{words} That is {plain(apart, 1)} standard deviations apart.",
+            action=(
+                "Inspect the propeller for a rope, damage or growth; if there is none, correct the inertia table of "
+                "the vessel file."
+            ),
+        )
+    ]
+
+
+def propeller(fingerprint: "Fingerprint") -> list[Card]:
+    """Return whether the propeller takes the torque that the vessel file expects; nothing where it expects none."""
+    coefficients = [q for q in fingerprint.physical if q.name == "K_Q" and q.expected]
+    if not coefficients:
+        return []
+    (quantity,) = coefficients
+    question = "Does the propeller take the torque that it should?"
+    share = PERCENT * (quantity.value / (quantity.expected or quantity.value) - 1.0)
+    value, _ = shown(quantity)
+    words = (
+        f"Its torque coefficient is {value}, {plain(abs(share), 0)} % {'below' if share < 0.0 else 'above'} the "
+        f"{expected_text(quantity)} of the vessel file."
+    )
+    doubt = doubt_of(fingerprint, "K_Q")
+    if doubt or not quantity.std < float("inf"):
+        return [Card(question=question, state="open", sentence=f"{doubt} {words}".strip(), action=NOT_TOLD)]
+    if not is_off(quantity):
+        return [Card(question=question, state="fine", sentence=words)]
+    return [
+        Card(
+            question=question,
+            state="look",
+            sentence=f"{words} The propeller, its inflow or the torque gauge has changed.",
+            action=(
+                "Inspect the propeller, and check zero and scale of the torque gauge. If another propeller is fitted, "
+                "correct the vessel file."
+            ),
+        )
+    ]
+
+
+def other_contradictions(fingerprint: "Fingerprint") -> list[Card]:
+    """Return what else is far from the vessel file, such as the inertia of the engine; nothing where nothing is."""
+    off = [
+        q
+        for q in fingerprint.physical
+        if q.name not in ANSWERED_ELSEWHERE and is_off(q) and not doubt_of(fingerprint, q.name)
+    ]
+    if not off:
+        return []
+    return [
+        Card(
+            question="Does all else agree with the vessel file?",
+            state="look",
+            sentence=" ".join(_contradiction(quantity) for quantity in off),
+            action="Check these entries of the vessel file, and what was changed on board since it was written.",
+        )
+    ]
+
+
+def _contradiction(quantity: "Quantity") -> str:
+    value, interval = shown(quantity)
+    what = quantity.meaning or quantity.name
+    return f"{what[:1].upper()}{what[1:]}: {value} ({interval}), in the vessel file {expected_text(quantity)}."

@@ -1,0 +1,56 @@
+"""The numbers that a superintendent asks for, with no more digits than their intervals leave."""
+
+import math
+from typing import TYPE_CHECKING
+
+from shaftprint.report.sections.first_page._doubts import doubt_of, is_off
+from shaftprint.tables import Table, expected_text, limits, numbers, plain, texts, unit_text
+from shaftprint.units import MILLI
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint, Quantity
+
+NUMBERS = (
+    ("I_dn", "Inertia behind the torque gauge: propeller, shaft, entrained water"),
+    ("I_up", "Inertia before the torque gauge: engine, coupling, gearbox"),
+    ("K_Q", "Torque coefficient of the propeller"),
+    ("t_d + t_sp", "Delay from the set point to the fuel"),
+    ("gain margin", "The governor gain may grow by this factor before the speed hunts"),
+    ("delay margin", "So much more delay would make the speed hunt"),
+)
+"""Names of quantities, and what they are in words that need no control engineering."""
+
+
+def number_table(fingerprint: "Fingerprint") -> list[Table]:
+    """Return the table of the numbers that are there; nothing where none is."""
+    there = {q.name: q for q in (*fingerprint.physical, *fingerprint.combinations, *fingerprint.margins)}
+    rows: list[tuple[str, ...]] = []
+    for name, words in NUMBERS:
+        quantity = there.get(name)
+        if quantity is None:
+            continue
+        value, interval = shown(quantity)
+        expected = expected_text(quantity) + (" (!)" if is_off(quantity) else "")
+        marked = words if not doubt_of(fingerprint, name) else f"{words} (not to be used)"
+        rows.append((marked, value, interval, expected))
+    if not rows:
+        return []
+    columns = (*texts("what"), *numbers("found", "95 % interval", "vessel file"))
+    return [Table(title="What was found", columns=columns, rows=tuple(rows))]
+
+
+def shown(quantity: "Quantity") -> tuple[str, str]:
+    """Return a value with its unit and its 95 % interval, with the digits that the interval leaves; times in ms."""
+    scale, unit = (MILLI, "ms") if quantity.unit == "s" else (1.0, unit_text(quantity.unit))
+    value, lower, upper = (scale * number for number in (quantity.value, *limits(quantity)))
+    decimals = _decimals(value, upper - lower)
+    text = f"{plain(value, decimals)} {unit}".strip()
+    if not math.isfinite(upper - lower):
+        return text, "not known"
+    return text, f"{plain(lower, decimals)} to {plain(upper, decimals)}"
+
+
+def _decimals(value: float, width: float) -> int:
+    """Return how many decimals a reader can use: the first digit of half the interval, or three digits of the value."""
+    least = width / 2.0 if math.isfinite(width) and width > 0.0 else abs(value) / 100.0
+    return 0 if not 0.0 < least < math.inf else max(0, -math.floor(math.log10(least)))

@@ -1,0 +1,90 @@
+"""Why numbers may not be trusted, and what to do about it, in words for the first page.
+
+The verdict says the same with channels, test lines and numbers; it stands on the page after.
+"""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from shaftprint.reasons import ReasonKind
+
+_WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
+    "recording clock": (
+        "The clock of the logger was wrong.",
+        "Check the sample rate that the logger states, then identify once more.",
+    ),
+    "channel clock": (
+        "The channels do not share one clock.",
+        "Record all channels with one logger, or merge the files of both loggers anew.",
+    ),
+    "clipping": (
+        "The torque reached the end of its measuring range.",
+        "Set a larger range of the torque telemetry and repeat the test.",
+    ),
+    "gauge steadiness": (
+        "The torque gauge or the load did not stay the same during the test.",
+        "Check gauge and telemetry, and repeat the test in calm, deep water.",
+    ),
+    "gauge scale": (
+        "The scale of the torque gauge is in doubt.",
+        "Calibrate the torque gauge or correct its scale in the vessel file, then identify once more.",
+    ),
+    "set-point shape": (
+        "The speed set point was not recorded as it was sent.",
+        "Log the set point where it enters the governor, without a filter, and repeat the test.",
+    ),
+    "set-point scale": (
+        "The scale of the speed set point is in doubt.",
+        "Add a staircase of speed steps to the test, or check the wiring of the set point.",
+    ),
+    "gauge latency": (
+        "The delay of the torque telemetry is not what the vessel file says.",
+        "Ask its maker for the delay and correct the vessel file, then identify once more.",
+    ),
+    "prior": (
+        "The measurement contradicts what was assumed of the ship.",
+        "Check inertia, gear ratio and gauge in the vessel file, then identify once more.",
+    ),
+    "gear ratio": (
+        "The two speed pick-ups do not agree with the gear ratio.",
+        "Check gear ratio and pulses per revolution in the vessel file, then identify once more.",
+    ),
+    "misfit": (
+        "The model does not explain the measurements.",
+        "Have an engineer compare other model structures, and look for what was changed during the test.",
+    ),
+    "contradicting data": (
+        "Parts of the test contradict each other.",
+        "Look for what was changed during the test; repeat it with the ship left as it is.",
+    ),
+    "suspect": (
+        "The model may lack a part of the line.",
+        "Have an engineer compare other model structures.",
+    ),
+    "too few data": (
+        "Too few of the test frequencies could be measured well.",
+        "Repeat the test with larger moves of the set point, or for longer.",
+    ),
+    "gap": (
+        "No test frequency lies where the governor decides on hunting.",
+        "Add frequencies there to the test; an engineer can plan them.",
+    ),
+    "unstable": (
+        "The model that explains the measurements best hunts, and the ship did not.",
+        "Do not use these numbers; have an engineer look at delays and sensors of the vessel file.",
+    ),
+    "not unique": (
+        "Several different sets of numbers explain the measurements equally well.",
+        "Repeat the test with more frequencies, or log the engine's control unit as well.",
+    ),
+    "lines left out": (
+        "The model does not hold at the test frequencies that were left out.",
+        "Have an engineer look at why they were left out.",
+    ),
+}
+
+
+def words_of(kind: "ReasonKind") -> tuple[str, str]:
+    """Return what is in doubt and what to do, each in one sentence."""
+    return _WORDS[kind]

@@ -1,0 +1,133 @@
+"""The questions of the superintendent about the test: is it of use, is the gauge in order, were the signals good."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from shaftprint.distributions import NORMAL_95
+from shaftprint.fingerprint import GAUGE_ZERO
+from shaftprint.report.sections._cover import Card, State
+from shaftprint.report.sections.first_page._reason_words import words_of
+from shaftprint.tables import plain, with_deviation
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint
+    from shaftprint.validation import Validation
+
+# Zero of the torque gauge that is common, as a share of the torque [%]: 0.5 to 1 % of full scale, taken at half load.
+COMMON_ZERO = 2.0
+# Share of the test signals that may be left out before anyone should look.
+LEFT_OUT = 0.25
+# Share of the numbers that must be known before all is fine.
+MOST = 2.0 / 3.0
+PERCENT = 100.0
+
+
+def usable(fingerprint: "Fingerprint") -> Card:
+    """Return whether the numbers may be used."""
+    question = "Can the result be used?"
+    verdict = fingerprint.verdict
+    trusted, others = len(verdict.trusted), len(verdict.not_trusted)
+    count = f"{trusted} of {trusted + others} numbers are known well enough to be used."
+    if verdict.reasons:
+        words, action = words_of(verdict.reasons[0].kind)
+        if not verdict.trustworthy:
+            return Card(question=question, state="bad", sentence=words, action=action)
+        return Card(question=question, state="look", sentence=f"Only in part. {words} {count}", action=action)
+    if not verdict.trustworthy:
+        return Card(
+            question=question,
+            state="bad",
+            sentence="No number is known well enough.",
+            action="Repeat the test with larger and longer moves of the set point.",
+        )
+    words = f"The model explains the measurements within their noise, and no other values do so. {count}"
+    if trusted >= MOST * (trusted + others):
+        return Card(question=question, state="fine", sentence=words)
+    return Card(
+        question=question,
+        state="look",
+        sentence=words,
+        action="Use only the numbers that are not marked. A longer test, or the engine's control unit logged as well, "
+        "makes more of them known.",
+    )
+
+
+def gauge(fingerprint: "Fingerprint") -> list[Card]:
+    """Return whether the zero of the torque gauge is in order; nothing where the test cannot tell."""
+    zeros = [q for q in fingerprint.physical if q.name == GAUGE_ZERO]
+    if not zeros:
+        return []
+    (zero,) = zeros
+    question = "Is the torque gauge in order?"
+    half = NORMAL_95 * zero.std
+    words = (
+        f"Torque and speed go together as they must in bollard pull when the zero of the gauge is off by "
+        f"{with_deviation(zero.value, zero.std)} % of the torque; up to {plain(COMMON_ZERO, 0)} % is common."
+    )
+    if fingerprint.verdict.trustworthy and abs(zero.value) + half <= COMMON_ZERO:
+        return [Card(question=question, state="fine", sentence=words)]
+    told = fingerprint.verdict.trustworthy and half < float("inf") and abs(zero.value) - half > COMMON_ZERO
+    return [
+        Card(
+            question=question,
+            state="look" if told else "open",
+            sentence=words,
+            action="Take the zero of the gauge with the shaft standing free, before and after the next test.",
+        )
+    ]
+
+
+def predicts(validations: "Sequence[Validation]") -> Card:
+    """Return whether the model predicts chirps and steps that it has not seen."""
+    question = "Does the model predict what it has not seen?"
+    if not validations:
+        return Card(
+            question=question,
+            state="open",
+            sentence="The test holds no speed steps or sweeps to hold the model against.",
+            action="Add a staircase of speed steps to the next test.",
+        )
+    validation = validations[0]
+    moves = [c for c in validation.comparisons if not c.excerpt.in_sample]
+    failed = sum(c.outcome == "fails" for c in moves)
+    allowed = f"{plain(PERCENT * validation.settings.largest_error, 0)} %"
+    states: dict[str, State] = {"passes": "fine", "undecided": "open", "fails": "look"}
+    words = {
+        "passes": f"It predicts all {len(moves)} recorded speed changes to within {allowed}.",
+        "undecided": f"It misses none of {len(moves)} recorded speed changes, but noise hides how well it meets them.",
+        "fails": f"It misses {failed} of {len(moves)} recorded speed changes by more than {allowed}: the line answers "
+        "large changes otherwise than small ones.",
+    }
+    actions = {
+        "passes": "",
+        "undecided": "Repeat the speed steps in calmer water, or make them larger.",
+        "fails": "Use the model for small changes of speed only; an engineer can find what limits the large ones.",
+    }
+    outcome = validation.outcome
+    return Card(question=question, state=states[outcome], sentence=words[outcome], action=actions[outcome])
+
+
+def measured(fingerprint: "Fingerprint") -> Card:
+    """Return whether the signals were good."""
+    conditions, quality = fingerprint.conditions, fingerprint.quality
+    used, left_out = len(conditions.lines_used), len(conditions.lines_left_out)
+    repairs = sum(quality.repairs.values())
+    words = f"{used} of {used + left_out} test frequencies could be used"
+    words += f", {repairs} {'place was' if repairs == 1 else 'places were'} repaired." if repairs else "; no repairs."
+    many = left_out > LEFT_OUT * (used + left_out)
+    remarks = len(quality.remarks)
+    if remarks:
+        words += f" There {'is one remark' if remarks == 1 else f'are {remarks} remarks'} on the signals."
+    actions = []
+    if many:
+        actions.append(
+            "Read under Data quality why so many test frequencies were left out before the test is repeated."
+        )
+    if remarks:
+        actions.append("Read the remarks under Findings, and mend the sensor or the wiring that they name.")
+    return Card(
+        question="Were the measurements good?",
+        state="look" if many or remarks else "fine",
+        sentence=words,
+        action=" ".join(actions),
+    )
