@@ -5,13 +5,22 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
 
 LONGEST_WAIT_S = 1200.0
+ONE_LINE = 10_000
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _sentences_on_one_line() -> Iterator[None]:
+    """Let no sentence that a command prints be wrapped: tests of what it says look for it as a whole."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("shaftprint.cli._terminal.WIDTH_OF_PROSE", ONE_LINE)
+        yield
 
 
 @pytest.fixture(scope="session")
@@ -44,6 +53,7 @@ def _sail(place: Path) -> None:
     """Run the short demo in a new folder, its output beside it."""
     place.mkdir()
     environment = {name: value for name, value in os.environ.items() if not name.startswith("COV")}
+    environment["COLUMNS"] = str(ONE_LINE)
     done = subprocess.run(
         [sys.executable, "-m", "shaftprint", "demo", "--short"], cwd=place, env=environment, capture_output=True
     )

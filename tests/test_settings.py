@@ -95,6 +95,19 @@ def test_a_syntax_error_is_told_with_its_line(tmp_path):
     assert "line 3" in _message(tmp_path, 'name = "test"\n\nduration_s = = 3\n')
 
 
+def test_decimal_commas_are_told_each_with_its_line(tmp_path):
+    path = tmp_path / "ship.toml"
+    path.write_text(
+        'name = "a"\n[gearbox]\nratio = 4,5  # by the drawing\nslip = -0,01e3\nlist = [1,5]\n', encoding="utf-8"
+    )
+    with pytest.raises(SettingsError) as refused:
+        load_vessel(path)
+    assert str(refused.value) == (
+        f"{path}: expected decimal points, found decimal commas.\n  line 3: write ratio = 4.5 with a point.\n"
+        "  line 4: write slip = -0.01e3 with a point."
+    )
+
+
 def test_a_missing_file_is_told(tmp_path):
     with pytest.raises(SettingsError, match=r"ship\.toml: expected a settings file, found nothing there"):
         load_vessel(tmp_path / "ship.toml")
@@ -102,9 +115,11 @@ def test_a_missing_file_is_told(tmp_path):
 
 def test_a_folder_or_binary_file_is_told(tmp_path):
     (tmp_path / "ship.toml").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(SettingsError, match="expected a text file in UTF-8"):
+    with pytest.raises(
+        SettingsError, match="line 1: expected text in UTF-8, found the byte 0xff; save the file as UTF-8"
+    ):
         load_vessel(tmp_path / "ship.toml")
-    with pytest.raises(SettingsError, match="expected a text file"):
+    with pytest.raises(SettingsError, match="expected a settings file, found a folder"):
         load_vessel(tmp_path)
 
 

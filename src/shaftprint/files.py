@@ -58,6 +58,12 @@ def naming(path: Path, *, instead_of: Path | None = None) -> Iterator[None]:
         raise
 
 
+def reason(error: OSError) -> str:
+    """Return why the system refused a file, in its words without its numbers: ``no such file or directory``."""
+    words = error.strerror
+    return str(error) if words is None else words[:1].lower() + words[1:]
+
+
 def _spellings(path: Path | None) -> tuple[object, ...]:
     return () if path is None else (path, str(path), os.fsencode(path))
 

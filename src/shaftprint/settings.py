@@ -16,7 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails
 
 from shaftprint.errors import SettingsError
-from shaftprint.files import written_whole
+from shaftprint.files import reason, written_whole
 from shaftprint.notebook import field_words
 from shaftprint.publication import complete
 
@@ -31,6 +31,9 @@ Name = Annotated[str, Field(strict=True, min_length=1)]
 
 # The ending of a key that names its unit; matches the longest, as a search finds the leftmost.
 _UNIT = re.compile(r"_(rad_s|rev_s|kg_m2|kg_m3|k?hz|mhz|rpm|deg|rad|rev|k?nm|k?w|hp|m?v|ma|[um]?s|min|h|[cm]?m)$")
+
+# A number with a decimal comma, as it stands in a line of its own.
+_COMMA = re.compile(r"\s*([\w.\"-]+)\s*=\s*([+-]?\d+),(\d+(?:[eE][+-]?\d+)?)\s*(?:#.*)?$")
 
 # What pydantic expects, in the words of somebody who fills in a file.
 _EXPECTED = {
@@ -79,19 +82,46 @@ def read_settings(path: str | Path, model_class: type[_Model]) -> _Model:
     """
     path = Path(path)
     complete(path.parent)
-    try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise SettingsError(f"{path}: expected a settings file, found nothing there.") from None
-    except (OSError, UnicodeDecodeError) as error:
-        raise SettingsError(f"{path}: expected a text file in UTF-8, found {error}.") from None
-    except (ValueError, RecursionError) as error:
-        # more than a mistake in the text: numbers of thousands of digits, brackets within thousands of brackets
-        raise SettingsError(f"{path}: expected TOML, found a mistake: {error}.") from None
+    content = _content(path)
     try:
         return model_class.model_validate(content)
     except ValidationError as error:
         raise SettingsError(_describe_all(path, error, model_class, content)) from None
+
+
+def _content(path: Path) -> dict[str, Any]:
+    """Return what stands in a TOML file, not checked yet."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        raise SettingsError(
+            f"{path}: expected a settings file, found nothing there; shaftprint new writes one to fill in."
+        ) from None
+    except UnicodeDecodeError as error:
+        line = error.object[: error.start].count(b"\n") + 1
+        raise SettingsError(
+            f"{path}, line {line}: expected text in UTF-8, found the byte {error.object[error.start]:#04x}; save the "
+            "file as UTF-8."
+        ) from None
+    except OSError as error:
+        if path.is_dir():
+            raise SettingsError(f"{path}: expected a settings file, found a folder; name the file in it.") from None
+        raise SettingsError(f"{path}: expected a settings file, but it cannot be read: {reason(error)}.") from None
+    try:
+        return tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        commas = _decimal_commas(text)
+        if commas:
+            sentences = [f"{path}: expected decimal points, found decimal commas.", *commas]
+            raise SettingsError("\n  ".join(sentences)) from None
+        # more than a mistake in the text: numbers of thousands of digits, brackets within thousands of brackets
+        raise SettingsError(f"{path}: expected TOML, found a mistake: {error}.") from None
+
+
+def _decimal_commas(text: str) -> list[str]:
+    """Return a sentence for each line whose number has a decimal comma."""
+    matches = ((number, _COMMA.match(line)) for number, line in enumerate(text.splitlines(), start=1))
+    return [f"line {number}: write {m[1]} = {m[2]}.{m[3]} with a point." for number, m in matches if m is not None]
 
 
 def load_settings(path_or_name: str | Path, model_class: type[_Model], *, shipped: Traversable) -> _Model:
@@ -153,7 +183,7 @@ def write_template(kind: Literal["vessel", "campaign"], path: str | Path) -> Non
     except FileExistsError as error:
         raise SettingsError(str(error)) from None
     except OSError as error:
-        raise SettingsError(f"{path}: the file cannot be written ({error}).") from None
+        raise SettingsError(f"{path}: the file cannot be written: {reason(error)}.") from None
 
 
 def _describe_all(path: Path, error: ValidationError, model_class: type[Settings], content: Mapping[str, Any]) -> str:

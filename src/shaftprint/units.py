@@ -21,6 +21,15 @@ M_S_PER_KNOT = 1852.0 / 3600.0
 MILLI, PPM = 1e3, 1e6
 """How many thousandths and millionths there are in one."""
 
+# Ways in which loggers and people write the units that vessel files know.
+_SPELLINGS = {
+    "volt": "V", "volts": "V", "v": "V", "nm": "N m", "n·m": "N m", "n*m": "N m", "n.m": "N m", "newton metre": "N m",
+    "newton-meter": "N m", "newton meters": "N m",
+    "knm": "kN m", "kn·m": "kN m", "kn.m": "kN m", "percent": "%", "pct": "%", "kt": "kn", "kts": "kn", "knot": "kn",
+    "knots": "kn", "sec": "s", "secs": "s", "second": "s", "seconds": "s", "m s-1": "m/s",
+    "m s^-1": "m/s", "mps": "m/s", "hertz": "Hz", "hz": "Hz",
+}  # fmt: skip
+
 _Number = TypeVar("_Number", float, NDArray[np.float64])
 
 
@@ -38,3 +47,9 @@ def decibel(magnitude: _Number) -> _Number:
     """Convert an amplitude ratio to decibel, ``20 log10``."""
     level: _Number = 20.0 * np.log10(magnitude)
     return level
+
+
+def plain_unit(text: str) -> str:
+    """Return a unit as vessel files write it; one that they do not know as it is."""
+    text = text.strip().strip("\0").strip()
+    return _SPELLINGS.get(text.lower(), text)

@@ -72,7 +72,7 @@ def test_help_loads_nothing_heavy():
         f"print('loaded:', [name for name in {HEAVY!r} if name in sys.modules])\n"
     )
     found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
-    assert "Commands:" in found.stdout
+    assert "Identify:" in found.stdout
     assert found.stdout.endswith("loaded: []\n")
 
 

@@ -1,9 +1,7 @@
 """Tables on a terminal and in a file."""
 
-import pytest
-
 from shaftprint.cli.output import print_table, print_tables
-from shaftprint.tables import Column, Table, numbers, texts
+from shaftprint.tables import Symbol, Table, numbers, texts
 
 
 def test_table_in_a_file_is_not_folded(capsys):
@@ -18,18 +16,35 @@ def test_table_in_a_file_is_not_folded(capsys):
     assert place.endswith(" 20")
 
 
-@pytest.mark.parametrize(("width", "shown"), [(40, False), (120, True)])
-def test_spare_column_is_left_out_on_a_narrow_terminal(monkeypatch, capsys, width, shown):
-    # what passes for a terminal
-    monkeypatch.setenv("FORCE_COLOR", "1")
-    monkeypatch.setenv("TERM", "xterm")
-    monkeypatch.setenv("COLUMNS", str(width))
-    columns = (*texts("name", "value"), Column("meaning", spare=True))
-    print_table(Table(title="Title", columns=columns, rows=(("tau_dn", "0.3198", "inertia " * 5),)))
-    screen = capsys.readouterr().out
-    assert "0.3198" in screen
-    assert ("meaning" in screen) is shown
-    assert ("inertia" in screen) is shown
+def test_a_table_that_is_too_wide_goes_on_below(monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", "44")
+    columns = (*texts("name"), *numbers("value", "95 % interval"), *texts("meaning"))
+    rows = (
+        (Symbol("v K_i / (k_q - g)"), "0.3198 ± 0.0021", "0.3157 to 0.3239", "gain over the slope"),
+        (Symbol("K_p"), "1.2 ± 0.3", "0.6 to 1.8", "the proportional gain of the governor of the engine"),
+    )
+    print_table(Table(title="Title", columns=columns, rows=rows))
+    assert capsys.readouterr().out.splitlines() == [
+        "Title",
+        "",
+        " name                            value",
+        " ─────────────────────────────────────",
+        " v K_i / (k_q - g)   0.3198 +/- 0.0021",
+        " K_p                       1.2 +/- 0.3",
+        "",
+        " name                   95 % interval",
+        " ────────────────────────────────────",
+        " v K_i / (k_q - g)   0.3157 to 0.3239",
+        " K_p                       0.6 to 1.8",
+        "",
+        " name                meaning",
+        " ───────────────────────────────────────────",
+        " v K_i / (k_q - g)   gain over the slope",
+        " K_p                 the proportional gain",
+        "                     of the governor of the",
+        "                     engine",
+        "",
+    ]
 
 
 def test_a_common_note_comes_once_and_empty_tables_not_at_all(capsys):

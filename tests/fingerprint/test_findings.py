@@ -81,7 +81,7 @@ def test_misfit(sharp):
 
     assert none(judged(66.0), "explain")
     worse = one(judged(92.0), "The structure does not explain the data")
-    assert "chi-square is 92 for 46 degrees of freedom (p = 6.6e-05)" in worse
+    assert "chi-square is 92 for 46 degrees of freedom (p = 6.6e-5)" in worse
     assert none(judged(92.0, settings=replace(sharp.settings, weighting=Unweighted())), "explain")
     assert none(judged(92.0, freedom=0), "explain")
 
@@ -109,21 +109,21 @@ def test_delays_that_only_their_sum_is_known_of(fit, truth):
     settings = Settings(starts=20, priors={"g": Prior(0.0, 0.1)})
     vague = fit("GAUGE-CLOSED", truth, share=0.005, settings=settings)
     findings = found(vague)
-    for name, value in (("t_d", "0.0703"), ("t_sp", "0.0518")):
+    for name, value in (("t_d", r"0\.070\d?"), ("t_sp", r"0\.05(2|18)")):
         text = one(findings, f"{name} = ")
         assert match(rf"{name} = {value} \+/- 0\.0\d+ s is poorly determined by this test; better determined: ", text)
-        assert search(r"better determined: .*t_d \+ t_sp = 0\.1221 \+/- 0\.000\d+ s", text)
+        assert search(r"better determined: .*t_d \+ t_sp = 0\.1221\d? \+/- 0\.000\d+ s", text)
         assert "K_p / K_i" not in text
 
 
 def test_parameter_without_a_better_known_combination(sharp, put_by_hand):
     vague = one(found(put_by_hand(sharp, std={"zeta": 0.2})), "zeta")
-    assert vague == "zeta = 0.47 +/- 0.2 is poorly determined by this test."
+    assert vague == "zeta = 0.47 +/- 0.20 is poorly determined by this test."
 
 
 def test_parameter_of_which_nothing_is_known(sharp, put_by_hand):
     assert one(found(put_by_hand(sharp, std={"zeta": np.inf})), "zeta").endswith(
-        "+/- inf is poorly determined by this test."
+        "(not known) is poorly determined by this test."
     )
 
 
@@ -155,7 +155,7 @@ def test_zero_of_the_gauge_is_told_from_two_standard_deviations_on(sharp, share,
     assert bool(told) is said
     if said:
         assert told[0] == (
-            f"gauge zero share = {share:+.2f} +/- {std:.2g} %: the torque gauge has a zero offset, there is constant "
+            f"gauge zero share = {share:.2f} +/- 0.20 %: the torque gauge has a zero offset, there is constant "
             "friction, or the inflow is not zero."
         )
 
@@ -166,12 +166,25 @@ def test_numbers_that_rest_on_priors(sharp):
         BudgetRow(name=name, unit="-", value=1.0, variances={"noise of n": 1.0 - share, "prior of g": share})
         for name, share in (("g", 0.99), ("K_p", 0.6), ("zeta", 0.4), ("gain margin", 0.51))
     )
-    text = one(found(sharp, stated=Budget(sources=("noise of n", "prior of g"), rows=rows)), "K_p (prior of g")
+    text = one(found(sharp, stated=Budget(sources=("noise of n", "prior of g"), rows=rows)), "More than half")
     assert text == (
-        "K_p (prior of g 60 %), gain margin (prior of g 51 %): more than half of the variance comes from the "
-        "priors, the largest part in brackets, not from the noise of this test."
+        "More than half of the variance of K_p (60 %), gain margin (51 %) is not from the noise of this test but from "
+        "what is assumed, most of it the prior g = 0.00 +/- 0.10."
     )
-    assert none(found(sharp, stated=Budget(sources=("noise of n", "prior of g"), rows=rows[2:3])), "priors")
+    assert none(found(sharp, stated=Budget(sources=("noise of n", "prior of g"), rows=rows[2:3])), "More than half")
+
+
+def test_many_numbers_that_rest_on_priors_are_counted(sharp):
+    shares = {"a": 0.51, "b": 0.61, "c": 0.71, "d": 0.81, "e": 0.91}
+    rows = tuple(
+        BudgetRow(name=name, unit="-", value=1.0, variances={"noise of n": 1.0 - share, "gauge scale": share})
+        for name, share in shares.items()
+    )
+    text = one(found(sharp, stated=Budget(sources=("noise of n", "gauge scale"), rows=rows)), "More than half")
+    assert text == (
+        "More than half of the variance of 5 numbers, the largest parts e (91 %), d (81 %), c (71 %), b (61 %), is not "
+        "from the noise of this test but from what is assumed, most of it gauge scale."
+    )
 
 
 def test_the_working_point_and_the_set_point_are_measured(sharp, gauge_fit):

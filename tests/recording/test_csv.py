@@ -97,10 +97,22 @@ def test_hints_settle_what_the_file_leaves_open(tmp_path):
         ("time [s],a [V]\n0,1\n", "expected at least 2 rows of times, found 1"),
         ("time [s],a [V]\n", "expected at least 2 rows of times, found 0"),
         ("time [s],a [V]\n\n\n", "expected at least 2 rows of times, found 0"),
-        ("time [s],a [V]\n0,1\n1,x\n", 'row 2: expected 2 numbers, found "1,x"'),
+        ("time [s],a [V]\n0,1\n1,x\n", r'line 3, column 2 \(a\): expected a number, found "x"'),
         ("time [s],a [V]\nnan,1\nnan,2\n", "expected ascending times, found a step of nan s"),
-        ("time [s],a [V]\n0,1\n1\n", 'row 2: expected 2 numbers, found "1"; is the file cut off'),
-        ("time [s],a [V]\n0,0,1,5\n0,1,2,5\n", "row 1: expected 2 numbers, found 4; is the decimal sign also"),
+        (
+            "time [s],a [V]\n0,1\n1\n",
+            'line 3: expected 2 fields, as many as titles, found 1 in "1"; is the file',
+        ),
+        (
+            "time [s],a [V]\n0,0,1,5\n0,1,2,5\n",
+            'line 2: expected 2 fields, as many as titles, found 4 in "0; 0; 1; 5"; is the file cut off there, or',
+        ),
+        ("time [s],a [V]\n0,1\n0.1,abc\n0.2,3\n", r'line 3, column 2 \(a\): expected a number, found "abc"\.$'),
+        ("time [s],a [V]\n0.0,abc\n0.1,3\n", r'line 2, column 2 \(a\): expected a number, found "abc"\.$'),
+        (
+            "time [s];a [V]\n0,1;abc\n0,2;1,5\n0,3;def\n0,4;1,6\n0,5;1,7\n",
+            r'2 fields or rows cannot be used\.\n  line 2, column 2 .*found "abc"\.\n  line 4, .*found "def"\.$',
+        ),
         ("time [rad],a [V]\n0,1\n1,2\n", 'line 1: expected a column "time \\[s\\]"'),
         ("clock [s],a [V]\n0,1\n1,2\n", 'line 1: expected a column "time \\[s\\]"'),
         ("time [s],a [V],a [V]\n0,1,2\n1,2,3\n", "line 1: expected different names, found a twice"),
@@ -158,7 +170,7 @@ def test_temporary_files_are_deleted(tmp_path, monkeypatch):
     assert list(scratch.iterdir()) == []
     with pytest.raises(RecordingError, match="channel M_s: the recording has been closed already"):
         recording.channel("M_s").read(0, 1)
-    with pytest.raises(RecordingError, match="row 4"):
+    with pytest.raises(RecordingError, match="line 5, column 2"):
         read_recording(_file(tmp_path, POINT + "0.8,x,1\n"))
     assert list(scratch.iterdir()) == []
 

@@ -3,37 +3,51 @@
 import errno
 import importlib
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, ClassVar
 
 import click
 
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._speech import speaking
+from shaftprint.cli._terminal import echo, print_document
 from shaftprint.errors import ShaftprintError
 from shaftprint.escape import terminal_message
+from shaftprint.spelling import meant
 
 # The one-line help of every command, in the order of use. It stands here, and not in the commands only, because
 # asking a command for it would import the command: 2 s instead of 0.06 s. A test holds both against each other.
-COMMANDS = {
-    "demo": "Simulate the Stan Tug 1205 and identify it from its recording.",
-    "new": "Write a commented vessel or campaign file to fill in.",
-    "sail": "Simulate a tug in a campaign and write its raw recording.",
-    "predict": "Predict the accuracy of a planned test.",
-    "inspect": "Show what is in a recording and whether it is good enough.",
-    "merge": "Bring the recordings of two loggers onto the clock of the first.",
-    "join": "Join files that one logger wrote one after the other, in the order given.",
-    "convert": "Write recordings of any readable format as the native container.",
-    "identify": "Identify the fingerprint from a recording.",
-    "compare": "Compare fingerprints: what differs, and whether by more than chance.",
-    "compare-structures": "Compare model structures on a recording: which explains it best, and why.",
-    "validate": "Validate a model on chirps and steps that it was not identified from.",
-    "limits": "Find which limits a line has, and their levels and rates with uncertainty.",
-    "simulate": "Simulate speed and torque for a set point, with limits where the model has them.",
-    "export": "Write the model of a fingerprint for another program.",
-    "explain": "Explain the numbers of the thesis' method on one recording.",
-    "show": "Print a saved fingerprint.",
-    "structures": "List the model structures with their parameters and bounds.",
-    "inertia": "Calculate inertia and torsional modes from the vessel file.",
-    "sensitivity": "Draw the effect of each parameter of a structure on its response.",
+SECTIONS = {
+    "Begin": {
+        "demo": "Simulate the Stan Tug 1205 and identify it from its recording.",
+    },
+    "Plan a test": {
+        "new": "Write a commented vessel or campaign file to fill in.",
+        "predict": "Predict the accuracy of a planned test.",
+        "sensitivity": "Draw the effect of each parameter of a structure on its response.",
+        "inertia": "Calculate inertia and torsional modes from the vessel file.",
+        "sail": "Simulate a tug in a campaign and write its raw recording.",
+    },
+    "Prepare a recording": {
+        "inspect": "Show what is in a recording and whether it is good enough.",
+        "merge": "Bring the recordings of two loggers onto the clock of the first.",
+        "join": "Join files that one logger wrote one after the other, in the order given.",
+        "convert": "Write recordings of any readable format as the native container.",
+    },
+    "Identify": {
+        "identify": "Identify the fingerprint from a recording.",
+        "limits": "Find which limits a line has, and their levels and rates with uncertainty.",
+        "structures": "List the model structures with their parameters and bounds.",
+    },
+    "Judge": {
+        "show": "Print a saved fingerprint.",
+        "compare": "Compare fingerprints: what differs, and whether by more than chance.",
+        "validate": "Validate a model on chirps and steps that it was not identified from.",
+        "compare-structures": "Compare model structures on a recording: which explains it best, and why.",
+        "explain": "Explain the numbers of the thesis' method on one recording.",
+    },
+    "Use the model": {
+        "simulate": "Simulate speed and torque for a set point, with limits where the model has them.",
+        "export": "Write the model of a fingerprint for another program.",
+    },
 }
 
 INTERRUPTED = 130
@@ -42,12 +56,15 @@ INTERRUPTED = 130
 class LazyGroup(click.Group):
     """Commands by name, each in a file of its own; asking for their names or one-line helps imports none."""
 
-    helps: Mapping[str, str]
-    """The one-line help of every command, in the order of use."""
-    folder: str
+    sections: ClassVar[Mapping[str, Mapping[str, str]]]
+    """The one-line help of every command, in the order of use, by what they are for."""
+    folder: ClassVar[str]
     """The package that holds the file of each command."""
-    heading: str = "Commands"
-    """What the list of commands is called."""
+
+    @property
+    def helps(self) -> Mapping[str, str]:
+        """The one-line help of every command, in the order of use."""
+        return {name: line for commands in self.sections.values() for name, line in commands.items()}
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """Return the names in the order of use."""
@@ -59,18 +76,30 @@ class LazyGroup(click.Group):
             return None
         module = importlib.import_module(f"{self.folder}._{cmd_name.replace('-', '_')}")
         command: click.Command = module.command
-        return command
+        return command if isinstance(command, click.Group) else speaking(command)
+
+    def resolve_command(
+        self, ctx: click.Context, args: list[str]
+    ) -> tuple[str | None, click.Command | None, list[str]]:
+        """Find the command; of one that does not exist, say which was probably meant."""
+        try:
+            return super().resolve_command(ctx, args)
+        except click.UsageError as error:
+            advice = meant(args[0], self.helps) or f" The commands are {', '.join(self.helps)}."
+            raise click.UsageError(f"{error.message}{advice}", ctx) from None
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        """List the commands with their help without importing them."""
-        with formatter.section(self.heading):
-            formatter.write_dl(list(self.helps.items()))
+        """List the commands with their help by what they are for, without importing them."""
+        longest = max(map(len, self.helps))
+        for heading, commands in self.sections.items():
+            with formatter.section(heading):
+                formatter.write_dl([(name.ljust(longest), line) for name, line in commands.items()])
 
 
 class CommandGroup(LazyGroup):
     """The commands by name, with one place that turns errors into a sentence and an exit code."""
 
-    helps = COMMANDS
+    sections = SECTIONS
     folder = "shaftprint.cli.commands"
 
     def invoke(self, ctx: click.Context) -> Any:
@@ -82,7 +111,7 @@ class CommandGroup(LazyGroup):
             For an error that the user can mend; click prints it and exits with 1.
         """
         try:
-            return super().invoke(ctx)
+            returned = super().invoke(ctx)
         except ShaftprintError as error:
             raise click.ClickException(terminal_message(str(error))) from error
         except click.ClickException as error:
@@ -96,6 +125,8 @@ class CommandGroup(LazyGroup):
             if error.errno == errno.EPIPE:
                 raise
             raise click.ClickException(terminal_message(_describe(error))) from error
+        print_document()
+        return returned
 
 
 def _describe(error: OSError) -> str:

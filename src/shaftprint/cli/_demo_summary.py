@@ -3,32 +3,38 @@
 from collections.abc import Mapping
 
 from shaftprint.catalogue import ShipRole
-from shaftprint.cli._terminal import echo, on_terminal
+from shaftprint.cli._terminal import print_findings
+from shaftprint.digits import plain_letters, stated, stated_interval, to_digit_of
+from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint import Fingerprint, Quantity
 from shaftprint.identify import Identification
-from shaftprint.tables import interval, rounded, with_deviation
 
 
 def print_summary(fingerprint: Fingerprint, truth: Mapping[str, float], core: Identification) -> None:
     """Print what an engineer wants to know, each with its truth."""
-    echo("What was found")
+    sentences = []
     for name, words in SENTENCES.items():
         quantity = fingerprint.quantity(name)
         unit = "" if quantity.unit == "-" else f" {quantity.unit}"
-        remark = _given(quantity, fingerprint)
-        value = on_terminal(f"{_value(quantity)}{unit}{remark}; true value {rounded(truth[name])}{unit}.")
-        echo(f"  * {words}: {value}")
-    for sentence in _of_the_thesis(fingerprint, core):
-        echo(f"  * {sentence}")
-    echo()
+        true = plain_letters(to_digit_of(truth[name], _shown_std(quantity)))
+        sentences.append(f"{words}: {_value(quantity)}{_given(quantity, fingerprint)}; true value {true}{unit}.")
+    print_findings("What was found", [*sentences, *_of_the_thesis(fingerprint, core)], is_answer=True)
 
 
 def _value(quantity: Quantity) -> str:
     """Return the value with its 95 % interval, or with its standard deviation where there is no interval."""
     if quantity.interval_95 is None:
-        return with_deviation(quantity.value, quantity.std)
+        return stated(quantity.value, quantity.std, quantity.unit)
     lower, upper = quantity.interval_95
-    return f"{rounded(quantity.value)}, 95 % interval {interval(lower, upper, quantity.std)}"
+    return stated_interval(quantity.value, lower, upper, _shown_std(quantity), quantity.unit)
+
+
+def _shown_std(quantity: Quantity) -> float:
+    """Return the standard deviation that the digits follow: that of the interval, where there is one."""
+    if quantity.interval_95 is None:
+        return quantity.std
+    lower, upper = quantity.interval_95
+    return 0.5 * (upper - lower) / NORMAL_95
 
 
 def _given(quantity: Quantity, fingerprint: Fingerprint) -> str:
@@ -36,7 +42,8 @@ def _given(quantity: Quantity, fingerprint: Fingerprint) -> str:
     parameter = fingerprint.multiplied(quantity)
     if parameter is None or parameter.name not in fingerprint.priors or quantity.expected is None:
         return ""
-    return f", with the prior of the vessel file {with_deviation(quantity.expected, quantity.expected_std or 0.0)}"
+    prior = stated(quantity.expected, quantity.expected_std or 0.0, quantity.unit)
+    return f", with the prior of the vessel file {prior}"
 
 
 SENTENCES = {

@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping
 
-from shaftprint.cli._terminal import echo, on_terminal, print_findings
-from shaftprint.cli.output import print_tables
+from shaftprint.cli._terminal import print_findings, say
+from shaftprint.cli.output import give, print_tables
+from shaftprint.digits import stated
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.tables import (
     NO_TRUTH,
@@ -14,7 +15,6 @@ from shaftprint.tables import (
     parameter_table,
     physical_table,
     quantity_table,
-    with_deviation,
 )
 
 
@@ -29,7 +29,10 @@ def print_fingerprint(fingerprint: Fingerprint, *, truth: Mapping[str, float] = 
         True values by the names of parameters, combinations and physical values, where they are known.
     """
     verdict = fingerprint.verdict
-    print_findings(f"Verdict: {'trustworthy' if verdict.trustworthy else 'not trustworthy'}", verdict.sentences)
+    print_findings(
+        f"Verdict: {'trustworthy' if verdict.trustworthy else 'not trustworthy'}", verdict.sentences, is_answer=True
+    )
+    give("fingerprint", fingerprint)
     _print_conditions(fingerprint)
     print_tables(
         [
@@ -47,23 +50,25 @@ def print_fingerprint(fingerprint: Fingerprint, *, truth: Mapping[str, float] = 
 
 def _print_conditions(fingerprint: Fingerprint) -> None:
     conditions = fingerprint.conditions
-    echo(f"{conditions.vessel}; {conditions.campaign}; structure {fingerprint.structure}")
+    say(f"{conditions.vessel}; {conditions.campaign}; structure {fingerprint.structure}")
     for quantity in (conditions.engine_speed, conditions.shaft_torque):
-        value = on_terminal(with_deviation(quantity.value, quantity.std))
-        echo(f"  {quantity.meaning}: {quantity.name} = {value} {quantity.unit}")
-    echo(f"  speed sensor {conditions.speed_channel}; signals prepared in {conditions.mode} mode")
-    echo(f"  lines used: {', '.join(conditions.lines_used)}")
+        value = stated(quantity.value, quantity.std, quantity.unit)
+        say(f"{quantity.meaning}: {quantity.name} = {value}", indent="  ")
+    say(f"speed sensor {conditions.speed_channel}; signals prepared in {conditions.mode} mode", indent="  ")
+    say(f"lines used: {', '.join(conditions.lines_used)}", indent="  ")
     if conditions.lines_left_out:
-        echo(f"  lines left out: {', '.join(conditions.lines_left_out)}")
+        say(f"lines left out: {', '.join(conditions.lines_left_out)}", indent="  ")
     for source in fingerprint.sources:
-        echo(f"  {source.role} {source.name}: SHA-256 {source.sha256[:16]}...")
-    echo(f"  made {fingerprint.created:%Y-%m-%d %H:%M %Z} with shaftprint {fingerprint.shaftprint_version}")
+        say(f"{source.role} {source.name}: SHA-256 {source.sha256[:16]}...", indent="  ")
+    say(f"made {fingerprint.created:%Y-%m-%d %H:%M %Z} with shaftprint {fingerprint.shaftprint_version}", indent="  ")
     priors = {name: (prior.mean, prior.std) for name, prior in fingerprint.priors.items()}
-    print_assumed(priors, fingerprint.held)
+    print_assumed(priors, fingerprint.held, {quantity.name: quantity.unit for quantity in fingerprint.parameters})
 
 
-def print_assumed(priors: Mapping[str, tuple[float, float]], held: Mapping[str, float]) -> None:
+def print_assumed(
+    priors: Mapping[str, tuple[float, float]], held: Mapping[str, float], units: Mapping[str, str]
+) -> None:
     """Print the priors, mean and standard deviation by parameter, and the parameters that are held."""
-    assumed = [f"{name} = {on_terminal(with_deviation(mean, std))}" for name, (mean, std) in priors.items()]
+    assumed = [f"{name} = {stated(mean, std, units.get(name, '-'))}" for name, (mean, std) in priors.items()]
     fixed = [f"{name} = {value:g}" for name, value in held.items()]
-    echo(f"  priors: {', '.join(assumed) or 'none'}; held: {', '.join(fixed) or 'none'}\n")
+    say(f"priors: {', '.join(assumed) or 'none'}; held: {', '.join(fixed) or 'none'}\n", indent="  ")

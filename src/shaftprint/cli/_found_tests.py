@@ -1,7 +1,7 @@
 """Where the tests of a campaign are in the recorded set point, as a table and as lines of a campaign file."""
 
 from shaftprint.campaign import Campaign, Sine
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import echo, say
 from shaftprint.cli.output import print_table
 from shaftprint.errors import SignalError
 from shaftprint.escape import toml_string
@@ -23,11 +23,11 @@ def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign) -> None:
         return
     shift_s = common_shift_s(found)
     if shift_s:
-        echo(f"All tests are found {abs(shift_s):.3f} s {'later' if shift_s > 0.0 else 'earlier'} than planned.\n")
+        say(f"All tests are found {abs(shift_s):.3f} s {'later' if shift_s > 0.0 else 'earlier'} than planned.\n")
     try:
         text = campaign_text(proposed_campaign(found, campaign))
     except SignalError as error:
-        echo(f"No proposal for the campaign file: {error}\n")
+        say(f"No proposal for the campaign file: {error}\n")
         return
     echo("Proposal for the campaign file: these tests in place of those that it has\n")
     for line in text.splitlines():

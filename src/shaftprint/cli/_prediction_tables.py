@@ -5,8 +5,9 @@ from collections.abc import Mapping
 
 from shaftprint.campaign import Campaign
 from shaftprint.cli._fingerprint_tables import print_assumed
-from shaftprint.cli._terminal import echo, print_findings
-from shaftprint.cli.output import print_table
+from shaftprint.cli._terminal import print_findings, say
+from shaftprint.cli.output import give, print_table
+from shaftprint.digits import fine_unit
 from shaftprint.identify.fit import Estimate
 from shaftprint.identify.prediction import Accuracy, Identifiability
 from shaftprint.identify.uncertainty import Interval
@@ -34,35 +35,32 @@ def print_prediction(
         The predicted accuracy with the lines.
     """
     structure = possible.structure
-    echo(f"{campaign.name}; {structure.name}: {structure.title}")
-    _print_conditions(response, noise, accuracy)
-    print_findings("What these outputs can tell at all", possible.sentences)
+    print_findings("What the test will find", accuracy.sentences, is_answer=True)
     print_table(_accuracy_table(possible, accuracy, intervals))
-    print_findings("In words", accuracy.sentences)
+    print_findings("What these outputs can tell at all", possible.sentences)
+    say(f"{campaign.name}; {structure.name}: {structure.title}")
+    _print_conditions(response, noise, accuracy)
+    give("parameters", accuracy.parameters)
+    give("combinations", accuracy.combinations)
+    give("intervals_95", {name: (ends.lower, ends.upper) for name, ends in intervals.items()})
 
 
 def _print_conditions(response: FrequencyResponse, noise: str, accuracy: Accuracy) -> None:
     used = [name for name, is_used in zip(response.lines, response.used, strict=True) if is_used]
-    echo(f"  {noise}")
-    echo(f"  lines used: {', '.join(used)}")
+    say(noise, indent="  ")
+    say(f"lines used: {', '.join(used)}", indent="  ")
     for name, remark in response.remarks.items():
-        echo(f"  {name} not used: {remark}")
+        say(f"{name} not used: {remark}", indent="  ")
     priors = {name: (prior.mean, prior.std) for name, prior in accuracy.priors.items()}
-    print_assumed(priors, {p.name: p.value for p in accuracy.objective.parameters if p.held})
+    held = {p.name: p.value for p in accuracy.objective.parameters if p.held}
+    print_assumed(priors, held, {estimate.name: estimate.unit for estimate in accuracy.parameters})
 
 
 def _accuracy_table(possible: Identifiability, accuracy: Accuracy, intervals: Mapping[str, Interval]) -> Table:
     meanings = {p.name: p.meaning for p in accuracy.objective.parameters}
     meanings |= {c.name: c.meaning for c in (*possible.combinations, *accuracy.objective.combinations)}
     rows = tuple(
-        (
-            Symbol(estimate.name),
-            with_deviation(estimate.value, estimate.std),
-            _percent(estimate),
-            _interval_text(intervals.get(estimate.name), estimate.std),
-            unit_text(estimate.unit),
-            meanings[estimate.name],
-        )
+        (*_accuracy_cells(estimate, intervals.get(estimate.name)), meanings[estimate.name])
         for estimate in (*accuracy.parameters, *accuracy.combinations)
     )
     return Table(
@@ -78,6 +76,18 @@ def _accuracy_table(possible: Identifiability, accuracy: Accuracy, intervals: Ma
     )
 
 
+def _accuracy_cells(estimate: Estimate, ends: Interval | None) -> tuple[str, ...]:
+    limits = () if ends is None else (ends.lower, ends.upper)
+    factor, unit = fine_unit(estimate.unit, estimate.value, estimate.std, *limits)
+    return (
+        Symbol(estimate.name),
+        with_deviation(factor * estimate.value, factor * estimate.std),
+        _percent(estimate),
+        "" if ends is None else _interval_text(ends, factor, factor * estimate.std),
+        unit_text(unit),
+    )
+
+
 def _percent(estimate: Estimate) -> str:
     if not math.isfinite(estimate.std) or estimate.value == 0.0:
         return ""
@@ -85,9 +95,7 @@ def _percent(estimate: Estimate) -> str:
     return f"{percent:.0f}" if percent >= 100.0 else f"{percent:.2g}"
 
 
-def _interval_text(ends: Interval | None, std: float) -> str:
+def _interval_text(ends: Interval, factor: float, std: float) -> str:
     """Return a profile interval; an end that only a bound of the search sets is marked."""
-    if ends is None:
-        return ""
-    lower, _, upper = interval(ends.lower, ends.upper, std).partition(" to ")
+    lower, _, upper = interval(factor * ends.lower, factor * ends.upper, std).partition(" to ")
     return f"{lower}{'*' * ends.lower_open} to {upper}{'*' * ends.upper_open}"

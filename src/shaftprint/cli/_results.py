@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from shaftprint.cli._terminal import echo, print_findings
-from shaftprint.cli.output import FINGERPRINT, REPORT, Steps, print_tables
+from shaftprint.cli.output import FINGERPRINT, REPORT, Steps, give, print_tables
 from shaftprint.fingerprint import Fingerprint, write_fingerprint
 from shaftprint.identify.comparison import StructureComparison
 from shaftprint.recording import read_recording
@@ -72,7 +72,8 @@ def _line_selection(survey: Survey) -> dict[str, FrequencyResponse]:
     return selection
 
 
-def print_comparison(comparison: StructureComparison) -> None:
+def print_comparison(comparison: StructureComparison, *, is_answer: bool = False) -> None:
     """Print which structure the data want and why, and the criteria and tests of all."""
-    print_findings(f"Which structure: {comparison.best.name}", comparison.sentences)
+    print_findings(f"Which structure: {comparison.best.name}", comparison.sentences, is_answer=is_answer)
+    give("criteria", {candidate.name: candidate.criteria for candidate in comparison.candidates})
     print_tables(structure_tables(comparison))

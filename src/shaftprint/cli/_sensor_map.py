@@ -15,6 +15,8 @@ _TORQUE = re.compile(r"torque|m_s\b|\bms\b|koppel|drehmoment|strain", re.IGNOREC
 _PULSES = re.compile(r"ptm|pulse|tacho|pick|rpm|speed|\bn_?e", re.IGNORECASE)
 _ENGINE = re.compile(r"eng|motor|_e\b|crank|flywheel", re.IGNORECASE)
 
+# Torque for one unit of a channel that is a torque already [N m].
+_SCALES = {"N m": 1.0, "kN m": 1000.0}
 _FIELDS = {
     "speed": (
         'name = "{name}"',
@@ -100,9 +102,9 @@ def _use(item: Seen) -> Use | None:
         return "ship_speed"
     if _SET_POINT.search(name) and unit == "V":
         return "set_point"
-    if _TORQUE.search(name) and unit in ("V", "N m") and not item.is_pulses:
+    if _TORQUE.search(name) and unit in ("V", *_SCALES) and not item.is_pulses:
         return "shaft_torque"
-    if unit == "N m":
+    if unit in _SCALES:
         return "shaft_torque"
     if item.is_pulses and unit in ("V", "") and (_PULSES.search(name) or unit == "V"):
         return "speed"
@@ -110,14 +112,13 @@ def _use(item: Seen) -> Use | None:
 
 
 def _values(channel: Channel, speeds: int) -> dict[str, object]:
-    is_torque = channel.unit == "N m"
     return {
         "channel": toml_string(channel.name),
         "unit": toml_string(channel.unit),
         "name": f"n_{speeds}",
         "shaft": "engine" if _ENGINE.search(channel.name) else "propeller",
         "cycle": 1.0 / channel.rate_hz,
-        "scale": "scale_nm_per_unit = 1.0"
-        if is_torque
+        "scale": f"scale_nm_per_unit = {_SCALES[channel.unit]}"
+        if channel.unit in _SCALES
         else "# scale_nm_per_unit =            # torque for one volt, from the calibration [N m/V]",
     }

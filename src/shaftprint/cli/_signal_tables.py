@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from shaftprint.cli._terminal import echo, on_terminal
+from shaftprint.cli._terminal import echo, say
 from shaftprint.cli.output import print_table, print_tables
+from shaftprint.digits import plain_letters
 from shaftprint.signals import Signals
 from shaftprint.spectra import Spectra
 from shaftprint.tables import (
@@ -31,7 +32,7 @@ def print_lines(spectra: Spectra) -> None:
     print_table(local_ratio_table(spectra))
     print_table(overall_ratio_table(spectra))
     for line, remark in spectra.remarks.items():
-        echo(f"  {line}: {remark}")
+        say(f"{line}: {remark}", indent="  ")
     if spectra.remarks:
         echo()
 
@@ -50,4 +51,4 @@ def _print_steady_state(signals: Signals) -> None:
         f"set-point line from {line.level_v.size} levels: n_set = ({slope}) rpm/V U + ({intercept}) rpm",
         f"scale that makes n / n_set go to 1: {scale}\n",
     ):
-        echo(f"  {on_terminal(sentence)}")
+        say(plain_letters(sentence), indent="  ")

@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.cli._simulated_model import SimulatedModel
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import say
 from shaftprint.cli.output import print_table
 from shaftprint.report import SimulatedSignal
 from shaftprint.tables import MEANING, Table, numbers, rounded, texts, unit_text, with_deviation
@@ -58,12 +58,12 @@ def print_simulation(
         )
     )
     if model.uncertain:
-        echo("The standard deviations hold the covariance of the parameters, not noise, weather or load.")
+        say("The standard deviations hold the covariance of the parameters, not noise, weather or load.")
     if model.not_known:
         pronoun = "it" if len(model.not_known) == 1 else "them"
-        echo(f"The test said nothing of {', '.join(model.not_known)}: the band leaves {pronoun} out.")
+        say(f"The test said nothing of {', '.join(model.not_known)}: the band leaves {pronoun} out.")
     for sentence in warnings:
-        echo(sentence)
+        say(sentence)
 
 
 def _value(value: float, std: float | None) -> str:

@@ -1,24 +1,80 @@
-"""The gate to the terminal: whatever a command prints goes through here, and no text out of a file moves the cursor."""
+"""The gate to the terminal: whatever a command prints goes through here, and no text out of a file moves the cursor.
 
+What is printed is an answer, sentences under a title, a table, or a line as it is. With ``--json`` the same become one
+document on the standard output; with ``--quiet`` only the answer is printed.
+"""
+
+import json
+import os
+import shutil
+import sys
+import textwrap
 from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
 
 import click
 
-from shaftprint.escape import terminal_line
+from shaftprint.escape import printable, terminal_line
 
-# Letters of tables and sentences that a terminal's code page may lack.
-_PLAIN = str.maketrans(
-    {"−": "-", "±": "+/-", "°": " deg", "–": "-", "∞": "inf", "\u202f": "", "²": "2", "·": " ", "“": '"', "”": '"'}
-)
+WIDTH_OF_PROSE, WIDTH_OF_TABLES = 100, 200
+"""Width of sentences and of tables that go into a file or a pipe; a terminal has its own [letters]."""
+NARROWEST = 40
+_KEY = "shaftprint.output"
 
 
-def on_terminal(text: str) -> str:
-    """Return a text of a table or of the report with letters that every terminal has."""
-    return text.replace("s⁻¹", "1/s").translate(_PLAIN)
+@dataclass(kw_only=True, slots=True)
+class Document:
+    """What a command has to say, as the members of one JSON object."""
+
+    command: str
+    """Name of the command."""
+    answer: list[str] = field(default_factory=list)
+    """The answer, in sentences."""
+    findings: list[dict[str, Any]] = field(default_factory=list)
+    """Titles with their sentences."""
+    tables: list[dict[str, Any]] = field(default_factory=list)
+    """Tables as they are printed."""
+    lines: list[str] = field(default_factory=list)
+    """Other lines."""
+    result: dict[str, Any] = field(default_factory=dict)
+    """Nouns with all digits, by name."""
+
+
+@dataclass(kw_only=True, slots=True)
+class Output:
+    """How a command speaks."""
+
+    quiet: bool = False
+    """Whether only the answer is printed, and no progress."""
+    verbose: bool = False
+    """Whether each step of long work is named with its time, without a terminal too."""
+    document: Document | None = None
+    """Where everything goes instead of the terminal; None without ``--json``."""
+
+
+def output() -> Output:
+    """Return how the command that runs speaks."""
+    context = click.get_current_context(silent=True)
+    if context is None:
+        return Output()
+    chosen: Output = context.meta.setdefault(_KEY, Output())
+    return chosen
+
+
+def width(*, without_terminal: int) -> int:
+    """Return how many letters a line may have: COLUMNS where it is set, else the terminal's, else the number given."""
+    stated = os.environ.get("COLUMNS", "")
+    if stated.isdecimal() and int(stated) > 0:
+        return max(int(stated), NARROWEST)
+    if not sys.stdout.isatty():
+        return without_terminal
+    return max(shutil.get_terminal_size((without_terminal, 24)).columns, NARROWEST)
 
 
 def echo(line: object = "", *, err: bool = False) -> None:
-    """Print one line.
+    """Print one line as it is.
 
     Parameters
     ----------
@@ -27,12 +83,80 @@ def echo(line: object = "", *, err: bool = False) -> None:
     err
         Whether it goes to the error output.
     """
-    click.echo(terminal_line(str(line)), err=err)
+    chosen = output()
+    text = terminal_line(str(line))
+    if err:
+        click.echo(text, err=True)
+    elif chosen.document is not None:
+        chosen.document.lines += [text.strip()] if text.strip() else []
+    elif not chosen.quiet:
+        click.echo(text)
 
 
-def print_findings(title: str, findings: Sequence[str]) -> None:
-    """Print findings in words, one a line, under a title."""
-    echo(title)
+def say(sentence: str, *, indent: str = "") -> None:
+    """Print prose, wrapped between words; line breaks at its end leave empty lines."""
+    chosen = output()
+    if chosen.document is not None:
+        chosen.document.lines.append(printable(sentence.strip()))
+    elif not chosen.quiet:
+        click.echo(_wrapped(sentence, indent, indent) + "\n" * (len(sentence) - len(sentence.rstrip("\n"))))
+
+
+def answer(text: str | Path) -> None:
+    """Print what the user has asked for, with ``--quiet`` too: a sentence, which is wrapped, or a path as it is."""
+    chosen = output()
+    if chosen.document is not None:
+        chosen.document.answer.append(printable(str(text)))
+    else:
+        click.echo(_wrapped(text, "", "") if isinstance(text, str) else terminal_line(str(text)))
+
+
+def print_findings(title: str, findings: Sequence[str], *, is_answer: bool = False) -> None:
+    """Print findings in words, one a line, under a title.
+
+    Parameters
+    ----------
+    title, findings
+        What they are on, and they.
+    is_answer
+        Whether they are what the user has asked for: then they are printed with ``--quiet`` too.
+    """
+    chosen = output()
+    if chosen.document is not None:
+        sentences = [printable(finding) for finding in findings]
+        if is_answer:
+            chosen.document.answer += [printable(title), *sentences]
+        else:
+            chosen.document.findings.append({"title": printable(title), "sentences": sentences})
+        return
+    if chosen.quiet and not is_answer:
+        return
+    click.echo(_wrapped(title, "", ""))
     for finding in findings or ("None.",):
-        echo(f"  * {finding}")
-    echo()
+        click.echo(_wrapped(finding, "  * ", "    "))
+    click.echo()
+
+
+def print_lines_of_table(title: str, lines: Sequence[str]) -> None:
+    """Print a table that is laid out already, its title in bold on a terminal."""
+    for line in (click.style(printable(title), bold=True), "", *map(printable, lines), ""):
+        click.echo(line)
+
+
+def print_document() -> None:
+    """Print the JSON object of a command that has ended, where it was asked for."""
+    document = output().document
+    if document is not None:
+        click.echo(json.dumps(asdict(document), ensure_ascii=True, allow_nan=False, indent=1))
+
+
+def _wrapped(text: str, first: str, following: str) -> str:
+    lines = textwrap.wrap(
+        printable(text.rstrip("\n")),
+        width(without_terminal=WIDTH_OF_PROSE),
+        initial_indent=first,
+        subsequent_indent=following,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+    return "\n".join(lines)

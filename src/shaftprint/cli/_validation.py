@@ -7,21 +7,20 @@ import numpy as np
 
 from shaftprint.arrays import frozen_float
 from shaftprint.cli._terminal import print_findings
-from shaftprint.cli.output import Steps, print_tables
+from shaftprint.cli.output import Steps, give, print_tables
 from shaftprint.errors import FingerprintError
 from shaftprint.escape import plain_name
 from shaftprint.fingerprint import Fingerprint, identified_model
 from shaftprint.models import Structure
 from shaftprint.report import plot_validation, plot_validation_summary, save_figure
 from shaftprint.signals import Signals
-from shaftprint.tables import misfit_table, step_number_table
+from shaftprint.tables import excerpt_name, misfit_table, step_number_table
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.validation import ExcerptComparison, Model, Validation
 
 # As the thesis shares its sets between the parts (a) and (b) of figures 5.7 to 5.9.
 GROUPS = {"a": ("CL4", "OL1+OL5", "benchmark"), "b": ("CL3", "OL1+OL4", "benchmark")}
 AROUND_STEP_S = (0.5, 4.0)
-WORDS = {"passes": "passes", "fails": "fails", "undecided": "does not fail; noise hides part of it"}
 
 
 def write_validations(folder: Path, validations: Sequence[Validation], *, steps: Steps) -> None:
@@ -118,6 +117,7 @@ def fingerprint_model(fingerprint: Fingerprint, structure: Structure, signals: S
 
 def print_validation(validation: Validation) -> None:
     """Print the verdict, every excerpt, the numbers of every step, and how it was found."""
-    print_findings(f"Validation: {WORDS[validation.outcome]}", validation.sentences)
+    give("misfits", {excerpt_name(c): c.misfits for c in validation.comparisons})
+    print_findings(f"Validation: {validation.headline}", validation.sentences, is_answer=True)
     print_tables([misfit_table(validation), step_number_table(validation)])
     print_findings("How this was found", validation.findings)

@@ -3,6 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from shaftprint.digits import interval, plain_letters, to_digit_of
+from shaftprint.distributions import NORMAL_95
 from shaftprint.export._fmu_signals import FmuSignal, fmu_signal
 from shaftprint.export._model import ExportedModel
 from shaftprint.models import Parameter
@@ -43,5 +45,7 @@ def known_text(model: ExportedModel, name: str) -> str:
         return "; not known from the test"
     if name in model.intervals:
         lower, upper = model.intervals[name]
-        return f"; 95 % interval {lower:.3g} to {upper:.3g}"
-    return f"; standard deviation {model.std[name]:.3g}" if name in model.std else ""
+        return f"; 95 % interval {plain_letters(interval(lower, upper, 0.5 * (upper - lower) / NORMAL_95))}"
+    if name not in model.std:
+        return ""
+    return f"; standard deviation {plain_letters(to_digit_of(model.std[name], model.std[name]))}"

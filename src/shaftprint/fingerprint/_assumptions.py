@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from shaftprint.catalogue import ShipRole
+from shaftprint.digits import stated
 
 if TYPE_CHECKING:
     from shaftprint.identify import Identification
@@ -30,7 +31,7 @@ def _assumptions(identification: "Identification", vessel: "Vessel") -> Iterator
     if by_role.get(ShipRole.INERTIA_UPSTREAM) in identification.settings.priors:
         yield (
             "Gains, margins and the parts of the delay rest on the inertia upstream of the gauge, "
-            f"{vessel.inertia_upstream_kg_m2:.4g} +/- {vessel.inertia_upstream_std_kg_m2:.2g} kg m2, and on an engine "
+            f"{stated(vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2, 'kg m2')}, and on an engine "
             "torque that hardly changes with speed (g)."
         )
     scale = sensors.shaft_torque.scale_std

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from shaftprint.digits import p_value_text, plain_letters, stated, stated_interval
+from shaftprint.distributions import NORMAL_95
 from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._working_point_share import LOAD_WANDER
@@ -22,6 +24,9 @@ SURPRISING = 3.0
 OFF_ZERO = 2.0
 # A number rests on priors when more than this share of its variance is from there.
 MOSTLY = 0.5
+# So many of them are named in a sentence.
+MOST_NAMED = 4
+PRIOR_OF = "prior of "
 # What the test itself measures: sources whose names begin so.
 MEASURED = ("noise of ", "working-point ", LOAD_WANDER)
 PERCENT = 100.0
@@ -35,7 +40,7 @@ WHY = {
 def findings_of(
     identification: Identification,
     physical: tuple[Quantity, ...],
-    stated: Budget,
+    uncertainty: Budget,
     left_out: dict[str, str],
     profile: Profile | None = None,
 ) -> tuple[str, ...]:
@@ -49,7 +54,7 @@ def findings_of(
         *_bounds(identification),
         *_search(identification),
         *_poorly_determined(identification, profile),
-        *_resting_on_priors(identification, stated),
+        *_resting_on_priors(identification, uncertainty),
         *_gauge_zero(physical),
         *_against_expected(physical),
         *(f"Line {name} is left out: {reason}." for name, reason in left_out.items()),
@@ -79,7 +84,7 @@ def _misfit(identification: Identification) -> list[str]:
     return [
         "The structure does not explain the data within their noise: chi-square is "
         f"{identification.chi_square:.0f} for {identification.degrees_of_freedom} degrees of freedom (p = "
-        f"{chance:.2g}); the standard deviations are too small for it."
+        f"{plain_letters(p_value_text(chance))}); the standard deviations are too small for it."
     ]
 
 
@@ -106,9 +111,9 @@ def _poorly_determined(identification: Identification, profile: Profile | None) 
     for estimate in identification.parameters:
         if estimate.name not in doubts or estimate.name in identification.settings.priors or estimate.at_bound:
             continue
-        text = f"{estimate.name} = {_written(estimate)} is poorly determined by this test"
+        text = f"{estimate.name} = {_written(estimate, profile)} is poorly determined by this test"
         better = [c for c in identification.combinations if _is_better(c, estimate, identification)]
-        precise = ", ".join(f"{c.name} = {_written(c)}" for c in better)
+        precise = ", ".join(f"{c.name} = {_written(c, profile)}" for c in better)
         findings.append(text + (f"; better determined: {precise}." if better else "."))
     return findings
 
@@ -127,21 +132,37 @@ def _is_better(combination: Estimate, estimate: Estimate, identification: Identi
     return share < BETTER_KNOWN * estimate.std / max(abs(estimate.value), 1e-300)
 
 
-def _resting_on_priors(identification: Identification, stated: Budget) -> list[str]:
-    """Return which numbers more or better lines would hardly improve: their variance is not that of this test."""
-    assumed = [name for name in stated.sources if not name.startswith(MEASURED) and name not in _common(identification)]
-    resting = []
-    for row in stated.rows:
+def _resting_on_priors(identification: Identification, budget: Budget) -> list[str]:
+    """Return which numbers more or better lines would hardly improve, by the assumption that most of them rest on."""
+    assumed = [name for name in budget.sources if not name.startswith(MEASURED) and name not in _common(identification)]
+    resting: dict[str, dict[str, float]] = {}
+    for row in budget.rows:
         shares = {source: row.shares.get(source, 0.0) for source in assumed}
         if row.name not in identification.settings.priors and sum(shares.values()) > MOSTLY:
             largest = max(shares, key=lambda source: shares[source])
-            resting.append(f"{row.name} ({largest} {PERCENT * shares[largest]:.0f} %)")
-    if not resting:
-        return []
+            resting.setdefault(largest, {})[row.name] = shares[largest]
     return [
-        f"{', '.join(resting)}: more than half of the variance comes from the priors, the largest part in brackets, "
-        "not from the noise of this test."
+        f"More than half of the variance of {_numbers_resting(shares)} is not from the noise of this test but from "
+        f"what is assumed, most of it {_assumption(source, identification)}."
+        for source, shares in sorted(resting.items(), key=lambda item: -len(item[1]))
     ]
+
+
+def _numbers_resting(shares: dict[str, float]) -> str:
+    """Return a few numbers with their shares; many are counted, the budget has them all."""
+    largest = sorted(shares, key=lambda name: -shares[name])
+    named = ", ".join(f"{name} ({PERCENT * shares[name]:.0f} %)" for name in largest[:MOST_NAMED])
+    return named if len(shares) <= MOST_NAMED else f"{len(shares)} numbers, the largest parts {named},"
+
+
+def _assumption(source: str, identification: Identification) -> str:
+    """Return a source of the budget, that of a prior with its numbers."""
+    name = source.removeprefix(PRIOR_OF)
+    prior = identification.settings.priors.get(name)
+    if prior is None or not source.startswith(PRIOR_OF):
+        return source
+    units = {parameter.name: parameter.unit for parameter in identification.structure.parameters}
+    return f"the prior {name} = {stated(prior.mean, prior.std, units[name])}"
 
 
 def _common(identification: Identification) -> set[str]:
@@ -150,7 +171,7 @@ def _common(identification: Identification) -> set[str]:
 
 def _gauge_zero(physical: tuple[Quantity, ...]) -> list[str]:
     return [
-        f"{q.name} = {q.value:+.2f} +/- {q.std:.2g} %: the torque gauge has a zero offset, there is constant friction, "
+        f"{q.name} = {stated(q.value, q.std, q.unit)}: the torque gauge has a zero offset, there is constant friction, "
         "or the inflow is not zero."
         for q in physical
         if q.name == GAUGE_ZERO and abs(q.value) > OFF_ZERO * q.std
@@ -174,8 +195,13 @@ def _against_expected(physical: tuple[Quantity, ...]) -> list[str]:
     return findings
 
 
-def _written(estimate: Estimate) -> str:
-    return f"{estimate.value:.4g} +/- {estimate.std:.2g}{_unit(estimate)}"
+def _written(estimate: Estimate, profile: Profile | None) -> str:
+    """Return a number with its profile interval, or with its standard deviation where there is none."""
+    ends = None if profile is None else profile.intervals.get(estimate.name)
+    if ends is None:
+        return stated(estimate.value, estimate.std, estimate.unit)
+    std = 0.5 * (ends.upper - ends.lower) / NORMAL_95
+    return stated_interval(estimate.value, ends.lower, ends.upper, std, estimate.unit)
 
 
 def _unit(number: Estimate | Quantity) -> str:

@@ -8,7 +8,7 @@ from pydantic import ValidationError
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import FingerprintError, ShaftprintError
-from shaftprint.files import written_whole
+from shaftprint.files import reason, written_whole
 from shaftprint.fingerprint._earlier_files import with_roles
 from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
 from shaftprint.publication import complete
@@ -27,7 +27,7 @@ def write_fingerprint(fingerprint: Fingerprint, path: str | Path) -> None:
         with written_whole(json_path, overwrite=True) as part:
             part.write_bytes(_content(fingerprint))
     except OSError as error:
-        raise FingerprintError(f"{json_path}: the fingerprint cannot be written: {error}.") from None
+        raise FingerprintError(f"{json_path}: the fingerprint cannot be written: {reason(error)}.") from None
 
 
 def fingerprint_sha256(fingerprint: Fingerprint) -> str:
@@ -76,9 +76,14 @@ def _fingerprint_text(json_path: Path) -> str:
     try:
         text = json_path.read_text(encoding="utf-8")
         content = json.loads(text)
+    except FileNotFoundError:
+        raise FingerprintError(
+            f"{json_path}: expected a fingerprint in JSON, found nothing there; name the file, or the folder in which "
+            "identify or demo has put it."
+        ) from None
     except OSError as error:
         raise FingerprintError(
-            f"{json_path}: expected a fingerprint in JSON, but it cannot be read: {error}."
+            f"{json_path}: expected a fingerprint in JSON, but it cannot be read: {reason(error)}."
         ) from None
     except (ValueError, RecursionError) as error:
         raise FingerprintError(f"{json_path}: expected a fingerprint in JSON, found something else: {error}.") from None

@@ -5,7 +5,8 @@ from pathlib import Path
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import RecordingError
-from shaftprint.escape import printable
+from shaftprint.escape import terminal_message
+from shaftprint.files import reason
 from shaftprint.publication import complete
 from shaftprint.recording._recording import Recording
 from shaftprint.recording.readers import READERS, Reader, read_outside
@@ -43,10 +44,10 @@ def read_recording(path: str | Path, *, readers: Sequence[Reader] = READERS, **h
         outside = read_outside(path, **hints) if readers is READERS else None
         return outside or _the_reader(path, readers).read(path, **hints)
     except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be read ({error}).") from None
+        raise RecordingError(f"{path}: the file cannot be read: {reason(error)}.") from None
     except RecordingError as error:
         # what is quoted from a damaged file may hold anything
-        raise RecordingError(printable(str(error))) from error.__cause__
+        raise RecordingError(terminal_message(str(error))) from error.__cause__
 
 
 def _the_reader(path: Path, readers: Sequence[Reader]) -> Reader:

@@ -14,6 +14,7 @@ Every ``*_table`` function returns a ``Table`` of plain text. Who prints it esca
 its letters (±, a true minus sign, a narrow space between thousands) into those that the place has.
 """
 
+from shaftprint.digits import decimals_of, interval, p_value_text, plain, rounded, unit_text, with_deviation
 from shaftprint.tables._fingerprint import (
     NO_TRUTH,
     budget_table,
@@ -35,7 +36,6 @@ from shaftprint.tables._inertia import (
     two_mass_sentence,
     water_table,
 )
-from shaftprint.tables._numbers import decimals_of, interval, p_value_text, plain, rounded, unit_text, with_deviation
 from shaftprint.tables._recording import clock_deviations, clock_map_table, clock_table, level_table
 from shaftprint.tables._signals import (
     calibration_table,

@@ -4,14 +4,14 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from shaftprint.digits import fine_unit, interval, p_value_text, plain, rounded, to_digit_of, unit_text, with_deviation
 from shaftprint.distributions import NORMAL_95
-from shaftprint.tables._numbers import decimals_of, interval, p_value_text, plain, rounded, unit_text, with_deviation
 from shaftprint.tables._table import MEANING, Column, Symbol, Table, numbers, texts
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quality, Quantity
     from shaftprint.identify import Identification
-    from shaftprint.identify.uncertainty import Budget
+    from shaftprint.identify.uncertainty import Budget, BudgetRow
 
 PERCENT = 100.0
 # A share that is printed as 0 % says as much.
@@ -78,25 +78,42 @@ def quantity_table(
     columns = (*texts("quantity"), *numbers("value ± std", "95 % interval"))
     columns += (*numbers("truth"), *texts("truth within")) * has_truth
     columns += numbers("vessel file", "difference") * has_expected
-    rows = tuple(
-        (
-            Symbol(quantity.name),
-            _value_text(quantity) + (" (at its bound)" if quantity.at_bound else ""),
-            _interval_text(quantity),
-            *_truth_cells(quantity, truth) * has_truth,
-            *(expected_text(quantity), _difference(quantity)) * has_expected,
-            unit_text(quantity.unit),
-            quantity.meaning,
-        )
-        for quantity in quantities
-    )
-    return Table(title=title, columns=(*columns, *texts("unit"), MEANING), rows=rows, note=note)
+    rows = []
+    for quantity in quantities:
+        factor, unit = fine_unit(quantity.unit, quantity.value, *_ends(quantity))
+        cells: tuple[str, ...] = (Symbol(quantity.name), value_text(quantity, factor), _interval_text(quantity, factor))
+        cells += _truth_cells(quantity, truth, factor) * has_truth
+        cells += (expected_text(quantity, factor), _difference(quantity)) * has_expected
+        rows.append((*cells, unit_text(unit), quantity.meaning))
+    return Table(title=title, columns=(*columns, *texts("unit"), MEANING), rows=tuple(rows), note=note)
 
 
-def _value_text(quantity: "Quantity") -> str:
-    """Return value and standard deviation; the value alone where only its interval tells how well it is known."""
+def value_text(quantity: "Quantity", factor: float = 1.0) -> str:
+    """Return value and standard deviation; the value alone where only its interval tells how well it is known.
+
+    Parameters
+    ----------
+    factor
+        What the number is multiplied by for its unit.
+    """
     std = quantity.stated_std
-    return rounded(quantity.value) if std is None else with_deviation(quantity.value, std)
+    if std is None:
+        text = to_digit_of(factor * quantity.value, factor * _std_of_digits(quantity))
+        return text + " (at its bound)" * quantity.at_bound
+    return with_deviation(factor * quantity.value, factor * std)
+
+
+def _std_of_digits(quantity: "Quantity") -> float:
+    """Return the standard deviation that sets the digits of a number: the one shown, or that of its interval."""
+    if quantity.stated_std is not None or quantity.interval_95 is None:
+        return quantity.std
+    lower, upper = quantity.interval_95
+    width = 0.5 * (upper - lower) / NORMAL_95
+    return width if math.isfinite(width) and width > 0.0 else quantity.std
+
+
+def _ends(quantity: "Quantity") -> tuple[float, ...]:
+    return (quantity.std,) if quantity.interval_95 is None else quantity.interval_95
 
 
 def limits(quantity: "Quantity") -> tuple[float, float]:
@@ -106,31 +123,37 @@ def limits(quantity: "Quantity") -> tuple[float, float]:
     return quantity.value - NORMAL_95 * quantity.std, quantity.value + NORMAL_95 * quantity.std
 
 
-def _interval_text(quantity: "Quantity") -> str:
+def _interval_text(quantity: "Quantity", factor: float) -> str:
     lower, upper = limits(quantity)
     if not (math.isfinite(lower) and math.isfinite(upper)):
         return "not known"
-    text = interval(lower, upper, quantity.std)
+    text = interval(factor * lower, factor * upper, factor * _std_of_digits(quantity))
     open_low, open_high = quantity.interval_open
     if open_low:
         text = text.replace(" to ", "* to ", 1)
     return f"{text}*" if open_high else text
 
 
-def _truth_cells(quantity: "Quantity", truth: Mapping[str, float]) -> tuple[str, str]:
+def _truth_cells(quantity: "Quantity", truth: Mapping[str, float], factor: float) -> tuple[str, str]:
     true = truth.get(quantity.name, math.nan)
     lower, upper = limits(quantity)
     inside = "–" if math.isnan(true) else "yes" if lower <= true <= upper else "no"
-    return plain(true, decimals_of(true, quantity.std)), inside
+    return to_digit_of(factor * true, factor * _std_of_digits(quantity)), inside
 
 
-def expected_text(quantity: "Quantity") -> str:
-    """Return the value of the vessel file with its standard deviation, where there are such."""
+def expected_text(quantity: "Quantity", factor: float = 1.0) -> str:
+    """Return the value of the vessel file with its standard deviation, where there are such.
+
+    Parameters
+    ----------
+    factor
+        What the number is multiplied by for its unit.
+    """
     if quantity.expected is None:
         return "–"
     if not quantity.expected_std:
-        return rounded(quantity.expected)
-    return with_deviation(quantity.expected, quantity.expected_std)
+        return rounded(factor * quantity.expected)
+    return with_deviation(factor * quantity.expected, factor * quantity.expected_std)
 
 
 def _difference(quantity: "Quantity") -> str:
@@ -152,22 +175,28 @@ def truth_of_combinations(identification: "Identification", truth: Mapping[str, 
 
 def budget_table(budget: "Budget") -> Table:
     """Return standard deviation and shares of all sources for every number whose uncertainty is known."""
+    shown = [row for row in budget.rows if row.shares]
+    sources = [
+        source
+        for source in budget.sources
+        if any(abs(PERCENT * row.shares.get(source, 0.0)) >= SMALLEST_PERCENT for row in shown)
+    ]
     rows = tuple(
-        (
-            Symbol(row.name),
-            f"{plain(row.std, decimals_of(row.value, row.std))} {unit_text(row.unit)}".strip(),
-            *(_share(PERCENT * row.shares.get(source, 0.0)) for source in budget.sources),
-        )
-        for row in budget.rows
-        if row.shares
+        (Symbol(row.name), _one_std(row), *(_share(PERCENT * row.shares.get(source, 0.0)) for source in sources))
+        for row in shown
     )
-    sources = (Column(Symbol(source), number=True) for source in budget.sources)
+    headings = (Column(Symbol(source), number=True) for source in sources)
     return Table(
         title="Uncertainty budget",
-        columns=(*texts("quantity"), *numbers("one std"), *sources),
+        columns=(*texts("quantity"), *numbers("one std"), *headings),
         rows=rows,
         note=BUDGET_NOTE,
     )
+
+
+def _one_std(row: "BudgetRow") -> str:
+    factor, unit = fine_unit(row.unit, row.value, row.std)
+    return f"{to_digit_of(factor * row.std, factor * row.std)} {unit_text(unit)}".strip()
 
 
 def _share(percent: float) -> str:

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.tables._numbers import plain, rounded, unit_text, with_deviation
+from shaftprint.digits import plain, rounded, unit_text, with_deviation
 from shaftprint.tables._table import Table, numbers, texts
 
 if TYPE_CHECKING:
@@ -16,8 +16,6 @@ PERCENT = 100.0
 SMALL_SHARE = 0.01
 ASSUMED = "assumed"
 SHOWN_MODES = 6
-# Sums of a table are exact, whatever its rows are worth: with these decimals they can be checked by hand.
-DECIMALS = 3
 
 
 def mass_table(vessel: "Vessel") -> Table:
@@ -56,7 +54,7 @@ def expected_inertia_table(expected: "ExpectedInertia", beside: "Sequence[Inerti
     rows = tuple(
         (
             item.name,
-            f"{plain(item.value, DECIMALS)} ± {rounded(item.std, 2)}",
+            with_deviation(item.value, item.std),
             *(_identified(identified.get(item.name)) * bool(identified)),
             unit_text(item.unit),
             item.meaning,

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.tables._numbers import plain, rounded, with_deviation
+from shaftprint.digits import plain, rounded, with_deviation
 from shaftprint.tables._table import Table, numbers, texts
 from shaftprint.units import MILLI, PPM
 

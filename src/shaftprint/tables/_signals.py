@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.tables._numbers import plain, with_deviation
+from shaftprint.digits import plain, with_deviation
 from shaftprint.tables._table import Column, Symbol, Table, numbers, texts
 from shaftprint.units import MILLI, SECONDS_PER_MINUTE
 

@@ -3,12 +3,13 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.tables._numbers import p_value_text, plain, rounded, with_deviation
+from shaftprint.digits import p_value_text, plain, rounded, with_deviation
 from shaftprint.tables._table import Table, numbers, texts
 
 if TYPE_CHECKING:
     from shaftprint.identify import Identification
     from shaftprint.identify.comparison import Candidate, LikelihoodRatio, StructureComparison
+    from shaftprint.identify.fit import Estimate
 
 PERCENT = 100.0
 HOLD_OUT_NOTE = (
@@ -94,6 +95,12 @@ def fits_table(title: str, identifications: "Sequence[Identification]") -> Table
     )
 
 
+def _estimate_text(estimate: "Estimate") -> str:
+    if estimate.at_bound:
+        return f"{estimate.name} {rounded(estimate.value)} (at its bound)"
+    return f"{estimate.name} {with_deviation(estimate.value, estimate.std)}"
+
+
 def _fit_row(fit: "Identification") -> tuple[str, ...]:
     return (
         fit.structure.name,
@@ -101,5 +108,5 @@ def _fit_row(fit: "Identification") -> tuple[str, ...]:
         ", ".join(plain(value, 1) for value in fit.fit_ceiling.values()),
         f"{fit.reached}/{fit.settings.starts}",
         "" if fit.margins is None else plain(fit.margins.gain_margin, 2),
-        ", ".join(f"{estimate.name} {with_deviation(estimate.value, estimate.std)}" for estimate in fit.parameters),
+        ", ".join(_estimate_text(estimate) for estimate in fit.parameters),
     )

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.tables._numbers import p_value_text, plain, rounded
+from shaftprint.digits import p_value_text, plain, rounded, with_deviation
 from shaftprint.tables._table import Symbol, Table, numbers, texts
 from shaftprint.units import MILLI
 
@@ -52,7 +52,7 @@ def _misfit_row(comparison: "ExcerptComparison", misfit: "Misfit", delay: "Remai
 
 
 def _milliseconds(delay: "RemainingDelay") -> str:
-    return f"{plain(MILLI * delay.delay_s, 1)} ± {plain(MILLI * delay.std_s, 1)}"
+    return with_deviation(MILLI * delay.delay_s, MILLI * delay.std_s)
 
 
 def excerpt_name(comparison: "ExcerptComparison") -> str:
@@ -106,7 +106,7 @@ def step_number_table(validation: "Validation") -> Table:
 def _with_std(value: float, std: float) -> str:
     if math.isnan(value):
         return "not shown"
-    return rounded(value, 3) if math.isnan(std) else f"{rounded(value, 3)} ± {rounded(std, 2)}"
+    return rounded(value, 3) if math.isnan(std) else with_deviation(value, std)
 
 
 def _agreement(number: "StepNumber") -> str:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from shaftprint.arguments import refusing_none
 from shaftprint.campaign import Campaign
 from shaftprint.errors import RecordingError, SettingsError
-from shaftprint.files import written_whole
+from shaftprint.files import reason, written_whole
 from shaftprint.recording import RecordingWriter
 from shaftprint.tug._truth import StripTruth, Truth, rack_latency_s, tell_truth, truth_path, truth_text
 from shaftprint.tug._tug import Tug
@@ -101,7 +101,7 @@ def sail(
             truth = crew.truth()
             part.write_text(truth_text(truth), encoding="utf-8")
     except OSError as error:
-        raise RecordingError(f"{path}: the recording cannot be written: {error}") from None
+        raise RecordingError(f"{path}: the recording cannot be written: {reason(error)}") from None
     return truth
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from shaftprint.campaign import Campaign
 from shaftprint.errors import RecordingError
-from shaftprint.files import written_whole
+from shaftprint.files import reason, written_whole
 from shaftprint.recording import NATIVE_ENDINGS, expect_known_ending, read_recording, write_by_ending
 from shaftprint.tug._sail import sail
 from shaftprint.tug._truth import Truth, truth_path
@@ -61,5 +61,5 @@ def sail_as(
                 shutil.copyfile(truth_path(native), part)
                 write_by_ending(path, recording.channels.values(), overwrite=overwrite)
     except OSError as error:
-        raise RecordingError(f"{path}: the recording cannot be written: {error}") from None
+        raise RecordingError(f"{path}: the recording cannot be written: {reason(error)}") from None
     return truth

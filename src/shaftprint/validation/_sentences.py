@@ -14,6 +14,8 @@ PERCENT = 100.0
 WORDS = {"n": "speed", "M_s": "torque"}
 # So many excerpts are described, with so many numbers each; the table has them all.
 _MOST = 3
+# A limit shows in at least so many steps.
+FEWEST_ALIKE = 2
 _TOLD = ("overshoot", "rise time")
 
 
@@ -84,15 +86,28 @@ def _apart(number: StepNumber) -> str:
 
 def _common_to_steps(failed: Sequence[ExcerptComparison]) -> list[str]:
     """Return what a limit does to steps, where the failed ones show it: slower and lower than the model."""
-    steps = [c for c in failed if c.step_numbers]
-    slower = [c for c in steps if _differs(c, "rise time") > 0.0]
-    lower = [c for c in steps if _differs(c, "overshoot") < 0.0]
-    if len(slower) < 2 or len(lower) < 2:
+    if not rises_slower_and_lower(failed):
         return []
+    steps, slower, lower = _slower_and_lower(failed)
     return [
         f"In {len(slower)} of {len(steps)} failed steps the speed rises more slowly than the model's, in {len(lower)} "
         "it overshoots less: what a limit of torque or of its rate does to a step, and no linear model can do."
     ]
+
+
+def rises_slower_and_lower(failed: Sequence[ExcerptComparison]) -> bool:
+    """Return whether failed steps are slower and overshoot less than the model's, at least two of them each."""
+    _, slower, lower = _slower_and_lower(failed)
+    return min(len(slower), len(lower)) >= FEWEST_ALIKE
+
+
+def _slower_and_lower(
+    failed: Sequence[ExcerptComparison],
+) -> tuple[list[ExcerptComparison], list[ExcerptComparison], list[ExcerptComparison]]:
+    steps = [c for c in failed if c.step_numbers]
+    slower = [c for c in steps if _differs(c, "rise time") > 0.0]
+    lower = [c for c in steps if _differs(c, "overshoot") < 0.0]
+    return steps, slower, lower
 
 
 def _differs(comparison: ExcerptComparison, name: str) -> float:

@@ -13,6 +13,7 @@ from shaftprint.identify import Identification
 from shaftprint.identify.fit import pick_up_values
 from shaftprint.models import Structure
 from shaftprint.signals import Signals
+from shaftprint.validation._headline import headline_of
 from shaftprint.validation._model import Model, identified_model, model_of
 from shaftprint.validation._prediction import Predict, linear_prediction
 from shaftprint.validation._run import Data, Run, run_model
@@ -89,6 +90,7 @@ def validate(
         settings=settings,
         comparisons=tuple(comparisons),
         outcome=_outcome(comparisons),
+        headline=headline_of(comparisons, linear=linear),
         sentences=outcome_sentences(chosen, comparisons, settings, linear=linear),
         findings=(
             *lost,

@@ -61,6 +61,8 @@ class Validation(Shown):
     """Every excerpt, record by record."""
     outcome: Outcome
     """Fails if an excerpt that the model was not identified from fails; passes if all of them pass."""
+    headline: str
+    """Up to which step the model holds and what acts beyond, in one line."""
     sentences: tuple[str, ...]
     """The outcome in words, the verdict first."""
     findings: tuple[str, ...]

@@ -37,6 +37,8 @@ class Excerpt:
     """When it ends [s]."""
     step_s: float | None = None
     """When the set point jumps [s]; None where nothing jumps, or more than once."""
+    height_v: float | None = None
+    """By how much the set point jumps there [V]; None where nothing jumps, or more than once."""
     in_sample: bool = False
     """Whether the model was identified from it."""
 
@@ -181,6 +183,7 @@ def _staircase(stairs: Staircase, campaign: Campaign, settings: ValidationSettin
                 start_s=at - settings.zoom_before_s,
                 stop_s=at + after,
                 step_s=at,
+                height_v=abs(after_v - before_v),
             )
         )
     return excerpts

@@ -1,10 +1,10 @@
 """What was measured, on which channel, and what is known of each sensor."""
 
-from typing import Literal, Self
+from typing import Annotated, Any, Literal, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from shaftprint.arrays import FloatArray
 from shaftprint.settings import (
@@ -15,8 +15,18 @@ from shaftprint.settings import (
     PositiveNumber,
     Settings,
 )
-from shaftprint.units import M_S_PER_KNOT
+from shaftprint.units import M_S_PER_KNOT, plain_unit
 from shaftprint.vessel._usual import GAUGE_SCALE_STD, GAUGE_ZERO_SHARE, LATENCY_STD_S
+
+# A gauge whose channel is in kN m has a scale of about 1000 N m a unit; this much less is a forgotten factor.
+_SMALLEST_OF_KILO = 100.0
+
+
+def _plain(unit: Any) -> Any:
+    return plain_unit(unit) if isinstance(unit, str) else unit
+
+
+TorqueUnit: TypeAlias = Annotated[Literal["V", "N m", "kN m"], BeforeValidator(_plain)]
 
 
 class SpeedSensor(Settings):
@@ -70,8 +80,8 @@ class ShaftTorqueSensor(Settings):
 
     channel: Name
     """Name of the channel in the recording."""
-    unit: Literal["V", "N m"]
-    """Unit of the channel."""
+    unit: TorqueUnit
+    """Unit of the channel; Nm and kNm are read as N m and kN m."""
     scale_nm_per_unit: Number
     """Torque for one unit of the channel [N m per unit]; negative where the gauge is mounted reversed."""
     scale_std_fraction: NotNegativeNumber | None = None
@@ -93,6 +103,11 @@ class ShaftTorqueSensor(Settings):
     def _scale_is_usable(self) -> Self:
         if self.scale_nm_per_unit == 0.0:
             raise ValueError("expected scale_nm_per_unit other than 0, found 0.")
+        if self.unit == "kN m" and abs(self.scale_nm_per_unit) < _SMALLEST_OF_KILO:
+            raise ValueError(
+                f"expected scale_nm_per_unit near 1000 for a channel in kN m, as torque is in N m here, found "
+                f"{self.scale_nm_per_unit:g}."
+            )
         return self
 
     @property

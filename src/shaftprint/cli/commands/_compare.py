@@ -5,8 +5,8 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
-from shaftprint.cli._terminal import echo
-from shaftprint.cli.output import FINGERPRINT, REPORT, fingerprint_at, force_option, output_folder, print_tables
+from shaftprint.cli._terminal import answer, echo, say
+from shaftprint.cli.output import FINGERPRINT, REPORT, fingerprint_at, force_option, give, output_folder, print_tables
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.report import (
     LOAD_REPEATABILITY,
@@ -72,14 +72,15 @@ def command(
     apart = {name: differences(first, other, load_repeatability=load) for name, other in others}
     for name, other in others:
         doubtful = [label for label, one in ((first_name, first), (name, other)) if not one.verdict.trustworthy]
-        answer = change_in_words(apart[name])
+        words = change_in_words(apart[name])
         if doubtful:
-            answer = f"It cannot be told: not trustworthy: {', '.join(doubtful)}."
-        echo(f"Has the ship changed{f', {name}' if len(others) > 1 else ''}? {answer}")
+            words = f"It cannot be told: not trustworthy: {', '.join(doubtful)}."
+        answer(f"Has the ship changed{f', {name}' if len(others) > 1 else ''}? {words}")
+    give("differences", apart)
     for name, other in others:
         _print_tables(first_name, name, apart[name])
         for sentence in vessel_file_sentences(first, other):
-            echo(sentence)
+            say(sentence)
     if output is not None:
         echo(f"Report: {output / REPORT}")
 

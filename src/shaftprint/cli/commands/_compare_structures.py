@@ -64,4 +64,4 @@ def command(
             settings=settings_by_name(structures, measurement, trial, settings_of(structures, options)),
             folds=folds,
         )
-    print_comparison(comparison)
+    print_comparison(comparison, is_answer=True)

@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._options import cut_options, hints_of, reading_options
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import answer, echo
 from shaftprint.cli.output import expect_no_input, no_progress_option, progress
 from shaftprint.errors import RecordingError
 from shaftprint.recording import (
@@ -69,7 +69,7 @@ def command(
                 left_out = dict(opened.left_out) | _facts_left_out(opened, target)
             for name, reason in left_out.items():
                 echo(f"{source}: left out {name}: {reason}", err=True)
-            echo(f"{target}: {len(channels)} channels of {source}.")
+            answer(f"{target}: {len(channels)} channels of {source}.")
 
 
 def _only(recording: Recording, chosen: tuple[str, ...]) -> Recording:

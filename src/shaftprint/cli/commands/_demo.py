@@ -11,7 +11,7 @@ from shaftprint.cli._demo_truth import fingerprint_truth
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._signal_tables import print_lines
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import echo, say
 from shaftprint.cli.output import Steps, force_option, no_progress_option, output_folder, print_table, progress
 from shaftprint.survey import (
     Survey,
@@ -55,7 +55,7 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
         true = fingerprint_truth(truth, survey.identification.structure, survey.signals)
         write_results(folder, folder / RECORDING, survey, steps=steps, thesis=thesis, truth=true)
     for remark in survey.remarks:
-        echo(remark)
+        say(remark)
     _print(survey, thesis, true)
     for comparison in survey.comparisons:
         print_comparison(comparison)

@@ -7,8 +7,9 @@ import numpy as np
 
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._results import print_paths, write_results
-from shaftprint.cli._terminal import echo, on_terminal
+from shaftprint.cli._terminal import say
 from shaftprint.cli.output import force_option, no_progress_option, output_folder, print_table, progress
+from shaftprint.digits import plain_letters
 from shaftprint.report import (
     Explanation,
     damping_table,
@@ -60,4 +61,4 @@ def _print(explanation: Explanation) -> None:
     tables = (inertia_table, damping_table, gain_table, integral_table)
     for sentence, make in zip(explanation_sentences(explanation), tables, strict=True):
         print_table(make(explanation))
-        echo(f"{on_terminal(sentence)}\n")
+        say(f"{plain_letters(sentence)}\n")

@@ -1,5 +1,8 @@
 """``shaftprint export``: the identified model in the user's tool, one file a format."""
 
+from collections.abc import Mapping
+from typing import ClassVar
+
 import click
 
 from shaftprint.cli._command_group import LazyGroup
@@ -19,9 +22,8 @@ FORMATS = {
 class FormatGroup(LazyGroup):
     """The formats by name."""
 
-    helps = FORMATS
+    sections: ClassVar[Mapping[str, Mapping[str, str]]] = {"Formats": FORMATS}
     folder = "shaftprint.cli.commands.formats"
-    heading = "Formats"
 
 
 @click.group("export", cls=FormatGroup, subcommand_metavar="FORMAT [ARGS]...")

@@ -11,7 +11,7 @@ from shaftprint.cli._options import campaign_option, structure_sources, vessel_o
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._report_options import ReportOptions, report_options
 from shaftprint.cli._results import print_comparison, print_paths, write_results
-from shaftprint.cli._terminal import echo, print_findings
+from shaftprint.cli._terminal import print_findings, say
 from shaftprint.cli.output import force_option, no_progress_option, output_folder, print_table, progress
 from shaftprint.survey import load_trial, run
 from shaftprint.tables import fits_table
@@ -69,7 +69,7 @@ def command(
         )
         write_results(folder, recording, survey, steps=steps, previous=about.previous)
     for remark in survey.remarks:
-        echo(remark)
+        say(remark)
     print_fingerprint(survey.fingerprint)
     print_findings("Limits", survey.limit_hints)
     if len(survey.fits) > 1:

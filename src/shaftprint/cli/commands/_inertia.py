@@ -4,8 +4,9 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._terminal import echo, on_terminal
-from shaftprint.cli.output import expect_free, expect_no_input, fingerprint_at, fingerprint_file, print_table
+from shaftprint.cli._terminal import answer, say
+from shaftprint.cli.output import expect_free, expect_no_input, fingerprint_at, fingerprint_file, give, print_table
+from shaftprint.digits import plain_letters
 from shaftprint.files import written_whole
 from shaftprint.fingerprint import inertia_beside
 from shaftprint.report import (
@@ -80,7 +81,7 @@ def command(vessel: str, found: Path | None, drawing: Path | None, force: bool) 
         _draw(vibrations, drawing)
     _print(ship, expected, comparisons, vibrations)
     if drawing is not None:
-        echo(drawing)
+        answer(drawing)
 
 
 def _expected(ship: Vessel, fingerprint_path: Path | None) -> tuple[ExpectedInertia, tuple[InertiaComparison, ...]]:
@@ -88,7 +89,7 @@ def _expected(ship: Vessel, fingerprint_path: Path | None) -> tuple[ExpectedIner
         return expected_inertia(ship), ()
     fingerprint = fingerprint_at(fingerprint_path)
     if fingerprint.conditions.vessel != ship.name:
-        echo(f"Mind: the fingerprint is of {fingerprint.conditions.vessel}, the vessel file of {ship.name}.\n")
+        say(f"Mind: the fingerprint is of {fingerprint.conditions.vessel}, the vessel file of {ship.name}.\n")
     return inertia_beside(fingerprint, ship)
 
 
@@ -100,6 +101,8 @@ def _draw(vibrations: Modes, path: Path) -> None:
 def _print(
     ship: Vessel, expected: ExpectedInertia, comparisons: tuple[InertiaComparison, ...], vibrations: Modes | None
 ) -> None:
+    give("expected", expected)
+    give("identified", comparisons)
     tables = (
         mass_table(ship),
         expected_inertia_table(expected, comparisons),
@@ -110,9 +113,9 @@ def _print(
         if table.rows:
             print_table(table)
     if vibrations is None:
-        echo("No torsional modes: the vessel file has no [[links]] between its masses.")
+        say("No torsional modes: the vessel file has no [[links]] between its masses.")
         return
     print_table(mode_table(vibrations))
     line = vibrations.line
     driven = line.bodies[int((line.inertia_kg_m2 * (1.0 - line.is_downstream)).argmax())]
-    echo(f"{on_terminal(two_mass_sentence(two_masses(line, driven=[driven])))}\n")
+    say(f"{plain_letters(two_mass_sentence(two_masses(line, driven=[driven])))}\n")

@@ -11,7 +11,7 @@ from shaftprint.cli._found_tests import print_found_tests
 from shaftprint.cli._options import NAMES, hints_of, reading_options
 from shaftprint.cli._sensor_map import Seen, proposed_sensors
 from shaftprint.cli._signal_tables import print_lines, print_signals
-from shaftprint.cli._terminal import echo, print_findings
+from shaftprint.cli._terminal import answer, echo, print_findings
 from shaftprint.cli.output import no_progress_option, print_table, print_tables, progress
 from shaftprint.clocks import logger_clocks
 from shaftprint.errors import SignalError
@@ -156,7 +156,7 @@ def _print_test(opened: Recording, ship: Vessel, asked: Campaign, readings: Chan
     influences = clock_influences(logger_clocks(opened), spectra=spectra, signals=signals)
     print_findings("Findings on the signals", [*signals.findings, *clock_findings(influences)])
     print_findings("Limits", limit_hints(spectra.harmonics))
-    echo(verdict(spectra))
+    answer(verdict(spectra))
 
 
 def verdict(spectra: Spectra) -> str:

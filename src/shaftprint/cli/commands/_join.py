@@ -6,7 +6,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._options import cut_options
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import answer, echo
 from shaftprint.cli.output import expect_no_input
 from shaftprint.clocks import joined
 from shaftprint.recording import cut, read_recording, write_recording
@@ -32,4 +32,4 @@ def command(
         write_recording(output, recording.channels.values(), attributes=recording.attributes, overwrite=force)
         for channel in recording.channels.values():
             echo(f"{channel.name}: {channel.count} samples, {channel.duration_s:.1f} s")
-    echo(output)
+    answer(output)

@@ -1,15 +1,19 @@
 """``shaftprint limits``: which limits a line has, and how large they are."""
 
+import math
 from pathlib import Path
 
 import click
 
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._terminal import print_findings
-from shaftprint.cli.output import no_progress_option, print_tables, progress
+from shaftprint.cli.output import give, no_progress_option, print_tables, progress
+from shaftprint.digits import fine_unit, interval, stated_interval
+from shaftprint.distributions import NORMAL_95
+from shaftprint.identify.fit import Estimate
 from shaftprint.limits import LimitEstimate, LimitFit, identify_limits
 from shaftprint.survey import load_trial, measure
-from shaftprint.tables import Symbol, Table, numbers, texts, unit_text, with_deviation
+from shaftprint.tables import MEANING, Symbol, Table, numbers, texts, unit_text, with_deviation
 
 
 @click.command("limits")
@@ -33,7 +37,10 @@ def command(recording: Path, vessel: str, campaign: str, no_progress: bool) -> N
 
 def print_limits(limits: LimitFit) -> None:
     """Print the answer first: limits with their levels, what may be trusted, then the tables."""
-    print_findings("Limits", [limits.sentence, *(_answer(limits, number) for number in _first_numbers(limits))])
+    print_findings(
+        "Limits", [limits.sentence, *(_answer(limits, number) for number in _first_numbers(limits))], is_answer=True
+    )
+    give("limits", limits.numbers)
     print_findings("Not seen", list(limits.not_seen.values()))
     print_tables([_number_table(limits), _governor_table(limits)])
     trusted = ", ".join(number.name for number in limits.trusted) or "none"
@@ -47,42 +54,42 @@ def _first_numbers(limits: LimitFit) -> list[LimitEstimate]:
 
 
 def _answer(limits: LimitFit, number: LimitEstimate) -> str:
-    unit = "" if number.unit == "-" else f" {number.unit}"
+    value = stated_interval(number.value, number.lower, number.upper, _std(number), number.unit)
     trust = "trusted" if number.trusted else f"not trusted, {number.doubt}"
-    return (
-        f"{number.kind.value}: {number.name} = {number.value:.4g}{unit}, 95 % interval {_interval(number)}{unit} "
-        f"({trust}). Likelihood-ratio statistic {limits.gains[number.kind]:.0f}."
-    )
+    gain = f"Likelihood-ratio statistic {limits.gains[number.kind]:.0f}."
+    return f"{number.kind.value}: {number.name} = {value}, {trust}. {gain}"
 
 
-def _interval(number: LimitEstimate) -> str:
-    return f"{number.lower:.4g} to {number.upper:.4g}"
+def _std(number: LimitEstimate) -> float:
+    """Return the standard deviation that the digits follow: that of the interval, which is shown."""
+    width = 0.5 * (number.upper - number.lower) / NORMAL_95
+    return width if math.isfinite(width) and width > 0.0 else number.std
 
 
 def _number_table(limits: LimitFit) -> Table:
-    rows = tuple(
-        (
-            Symbol(number.name),
-            with_deviation(number.value, number.std),
-            _interval(number),
-            unit_text(number.unit),
-            "yes" if number.trusted else number.doubt,
-            number.meaning,
-        )
-        for number in limits.numbers
+    columns = (*texts("symbol"), *numbers("value ± std", "95 % interval"), *texts("unit", "trusted"), MEANING)
+    return Table(title="Numbers of the limits", columns=columns, rows=tuple(map(_number_row, limits.numbers)))
+
+
+def _number_row(number: LimitEstimate) -> tuple[str, ...]:
+    factor, unit = fine_unit(number.unit, number.value, number.std, number.lower, number.upper)
+    return (
+        Symbol(number.name),
+        with_deviation(factor * number.value, factor * number.std),
+        interval(factor * number.lower, factor * number.upper, factor * number.std),
+        unit_text(unit),
+        "yes" if number.trusted else number.doubt,
+        number.meaning,
     )
-    columns = (*texts("symbol"), *numbers("value ± std", "95 % interval"), *texts("unit", "trusted", "meaning"))
-    return Table(title="Numbers of the limits", columns=columns, rows=rows)
 
 
 def _governor_table(limits: LimitFit) -> Table:
-    rows = tuple(
-        (
-            Symbol(estimate.name),
-            with_deviation(estimate.value, estimate.std) + (" (at its bound)" if estimate.at_bound else ""),
-            unit_text(estimate.unit),
-        )
-        for estimate in limits.governor
-    )
     columns = (*texts("symbol"), *numbers("value ± std"), *texts("unit"))
+    rows = tuple(map(_governor_row, limits.governor))
     return Table(title="Governor that goes with them", columns=columns, rows=rows)
+
+
+def _governor_row(estimate: Estimate) -> tuple[str, str, str]:
+    factor, unit = fine_unit(estimate.unit, estimate.value, estimate.std)
+    text = with_deviation(factor * estimate.value, factor * estimate.std)
+    return Symbol(estimate.name), text + " (at its bound)" * estimate.at_bound, unit_text(unit)

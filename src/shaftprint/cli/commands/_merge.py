@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._options import NAMES
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import answer
 from shaftprint.cli.output import expect_no_input, print_tables
 from shaftprint.clocks import align, logger_clocks, merged
 from shaftprint.recording import Recording, read_recording, write_recording
@@ -60,7 +60,7 @@ def command(
         both = merged(still, [(moving, alignment)])
         print_tables([clock_map_table(logger_clocks(both))])
         write_recording(output, both.channels.values(), attributes=both.attributes, overwrite=force)
-    echo(output)
+    answer(output)
 
 
 def _names(shared: str) -> tuple[str, str]:

@@ -5,7 +5,7 @@ from typing import Literal
 
 import click
 
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import answer
 from shaftprint.settings import write_template
 
 
@@ -18,4 +18,4 @@ def command(kind: Literal["vessel", "campaign"], file: Path) -> None:
     FILE must not exist yet. It can be loaded as it stands; every key carries its unit in its name.
     """
     write_template(kind, file)
-    echo(f"{file}: a {kind} to fill in.")
+    answer(f"{file}: a {kind} to fill in.")

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import answer
 from shaftprint.cli.output import no_progress_option, progress
 from shaftprint.recording import expect_known_ending
 from shaftprint.survey import load_trial
@@ -37,5 +37,5 @@ def command(vessel: str, campaign: str, output: Path, seed: int, force: bool, no
     with progress(hidden=no_progress) as steps:
         steps.begin("Sailing", total=1.0)
         sail_as(trial.vessel, trial.campaign, output, seed=seed, overwrite=force, progress=steps.reach)
-    echo(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
-    echo(f"{truth_path(output)}: what was put into it.")
+    answer(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
+    answer(f"{truth_path(output)}: what was put into it.")

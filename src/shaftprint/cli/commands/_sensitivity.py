@@ -9,7 +9,7 @@ import click
 
 from shaftprint.catalogue import thesis_families
 from shaftprint.cli._own_structure import TypedName, chosen_structures
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import answer
 from shaftprint.cli.output import force_option, no_progress_option, output_folder, progress
 from shaftprint.escape import plain_name
 from shaftprint.report import plot_sensitivity, save_figure
@@ -71,7 +71,7 @@ def command(
             save_figure(draw(), folder / f"{stem}.{suffix}")
             steps.advance(1.0)
     for stem in drawings:
-        echo(output / f"{stem}.{suffix}")
+        answer(output / f"{stem}.{suffix}")
 
 
 def _of_structure(name: TypedName, span: tuple[float, float]) -> "Drawings":

@@ -12,7 +12,7 @@ from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
 from shaftprint.cli._simulated_set_point import Drive, Place, campaign_drive, file_drive, place_of
 from shaftprint.cli._simulation_run import Prediction, predicted, signals_of, write_signals
 from shaftprint.cli._simulation_tables import print_simulation
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import answer
 from shaftprint.cli.commands._inertia import picture
 from shaftprint.cli.output import (
     expect_free,
@@ -128,7 +128,7 @@ def command(
     print_simulation(model, drive.time_s, signals, warnings=_warnings(model.structure, drive, prediction))
     for path in (output, figure):
         if path is not None:
-            echo(path)
+            answer(path)
 
 
 def _drive(

@@ -4,8 +4,8 @@ import click
 
 from shaftprint.catalogue import STRUCTURES
 from shaftprint.cli._own_structure import TypedName, chosen_structures
-from shaftprint.cli._terminal import echo
-from shaftprint.cli.output import print_table
+from shaftprint.cli._terminal import echo, say
+from shaftprint.cli.output import give, print_table
 from shaftprint.models import Parameter, Structure
 from shaftprint.tables import MEANING, Symbol, Table, numbers, texts
 
@@ -18,7 +18,9 @@ def command(names: tuple[TypedName, ...]) -> None:
     With one or more NAMEs only those. A NAME such as my_ship.py:my_loop is a structure in a file of your
     own, which is Python and is run. Held parameters keep their value unless they are freed.
     """
-    for chosen in chosen_structures(names or tuple(map(TypedName, STRUCTURES))):
+    structures = chosen_structures(names or tuple(map(TypedName, STRUCTURES)))
+    give("parameters", {chosen.name: chosen.parameters for chosen in structures})
+    for chosen in structures:
         print_table(_parameter_table(chosen))
         _print_combinations(chosen)
 
@@ -41,6 +43,6 @@ def _print_combinations(chosen: Structure) -> None:
     tied = {tie.name: f"; follows from {', '.join(tie.arguments)}" for tie in chosen.ties}
     for combination in chosen.combinations:
         follows = tied.get(combination.name, "")
-        echo(f"  {combination.name} [{combination.unit}]: {combination.meaning}{follows}")
+        say(f"{combination.name} [{combination.unit}]: {combination.meaning}{follows}", indent="  ")
     if chosen.combinations:
         echo()

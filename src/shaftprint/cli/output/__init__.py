@@ -2,9 +2,10 @@
 
 from shaftprint.cli.output._file_to_write import expect_free, expect_no_input
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT, fingerprint_at, fingerprint_file
+from shaftprint.cli.output._json import give
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import Steps, no_progress_option, progress
-from shaftprint.cli.output._tables import literal, print_table, print_tables
+from shaftprint.cli.output._tables import print_table, print_tables
 
 __all__ = [
     "FINGERPRINT",
@@ -15,7 +16,7 @@ __all__ = [
     "fingerprint_at",
     "fingerprint_file",
     "force_option",
-    "literal",
+    "give",
     "no_progress_option",
     "output_folder",
     "print_table",

@@ -1,6 +1,7 @@
 """Progress bars on the error output of a terminal."""
 
 import contextlib
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -8,6 +9,7 @@ import click
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeElapsedColumn
 
+from shaftprint.cli._terminal import echo, output
 from shaftprint.escape import printable
 
 no_progress_option = click.option("--no-progress", is_flag=True, help="Show no progress bars.")
@@ -20,8 +22,12 @@ class Steps:
 
     bars: Progress | None
     """Where the bars are drawn; None where they are not."""
+    in_words: bool = False
+    """Whether each step is named on the error output when it begins, with its time when it ends."""
     current: TaskID | None = None
     """The bar of the step that runs."""
+    running: tuple[str, float] | None = None
+    """Text and begin [s] of the step that is named in words."""
 
     def begin(self, text: str, total: float | None = None) -> None:
         """End the running step and begin the next.
@@ -33,9 +39,12 @@ class Steps:
         total
             Amount of work, in any unit; None where it is not known.
         """
+        self.end()
+        if self.in_words:
+            self.running = (text, time.monotonic())
+            echo(f"{text} ...", err=True)
         if self.bars is None:
             return
-        self.end()
         self.current = self.bars.add_task(printable(text), total=total)
 
     def advance(self, amount: float) -> None:
@@ -50,6 +59,10 @@ class Steps:
 
     def end(self) -> None:
         """Fill the running bar."""
+        if self.running is not None:
+            text, begin = self.running
+            echo(f"{text}: {time.monotonic() - begin:.1f} s", err=True)
+            self.running = None
         if self.bars is not None and self.current is not None:
             total = self.bars.tasks[self.bars.task_ids.index(self.current)].total or 1.0
             self.bars.update(self.current, total=total, completed=total)
@@ -59,8 +72,11 @@ class Steps:
 def progress(*, hidden: bool) -> Iterator[Steps]:
     """Give the bars of a command; they disappear when the block ends."""
     console = Console(stderr=True)
-    if hidden or not console.is_terminal:
-        yield Steps(bars=None)
+    chosen = output()
+    if chosen.verbose or hidden or chosen.quiet or not console.is_terminal:
+        steps = Steps(bars=None, in_words=chosen.verbose)
+        yield steps
+        steps.end()
         return
     columns = (TextColumn("{task.description}", markup=False), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True) as bars:

@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from shaftprint.catalogue import ShipRole
+from shaftprint.digits import stated
 from shaftprint.identify.fit import Estimate, Identification
 from shaftprint.identify.judgement._phrases import number
 from shaftprint.models import Role
@@ -38,9 +39,7 @@ def _pulled(identification: Identification) -> Iterator[Reason]:
         if estimate.name in priors:
             prior = priors[estimate.name]
             spread = np.sqrt(max(prior.std**2 - estimate.std**2, (LEAST_SHARE * prior.std) ** 2))
-            assumed = (
-                f"the prior is {number(prior.mean, estimate.unit)} +/- {number(prior.std, estimate.unit, digits=2)}"
-            )
+            assumed = f"the prior is {stated(prior.mean, prior.std, estimate.unit)}"
             distance = abs(estimate.value - prior.mean) / spread
         elif estimate.role in NOMINAL and estimate.std > 0.0:
             assumed = f"the nominal value is {number(NOMINAL[estimate.role], estimate.unit)}"
@@ -57,7 +56,7 @@ def _reason(estimate: Estimate, meaning: str, assumed: str, distance: float) -> 
         where=estimate.name,
         sentence=(
             f"The data contradict what is assumed of {estimate.name} ({meaning}): {assumed}, the estimate is "
-            f"{number(estimate.value, estimate.unit)} +/- {number(estimate.std, estimate.unit, digits=2)}, "
+            f"{stated(estimate.value, estimate.std, estimate.unit)}, "
             f"{distance:.1f} standard deviations away; check the vessel file, and what else moves the estimate."
         ),
     )

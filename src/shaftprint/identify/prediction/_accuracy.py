@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.digits import stated
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.fit import Estimate, estimate_covariance, variance_along, with_sensor
 from shaftprint.identify.likelihood import MaximumLikelihood, Objective, Prior, build_joint_objective
@@ -97,8 +98,9 @@ class Accuracy(Shown):
 
     def _nothing_new(self) -> list[str]:
         std = {e.name: e.std for e in self.parameters}
+        units = {e.name: e.unit for e in self.parameters}
         return [
-            f"{name} stays at its prior, {prior.mean:g} +/- {prior.std:g}: the test says little about it."
+            f"{name} stays at its prior, {stated(prior.mean, prior.std, units[name])}: the test says little about it."
             for name, prior in self.priors.items()
             if std[name] > NOTHING_NEW * prior.std
         ]

@@ -21,7 +21,7 @@ from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._mdf_records import MdfRecords, expect_in_record
 from shaftprint.recording.readers._opened import Opened
-from shaftprint.recording.readers._units import plain_unit
+from shaftprint.units import plain_unit
 
 NAME = "MDF"
 

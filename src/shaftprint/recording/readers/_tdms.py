@@ -19,7 +19,7 @@ from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers._opened import Opened
-from shaftprint.recording.readers._units import plain_unit
+from shaftprint.units import plain_unit
 
 NAME = "TDMS"
 

@@ -12,7 +12,8 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Source
 from shaftprint.recording.readers._clock import SampleClock, on_clock, uniform_clock
 from shaftprint.recording.readers._gather import Gathered, unique_names
-from shaftprint.recording.readers._units import plain_unit, seconds_in
+from shaftprint.recording.readers._units import seconds_in
+from shaftprint.units import plain_unit
 
 TIME_NAMES = ("time", "t", "timestamp", "timestamps", "time_s", "zeit", "tijd")
 _RATES = ("sample_rate_hz", "fs", "sample_rate", "sampling_rate", "sampling_frequency", "samplerate", "rate_hz")

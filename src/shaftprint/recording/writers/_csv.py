@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.errors import RecordingError
 from shaftprint.escape import csv_cell
-from shaftprint.files import written_whole
+from shaftprint.files import reason, written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording.writers._shared_clock import on_one_clock
 
@@ -62,7 +62,7 @@ def write_csv(
                 text = row * len(block) % tuple(block.ravel().tolist())
                 file.write(text if decimal == "." else text.replace(".", decimal))
     except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be written: {error}") from None
+        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
 
 
 def _expect_readable(path: Path, titles: Sequence[str], delimiter: str, decimal: str) -> None:

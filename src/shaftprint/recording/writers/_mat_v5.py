@@ -7,7 +7,7 @@ from typing import Any, BinaryIO
 import scipy
 
 from shaftprint.errors import RecordingError
-from shaftprint.files import written_whole
+from shaftprint.files import reason, written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording.writers._mat_names import expect_matlab_names
 from shaftprint.recording.writers._shared_clock import on_one_clock
@@ -47,7 +47,7 @@ def write_mat_v5(path: str | Path, channels: Iterable[Channel], *, overwrite: bo
                 values = channel.values(0, channel.count)
                 _append(file, {channel.name: values, f"{channel.name}_unit": channel.unit})
     except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be written: {error}") from None
+        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
 
 
 def _append(file: BinaryIO, variables: dict[str, Any]) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
-from shaftprint.files import written_whole
+from shaftprint.files import reason, written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
 from shaftprint.recording._hdf5_output import Hdf5Output
@@ -57,7 +57,7 @@ def write_mat_v73(path: str | Path, channels: Iterable[Channel], *, overwrite: b
                 text = b"MATLAB 7.3 MAT-file, written by shaftprint"
                 raw.write(text.ljust(_TEXT_BYTES) + _HEADER_END)
     except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be written: {error}") from None
+        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
 
 
 def _write_scalar(file: Any, name: str, value: float) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from shaftprint.errors import RecordingError
-from shaftprint.files import written_whole
+from shaftprint.files import reason, written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
 from shaftprint.recording.readers import library
@@ -52,7 +52,7 @@ def write_mdf4(path: str | Path, channels: Iterable[Channel], *, overwrite: bool
                 file.close()
             written.replace(part)
     except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be written: {error}") from None
+        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
 
 
 def _append(asammdf: Any, file: Any, number: int, group: list[Channel]) -> None:

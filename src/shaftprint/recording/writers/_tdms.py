@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from shaftprint.errors import RecordingError
-from shaftprint.files import written_whole
+from shaftprint.files import reason, written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
 from shaftprint.recording.readers import library
@@ -45,7 +45,7 @@ def write_tdms(path: str | Path, channels: Iterable[Channel], *, overwrite: bool
                     stated = properties if start == 0 else None
                     writer.write_segment([nptdms.ChannelObject(_GROUP, channel.name, counts, stated)])
     except OSError as error:
-        raise RecordingError(f"{path}: the file cannot be written: {error}") from None
+        raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
 
 
 def _properties(types: Any, channel: Channel) -> dict[str, object]:

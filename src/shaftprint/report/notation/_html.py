@@ -4,6 +4,7 @@ import re
 
 from markupsafe import Markup, escape
 
+from shaftprint.digits import typographic
 from shaftprint.report.notation._symbols import is_symbol, name_parts
 from shaftprint.tables import Symbol, Table
 
@@ -20,8 +21,8 @@ def cell_html(text: str, table: Table) -> Markup:
 
 
 def sentence_html(text: str) -> Markup:
-    """Return a sentence as HTML, symbols with an index or a Greek name set as such and +/- as ±, all else as it is."""
-    text = text.replace("+/-", "±")
+    """Return a sentence as HTML, symbols with an index or a Greek name set as such, ± and powers of ten."""
+    text = typographic(text)
     parts, end = Markup(), 0
     for match in _SYMBOL.finditer(text):
         parts += escape(text[end : match.start()]) + symbol_html(match.group())

@@ -145,7 +145,7 @@ def _gain_words(explanation: "Explanation") -> str:
         else "Weighted by the noise none of them is rejected on this recording."
     )
     return (
-        f"K_p goes from {rounded(min(gains), 2)} to {rounded(max(gains), 2)} while FitPercent stays between "
+        f"K_p goes from {plain(min(gains), 2)} to {plain(max(gains), 2)} while FitPercent stays between "
         f"{plain(min(percent), 1)} and {plain(max(percent), 1)} %: the two slowest lines hold "
         f"{plain(100.0 * explanation.share_of_two_lines, 0)} % of the squares, and K_p does nothing there. "
         f"{verdict} The gauge-aware structure finds K_p = {with_deviation(gauge.weighted, gauge.weighted_std)}; above "

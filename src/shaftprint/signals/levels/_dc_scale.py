@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.campaign import Campaign, Sine
+from shaftprint.digits import stated
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 
 # Lines whose ratio is further from 1 are beyond the reach of the low-order form: up to here the delays
@@ -104,8 +105,8 @@ def dc_scale(
             value=value,
             std=std,
             findings=(
-                f"the slow sines ask for a set-point scale of {value:.4f} +/- {std:.4f} where the "
-                f"steady levels say 1 +/- {slope_std:.4f}; the sines were followed",
+                f"the slow sines ask for a set-point scale of {stated(value, std, '-')} where the "
+                f"steady levels say {stated(1.0, slope_std, '-')}; the sines were followed",
             ),
         )
     weights = np.array([1.0 / std**2, 1.0 / slope_std**2])

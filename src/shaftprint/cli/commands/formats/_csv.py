@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import answer
 from shaftprint.cli.commands.formats._exported import file_to_write, fingerprint_argument, force_option
 from shaftprint.cli.output import fingerprint_at
 from shaftprint.export import exported_model, write_csv
@@ -34,4 +34,4 @@ def command(fingerprint: Path, structure: TypedName | None, output: Path | None,
     path = file_to_write(output, exported_model(identified, of=chosen), ".csv", inputs=(fingerprint,), force=force)
     written = write_csv(identified, path, of=chosen, overwrite=force)
     for table in (written.parameters, written.combinations, written.response):
-        echo(table)
+        answer(table)

@@ -7,7 +7,7 @@ import click
 import numpy as np
 
 from shaftprint.cli._own_structure import TypedName
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import answer, say
 from shaftprint.cli.commands.formats._exported import (
     file_to_write,
     fingerprint_argument,
@@ -90,11 +90,11 @@ def command(
 
 def _print(written: WrittenFmu) -> None:
     kinds = "co-simulation and model exchange" if written.model_exchange else "co-simulation only"
-    echo(f"FMI {written.version}.0, {kinds}, sources, binaries for {', '.join(written.platforms) or 'no system'}")
-    echo(
+    say(f"FMI {written.version}.0, {kinds}, sources, binaries for {', '.join(written.platforms) or 'no system'}")
+    say(
         f"internal step {1e3 * written.internal_step_s:g} ms, fastest pole {written.largest_pole_rad_s:.3g} rad/s: "
         f"{written.internal_step_s * written.largest_pole_rad_s:.2g} of 2.7 that is stable"
     )
     for name in written.late_outputs:
-        echo(f"{name} comes later than its time stamp in the recording, by lateness.{name} in the FMU")
-    echo(written.path)
+        say(f"{name} comes later than its time stamp in the recording, by lateness.{name} in the FMU")
+    answer(written.path)

@@ -6,7 +6,7 @@ import click
 
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._own_structure import TypedName
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import answer
 from shaftprint.cli.commands.formats._exported import (
     file_to_write,
     fingerprint_argument,
@@ -66,8 +66,8 @@ def command(
             fingerprint, model.structure, recording, vessel=vessel, campaign=campaign, no_progress=no_progress
         )
     written = write_matlab(model, path, measured=measured, overwrite=force)
-    echo(written.data)
-    echo(written.script)
+    answer(written.data)
+    answer(written.script)
 
 
 def _measured(

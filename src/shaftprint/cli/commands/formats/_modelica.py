@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._own_structure import TypedName
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import answer, say
 from shaftprint.cli.commands.formats._exported import (
     file_to_write,
     fingerprint_argument,
@@ -42,7 +42,7 @@ def command(
     written = write_modelica(
         model, file_to_write(output, model, ".mo", inputs=(fingerprint,), force=force), overwrite=force
     )
-    echo(f"package {written.package}: block Line, experiment Step")
+    say(f"package {written.package}: block Line, experiment Step")
     for name in written.late_outputs:
-        echo(f"{name} comes later than its time stamp in the recording, which lies ahead of what can be known")
-    echo(written.path)
+        say(f"{name} comes later than its time stamp in the recording, which lies ahead of what can be known")
+    answer(written.path)

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._own_structure import TypedName
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import answer
 from shaftprint.cli.commands.formats._exported import (
     file_to_write,
     fingerprint_argument,
@@ -42,4 +42,4 @@ def command(
     """
     model = model_to_export(fingerprint, structure, dict(given))
     # the FMU may be there already: it stays as it is
-    echo(write_osp(model, file_to_write(output, model, ".fmu", inputs=(fingerprint,), force=True), overwrite=force))
+    answer(write_osp(model, file_to_write(output, model, ".fmu", inputs=(fingerprint,), force=True), overwrite=force))

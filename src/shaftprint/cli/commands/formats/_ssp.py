@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._own_structure import TypedName
-from shaftprint.cli._terminal import echo
+from shaftprint.cli._terminal import answer
 from shaftprint.cli.commands.formats._exported import (
     file_to_write,
     fingerprint_argument,
@@ -38,4 +38,4 @@ def command(
     the FMU's parameters, so that the set can be given to it in a system structure.
     """
     model = model_to_export(fingerprint, structure, dict(given))
-    echo(write_ssv(model, file_to_write(output, model, ".ssv", inputs=(fingerprint,), force=force), overwrite=force))
+    answer(write_ssv(model, file_to_write(output, model, ".ssv", inputs=(fingerprint,), force=force), overwrite=force))

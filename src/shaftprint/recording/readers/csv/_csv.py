@@ -28,6 +28,7 @@ from shaftprint.recording.readers.csv._header import (
     read_header,
     split_row,
 )
+from shaftprint.recording.readers.csv._wrong_rows import is_number, wrong_rows
 
 NAME = "CSV"
 
@@ -133,16 +134,18 @@ def _unpack(path: Path, file: TextIO, header: Header, spool: Spool) -> tuple[int
     """Put every row into the columns; return how many there are and the date of the first, where rows have dates."""
     for _ in range(header.lines):
         file.readline()
-    count = 0
+    count, first_line = 0, header.lines + 1
     began: np.datetime64 | None = None
     while lines := file.readlines(_BLOCK_CHARACTERS):
         if header.decimal == ",":
             lines = [line.replace(",", ".") for line in lines]
+        numbers = [number for number, line in enumerate(lines, start=first_line) if not line.isspace()]
         rows = [line for line in lines if not line.isspace()]
+        first_line += len(lines)
         if header.dated and rows:
             rows, dates = _without_dates(path, rows, header)
             began = dates[0] if began is None else began
-        block = _numbers(path, rows, header, count)
+        block = _numbers(path, rows, header, numbers)
         if began is not None and rows:
             block[:, header.time_column] = seconds_from(began, dates)
         elif header.second not in (None, 1.0):
@@ -167,41 +170,37 @@ def _without_dates(
     return plain, dates(path, texts)
 
 
-def _numbers(path: Path, lines: Sequence[str], header: Header, before: int) -> FloatArray:
-    """Return rows of text as numbers, shape (rows, columns); slower where fields are empty."""
+def _numbers(path: Path, lines: Sequence[str], header: Header, numbers: Sequence[int]) -> FloatArray:
+    """Return rows of text as numbers, shape (rows, columns); slower where fields are empty.
+
+    Parameters
+    ----------
+    numbers
+        Number of each line in the file.
+    """
     width = len(header.names)
     if not lines:
         return np.empty((0, width))
     try:
         block = _parse(lines, header.delimiter)
     except ValueError:
-        block = np.empty((len(lines), width))
-        for number, line in enumerate(lines):
-            fields = [field.strip() or "nan" for field in split_row(line, header.delimiter)]
-            try:
-                block[number] = _exactly(width, fields)
-            except ValueError:
-                raise RecordingError(
-                    f"{path}, row {before + number + 1}: expected {width} numbers, "
-                    f'found "{line.strip()[:80]}"; is the file cut off?'
-                ) from None
+        rows = [split_row(line, header.delimiter) for line in lines]
+        wrong = [row for row in zip(numbers, rows, strict=True) if not _is_whole(row[1], width)]
+        if wrong:
+            raise wrong_rows(path, wrong, header.names, time=header.time_column) from None
+        block = np.array([[float(field.strip() or "nan") for field in row] for row in rows])
     if block.shape[1] != width:
-        raise RecordingError(
-            f"{path}, row {before + 1}: expected {width} numbers, found {block.shape[1]}; "
-            "is the decimal sign also the delimiter?"
-        )
+        raise wrong_rows(path, [(numbers[0], split_row(lines[0], header.delimiter))], header.names)
     return block
+
+
+def _is_whole(fields: Sequence[str], width: int) -> bool:
+    return len(fields) == width and all(map(is_number, fields))
 
 
 def _parse(lines: Sequence[str], delimiter: str) -> FloatArray:
     between = None if delimiter == WHITE_SPACE else delimiter
     return np.loadtxt(lines, dtype=np.float64, delimiter=between, comments=None, ndmin=2)
-
-
-def _exactly(width: int, fields: Sequence[str]) -> list[float]:
-    if len(fields) != width:
-        raise ValueError(f"{len(fields)} fields")
-    return [float(field) for field in fields]
 
 
 def _clock(path: Path, header: Header, spool: Spool, count: int, rate_hz: float | None) -> SampleClock:

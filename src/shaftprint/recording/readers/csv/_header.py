@@ -7,9 +7,11 @@ from pathlib import Path
 
 from shaftprint.errors import RecordingError
 from shaftprint.escape import csv_cell_text
-from shaftprint.recording.readers._units import plain_unit, seconds_in
+from shaftprint.recording.readers._units import seconds_in
 from shaftprint.recording.readers._vectors import TIME_NAMES
 from shaftprint.recording.readers.csv._dates import is_date
+from shaftprint.recording.readers.csv._wrong_rows import wrong_rows
+from shaftprint.units import plain_unit
 
 WHITE_SPACE = " "
 _MARKS = (";", "\t", ",")
@@ -87,6 +89,8 @@ def read_header(
     """
     hinted = [] if columns is None else [title.strip() for title in columns.split(",")]
     delimiter, first = _layout(path, lines, delimiter, len(hinted))
+    if not hinted:
+        _expect_titles_above(path, lines, first, delimiter)
     titles, units = (hinted, []) if hinted else _titles(lines, first, delimiter)
     names, units = _named(path, first, titles, units)
     rows = lines[first:]
@@ -143,6 +147,36 @@ def _layout(path: Path, lines: Sequence[str], delimiter: str | None, width: int)
             f'"{title.strip()[:80]}"; pass delimiter= (--delimiter of shaftprint convert).'
         )
     return delimiter or marks[0], 1
+
+
+def _expect_titles_above(path: Path, lines: Sequence[str], first: int, delimiter: str) -> None:
+    """Refuse a damaged row of numbers that would be taken for titles, because the row below it is the first good one.
+
+    Raises
+    ------
+    RecordingError
+        If a line above the first row has a time where titles further above have their column of times.
+    """
+    for place in range(first - 1):
+        titles = [_bare(title) for title in _title_fields(lines[place], delimiter, 0)]
+        time = next((column for column, name in enumerate(titles) if name.lower() in _TIMES), None)
+        if time is None:
+            continue
+        rows = [(number + 1, _fields(lines[number], delimiter)) for number in range(place + 1, first)]
+        timed = [(number, row) for number, row in rows if time < len(row) and _is_row(row[time : time + 1])]
+        wrong = [(number, row) for number, row in timed if len(row) != len(titles) or not _is_row(row)]
+        if wrong:
+            raise wrong_rows(path, [(number, list(map(_pointed, row))) for number, row in wrong], titles, time=time)
+        return
+
+
+def _pointed(field: str) -> str:
+    return field.replace(",", ".") if _NUMBER.fullmatch(field) else field
+
+
+def _bare(title: str) -> str:
+    match = _COLUMN.fullmatch(title)
+    return match["name"].strip() if match else title
 
 
 def _first_row(lines: Sequence[str], delimiter: str, width: int = 0) -> int | None:

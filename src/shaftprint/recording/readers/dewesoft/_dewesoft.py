@@ -21,8 +21,8 @@ from shaftprint.recording.readers._extra import expect_library
 from shaftprint.recording.readers._gather import Gathered
 from shaftprint.recording.readers._hints import expect_hints
 from shaftprint.recording.readers._opened import Opened
-from shaftprint.recording.readers._units import plain_unit
 from shaftprint.recording.readers.dewesoft._index import INDEX, UnpackedChannel
+from shaftprint.units import plain_unit
 
 NAME = "Dewesoft"
 

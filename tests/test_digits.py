@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from shaftprint.tables import interval, plain, rounded, with_deviation
+from shaftprint.digits import interval, p_value_text, plain, plain_letters, rounded, stated, typographic, with_deviation
 
 
 @pytest.mark.parametrize(
@@ -25,7 +25,10 @@ from shaftprint.tables import interval, plain, rounded, with_deviation
         (-0.0123, 0.098, "−0.012 ± 0.098"),
         (2.0, 0.0, "2.000 ± 0.000"),
         (0.02208, math.inf, "0.02208 (not known)"),
-        (6.0, 230.0, "6.0 ± 230"),
+        (6.0, 230.0, "10 ± 230"),
+        (0.4697, 0.0996, "0.47 ± 0.10"),
+        (53.212, 1.0962, "53.2 ± 1.1"),
+        (0.06976, 0.018, "0.070 ± 0.018"),
         (-1234.6, 230.0, "−1\u202f230 ± 230"),
         (0.0, 230.0, "0 ± 230"),
         (math.nan, 230.0, "– (not known)"),
@@ -49,3 +52,37 @@ def test_intervals():
     assert interval(4.884, 6.671, 0.66) == "4.88 to 6.67"
     assert interval(1.0, 2.0, math.inf) == "1.000 to 2.000"
     assert interval(math.nan, 2.0, 1.0) == "–"
+
+
+def test_an_interval_ends_where_the_value_ends():
+    assert interval(-0.01292, 0.2791, 0.0745) == "−0.013 to 0.279"
+    assert interval(1234.5, 2345.6, 283.0) == "1\u202f230 to 2\u202f350"
+
+
+@pytest.mark.parametrize(
+    ("p_value", "text", "on_terminal"),
+    [
+        (0.12, "0.12", "0.12"),
+        (0.0012, "0.0012", "0.0012"),
+        (4.71e-98, "4.7·10⁻⁹⁸", "4.7e-98"),
+        (0.00099999, "1.0·10⁻³", "1.0e-3"),
+        (0.0, "< 1.0·10⁻³⁰⁰", "< 1.0e-300"),
+        (1.0, "1.0", "1.0"),
+        (None, "–", "-"),
+    ],
+)
+def test_small_p_values_are_powers_of_ten(p_value, text, on_terminal):
+    assert p_value_text(p_value) == text
+    assert plain_letters(text) == on_terminal
+
+
+def test_sentences_of_a_page_have_powers_of_ten():
+    assert typographic("(p = 6.6e-05), 0.12 +/- 0.02, p < 1e-7, the file 3e-x") == (
+        "(p = 6.6·10⁻⁵), 0.12 ± 0.02, p < 1·10⁻⁷, the file 3e-x"
+    )
+
+
+def test_short_times_are_stated_in_milliseconds():
+    assert stated(-0.00013, 0.00024, "s") == "-0.13 +/- 0.24 ms"
+    assert stated(0.122, 0.022, "s") == "0.122 +/- 0.022 s"
+    assert stated(1183.63, 0.24, "rpm") == "1183.63 +/- 0.24 rpm"

@@ -1,0 +1,51 @@
+"""How a command speaks: the options ``--json``, ``--verbose`` and ``--quiet``, which every command has."""
+
+import click
+
+from shaftprint.cli._terminal import Document, output
+
+
+def _as_json(context: click.Context, parameter: click.Parameter, chosen: bool) -> None:
+    if chosen:
+        output().document = Document(command=context.info_name or "")
+
+
+def _verbose(context: click.Context, parameter: click.Parameter, chosen: bool) -> None:
+    output().verbose = chosen
+
+
+def _quiet(context: click.Context, parameter: click.Parameter, chosen: bool) -> None:
+    output().quiet = chosen
+
+
+def _options() -> list[click.Option]:
+    return [
+        click.Option(
+            ["--json", "as_json"],
+            is_flag=True,
+            expose_value=False,
+            callback=_as_json,
+            help="Print answer, findings, tables and numbers with all digits as one JSON object.",
+        ),
+        click.Option(
+            ["-v", "--verbose"],
+            is_flag=True,
+            expose_value=False,
+            callback=_verbose,
+            help="Name each step of long work with its time on the error output.",
+        ),
+        click.Option(
+            ["-q", "--quiet"],
+            is_flag=True,
+            expose_value=False,
+            callback=_quiet,
+            help="Print only the answer, and no progress.",
+        ),
+    ]
+
+
+def speaking(command: click.Command) -> click.Command:
+    """Return a command with the options that say how it speaks."""
+    if not any(parameter.name == "as_json" for parameter in command.params):
+        command.params += _options()
+    return command

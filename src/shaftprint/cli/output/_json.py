@@ -1,0 +1,72 @@
+"""Nouns and tables as JSON."""
+
+import dataclasses
+import enum
+import math
+from collections.abc import Collection, Mapping
+
+import numpy as np
+from pydantic import BaseModel
+
+from shaftprint.cli._terminal import output
+from shaftprint.digits import plain_letters
+from shaftprint.escape import printable
+from shaftprint.tables import Table
+
+# An array with more numbers than this is data, not an answer: it stays in the files that the command writes.
+MOST_NUMBERS = 10_000
+
+
+def give(name: str, noun: object) -> None:
+    """Give a noun with all digits to the JSON document, where there is one; nothing is printed."""
+    document = output().document
+    if document is not None:
+        document.result[name] = as_json(noun)
+
+
+def as_json(noun: object) -> object:
+    """Return a noun as lists, dictionaries, text and numbers.
+
+    Numbers that are not finite become null, complex ones a pair of real and imaginary part, and arrays of more than
+    10 000 numbers their shape.
+    """
+    match noun:
+        case BaseModel():
+            return as_json(noun.model_dump())
+        case None | bool() | int():
+            return noun
+        case enum.Enum():
+            return as_json(noun.value)
+        case str():
+            return printable(str(noun), keep="\n")
+        case float() | np.floating():
+            return float(noun) if math.isfinite(noun) else None
+        case complex() | np.complexfloating():
+            return [as_json(noun.real), as_json(noun.imag)]
+        case np.ndarray():
+            return as_json(noun.tolist()) if noun.size <= MOST_NUMBERS else {"shape": list(noun.shape)}
+        case np.generic():
+            return as_json(noun.item())
+        case Mapping():
+            return {str(as_json(name)): as_json(value) for name, value in noun.items()}
+        case Collection():
+            return [as_json(value) for value in noun]
+        case _ if dataclasses.is_dataclass(noun):
+            names = (field.name for field in dataclasses.fields(noun) if not field.name.startswith("_"))
+            return {name: as_json(getattr(noun, name)) for name in names}
+        case _:
+            return printable(str(noun))
+
+
+def table_json(table: Table) -> dict[str, object]:
+    """Return a table with its cells as they are printed, in the letters of every keyboard."""
+    return {
+        "title": _text(table.title),
+        "columns": [_text(column.heading) for column in table.columns],
+        "rows": [[_text(cell) for cell in row] for row in table.rows],
+        "note": _text(table.note),
+    }
+
+
+def _text(text: str) -> str:
+    return printable(plain_letters(text)).replace("\u00a0", " ")
