@@ -1,5 +1,6 @@
 """``shaftprint demo``: the whole way, with truth beside estimate."""
 
+import re
 import tomllib
 from pathlib import Path
 
@@ -38,7 +39,7 @@ def test_last_lines_say_what_was_found_and_where(demo):
     assert "the inertia behind the torque gauge: " in tail
     assert "true value 17.00 kg m2." in tail
     assert "true value 0.1221 s." in tail
-    assert "true value 2.000." in tail
+    assert re.search(r"true value 2\.000+\.", tail)
     assert "The thesis' way finds an inertia time of" in tail
     assert tail.rstrip().splitlines()[-4:-1] == [
         f"Recording:   {Path('demo', 'recording.nc')}",

@@ -43,8 +43,8 @@ def test_values_come_back_bit_for_bit(exported, tmp_path):
     found = {entry.get("name"): entry for entry in root.iter(f"{SSV}Parameter")}
     assert float(found["K_p"][0].get("value")) == 4.639315938308769
     assert float(found["t_gauge"][0].get("value")) == -0.00012532915688092308
-    assert found["K_p"].get("description").endswith("standard deviation 0.3")
-    assert found["t_d"].get("description").endswith("standard deviation 0.02")
+    assert found["K_p"].get("description").endswith("standard deviation 0.30")
+    assert found["t_d"].get("description").endswith("standard deviation 0.020")
     assert found["zeta"].get("description").endswith("not known from the test")
     assert found["working_point.engine_speed"][0].attrib == {"value": "1183.8", "unit": "rpm"}
     units = {unit.get("name"): unit[0].attrib for unit in root.iter(f"{SSC}Unit")}
