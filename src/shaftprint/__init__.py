@@ -66,6 +66,8 @@ _ROOMS = (
 _INNER_ROOMS = (
     "arguments",
     "arrays",
+    "cli",
+    "digits",
     "distributions",
     "escape",
     "files",
@@ -74,6 +76,7 @@ _INNER_ROOMS = (
     "notebook",
     "publication",
     "reasons",
+    "spelling",
 )
 """What the rooms are made with; no word of the field, so a session does not offer it."""
 

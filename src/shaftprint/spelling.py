@@ -10,5 +10,5 @@ def meant(word: str, known: Iterable[str]) -> str:
     Capitals make no difference.
     """
     by_letters = {name.casefold(): name for name in known}
-    close = difflib.get_close_matches(word.casefold(), by_letters, n=1, cutoff=0.7)
+    close = difflib.get_close_matches(word.casefold(), by_letters, n=1, cutoff=0.6)
     return f" Did you mean {by_letters[close[0]]}?" if close else ""

@@ -109,3 +109,34 @@ def test_matrices_get_one_thread_unless_the_user_says_more(said, expected):
         environment["OPENBLAS_NUM_THREADS"] = said
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=environment, check=True)
     assert done.stdout.split()[-1] == expected
+
+
+@pytest.mark.parametrize(
+    ("arguments", "advice"),
+    [
+        (("identfy",), "Did you mean identify?"),
+        (("export", "fmi"), "Did you mean fmu?"),
+        (("structures", "gauge-close"), "Did you mean GAUGE-CLOSED?"),
+        (
+            ("simulate", "--structure", "CL4", "--set", "kp=1", "--campaign", "short", "-o", "x.csv"),
+            "Did you mean K_p?",
+        ),
+        (("predict", "--campaign", "short", "--free", "omega"), "Did you mean omega_n?"),
+        (("predict", "--campaign", "short", "--prior", "tau_u=1+-0.1"), "Did you mean tau_up?"),
+        (("predict",), "Write one with `shaftprint new campaign my_campaign.toml`"),
+        (
+            ("identify", "x.nc", "-o", "x", "--campaign", "thesis"),
+            "Write one with `shaftprint new vessel my_vessel.toml`",
+        ),
+    ],
+)
+def test_a_mistyped_word_is_answered_with_the_one_that_was_meant(run, arguments, advice):
+    result = run(*arguments)
+    assert result.exit_code != 0
+    assert advice in result.stderr
+
+
+def test_commands_stand_under_what_they_are_for(run):
+    lines = run("--help").output.splitlines()
+    sections = [line for line in lines if line.endswith(":") and not line.startswith(" ") and line != "Options:"]
+    assert sections == ["Begin:", "Plan a test:", "Prepare a recording:", "Identify:", "Judge:", "Use the model:"]

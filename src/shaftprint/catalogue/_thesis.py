@@ -35,6 +35,7 @@ from shaftprint.models import (
     Structure,
     TorqueBalance,
 )
+from shaftprint.spelling import meant
 
 TAU_N = Parameter("tau_n", "s", 0.0, 5.0, 0.39, "inertia time of the line, 2 pi I n_s0 / M_s0", role=ShipRole.INERTIA)
 K_P = Parameter("K_p", "-", 0.0, 10.0, 3.0, "proportional gain of the governor", role=ShipRole.PROPORTIONAL_GAIN)
@@ -225,4 +226,6 @@ def structure(name: str) -> Structure:
     try:
         return STRUCTURES[name.upper()]()
     except KeyError:
-        raise StructureError(f"there is no structure {name!r}; the shipped ones are {', '.join(STRUCTURES)}.") from None
+        raise StructureError(
+            f"there is no structure {name!r}; the shipped ones are {', '.join(STRUCTURES)}.{meant(name, STRUCTURES)}"
+        ) from None

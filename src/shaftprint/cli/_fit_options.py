@@ -13,6 +13,7 @@ from shaftprint.errors import StructureError
 from shaftprint.identify import MaximumLikelihood, Prior, Settings, Unweighted
 from shaftprint.models import Structure
 from shaftprint.signals import Mode
+from shaftprint.spelling import meant
 from shaftprint.survey import Measurement, SettingsOf, Trial, pairs_of, priors_of
 
 _OPTIONS = (
@@ -97,6 +98,7 @@ def held_structures(chosen: Sequence[Structure], options: FitOptions) -> tuple[S
         raise StructureError(
             f"--hold {', '.join(unused)}: expected a parameter of {', '.join(structure.name for structure in chosen)}, "
             f"which have {', '.join(sorted({name for structure in chosen for name in structure.names}))}."
+            f"{meant(unused[0], (name for structure in chosen for name in structure.names))}"
         )
     structures = tuple(
         structure.held_at(**{name: value for name, value in held.items() if name in structure.names})
@@ -107,6 +109,7 @@ def held_structures(chosen: Sequence[Structure], options: FitOptions) -> tuple[S
     if unknown:
         raise StructureError(
             f"--free {', '.join(unknown)}: expected a free parameter, one of {', '.join(sorted(anywhere))}."
+            f"{meant(unknown[0], anywhere)}"
         )
     return structures
 

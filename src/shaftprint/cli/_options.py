@@ -22,14 +22,32 @@ def structure_sources(names: Sequence[TypedName]) -> tuple[SourceFile, ...]:
     )
 
 
+class SettingsPath(click.types.StringParamType):
+    """The path or name of a settings file; where it is missing, how to come by one is said."""
+
+    name = "text"
+
+    def __init__(self, kind: str, example: str) -> None:
+        self.kind, self.example = kind, example
+
+    def get_missing_message(self, param: click.Parameter, ctx: click.Context | None) -> str:
+        """Return how to come by such a file."""
+        return (
+            f"Write one with `shaftprint new {self.kind} my_{self.kind}.toml` and fill it in, or name a shipped one "
+            f"such as {self.example}."
+        )
+
+
 def vessel_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the option ``--vessel``."""
-    return click.option("--vessel", required=True, help=f"Vessel file: {NAMES} stan-tug-1205.")(command)
+    kind = SettingsPath("vessel", "stan-tug-1205")
+    return click.option("--vessel", required=True, type=kind, help=f"Vessel file: {NAMES} stan-tug-1205.")(command)
 
 
 def campaign_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the option ``--campaign``."""
-    return click.option("--campaign", required=True, help=f"Campaign file: {NAMES} thesis.")(command)
+    kind = SettingsPath("campaign", "thesis")
+    return click.option("--campaign", required=True, type=kind, help=f"Campaign file: {NAMES} thesis.")(command)
 
 
 def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:

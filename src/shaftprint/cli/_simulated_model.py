@@ -11,6 +11,7 @@ from shaftprint.cli._own_structure import TypedName, chosen_structures, structur
 from shaftprint.errors import FingerprintError, StructureError
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.models import Structure
+from shaftprint.spelling import meant
 
 LIMITED_HELP = "GAUGE-QUADRATIC, GAUGE-TORQUE, GAUGE-TORQUE-RATE and so on: GAUGE-CLOSED at large, with limits"
 
@@ -66,6 +67,7 @@ def simulated_model(
     if unknown:
         raise StructureError(
             f"--set {', '.join(unknown)}: expected a parameter of {chosen.name}, one of {', '.join(chosen.names)}."
+            f"{meant(unknown[0], chosen.names)}"
         )
     if fingerprint is None:
         return _by_name(chosen, given)

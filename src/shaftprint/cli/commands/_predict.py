@@ -30,6 +30,7 @@ from shaftprint.identify.prediction import predict_intervals
 from shaftprint.models import Structure
 from shaftprint.signals import WorkingPoint
 from shaftprint.spectra import FrequencyResponse, open_loop
+from shaftprint.spelling import meant
 from shaftprint.survey import load_trial, measure, priors_of
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel, load_vessel
@@ -124,7 +125,8 @@ def _expect_free(freed: tuple[str, ...], chosen: Structure) -> None:
     free = [parameter.name for parameter in chosen.free]
     unknown = [name for name in freed if name not in free]
     if unknown:
-        raise StructureError(f"--free {', '.join(unknown)}: expected a free parameter, one of {', '.join(free)}.")
+        expected = f"expected a free parameter, one of {', '.join(free)}.{meant(unknown[0], free)}"
+        raise StructureError(f"--free {', '.join(unknown)}: {expected}")
 
 
 def _recorded(path: Path, vessel: str, campaign: str, chosen: Structure, *, no_progress: bool) -> _Ship:

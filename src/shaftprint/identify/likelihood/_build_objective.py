@@ -15,6 +15,7 @@ from shaftprint.identify.likelihood._united_parameters import united_parameters
 from shaftprint.identify.likelihood._weighting import Weighting
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
+from shaftprint.spelling import meant
 
 Source: TypeAlias = tuple[Structure, FrequencyResponse] | Term
 
@@ -95,6 +96,7 @@ def _expect_solvable(objective: Objective, with_prior: Sequence[str]) -> None:
     if unknown:
         raise IdentificationError(
             f"prior of {', '.join(unknown)}: structure {objective.name} has the free parameters {', '.join(names)}."
+            f"{meant(unknown[0], names)}"
         )
     for p in objective.free_parameters:
         if not (np.isfinite(p.lower) and np.isfinite(p.upper)):
