@@ -4,6 +4,7 @@ from shaftprint import arrays as arrays
 from shaftprint import campaign as campaign
 from shaftprint import catalogue as catalogue
 from shaftprint import clocks as clocks
+from shaftprint import digits as digits
 from shaftprint import distributions as distributions
 from shaftprint import errors as errors
 from shaftprint import escape as escape
@@ -25,6 +26,7 @@ from shaftprint import settings as settings
 from shaftprint import signals as signals
 from shaftprint import simulation as simulation
 from shaftprint import spectra as spectra
+from shaftprint import spelling as spelling
 from shaftprint import survey as survey
 from shaftprint import tables as tables
 from shaftprint import time_domain as time_domain

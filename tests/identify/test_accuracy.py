@@ -208,7 +208,7 @@ def test_thesis_campaign_in_words(thesis):
     assert "Known to 1 % or better: tau_dn, k_q, c_set, t_d + t_sp." in thesis.text
     assert "t_d + t_sp is known to 0.5" in thesis.text
     assert "K_p / K_i is known to 1." in thesis.text
-    assert "g stays at its prior, 0 +/- 0.1: the test says little about it." in thesis.text
+    assert "g stays at its prior, 0.00 +/- 0.10: the test says little about it." in thesis.text
     assert "Hardly known, worse than 20 %: t_d, t_sp." in thesis.text
 
 

@@ -103,7 +103,7 @@ def test_a_prior_that_is_pulled_is_named(gauge):
     verdict = assess(fitted(t_gauge=Prior(0.012, 0.002)))
     (reason,) = [reason for reason in verdict.reasons if reason.kind == "gauge latency"]
     assert reason.where == "t_gauge"
-    assert "the prior is 0.012 s +/- 0.002 s, the estimate is" in reason.sentence
+    assert "the prior is 0.0120 +/- 0.0020 s, the estimate is" in reason.sentence
     assert "t_d + t_sp" in verdict.not_trusted
 
 

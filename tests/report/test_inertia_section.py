@@ -26,7 +26,7 @@ def test_calculated_and_identified_stand_side_by_side(section, fingerprint):
     identified = fingerprint.quantity("tau_dn")
     assert float(down[1].split(" ±")[0]) == pytest.approx(identified.value, abs=identified.std)
     assert abs(float(down[2].replace("−", "-"))) < 3.0
-    assert found["I_up + I_p"][0].startswith("66.296 ±")
+    assert found["I_up + I_p"][0].startswith("66.3 ±")
 
 
 def test_budget_water_and_modes_follow(section):
