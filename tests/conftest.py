@@ -7,6 +7,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 from click.testing import CliRunner, Result
@@ -17,9 +18,18 @@ ONE_LINE = 10_000
 
 @pytest.fixture(scope="session", autouse=True)
 def _sentences_on_one_line() -> Iterator[None]:
-    """Let no sentence that a command prints be wrapped: tests of what it says look for it as a whole."""
+    """Let no sentence that a command prints be wrapped: tests of what it says look for it as a whole.
+
+    A test that sets COLUMNS has lines of that width.
+    """
+    as_it_is = CliRunner.invoke
+
+    def invoke(self: CliRunner, *arguments: Any, **options: Any) -> Result:
+        environment = {"COLUMNS": os.environ.get("COLUMNS", str(ONE_LINE))} | dict(options.pop("env", None) or {})
+        return as_it_is(self, *arguments, env=environment, **options)
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("shaftprint.cli._terminal.WIDTH_OF_PROSE", ONE_LINE)
+        patch.setattr(CliRunner, "invoke", invoke)
         yield
 
 

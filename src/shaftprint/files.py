@@ -59,9 +59,8 @@ def naming(path: Path, *, instead_of: Path | None = None) -> Iterator[None]:
 
 
 def reason(error: OSError) -> str:
-    """Return why the system refused a file, in its words without its numbers: ``no such file or directory``."""
-    words = error.strerror
-    return str(error) if words is None else words[:1].lower() + words[1:]
+    """Return why the system refused a file, in its words without its numbers: ``No such file or directory``."""
+    return error.strerror or str(error)
 
 
 def _spellings(path: Path | None) -> tuple[object, ...]:

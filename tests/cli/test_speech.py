@@ -6,9 +6,8 @@ import re
 import click
 import pytest
 
-from shaftprint.cli import _terminal, shaftprint
-from shaftprint.cli.output import progress
-from shaftprint.cli.output._json import table_json
+from shaftprint.cli import shaftprint
+from shaftprint.cli.output import print_table, progress, table_json
 from shaftprint.tables import Table, texts
 
 MOST_PROSE = 80
@@ -97,13 +96,11 @@ def test_sentences_are_as_wide_as_the_terminal(run, demo, monkeypatch):
 
 
 def test_sentences_without_a_terminal_have_a_hundred_letters(monkeypatch, capsys):
-    monkeypatch.setattr(_terminal, "WIDTH_OF_PROSE", 100)
     monkeypatch.delenv("COLUMNS", raising=False)
-    _terminal.print_findings("Findings", ["word " * 60])
-    lines = capsys.readouterr().out.splitlines()
-    assert len(lines) > 3
+    print_table(Table(title="", columns=texts("name"), rows=(("x",),), note="word " * 60))
+    lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("word")]
+    assert len(lines) == 4
     assert 90 < max(map(len, lines)) <= 100
-    assert all(line.startswith("    ") for line in lines[2:-1])
 
 
 def test_a_cell_of_json_is_in_the_letters_of_every_keyboard():

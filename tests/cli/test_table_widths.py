@@ -2,30 +2,30 @@
 
 import pytest
 
-from shaftprint.cli.output import _tables as printing
+from shaftprint.cli.output import table_lines
 from shaftprint.digits import plain_letters
-from shaftprint.tables import Symbol
+from shaftprint.tables import Symbol, Table
 
 WIDTHS = (80, 100, 200)
 
 
 @pytest.fixture
 def tables_of(run, monkeypatch):
-    """Call a command and return the tables that it prints."""
+    """Call a command and return the tables that it makes."""
 
     def call(*arguments):
-        printed = []
-        lines_of = printing.table_lines
+        tables = []
+        check = Table.__post_init__
 
-        def remembered(table, width):
-            printed.append(table)
-            return lines_of(table, width)
+        def remembered(table):
+            check(table)
+            tables.append(table)
 
-        monkeypatch.setattr(printing, "table_lines", remembered)
-        result = run(*arguments)
-        monkeypatch.setattr(printing, "table_lines", lines_of)
+        with monkeypatch.context() as patch:
+            patch.setattr(Table, "__post_init__", remembered)
+            result = run(*arguments)
         assert result.exit_code == 0, result.stderr
-        return printed
+        return [table for table in tables if table.rows]
 
     return call
 
@@ -35,7 +35,7 @@ def _shown(text):
 
 
 def _expect_readable(table, width):
-    lines = printing.table_lines(table, width)
+    lines = table_lines(table, width)
     page = [line for line in lines if "─" not in line]
     words = {word for line in page for word in line.split()}
     cells = [cell for row in table.rows for cell in row] + [column.heading for column in table.columns]

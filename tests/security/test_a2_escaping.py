@@ -29,7 +29,7 @@ import shaftprint.cli
 from shaftprint import escape
 from shaftprint.catalogue import structure
 from shaftprint.cli._terminal import echo
-from shaftprint.cli.output._layout import table_lines
+from shaftprint.cli.output import table_lines
 from shaftprint.digits import plain_letters
 from shaftprint.export import ExportedModel, write_fmu, write_matlab, write_modelica, write_osp, write_ssv
 from shaftprint.tables import Table, texts

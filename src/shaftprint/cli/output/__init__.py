@@ -2,7 +2,8 @@
 
 from shaftprint.cli.output._file_to_write import expect_free, expect_no_input
 from shaftprint.cli.output._fingerprint_file import FINGERPRINT, REPORT, fingerprint_at, fingerprint_file
-from shaftprint.cli.output._json import give
+from shaftprint.cli.output._json import give, table_json
+from shaftprint.cli.output._layout import table_lines
 from shaftprint.cli.output._output_folder import force_option, output_folder
 from shaftprint.cli.output._progress import Steps, no_progress_option, progress
 from shaftprint.cli.output._tables import print_table, print_tables
@@ -22,4 +23,6 @@ __all__ = [
     "print_table",
     "print_tables",
     "progress",
+    "table_json",
+    "table_lines",
 ]
