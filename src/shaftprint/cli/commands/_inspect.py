@@ -1,6 +1,7 @@
 """``shaftprint inspect``: what is in a recording, and whether it is good enough."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
@@ -11,16 +12,18 @@ from shaftprint.cli._found_tests import print_found_tests
 from shaftprint.cli._options import NAMES, hints_of, reading_options
 from shaftprint.cli._sensor_map import Seen, proposed_sensors
 from shaftprint.cli._signal_tables import print_lines, print_signals
-from shaftprint.cli._terminal import answer, echo, print_findings
+from shaftprint.cli._terminal import answer, echo, print_findings, say
 from shaftprint.cli.output import no_progress_option, print_table, print_tables, progress
-from shaftprint.clocks import logger_clocks
-from shaftprint.errors import SignalError
+from shaftprint.clocks import LoggerClock, logger_clocks
+from shaftprint.errors import ShaftprintError, SignalError
 from shaftprint.fingerprint import clock_findings, clock_influences
 from shaftprint.limits import limit_hints
 from shaftprint.recording import Levels, LevelWatch, Recording, read_recording, watch_levels
 from shaftprint.signals import (
     ChannelReadings,
     ChannelReport,
+    FoundTest,
+    Signals,
     channel_reports,
     contradictions,
     find_tests,
@@ -63,17 +66,65 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
         watch = watch_levels(opened)
         readings = None if ship is None else _read(watch, ship, hidden=no_progress)
         levels = _levels(watch, hidden=no_progress)
-        seen = _print_channels(opened, levels)
-        print_tables([clock_map_table(clocks)])
         if ship is None or readings is None:
-            print_findings("Left out", [f"{name}: {reason}" for name, reason in opened.left_out.items()])
-            echo("Proposal for the vessel file; lines that begin with # are for you to fill in\n")
-            for line in proposed_sensors(seen):
-                echo(line)
+            _print_proposal(opened, _print_channels(opened, levels), clocks)
             return
-        _print_sensors(channel_reports(readings, levels), ship)
-        if planned is not None:
-            _print_test(opened, ship, planned, readings, hidden=no_progress)
+        test = None if planned is None else _tested(opened, ship, planned, readings, hidden=no_progress)
+        reports = channel_reports(readings, levels)
+        _print_answer(test, reports, ship)
+        _print_channels(opened, levels)
+        print_tables([clock_map_table(clocks)])
+        _print_sensors(reports)
+        if test is not None:
+            _print_test(test, clocks)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Test:
+    """What a recording shows of its test."""
+
+    planned: Campaign
+    """What was asked of the ship."""
+    tests: tuple[FoundTest, ...]
+    """Where each test is in the recorded set point; empty where they are not to be found."""
+    signals: Signals | None
+    """The prepared signals; None where they are refused."""
+    spectra: Spectra | None
+    """The test lines; None where they are refused."""
+    refusal: ShaftprintError | None
+    """Why they are refused."""
+
+
+def _tested(opened: Recording, ship: Vessel, asked: Campaign, readings: ChannelReadings, *, hidden: bool) -> _Test:
+    tests: tuple[FoundTest, ...] = ()
+    with progress(hidden=hidden) as steps:
+        try:
+            steps.begin("Preparing the signals")
+            tests = find_tests(opened, ship, asked, readings=readings)
+            signals = prepare_signals(opened, ship, asked, readings=readings)
+            steps.begin("Measuring the test lines")
+            spectra = estimate_spectra(signals, asked)
+        except ShaftprintError as error:
+            # told below the tables, which show what the campaign should be
+            return _Test(planned=asked, tests=tests, signals=None, spectra=None, refusal=error)
+    return _Test(planned=asked, tests=tests, signals=signals, spectra=spectra, refusal=None)
+
+
+def _print_proposal(opened: Recording, seen: Sequence[Seen], clocks: Sequence[LoggerClock]) -> None:
+    print_tables([clock_map_table(clocks)])
+    print_findings("Left out", [f"{name}: {reason}" for name, reason in opened.left_out.items()])
+    echo("Proposal for the vessel file; lines that begin with # are for you to fill in\n")
+    for line in proposed_sensors(seen):
+        echo(line)
+
+
+def _print_answer(test: _Test | None, reports: Sequence[ChannelReport], ship: Vessel) -> None:
+    """Print whether the recording is good enough, and what is wrong with its sensors."""
+    if test is not None and test.spectra is not None:
+        answer(verdict(test.spectra))
+        echo()
+    problems = [report.problem for report in reports if report.problem is not None]
+    print_findings("Problems", [*problems, *contradictions(reports, ship)], is_answer=True)
 
 
 def _read(watch: LevelWatch, ship: Vessel, *, hidden: bool) -> ChannelReadings:
@@ -101,7 +152,7 @@ def _print_channels(opened: Recording, levels_of: Mapping[str, Levels]) -> list[
         values = [f"{value:.5g}" for value in (levels.lowest, levels.mean, levels.highest)]
         span = f"{channel.start_s:g} to {channel.start_s + channel.duration_s:g}"
         rows.append((channel.name, channel.unit, f"{channel.rate_hz:g}", span, *values, str(levels.missing)))
-    echo(f"{opened.path}: {opened.format}, SHA-256 {opened.sha256}\n")
+    say(f"{opened.path}: {opened.format}, SHA-256 {opened.sha256}\n")
     columns = (
         *(*texts("channel", "unit"), *numbers("rate [Hz]"), *texts("span [s]")),
         *numbers("lowest", "mean", "highest", "not a number"),
@@ -112,7 +163,7 @@ def _print_channels(opened: Recording, levels_of: Mapping[str, Levels]) -> list[
     return seen
 
 
-def _print_sensors(reports: Sequence[ChannelReport], ship: Vessel) -> None:
+def _print_sensors(reports: Sequence[ChannelReport]) -> None:
     columns = (
         *texts("channel", "used for", "levels"),
         *numbers("pulses [1/s]"),
@@ -123,8 +174,6 @@ def _print_sensors(reports: Sequence[ChannelReport], ship: Vessel) -> None:
     if gaps:
         more = [f"{len(gaps) - _MOST_GAPS} more"] if len(gaps) > _MOST_GAPS else []
         print_findings("Gaps, which cost the windows that they touch", [*gaps[:_MOST_GAPS], *more])
-    problems = [report.problem for report in reports if report.problem is not None]
-    print_findings("Problems", [*problems, *contradictions(reports, ship)])
 
 
 def _sensor_row(report: ChannelReport) -> tuple[str, ...]:
@@ -143,20 +192,18 @@ def _sensor_row(report: ChannelReport) -> tuple[str, ...]:
     )
 
 
-def _print_test(opened: Recording, ship: Vessel, asked: Campaign, readings: ChannelReadings, *, hidden: bool) -> None:
-    # before the signals are prepared: where they are refused, this says what the campaign should be
-    print_found_tests(find_tests(opened, ship, asked, readings=readings), asked)
-    with progress(hidden=hidden) as steps:
-        steps.begin("Preparing the signals")
-        signals = prepare_signals(opened, ship, asked, readings=readings)
-        steps.begin("Measuring the test lines")
-        spectra = estimate_spectra(signals, asked)
-    print_signals(signals)
-    print_lines(spectra)
-    influences = clock_influences(logger_clocks(opened), spectra=spectra, signals=signals)
-    print_findings("Findings on the signals", [*signals.findings, *clock_findings(influences)])
-    print_findings("Limits", limit_hints(spectra.harmonics))
-    answer(verdict(spectra))
+def _print_test(test: _Test, clocks: Sequence[LoggerClock]) -> None:
+    if test.tests:
+        print_found_tests(test.tests, test.planned)
+    if test.signals is None or test.spectra is None:
+        if test.refusal is not None:
+            raise test.refusal
+        return
+    print_signals(test.signals)
+    print_lines(test.spectra)
+    influences = clock_influences(clocks, spectra=test.spectra, signals=test.signals)
+    print_findings("Findings on the signals", [*test.signals.findings, *clock_findings(influences)])
+    print_findings("Limits", limit_hints(test.spectra.harmonics))
 
 
 def verdict(spectra: Spectra) -> str:
