@@ -318,7 +318,7 @@ SHIP = ("--structure", "GAUGE-CLOSED")
         ((*SHIP, "--input", "gap.csv"), "expected numbers, found none at 1 s"),
         (("--structure", "nothing.py:lag", "--input", "gap.csv"), "expected a Python file, found nothing there"),
         (("--structure", "GAUGE-TORQE", "--input", "gap.csv"), "there is no structure 'GAUGE-TORQE'"),
-        (("--fingerprint", "none", "--campaign", "short"), "it cannot be read"),
+        (("--fingerprint", "none", "--campaign", "short"), "found nothing there; name the file, or the folder"),
     ],
 )
 def test_wrong_arguments(run, here, arguments, message):

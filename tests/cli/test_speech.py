@@ -74,14 +74,12 @@ def test_quiet_prints_the_answer_only(run, demo):
 
 
 def test_verbose_names_each_step_with_its_time(run, monkeypatch):
-    @click.command()
-    def command():
+    def work(**_):
         with progress(hidden=False) as steps:
             steps.begin("Reading")
             steps.begin("Fitting")
 
-    monkeypatch.setitem(shaftprint.sections["Begin"], "demo", "work")
-    monkeypatch.setattr("shaftprint.cli.commands._demo.command", command)
+    monkeypatch.setattr(shaftprint.get_command(None, "demo"), "callback", work)
     result = run("demo", "-v")
     words = [re.sub(r"\d+\.\d s", "# s", line) for line in result.stderr.splitlines()]
     assert words == ["Reading ...", "Reading: # s", "Fitting ...", "Fitting: # s"]
@@ -99,7 +97,8 @@ def test_sentences_without_a_terminal_have_a_hundred_letters(monkeypatch, capsys
     monkeypatch.delenv("COLUMNS", raising=False)
     print_table(Table(title="", columns=texts("name"), rows=(("x",),), note="word " * 60))
     lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("word")]
-    assert len(lines) == 4
+    # 60 words of 4 letters with a blank each, 20 of them on a line of 100
+    assert [line.split() for line in lines] == [["word"] * 20] * 3
     assert 90 < max(map(len, lines)) <= 100
 
 

@@ -228,7 +228,9 @@ def test_prior_is_kept_in_its_own_unit(fit, take, truth):
 
 
 def test_file_that_is_missing(tmp_path):
-    with pytest.raises(FingerprintError, match=r"none\.json: expected a fingerprint in JSON, but it cannot be read"):
+    with pytest.raises(
+        FingerprintError, match=r"none\.json: expected a fingerprint in JSON, found nothing there; name the file"
+    ):
         read_fingerprint(tmp_path / "none.json")
 
 
