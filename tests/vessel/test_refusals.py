@@ -39,7 +39,7 @@ from shaftprint.vessel import ShaftTorqueSensor, SpeedSensor, load_vessel
         (
             'unit = "V"                          #',
             'unit = "mV" #',
-            r"sensors\.shaft_torque\.unit: expected 'V' or 'N m'",
+            r"sensors\.shaft_torque\.unit: expected 'V', 'N m' or 'kN m', found 'mV'",
         ),
         ("cylinders = 6", "cylinders = 6.5", "cylinders: expected a whole number"),
         ("# [sensors.rack]", '[sensors.rack]\nchannel = "X"', r"sensors\.rack\.cycle_s: expected a value, found none"),
@@ -59,6 +59,24 @@ def test_an_impossible_ship_is_refused(tmp_path, old, new, expected):
     assert text.count(old) == 1
     path.write_text(text.replace(old, new))
     with pytest.raises(SettingsError, match=expected):
+        load_vessel(path)
+
+
+@pytest.mark.parametrize(("written", "unit"), [("kNm", "kN m"), ("kN m", "kN m"), ("Nm", "N m"), ("N·m", "N m")])
+def test_units_of_torque_are_read_as_people_write_them(tmp_path, written, unit):
+    path = tmp_path / "ship.toml"
+    write_template("vessel", path)
+    text = path.read_text(encoding="utf-8").replace('unit = "V"                          #', f'unit = "{written}" #')
+    path.write_text(text.replace("scale_nm_per_unit = 500.0", "scale_nm_per_unit = 1000.0"), encoding="utf-8")
+    assert load_vessel(path).sensors.shaft_torque.unit == unit
+
+
+def test_a_gauge_in_kilonewton_metres_needs_their_scale(tmp_path):
+    path = tmp_path / "ship.toml"
+    write_template("vessel", path)
+    text = path.read_text(encoding="utf-8").replace('unit = "V"                          #', 'unit = "kNm" #')
+    path.write_text(text.replace("scale_nm_per_unit = 500.0", "scale_nm_per_unit = 1.0"), encoding="utf-8")
+    with pytest.raises(SettingsError, match=r"expected scale_nm_per_unit near 1000 for a channel in kN m.*, found 1"):
         load_vessel(path)
 
 

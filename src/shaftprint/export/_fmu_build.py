@@ -12,6 +12,7 @@ from types import MappingProxyType
 from typing import Final
 
 from shaftprint.errors import ExportError
+from shaftprint.files import reason
 
 EXTRA: Final = 'pip install "shaftprint[fmu]"'
 LONGEST_BUILD_S: Final = 600.0
@@ -108,8 +109,10 @@ def build_binary(folder: Path, sources: Sequence[str], name: str, binary: Path) 
         done = subprocess.run(  # noqa: S603
             command, cwd=folder, capture_output=True, text=True, timeout=LONGEST_BUILD_S, check=False
         )
-    except (OSError, subprocess.TimeoutExpired) as error:
-        raise ExportError(f"FMU for {name}: the compiler {command[0]} could not be run: {error}.") from None
+    except OSError as error:
+        raise ExportError(f"FMU for {name}: the compiler {command[0]} could not be run: {reason(error)}.") from None
+    except subprocess.TimeoutExpired as error:
+        raise ExportError(f"FMU for {name}: the compiler {command[0]} was ended after {error.timeout:g} s.") from None
     if done.returncode != 0 or not binary.is_file():
         messages = " ".join(done.stderr.split())[:500]
         raise ExportError(

@@ -1,0 +1,46 @@
+"""``shaftprint simulate --hold`` and the FMU of the same model give the same motion."""
+
+import csv
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from shaftprint.catalogue import structure
+from shaftprint.cli import shaftprint
+
+STEP_S, LAST_S = 1.0, 6.0
+JUMP = 0.04
+# what the working point of the fixture makes of deviations
+SPEED_RPM, TORQUE_NM = 1183.8, 1740.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("rows_a_second", [100, 1000])
+def test_a_held_step_moves_the_line_as_it_moves_the_fmu(fmu, tmp_path, rows_a_second):
+    """Rows of 10 ms were 0.3 rpm beside the FMU when values were held by steps of the solver."""
+    fmpy = pytest.importorskip("fmpy")
+    time = np.arange(0.0, LAST_S, 1.0 / rows_a_second)
+    asked = np.where(time >= STEP_S - 1e-9, JUMP, 0.0)
+    rows = "".join(f"{second:.4f},{value}\n" for second, value in zip(time, asked, strict=True))
+    (tmp_path / "input.csv").write_text(f"time [s],n_set [-]\n{rows}", encoding="utf-8")
+    files = ["--input", str(tmp_path / "input.csv"), "-o", str(tmp_path / "output.csv")]
+    done = CliRunner().invoke(shaftprint, ["simulate", "--structure", "GAUGE-CLOSED", "--hold", *files])
+    assert done.exit_code == 0, done.stderr
+    with (tmp_path / "output.csv").open(encoding="utf-8", newline="") as file:
+        printed = list(csv.DictReader(file))
+    name = "engine_speed_set_point"
+    held = np.array(list(zip(time, SPEED_RPM * (1.0 + asked), strict=True)), dtype=[("time", float), (name, float)])
+    moved = fmpy.simulate_fmu(
+        fmu(structure("GAUGE-CLOSED")),
+        stop_time=float(time[-1]),
+        step_size=1.0 / rows_a_second,
+        output_interval=1.0 / rows_a_second,
+        input=held,
+        output=["engine_speed", "shaft_torque"],
+        fmi_type="CoSimulation",
+    )
+    for column, output, size in (("n", "engine_speed", SPEED_RPM), ("M_s", "shaft_torque", TORQUE_NM)):
+        own = next(key for key in printed[0] if key.split(" [")[0] == column)
+        deviation = np.interp(time, moved["time"], moved[output]) / size - 1.0
+        np.testing.assert_allclose([float(row[own]) for row in printed], deviation, atol=1e-6)
