@@ -25,7 +25,8 @@ def tables_of(run, monkeypatch):
             patch.setattr(Table, "__post_init__", remembered)
             result = run(*arguments)
         assert result.exit_code == 0, result.stderr
-        return [table for table in tables if table.rows]
+        # a report makes tables too, which no command prints
+        return [table for table in tables if table.rows and _shown(table.title) in result.stdout]
 
     return call
 
@@ -65,7 +66,7 @@ TEST = ("{demo}/recording.nc", "--vessel", "stan-tug-1205", "--campaign", "short
 SLOW = {
     "inspect with a campaign": ("inspect", *TEST),
     "identify": ("identify", *TEST, "--structure", "GAUGE-CLOSED", "--structure", "CL4", "-o", "{o}"),
-    "compare-structures": ("compare-structures", *TEST, "--structure", "GAUGE-CLOSED", "--structure", "GAUGE-CORE"),
+    "compare-structures": ("compare-structures", *TEST, "--structure", "CL3", "--structure", "CL4"),
     "validate": ("validate", *TEST, "--fingerprint", "{demo}", "--thesis-sets"),
     "explain": ("explain", *TEST),
     "limits": ("limits", *TEST),

@@ -19,8 +19,8 @@ LIBRARY = (ROOT / "docs" / "library.md").read_text(encoding="utf-8")
 
 # what the rooms are made with: given, but not offered to who completes a name in a session
 INNER = {
-    *("arguments", "arrays", "distributions", "escape", "files"),
-    *("kernels", "normalisation", "notebook", "publication", "reasons"),
+    *("arguments", "arrays", "digits", "distributions", "escape", "files"),
+    *("kernels", "normalisation", "notebook", "publication", "reasons", "spelling"),
 }
 
 

@@ -55,7 +55,7 @@ def test_a_file_that_cannot_be_opened_is_told(path):
         raise PermissionError("Permission denied")
 
     reader = SimpleNamespace(NAME="A", is_mine=fail, read=None)
-    with pytest.raises(RecordingError, match=r"logger\.dat: the file cannot be read \(Permission denied\)"):
+    with pytest.raises(RecordingError, match=r"logger\.dat: the file cannot be read: Permission denied\."):
         read_recording(path, readers=[reader])
 
 
