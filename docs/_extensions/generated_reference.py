@@ -11,7 +11,7 @@ import click
 from sphinx.application import Sphinx
 
 import shaftprint
-from shaftprint.cli._command_group import COMMANDS
+from shaftprint.cli import shaftprint as program
 
 FOLDER = "reference/generated"
 COMMANDS_PAGE = "commands"
@@ -91,8 +91,8 @@ def commands_page() -> str:
         "wrong that you can mend (one sentence says which), with 2 for an option that does not exist, and with 130\n"
         "when it was interrupted.\n",
     ]
-    for name, words in COMMANDS.items():
-        command = importlib.import_module(f"shaftprint.cli.commands._{name.replace('-', '_')}").command
+    for name, words in program.helps.items():
+        _, command, _ = program.resolve_command(click.Context(program), [name])
         context = click.Context(command, info_name=f"shaftprint {name}", max_content_width=96, terminal_width=96)
         text = "\n".join(f"   {line}".rstrip() for line in command.get_help(context).splitlines())
         parts.append(f"\n{name}\n{'-' * len(name)}\n\n{words}\n\n.. code-block:: none\n\n{text}\n")
