@@ -11,6 +11,7 @@ import click
 
 from shaftprint.cli.output import fingerprint_at
 from shaftprint.fingerprint import Fingerprint
+from shaftprint.report import expect_reportlab
 
 DATE_FORMATS = ["%Y-%m-%d", "%Y-%m-%dT%H:%M", "%Y-%m-%d %H:%M", "%Y-%m-%dT%H:%M:%S"]
 
@@ -23,16 +24,20 @@ class ReportOptions:
     """When the recording began; None where its file may say so."""
     previous: Fingerprint | None
     """Fingerprint of an earlier test, with which this one is compared."""
+    pdf: bool
+    """Whether the first pages are written as PDF too."""
 
 
 def report_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options ``--tested-at`` and ``--previous``, handed over as ``about``."""
+    """Add the options ``--tested-at``, ``--previous`` and ``--pdf``, handed over as ``about``."""
 
     @wraps(command)
-    def with_options(*, tested_at: datetime | None, previous: Path | None, **options: Any) -> Any:
+    def with_options(*, tested_at: datetime | None, previous: Path | None, pdf: bool, **options: Any) -> Any:
         # read before anything is made: a file that cannot be used leaves no folder
+        if pdf:
+            expect_reportlab()
         earlier = None if previous is None else fingerprint_at(previous)
-        return command(about=ReportOptions(tested_at=tested_at, previous=earlier), **options)
+        return command(about=ReportOptions(tested_at=tested_at, previous=earlier, pdf=pdf), **options)
 
     tested_option = click.option(
         "--tested-at",
@@ -46,4 +51,5 @@ def report_options(command: Callable[..., Any]) -> Callable[..., Any]:
         metavar="RESULT",
         help="Result of an earlier test, a folder or a fingerprint: the report says what has changed since.",
     )
-    return tested_option(previous_option(with_options))
+    pdf_option = click.option("--pdf", is_flag=True, help="Write the first pages of the report as report.pdf too.")
+    return tested_option(previous_option(pdf_option(with_options)))

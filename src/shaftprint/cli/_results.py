@@ -23,6 +23,7 @@ def write_results(
     thesis: ThesisMode | None = None,
     truth: Mapping[str, float] | None = None,
     previous: Fingerprint | None = None,
+    pdf: bool = False,
 ) -> None:
     """Write fingerprint, figures and report of a survey into a folder.
 
@@ -40,6 +41,8 @@ def write_results(
         True values by name, where they are known.
     previous
         Fingerprint of an earlier test, with which the first page compares.
+    pdf
+        Whether the first pages are written as PDF too.
     """
     write_fingerprint(survey.fingerprint, folder / FINGERPRINT)
     steps.begin("Drawing the figures of the report", total=1.0)
@@ -53,6 +56,7 @@ def write_results(
             line_selection=_line_selection(survey),
             sensitivity=(survey.identification.structure,),
             previous=previous,
+            pdf=pdf,
             progress=steps.reach,
         )
 

@@ -18,7 +18,8 @@ Every ``plot_*`` function returns a matplotlib ``Figure`` that belongs to nobody
 
 from shaftprint.report._comparison import render_comparison
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
-from shaftprint.report._render import render_report
+from shaftprint.report._page import expect_reportlab
+from shaftprint.report._render import render_pdf, render_report
 from shaftprint.report.comparison import (
     LOAD_REPEATABILITY,
     Difference,
@@ -82,6 +83,7 @@ __all__ = [
     "damping_table",
     "difference_table",
     "differences",
+    "expect_reportlab",
     "explain_thesis",
     "explanation_sentences",
     "gain_table",
@@ -119,6 +121,7 @@ __all__ = [
     "plot_validation",
     "plot_validation_summary",
     "render_comparison",
+    "render_pdf",
     "render_report",
     "save_figure",
     "vessel_file_sentences",

@@ -8,6 +8,7 @@ from shaftprint.publication import publish, staged
 
 PAGE = "index.html"
 THESIS = "thesis.html"
+PDF = "report.pdf"
 FIGURES = "figures"
 PLOTS = "plots"
 FOLDERS = (FIGURES, PLOTS)
@@ -43,14 +44,14 @@ def report_written_whole(directory: Path, *, overwrite: bool) -> Iterator[Path]:
 
 
 def _drawn_earlier(directory: Path) -> list[PurePosixPath]:
-    """Return the page on the thesis' way and all files in the folders of figures and plots, which are the report's."""
+    """Return thesis page, PDF and all files in the folders of figures and plots, which are the report's."""
     files = [path for name in FOLDERS for path in (directory / name).rglob("*") if not path.is_dir()]
-    files += [path for path in (directory / THESIS,) if path.is_file()]
+    files += [path for path in (directory / THESIS, directory / PDF) if path.is_file()]
     return [PurePosixPath(path.relative_to(directory).as_posix()) for path in files]
 
 
 def _expect_free(directory: Path, *, overwrite: bool) -> None:
-    for name in (PAGE, THESIS, *FOLDERS):
+    for name in (PAGE, THESIS, PDF, *FOLDERS):
         if (directory / name).exists() and not overwrite:
             raise FileExistsError(
                 f"{directory / name} exists already; choose another folder, delete it, or allow overwriting."

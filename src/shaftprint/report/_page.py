@@ -7,19 +7,22 @@ plotly makes one and fills it rule by rule, and attributes of style because it s
 
 import base64
 import hashlib
+import importlib
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from importlib.resources import files
+from importlib.util import find_spec
 from pathlib import Path
 from types import MappingProxyType
 
 from jinja2 import DictLoader, Environment, StrictUndefined, Template
 from markupsafe import Markup
 
+from shaftprint.errors import ReportError
 from shaftprint.escape import html_value
-from shaftprint.report._folder import FIGURES, PAGE, PLOTS, report_written_whole
+from shaftprint.report._folder import FIGURES, PAGE, PDF, PLOTS, report_written_whole
 from shaftprint.report.figures import save_figure
 from shaftprint.report.notation import cell_html, sentence_html
 from shaftprint.report.plots import plotly_script, plotly_sheets, plotly_version, quick_script
@@ -30,6 +33,8 @@ from shaftprint.tables import Table
 LARGEST_SVG_BYTES = 80_000
 CSS_PX_AN_INCH = 96.0
 TEMPLATE = "report.html.j2"
+# Loaded when a PDF is asked for: it needs a library that not everybody has.
+PAPER = "shaftprint.report.paper"
 TABLE_TEMPLATE = "table.html.j2"
 SKETCH_TEMPLATE = "sketch.svg.j2"
 STYLE = "report.css"
@@ -95,6 +100,7 @@ def write_page(
     overwrite: bool,
     progress: Callable[[float], None] | None,
     further: Mapping[str, Page] = MappingProxyType({}),
+    pdf: bool = False,
 ) -> Path:
     """Write a page with its figures, whole or not at all; return its path.
 
@@ -112,16 +118,20 @@ def write_page(
         Is told the finished share, from 0 to 1.
     further
         Pages beside it, by their files; the folder's names of figures are those of all pages.
+    pdf
+        Whether what is not folded of the page is written as PDF too.
 
     Raises
     ------
     FileExistsError
         If there is a report already and ``overwrite`` is false.
     ReportError
-        If figures are to be interactive and plotly is not installed.
+        If figures are to be interactive and plotly is not installed, or ReportLab is not and a PDF is asked for.
     """
     folder = Path(directory)
     library = plotly_script() if interactive else b""
+    if pdf:
+        expect_reportlab()
     with report_written_whole(folder, overwrite=overwrite) as part:
         pages = {PAGE: page, **further}
         pictures = [picture for one in pages.values() for section in one.sections for picture in section.pictures]
@@ -136,7 +146,40 @@ def write_page(
         for name, one in pages.items():
             text = _html(one, stills, plots, scripts, plotly_sheets(library))
             (part / name).write_text(text, encoding="utf-8")
+        if pdf:
+            page_as_pdf(page, part / PDF)
     return folder / PAGE
+
+
+def page_as_pdf(page: Page, path: Path) -> None:
+    """Write what is not folded of a page as PDF.
+
+    Raises
+    ------
+    ReportError
+        If ReportLab is not installed.
+    """
+    expect_reportlab()
+    importlib.import_module(PAPER).write_pdf(
+        path,
+        title=page.title,
+        subtitle=f"{page.subtitle}, made {page.created:%Y-%m-%d %H:%M %Z}",
+        cover=page.cover,
+        sections=page.sections,
+        ending=page.ending,
+    )
+
+
+def expect_reportlab() -> None:
+    """Refuse where what writes PDF is not installed.
+
+    Raises
+    ------
+    ReportError
+        If ReportLab is not installed.
+    """
+    if find_spec("reportlab") is None:
+        raise ReportError('PDF: expected the package reportlab, found none; pip install "shaftprint[pdf]".')
 
 
 def _written_still(picture: Picture, part: Path) -> _Still:

@@ -3,14 +3,15 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from shaftprint.arguments import refusing_none
 from shaftprint.clocks import logger_clocks
 from shaftprint.errors import ReportError
+from shaftprint.files import written_whole
 from shaftprint.fingerprint import fingerprint_sha256
 from shaftprint.report._folder import PAGE, THESIS
-from shaftprint.report._page import Page, write_page
+from shaftprint.report._page import Page, expect_reportlab, page_as_pdf, write_page
 from shaftprint.report.sections import Inputs, Section, cover_of, page_sections, thesis_sections
 from shaftprint.tables import Table, texts
 
@@ -35,6 +36,7 @@ def render_report(
     line_selection: "Mapping[str, FrequencyResponse] | None" = None,
     sensitivity: "Sequence[Structure]" = (),
     previous: "Fingerprint | None" = None,
+    pdf: bool = False,
     interactive: bool = True,
     overwrite: bool = False,
     progress: Callable[[float], None] | None = None,
@@ -63,6 +65,8 @@ def render_report(
         Structures whose Bode families are shown.
     previous
         Fingerprint of an earlier test of the line; the first page says what has changed since.
+    pdf
+        Whether page one and the engineer's summary are written as ``report.pdf`` too.
     interactive
         Whether figures can be zoomed; without it the page runs no script.
     overwrite
@@ -77,30 +81,67 @@ def render_report(
     RecordingError
         If the clock maps of the recording cannot be understood.
     ReportError
-        If figures are to be interactive and plotly is not installed.
+        If figures are to be interactive and plotly is not installed, or ReportLab is not and a PDF is asked for.
     """
-    inputs = Inputs(
+    inputs = _inputs(
+        survey,
+        previous=previous,
+        recording=recording,
+        thesis=thesis,
+        truth=truth or {},
+        line_selection=line_selection or {},
+        sensitivity=sensitivity,
+        clocks=() if recording is None else logger_clocks(recording),
+    )
+    beside = thesis_sections(inputs)
+    page = _page(inputs, page_sections(inputs), neighbours=[(THESIS, THESIS_TITLE)] if beside else [])
+    further = {THESIS: _thesis_page(page, beside)} if beside else {}
+    return write_page(
+        directory, page, interactive=interactive, overwrite=overwrite, progress=progress, further=further, pdf=pdf
+    )
+
+
+@refusing_none(ReportError)
+def render_pdf(path: str | Path, survey: "Survey", *, previous: "Fingerprint | None" = None) -> Path:
+    """Write page one and the engineer's summary of a report as PDF of A4, whole or not at all; return its path.
+
+    Parameters
+    ----------
+    path
+        The file; one that is there already is replaced.
+    survey
+        The fingerprint and what it was made from, such as ``survey.run`` gives it.
+    previous
+        Fingerprint of an earlier test of the line; the first page says what has changed since.
+
+    Raises
+    ------
+    ReportError
+        If ReportLab is not installed.
+    """
+    expect_reportlab()
+    inputs = _inputs(survey, previous=previous)
+    page = _page(inputs, page_sections(inputs), neighbours=[])
+    with written_whole(Path(path), overwrite=True) as part:
+        page_as_pdf(page, part)
+    return Path(path)
+
+
+def _inputs(survey: "Survey", **further: Any) -> Inputs:
+    """Return what a report may show of a survey, and what was given beside it."""
+    nothing: dict[str, Any] = {"recording": None, "thesis": None, "truth": {}, "line_selection": {}, "sensitivity": ()}
+    return Inputs(
         fingerprint=survey.fingerprint,
         identification=survey.identification,
         signals=survey.signals,
         spectra=survey.spectra,
         vessel=survey.vessel,
         campaign=survey.campaign,
-        recording=recording,
         fits={one.structure.name: one for one in survey.fits[1:]},
-        thesis=thesis,
-        truth=truth or {},
-        line_selection=line_selection or {},
         comparisons=survey.comparisons,
-        sensitivity=sensitivity,
-        previous=previous,
         validations=survey.validations,
-        clocks=() if recording is None else logger_clocks(recording),
+        **(nothing | further),
     )
-    beside = thesis_sections(inputs)
-    page = _page(inputs, page_sections(inputs), neighbours=[(THESIS, THESIS_TITLE)] if beside else [])
-    further = {THESIS: _thesis_page(page, beside)} if beside else {}
-    return write_page(directory, page, interactive=interactive, overwrite=overwrite, progress=progress, further=further)
 
 
 def _thesis_page(page: Page, sections: Sequence[Section]) -> Page:

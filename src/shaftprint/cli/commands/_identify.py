@@ -67,7 +67,7 @@ def command(
             tested_at=about.tested_at,
             progress=steps,
         )
-        write_results(folder, recording, survey, steps=steps, previous=about.previous)
+        write_results(folder, recording, survey, steps=steps, previous=about.previous, pdf=about.pdf)
     for remark in survey.remarks:
         say(remark)
     print_fingerprint(survey.fingerprint)

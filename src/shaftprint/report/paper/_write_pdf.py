@@ -1,0 +1,165 @@
+"""A page as PDF, made by ReportLab: what is folded on the page is left out.
+
+Every text goes through ``sentence_html``, so that a name out of a file is text here as it is on the page: ReportLab's
+paragraphs know a small language of tags, and would load a picture that one of them names.
+"""
+
+import io
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from reportlab.lib.pagesizes import A4
+from reportlab.lib.units import mm
+from reportlab.platypus import Image, KeepTogether, ListFlowable, PageBreak, SimpleDocTemplate, Spacer
+from reportlab.platypus import Table as Grid
+
+from shaftprint.escape import printable
+from shaftprint.report.notation import cell_html
+from shaftprint.report.paper._looks import CELL_PT, MARGIN_MM, PAPER_COLOURS, WIDTH_MM, Looks, make_looks
+from shaftprint.report.paper._sketch_drawing import sketch_drawing
+
+if TYPE_CHECKING:
+    from shaftprint.report.sections import Card, Cover, Picture, Section
+    from shaftprint.tables import Table
+
+HIGHEST_PICTURE_MM = 72.0
+CARDS_A_ROW = 3
+FEWEST_LETTERS, MOST_LETTERS = 7, 34
+
+
+def write_pdf(
+    path: Path, *, title: str, subtitle: str, cover: "Cover | None", sections: "Sequence[Section]", ending: str
+) -> None:
+    """Write a report's first pages as PDF of A4.
+
+    Parameters
+    ----------
+    path
+        The file.
+    title, subtitle
+        Heading.
+    cover
+        The first page.
+    sections
+        What follows; those that are folded are left out.
+    ending
+        Last line.
+    """
+    looks = make_looks()
+    story: list[Any] = [looks.paragraph(title, "title"), looks.paragraph(subtitle, "text")]
+    if cover is not None:
+        story += [*_first_page(cover, looks), PageBreak()]
+    for section in sections:
+        if not section.folded:
+            story += _section(section, looks)
+    story.append(looks.paragraph(ending, "small"))
+    content = io.BytesIO()
+    document = SimpleDocTemplate(
+        content,
+        pagesize=A4,
+        leftMargin=MARGIN_MM * mm,
+        rightMargin=MARGIN_MM * mm,
+        topMargin=MARGIN_MM * mm,
+        bottomMargin=MARGIN_MM * mm,
+        title=printable(title),
+        author="shaftprint",
+        # no time of making: the same report gives the same bytes
+        invariant=1,
+    )
+    document.build(story)
+    path.write_bytes(content.getvalue())
+
+
+def _first_page(cover: "Cover", looks: Looks) -> list[Any]:
+    colour = PAPER_COLOURS[cover.state]
+    verdict = [looks.paragraph(cover.headline, "headline")]
+    verdict += [looks.coloured(cover.known, colour)] if cover.known else []
+    verdict += [looks.paragraph(cover.change, "text")] if cover.change else []
+    banner = Grid([[verdict]], colWidths=[WIDTH_MM * mm])
+    banner.setStyle([("LINEBEFORE", (0, 0), (0, -1), 5, colour), ("LEFTPADDING", (0, 0), (-1, -1), 10)])
+    facts = [looks.paragraph(f"{name}: {value}", "text") for name, value in cover.facts]
+    story = [Spacer(1, 2 * mm), banner, Spacer(1, 2 * mm)]
+    if cover.sketch is not None:
+        drawing = sketch_drawing(cover.sketch, width_mm=0.56 * WIDTH_MM)
+        story.append(Grid([[facts, drawing]], colWidths=[0.44 * WIDTH_MM * mm, 0.56 * WIDTH_MM * mm]))
+    else:
+        story += facts
+    story += [_cards(cover.cards, looks), Spacer(1, 2 * mm)]
+    for table in cover.tables:
+        story += _table(table, looks)
+    return [*story, looks.paragraph(cover.opening, "small")]
+
+
+def _cards(cards: "Sequence[Card]", looks: Looks) -> Any:
+    """Return the questions with their answers, three side by side."""
+    cells = [_card(card, looks) for card in cards]
+    cells += [[] for _ in range(-len(cells) % CARDS_A_ROW)]
+    rows = [cells[start : start + CARDS_A_ROW] for start in range(0, len(cells), CARDS_A_ROW)]
+    grid = Grid(rows, colWidths=[WIDTH_MM / CARDS_A_ROW * mm] * CARDS_A_ROW)
+    lines = [
+        (
+            "LINEABOVE",
+            (place % CARDS_A_ROW, place // CARDS_A_ROW),
+            (place % CARDS_A_ROW, place // CARDS_A_ROW),
+            3,
+            colour,
+        )
+        for place, colour in enumerate(PAPER_COLOURS[card.state] for card in cards)
+    ]
+    grid.setStyle([("VALIGN", (0, 0), (-1, -1), "TOP"), *lines])
+    return grid
+
+
+def _card(card: "Card", looks: Looks) -> list[Any]:
+    answer = looks.answer(f"{card.mark} {card.word}.", card.sentence, PAPER_COLOURS[card.state])
+    parts = [looks.paragraph(card.question, "question"), answer]
+    return [*parts, looks.answer("What to do:", card.action)] if card.action else parts
+
+
+def _section(section: "Section", looks: Looks) -> list[Any]:
+    story = [looks.paragraph(section.title, "heading")]
+    story += [looks.paragraph(text, "text") for text in section.paragraphs]
+    if section.points:
+        points = [looks.paragraph(text, "text") for text in section.points]
+        story.append(ListFlowable(points, bulletType="bullet", start="•", leftIndent=10))
+    for table in section.tables:
+        story += _table(table, looks)
+    return story + [part for picture in section.pictures for part in _picture(picture, looks)]
+
+
+def _table(table: "Table", looks: Looks) -> list[Any]:
+    heading = [looks.marked(cell_html(column.heading, table), "column") for column in table.columns]
+    rows = [[looks.marked(cell_html(type(cell)(printable(cell)), table), "cell") for cell in row] for row in table.rows]
+    letters = [
+        _letters(column.heading, [row[place] for row in table.rows]) for place, column in enumerate(table.columns)
+    ]
+    widths = [WIDTH_MM * mm * count / sum(letters) for count in letters]
+    grid = Grid([heading, *rows], colWidths=widths, repeatRows=1)
+    grid.setStyle(
+        [
+            ("LINEBELOW", (0, 0), (-1, 0), 0.8, PAPER_COLOURS["line"]),
+            ("LINEBELOW", (0, 1), (-1, -1), 0.3, PAPER_COLOURS["line"]),
+            ("VALIGN", (0, 0), (-1, -1), "TOP"),
+            ("TOPPADDING", (0, 0), (-1, -1), 0.12 * CELL_PT),
+            ("BOTTOMPADDING", (0, 0), (-1, -1), 0.2 * CELL_PT),
+            ("LEFTPADDING", (0, 0), (-1, -1), 0),
+        ]
+    )
+    note = [looks.paragraph(table.note, "small")] if table.note else []
+    return [looks.paragraph(table.title, "question"), grid, *note]
+
+
+def _letters(heading: str, cells: Sequence[str]) -> int:
+    """Return how wide a column is, in letters: as its longest cell or the longest word of its heading."""
+    return min(MOST_LETTERS, max(FEWEST_LETTERS, *map(len, heading.split()), *map(len, cells)))
+
+
+def _picture(picture: "Picture", looks: Looks) -> list[Any]:
+    content = io.BytesIO()
+    figure = picture.draw()
+    figure.savefig(content, format="png", dpi=200)
+    wide, high = figure.get_size_inches()
+    height = min(HIGHEST_PICTURE_MM, WIDTH_MM * high / wide)
+    drawn = Image(content, width=height * wide / high * mm, height=height * mm)
+    return [KeepTogether([drawn, looks.paragraph(picture.caption, "small")])]
