@@ -1,5 +1,6 @@
 """``shaftprint identify`` with its options; without any it is run in ``tests/docs``, as the pages show it."""
 
+import click
 import pytest
 
 from shaftprint.fingerprint import read_fingerprint
@@ -125,3 +126,14 @@ def test_place_below_a_file(run, recording, tmp_path):
     result = run("identify", recording, *GIVEN, "-o", tmp_path / "mine.txt" / "out")
     assert result.exit_code == 1
     assert "check the path, the permissions and the free space" in result.stderr
+
+
+@pytest.mark.slow
+def test_the_answer_is_printed_before_the_report_is_drawn(run, recording, tmp_path, monkeypatch):
+    monkeypatch.setattr(
+        "shaftprint.cli._results.render_report", lambda *args, **kwargs: click.echo("the report begins")
+    )
+    result = run("identify", recording, *GIVEN, "-o", tmp_path / "out")
+    assert result.exit_code == 0
+    order = [result.output.index(words) for words in ("GAUGE-CLOSED", "Verdict", "the report begins", "Report:  ")]
+    assert order == sorted(order)

@@ -1,14 +1,15 @@
 """A governor with some limits at its best, and how well it explains a test."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import GovernorSymbol
 from shaftprint.identify import Identification, Prior, Settings, identify_jointly
-from shaftprint.identify.search import Draw
+from shaftprint.identify.likelihood import MaximumLikelihood, build_joint_objective
+from shaftprint.identify.search import Draw, descend
 from shaftprint.limits._candidates import IDLE, Kind, parameters_of
 from shaftprint.limits.prediction import GovernorRecord, Messages, PredictionError
 from shaftprint.models import Structure
@@ -24,8 +25,10 @@ GOVERNOR: Mapping[str, float] = {
     GovernorSymbol.SET_POINT_OFFSET: 0.0,
 }
 """What is always free, and where the search begins."""
-# Iterations of a fit that is reported.
-FINE = 15
+# Fall of minus twice the log-likelihood that is not worth a step: less than any interval or comparison asks for.
+NEGLIGIBLE_FALL = 0.02
+# Iterations of the last steps of a fit that is reported.
+LAST = 2
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,8 +53,6 @@ class Fitted:
     """Its likelihood, in units of its own innovations."""
     values: Mapping[str, float]
     """Every parameter."""
-    fit: Identification
-    """The fit."""
     priors: Mapping[str, Prior]
     """What was known beforehand."""
     messages: Messages | None = None
@@ -96,7 +97,7 @@ def fitted(
     kinds: Sequence[Kind],
     *,
     priors: Mapping[str, Prior],
-    iterations: int = FINE,
+    iterations: int,
     held: Sequence[str] = (),
     messages: Messages | None = None,
 ) -> Fitted:
@@ -108,19 +109,42 @@ def fitted(
         The test; of a held set point with the jumps as late as the messages have them.
     priors
         What is known of the set point's scale and offset.
+    iterations
+        Limit of steps; it ends before where a step would hardly change the likelihood.
     held
         Names of parameters that stay although they would be free.
     """
     free = [name for name in (*GOVERNOR, *parameters_of(kinds)) if name not in held]
     term = PredictionError.of(whole, record, values, free)
-    start_values = np.array([values[name] for name in whole.names])
-    term = term.with_scale_at(start_values)
-    draw = SingleStart(np.array([values[p.name] for p in term.structure.free]))
-    settings = Settings(priors=priors, starts=1, draw=draw, max_iterations=iterations, stability="ignored")
-    fit = identify_jointly([term], rng=np.random.default_rng(0), settings=settings)
-    fitted_values = {**values, **{estimate.name: estimate.value for estimate in fit.parameters}}
-    best = term.with_scale_at(np.array([fitted_values[name] for name in whole.names]))
-    return Fitted(kinds=tuple(kinds), term=best, values=fitted_values, fit=fit, priors=priors, messages=messages)
+    term = term.with_scale_at(np.array([values[name] for name in whole.names]))
+    objective = build_joint_objective([term], weighting=MaximumLikelihood(), priors=priors, regularisation={})
+    start = np.array([[values[p.name] for p in objective.free_parameters]])
+    descent = descend(
+        objective.of_starts,
+        np.clip(start, objective.lower, objective.upper),
+        objective.lower,
+        objective.upper,
+        # half the squared innovations are about half their number
+        tolerance=NEGLIGIBLE_FALL / term.data_count,
+        max_iterations=iterations,
+    )
+    moved = {p.name: float(value) for p, value in zip(objective.free_parameters, descent.theta[0], strict=True)}
+    return _at(Fitted(kinds=tuple(kinds), term=term, values=values, priors=priors, messages=messages), moved)
+
+
+def identified(fit: Fitted) -> tuple[Fitted, Identification]:
+    """Return a governor to the last digit, and the fit with its covariance."""
+    draw = SingleStart(np.array([fit.values[p.name] for p in fit.term.structure.free]))
+    settings = Settings(priors=fit.priors, starts=1, draw=draw, max_iterations=LAST, stability="ignored")
+    identification = identify_jointly([fit.term], rng=np.random.default_rng(0), settings=settings)
+    return _at(fit, {estimate.name: estimate.value for estimate in identification.parameters}), identification
+
+
+def _at(fit: Fitted, moved: Mapping[str, float]) -> Fitted:
+    """Return a governor with other values, in units of the innovations there."""
+    values = {**fit.values, **moved}
+    term = fit.term.with_scale_at(np.array([values[name] for name in fit.term.whole.names]))
+    return replace(fit, term=term, values=values)
 
 
 def schwarz(one: Fitted) -> float:

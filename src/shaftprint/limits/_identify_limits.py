@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -9,7 +10,7 @@ from shaftprint.campaign import Campaign
 from shaftprint.catalogue import GovernorSymbol, limited_governor
 from shaftprint.identify import Prior
 from shaftprint.limits._candidates import CANDIDATES, Kind
-from shaftprint.limits._governor_fit import GOVERNOR, Fitted, fitted, schwarz
+from shaftprint.limits._governor_fit import GOVERNOR, Fitted, fitted, identified, schwarz
 from shaftprint.limits._limit_fit import LimitFit
 from shaftprint.limits._numbers import (
     Units,
@@ -33,6 +34,8 @@ COARSE_HZ = 100.0
 LEAST_OFFSET_STD = 5e-4
 # A level that costs so much of twice the log-likelihood is excluded.
 EXCLUDED = 15.0
+# Most steps of the fit that is reported.
+FINE = 15
 LIMITS = ("torque", "rate", "deadband", "ramp", "smoke")
 
 
@@ -41,7 +44,7 @@ def identify_limits(
     campaign: Campaign,
     vessel: Vessel,
     *,
-    progress: Callable[[str], None] | None = None,
+    progress: Callable[[str, str], None] | None = None,
 ) -> LimitFit:
     """Find the limits of governor and engine, and their levels, rates and widths with intervals.
 
@@ -54,7 +57,7 @@ def identify_limits(
         The prepared recording, what was asked, and the installation: inertia upstream of the gauge and full-load curve
         are taken from it.
     progress
-        Called with what is being done.
+        Called with the step that is being done, and with what of it.
 
     Raises
     ------
@@ -71,15 +74,19 @@ def identify_limits(
         GovernorSymbol.SET_POINT_SCALE: Prior(1.0, max(signals.dc_scale_std / signals.dc_scale, 1e-4)),
         GovernorSymbol.SET_POINT_OFFSET: Prior(0.0, _offset_std(signals)),
     }
-    say("Looking for limits")
-    search = Search.of(governor, test, campaign, drive_hz=COARSE_HZ, full=units.full, priors=priors)
+    looking = partial(say, "Looking for limits")
+    search = Search.of(governor, test, campaign, drive_hz=COARSE_HZ, full=units.full, priors=priors, say=looking)
     here, scanned = search.run()
-    say("Fitting the limits")
+    say("Fitting the limits", "")
     test = with_messages(test, here.messages)
-    best = fitted(governor, test.record(), here.values, here.kinds, priors=priors, messages=here.messages)
-    say("Finding the intervals")
+    rough = fitted(
+        governor, test.record(), here.values, here.kinds, priors=priors, iterations=FINE, messages=here.messages
+    )
+    best, identification = identified(rough)
     spread = spread_of(best, test, signals, vessel)
-    numbers, gains = numbers_of(best, spread, units), _gains(search, here)
+    numbers = numbers_of(best, spread, units, say=partial(say, "Finding the intervals"))
+    say("Comparing the limits", "")
+    gains = _gains(search, here)
     not_seen = _not_seen(here, scanned, search.messages(here), units)
     quantum = quantum_of(best, test, campaign)
     if quantum is not None and quantum.acts:
@@ -91,11 +98,11 @@ def identify_limits(
         gains=gains,
         governor=tuple(
             replace(estimate, std=spread.std(estimate.name))
-            for estimate in best.fit.parameters
+            for estimate in identification.parameters
             if estimate.name in GOVERNOR
         ),
         not_seen=not_seen,
-        identification=best.fit,
+        identification=identification,
     )
 
 
@@ -141,5 +148,5 @@ def _not_seen(here: Fitted, scanned: Sequence[Scanned], messages: Messages | Non
     return excluded
 
 
-def _silent(what: str) -> None:
+def _silent(step: str, detail: str) -> None:
     """Say nothing."""

@@ -1,6 +1,6 @@
 """Numbers of limits in the units of the ship, and whether they may be trusted."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -116,8 +116,10 @@ class Units:
                 return (Scale(name, "s", "time in which the integrator is led back at a limit"),)
 
 
-def numbers_of(fit: Fitted, spread: LevelScatter, units: Units) -> tuple[LimitEstimate, ...]:
-    """Return the numbers of all limits, with profile intervals."""
+def numbers_of(
+    fit: Fitted, spread: LevelScatter, units: Units, *, say: Callable[[str], None]
+) -> tuple[LimitEstimate, ...]:
+    """Return the numbers of all limits, with profile intervals; ``say`` is told which."""
     by_kind = {candidate.kind: candidate for candidate in CANDIDATES}
     done = set[str]()
     rows: list[LimitEstimate] = []
@@ -128,6 +130,7 @@ def numbers_of(fit: Fitted, spread: LevelScatter, units: Units) -> tuple[LimitEs
         for name in (by_kind[kind].level, *by_kind[kind].companions):
             if name not in done:
                 done.add(name)
+                say(f"{kind.value}, {name}")
                 rows += _printed(fit, spread, units, kind, name)
     return tuple(rows)
 

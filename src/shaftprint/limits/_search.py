@@ -1,6 +1,6 @@
 """Which limits act: one after the other they join the governor, as long as chance does not explain the gain."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,8 +27,8 @@ FAST = (
 MOST_LIMITS = 4
 # Candidates of a round that are fitted.
 POLISHED, POLISHED_CALM = 2, 4
-# Iterations of a fit that is compared with others.
-ROUGH = 6
+# Most iterations of a fit that is compared with others.
+ROUGH = 12
 # Share of the tests, the calmest first, whose torque changes so little that no limit is near.
 CALM = 0.5
 PUSH_S, LEAST_FALL = 0.03, 0.5
@@ -84,6 +84,8 @@ class Search:
     """Full-load torque of the vessel file over the brake torque of the working point."""
     priors: Mapping[str, Prior]
     """What is known of the set point's scale and offset."""
+    say: Callable[[str], None]
+    """Is told what is being tried."""
     calm: Mapping[str, float]
     """Governor of the calm part of the test.
 
@@ -100,8 +102,10 @@ class Search:
         drive_hz: float,
         full: float,
         priors: Mapping[str, Prior],
+        say: Callable[[str], None],
     ) -> "Search":
         """Return a search, its calm governor found."""
+        say("the calm part of the test")
         start, record = values_without_limits(whole), test.record(drive_hz=drive_hz)
         calm = fitted(whole, calm_part(record, campaign), start, (), priors=priors, iterations=ROUGH, held=FAST)
         return cls(
@@ -111,6 +115,7 @@ class Search:
             drive_hz=drive_hz,
             full=full,
             priors=priors,
+            say=say,
             calm={name: calm.values[name] for name in GOVERNOR},
         )
 
@@ -263,6 +268,7 @@ class Search:
 
     def fit(self, values: Mapping[str, float], kinds: Sequence[Kind], messages: Messages | None = None) -> Fitted:
         """Return the best governor with some limits, from given values on."""
+        self.say(" and ".join(kind.value for kind in kinds) or "a governor without limits")
         record = self.record
         if messages is not None:
             record = with_messages(self.test, messages).record(drive_hz=self.drive_hz)

@@ -28,7 +28,7 @@ BLOCK_S = 10.0
 SLOPE_STD = 0.1
 # Steps towards the end of a profile, and how near the end they must come, as a share of the threshold.
 MOST_STEPS, NEAR = 4, 0.1
-PROFILE_ITERATIONS = 4
+PROFILE_ITERATIONS = 8
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

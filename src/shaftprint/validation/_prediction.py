@@ -90,9 +90,14 @@ def linear_prediction(
     steady = stacked[..., :1].real
     stacked[..., 0] = stacked[..., 0].real
     stacked *= np.cos(0.5 * np.pi * np.clip((frequency[shown] - low) / (high - low), 0.0, 1.0)) ** 2
-    spectrum = np.zeros((*stacked.shape[:-1], frequency.size), dtype=np.complex128)
-    spectrum[..., shown] = stacked * np.fft.rfft(moved)[shown]
-    outputs = np.fft.irfft(spectrum, moved.size, axis=-1)[..., : set_point.size] + steady * first
+    stacked *= np.fft.rfft(moved)[shown]
+    outputs = np.empty((*stacked.shape[:-1], set_point.size))
+    spectrum = np.zeros(frequency.size, dtype=np.complex128)
+    # one after the other: the transforms of all together would need several times their memory
+    for row in np.ndindex(stacked.shape[:-1]):
+        spectrum[shown] = stacked[row]
+        outputs[row] = np.fft.irfft(spectrum, moved.size)[: set_point.size]
+    outputs += steady * first
     return outputs[0], outputs[1:]
 
 

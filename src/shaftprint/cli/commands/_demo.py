@@ -49,17 +49,20 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
     """
     campaign = SHORT if short else FULL
     trial = load_trial(VESSEL, campaign)
-    with output_folder(output, of="demo", force=force) as folder, progress(hidden=no_progress) as steps:
-        truth = _sail(folder, trial, campaign, seed=seed, steps=steps)
-        survey, thesis = _identify(folder / RECORDING, trial, seed=seed, steps=steps)
+    with output_folder(output, of="demo", force=force) as folder:
+        with progress(hidden=no_progress) as steps:
+            truth = _sail(folder, trial, campaign, seed=seed, steps=steps)
+            survey, thesis = _identify(folder / RECORDING, trial, seed=seed, steps=steps)
         true = fingerprint_truth(truth, survey.identification.structure, survey.signals)
-        write_results(folder, folder / RECORDING, survey, steps=steps, thesis=thesis, truth=true)
-    for remark in survey.remarks:
-        say(remark)
-    _print(survey, thesis, true)
-    for comparison in survey.comparisons:
-        print_comparison(comparison)
-    print_summary(survey.fingerprint, true, thesis.identifications["OL1"])
+        # the answer first: the report takes as long again
+        for remark in survey.remarks:
+            say(remark)
+        _print(survey, thesis, true)
+        for comparison in survey.comparisons:
+            print_comparison(comparison)
+        print_summary(survey.fingerprint, true, thesis.identifications["OL1"])
+        with progress(hidden=no_progress) as steps:
+            write_results(folder, folder / RECORDING, survey, steps=steps, thesis=thesis, truth=true)
     _print_paths(output)
 
 

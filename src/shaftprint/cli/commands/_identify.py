@@ -13,7 +13,7 @@ from shaftprint.cli._report_options import ReportOptions, report_options
 from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._terminal import print_findings, say
 from shaftprint.cli.output import force_option, no_progress_option, output_folder, print_table, progress
-from shaftprint.survey import load_trial, run
+from shaftprint.survey import Survey, load_trial, run
 from shaftprint.tables import fits_table
 
 
@@ -54,20 +54,29 @@ def command(
     structures = structures_of(names, options)
     # before the folder is made: a mistake in a settings file leaves none
     trial = load_trial(vessel, campaign)
-    with output_folder(output, of="identify", force=force) as folder, progress(hidden=no_progress) as steps:
-        survey = run(
-            recording,
-            trial.vessel,
-            trial.campaign,
-            structures=structures,
-            settings=settings_of(structures, options),
-            mode=options.mode,
-            sources=(*trial.sources, *structure_sources(names)),
-            rng=np.random.default_rng(options.seed),
-            tested_at=about.tested_at,
-            progress=steps,
-        )
-        write_results(folder, recording, survey, steps=steps, previous=about.previous, pdf=about.pdf)
+    with output_folder(output, of="identify", force=force) as folder:
+        with progress(hidden=no_progress) as steps:
+            survey = run(
+                recording,
+                trial.vessel,
+                trial.campaign,
+                structures=structures,
+                settings=settings_of(structures, options),
+                mode=options.mode,
+                sources=(*trial.sources, *structure_sources(names)),
+                rng=np.random.default_rng(options.seed),
+                tested_at=about.tested_at,
+                progress=steps,
+            )
+        # the answer first: the report takes as long again
+        _print_answer(survey)
+        with progress(hidden=no_progress) as steps:
+            write_results(folder, recording, survey, steps=steps, previous=about.previous, pdf=about.pdf)
+    print_paths(output)
+
+
+def _print_answer(survey: Survey) -> None:
+    """Print fingerprint and verdict, and which structure the data want."""
     for remark in survey.remarks:
         say(remark)
     print_fingerprint(survey.fingerprint)
@@ -76,4 +85,3 @@ def command(
         print_table(fits_table("All structures", survey.fits))
     for comparison in survey.comparisons:
         print_comparison(comparison)
-    print_paths(output)

@@ -31,7 +31,7 @@ def command(recording: Path, vessel: str, campaign: str, no_progress: bool) -> N
     trial = load_trial(vessel, campaign)
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode="shaftprint", progress=steps)
-        limits = identify_limits(measurement.signals, trial.campaign, trial.vessel, progress=steps.begin)
+        limits = identify_limits(measurement.signals, trial.campaign, trial.vessel, progress=steps.tell)
     print_limits(limits)
 
 

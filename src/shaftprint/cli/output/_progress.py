@@ -28,6 +28,8 @@ class Steps:
     """The bar of the step that runs."""
     running: tuple[str, float] | None = None
     """Text and begin [s] of the step that is named in words."""
+    told: str = ""
+    """The step that was told last."""
 
     def begin(self, text: str, total: float | None = None) -> None:
         """End the running step and begin the next.
@@ -46,6 +48,24 @@ class Steps:
         if self.bars is None:
             return
         self.current = self.bars.add_task(printable(text), total=total)
+
+    def tell(self, step: str, detail: str) -> None:
+        """Say what is being done of a step whose amount of work is not known; another step is begun.
+
+        Parameters
+        ----------
+        step
+            The step.
+        detail
+            What of it is being done; empty where there is nothing to say.
+        """
+        if step != self.told:
+            self.begin(step)
+            self.told = step
+        if self.in_words and detail:
+            echo(f"  {detail}", err=True)
+        if self.bars is not None and self.current is not None:
+            self.bars.update(self.current, description=printable(f"{step}: {detail}" if detail else step))
 
     def advance(self, amount: float) -> None:
         """Move the running bar by an amount of work."""
