@@ -2,6 +2,7 @@
 
 import ctypes
 import shutil
+import threading
 import zipfile
 
 import numpy as np
@@ -340,3 +341,32 @@ def test_parameters_with_names_that_c_does_not_take(exported, tmp_path):
     assert "'gain of it'" in names
     assert {"wanted", "got"} <= set(names)
     assert found.coSimulation.modelIdentifier == "own_ship"
+
+
+def test_systems_are_compiled_together_and_stand_in_their_order(exported, tmp_path, monkeypatch):
+    both, shares = threading.Barrier(2, timeout=10.0), []
+
+    def build(folder, sources, name, binary):
+        both.wait()
+        binary.write_bytes(name.encode())
+
+    monkeypatch.setattr("shaftprint.export._fmu.build_binary", build)
+    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    write_fmu(exported(*TORQUE), tmp_path / "m.fmu", platforms=["win64", "linux64"], progress=shares.append)
+    with zipfile.ZipFile(tmp_path / "m.fmu") as archive:
+        binaries = [name for name in archive.namelist() if name.startswith("binaries/")]
+        assert binaries == ["binaries/win64/m.dll", "binaries/linux64/m.so"]
+        assert [archive.read(name) for name in binaries] == [b"win64", b"linux64"]
+    assert shares == [0.5, 1.0]
+
+
+def test_a_compiler_that_fails_leaves_no_file(exported, tmp_path, monkeypatch):
+    def build(folder, sources, name, binary):
+        if name == "win64":
+            raise ExportError("FMU for win64: no compiler")
+        binary.write_bytes(b"")
+
+    monkeypatch.setattr("shaftprint.export._fmu.build_binary", build)
+    with pytest.raises(ExportError, match="FMU for win64"):
+        write_fmu(exported(*TORQUE), tmp_path / "m.fmu", platforms=["linux64", "win64"])
+    assert not (tmp_path / "m.fmu").exists()

@@ -1,9 +1,11 @@
 """An FMU of a model: sources, binaries, description, in one file that is written whole or not at all."""
 
+import os
 import tempfile
 import uuid
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
@@ -69,6 +71,7 @@ def write_fmu(
     samples: int = 0,
     rng: np.random.Generator | None = None,
     overwrite: bool = False,
+    progress: Callable[[float], None] | None = None,
 ) -> WrittenFmu:
     """Write a model as an FMU for co-simulation and model exchange, with its sources.
 
@@ -86,6 +89,8 @@ def write_fmu(
         Where these are drawn from; needed for samples.
     overwrite
         Whether an earlier file is replaced.
+    progress
+        Is told the share of the systems for which it has been compiled, 0 to 1.
 
     Raises
     ------
@@ -112,7 +117,7 @@ def write_fmu(
     )
     description, texts = _described(model, equations, identifier(fmu_path.stem), version)
     with written_whole(fmu_path, overwrite=overwrite) as part, tempfile.TemporaryDirectory() as folder:
-        _pack(part, Path(folder), description, texts, version, wanted)
+        _pack(part, Path(folder), description, texts, version, wanted, progress)
     return WrittenFmu(
         path=fmu_path,
         version=version,
@@ -177,7 +182,13 @@ def _indicators(equations: FmuEquations) -> tuple[Variable, ...]:
 
 
 def _pack(
-    part: Path, folder: Path, d: FmuDescription, texts: dict[str, str], version: Literal[2, 3], platforms: Sequence[str]
+    part: Path,
+    folder: Path,
+    d: FmuDescription,
+    texts: dict[str, str],
+    version: Literal[2, 3],
+    platforms: Sequence[str],
+    progress: Callable[[float], None] | None,
 ) -> None:
     """Compile in a folder and write the archive."""
     members: dict[str, bytes] = {
@@ -188,17 +199,43 @@ def _pack(
         (folder / name).write_bytes(text.encode())
     if version == 3:
         members["sources/buildDescription.xml"] = build_description(d)
-    for name in platforms:
-        if name not in PLATFORMS:
-            raise ExportError(f"FMU: there is no system {name!r}; there are {', '.join(PLATFORMS)}.")
-        chosen = PLATFORMS[name]
-        binary = folder / name / f"{d.identifier}{chosen.suffix}"
-        binary.parent.mkdir()
-        build_binary(folder, d.sources, name, binary)
-        members[f"{chosen.folder(version)}/{d.identifier}{chosen.suffix}"] = binary.read_bytes()
+    members.update(_binaries(folder, d, version, platforms, progress))
     with zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED) as archive:
         for name, content in members.items():
             archive.writestr(zipfile.ZipInfo(name, DATE), content, zipfile.ZIP_DEFLATED)
+
+
+def _binaries(
+    folder: Path,
+    d: FmuDescription,
+    version: Literal[2, 3],
+    platforms: Sequence[str],
+    progress: Callable[[float], None] | None,
+) -> dict[str, bytes]:
+    """Return the libraries of some systems by their place in the archive, in the order of the systems.
+
+    Each compiler is a process of its own, so that threads are enough to wait for as many as there are cores.
+    """
+    unknown = [name for name in platforms if name not in PLATFORMS]
+    if unknown:
+        raise ExportError(f"FMU: there is no system {unknown[0]!r}; there are {', '.join(PLATFORMS)}.")
+    paths = {name: folder / name / f"{d.identifier}{PLATFORMS[name].suffix}" for name in platforms}
+    pool = ThreadPoolExecutor(max_workers=os.cpu_count() or 1)
+    try:
+        for path in paths.values():
+            path.parent.mkdir()
+        jobs = [pool.submit(build_binary, folder, d.sources, name, path) for name, path in paths.items()]
+        for done, job in enumerate(as_completed(jobs), start=1):
+            job.result()
+            if progress is not None:
+                progress(done / len(jobs))
+    finally:
+        # what has not begun when a compiler fails is not begun any more
+        pool.shutdown(cancel_futures=True)
+    return {
+        f"{PLATFORMS[name].folder(version)}/{d.identifier}{PLATFORMS[name].suffix}": path.read_bytes()
+        for name, path in paths.items()
+    }
 
 
 def _template(name: str) -> str:

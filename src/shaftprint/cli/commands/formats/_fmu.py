@@ -75,7 +75,7 @@ def command(
     path = file_to_write(output, model, ".fmu", inputs=(fingerprint,), force=force)
     number: Literal[2, 3] = 2 if version == "2" else 3
     with progress(hidden=no_progress) as steps:
-        steps.begin("Compiling, the first time for some minutes")
+        steps.begin("Compiling for each system, the first time for some minutes", total=1.0)
         written = write_fmu(
             model,
             path,
@@ -84,6 +84,7 @@ def command(
             samples=samples,
             rng=np.random.default_rng(seed),
             overwrite=force,
+            progress=steps.reach,
         )
     _print(written)
 
