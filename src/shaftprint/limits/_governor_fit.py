@@ -25,7 +25,7 @@ GOVERNOR: Mapping[str, float] = {
     GovernorSymbol.SET_POINT_OFFSET: 0.0,
 }
 """What is always free, and where the search begins."""
-# Fall of minus twice the log-likelihood that is not worth a step: less than any interval or comparison asks for.
+# Fall of minus twice the log-likelihood that is not worth a step: less than any end of an interval asks for.
 NEGLIGIBLE_FALL = 0.02
 # Iterations of the last steps of a fit that is reported.
 LAST = 2
@@ -66,10 +66,11 @@ class Fitted:
     @property
     def log_squares(self) -> float:
         """``N log`` of the squared innovations, and the priors: minus twice the log-likelihood but for a constant."""
-        innovations = self.term.innovations(self.own)
         penalty = sum(((self.values[name] - prior.mean) / prior.std) ** 2 for name, prior in self.priors.items())
         penalty += 0.0 if self.messages is None else self.messages.cost
-        return np.inf if innovations is None else innovations.count * float(np.log(innovations.squares)) + penalty
+        # the unit of the innovations is their own deviation
+        count = self.term.innovation_count
+        return count * float(np.log(count * self.term.scale**2)) + penalty
 
     @property
     def parameters(self) -> int:
@@ -98,6 +99,7 @@ def fitted(
     *,
     priors: Mapping[str, Prior],
     iterations: int,
+    negligible: float = NEGLIGIBLE_FALL,
     held: Sequence[str] = (),
     messages: Messages | None = None,
 ) -> Fitted:
@@ -110,7 +112,9 @@ def fitted(
     priors
         What is known of the set point's scale and offset.
     iterations
-        Limit of steps; it ends before where a step would hardly change the likelihood.
+        Limit of steps.
+    negligible
+        Fall of minus twice the log-likelihood that is not worth a step.
     held
         Names of parameters that stay although they would be free.
     """
@@ -125,7 +129,7 @@ def fitted(
         objective.lower,
         objective.upper,
         # half the squared innovations are about half their number
-        tolerance=NEGLIGIBLE_FALL / term.data_count,
+        tolerance=negligible / term.data_count,
         max_iterations=iterations,
     )
     moved = {p.name: float(value) for p, value in zip(objective.free_parameters, descent.theta[0], strict=True)}

@@ -11,7 +11,7 @@ from shaftprint.catalogue import GovernorSymbol
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import Prior
 from shaftprint.limits._candidates import CANDIDATES, IDLE, Kind, LimitCandidate, parameters_of, starts_of
-from shaftprint.limits._governor_fit import GOVERNOR, Fitted, fitted, schwarz, values_without_limits
+from shaftprint.limits._governor_fit import GOVERNOR, NEGLIGIBLE_FALL, Fitted, fitted, schwarz, values_without_limits
 from shaftprint.limits.prediction import OUTPUT, GovernorRecord, GovernorTest, Messages, messages_of
 from shaftprint.models import Structure
 
@@ -27,13 +27,17 @@ FAST = (
 MOST_LIMITS = 4
 # Candidates of a round that are fitted.
 POLISHED, POLISHED_CALM = 2, 4
-# Most iterations of a fit that is compared with others.
-ROUGH = 12
+# Most iterations of a fit that is compared with others, and the fall of minus twice the log-likelihood that is not
+# worth one: limits are told apart by falls of tens.
+ROUGH, ROUGH_FALL = 12, 0.2
 # Share of the tests, the calmest first, whose torque changes so little that no limit is near.
 CALM = 0.5
-PUSH_S, LEAST_FALL = 0.03, 0.5
+# Most pushed fits come back to where they were: they end sooner, and go on only where they came lower.
+PUSH_S, LEAST_FALL, PUSH_FALL = 0.03, 0.5, 1.0
 # The push of the set point's offset, over its deviation, and of the level of a torque limit with it.
 REST_PUSH, LEVEL_SHARES = 1.0, (0.8, 0.9, 1.0, 1.1, 1.2, 1.35)
+# A torque limit above this, over the torque of the working point, is none that the line rests near.
+NEAR_REST = 2.0
 # Gain of held messages, to first order, from which on they are fitted; rounds in which delays and governor follow.
 PROMISING, ROUNDS = 10.0, 3
 LEAST_SPEED = 0.1
@@ -107,7 +111,16 @@ class Search:
         """Return a search, its calm governor found."""
         say("the calm part of the test")
         start, record = values_without_limits(whole), test.record(drive_hz=drive_hz)
-        calm = fitted(whole, calm_part(record, campaign), start, (), priors=priors, iterations=ROUGH, held=FAST)
+        calm = fitted(
+            whole,
+            calm_part(record, campaign),
+            start,
+            (),
+            priors=priors,
+            iterations=ROUGH,
+            negligible=ROUGH_FALL,
+            held=FAST,
+        )
         return cls(
             whole=whole,
             test=test,
@@ -141,7 +154,7 @@ class Search:
                 continue
             other = self._pushed(here, self._rest_moves(here))
             if other is here:
-                return here, scans
+                return self.fit(here.values, here.kinds, here.messages, negligible=NEGLIGIBLE_FALL), scans
             here = other
 
     def scanned(self, here: Fitted) -> list[Scanned]:
@@ -233,9 +246,9 @@ class Search:
         """Return the best of a governor and of fits that begin where moves put some of its parameters."""
         best = here
         for move in moves:
-            moved = self._tried({**here.values, **move}, here.kinds, here.messages)
+            moved = self._tried({**here.values, **move}, here.kinds, here.messages, negligible=PUSH_FALL)
             if moved is not None and moved.log_squares < best.log_squares - LEAST_FALL:
-                best = moved
+                best = self.fit(moved.values, moved.kinds, moved.messages)
         return best
 
     def _rest_moves(self, here: Fitted) -> list[dict[str, float]]:
@@ -246,7 +259,8 @@ class Search:
         """
         scale, offset = self.priors[GovernorSymbol.SET_POINT_SCALE].mean, self.priors[GovernorSymbol.SET_POINT_OFFSET]
         levels: list[dict[str, float]] = [{}]
-        if GovernorSymbol.TORQUE_LIMIT in parameters_of(here.kinds):
+        limited = GovernorSymbol.TORQUE_LIMIT in parameters_of(here.kinds)
+        if limited and here.values[GovernorSymbol.TORQUE_LIMIT] < NEAR_REST:
             gains = {name: self.calm[name] for name in (GovernorSymbol.PROPORTIONAL_GAIN, GovernorSymbol.INTEGRAL_GAIN)}
             levels = [
                 {GovernorSymbol.TORQUE_LIMIT: share * here.values[GovernorSymbol.TORQUE_LIMIT], **gains}
@@ -259,20 +273,43 @@ class Search:
             for level in levels
         ]
 
-    def _tried(self, values: Mapping[str, float], kinds: Sequence[Kind], messages: Messages | None) -> Fitted | None:
+    def _tried(
+        self,
+        values: Mapping[str, float],
+        kinds: Sequence[Kind],
+        messages: Messages | None,
+        *,
+        negligible: float = ROUGH_FALL,
+    ) -> Fitted | None:
         """Return the best governor from given values on; None where the simulation runs away from them."""
         try:
-            return self.fit(values, kinds, messages)
+            return self.fit(values, kinds, messages, negligible=negligible)
         except IdentificationError:
             return None
 
-    def fit(self, values: Mapping[str, float], kinds: Sequence[Kind], messages: Messages | None = None) -> Fitted:
+    def fit(
+        self,
+        values: Mapping[str, float],
+        kinds: Sequence[Kind],
+        messages: Messages | None = None,
+        *,
+        negligible: float = ROUGH_FALL,
+    ) -> Fitted:
         """Return the best governor with some limits, from given values on."""
         self.say(" and ".join(kind.value for kind in kinds) or "a governor without limits")
         record = self.record
         if messages is not None:
             record = with_messages(self.test, messages).record(drive_hz=self.drive_hz)
-        return fitted(self.whole, record, values, kinds, priors=self.priors, iterations=ROUGH, messages=messages)
+        return fitted(
+            self.whole,
+            record,
+            values,
+            kinds,
+            priors=self.priors,
+            iterations=ROUGH,
+            negligible=negligible,
+            messages=messages,
+        )
 
 
 def with_messages(test: GovernorTest, messages: Messages | None) -> GovernorTest:

@@ -87,7 +87,7 @@ def linear_prediction(
     s = 2j * np.pi * frequency[shown]
     s[0] = 1j * _SLOWEST_RAD_S
     stacked = structure.stacked(values, s, tuple(wanted))[:, places]
-    steady = stacked[..., :1].real
+    steady = stacked[..., :1].real.copy()
     stacked[..., 0] = stacked[..., 0].real
     stacked *= np.cos(0.5 * np.pi * np.clip((frequency[shown] - low) / (high - low), 0.0, 1.0)) ** 2
     stacked *= np.fft.rfft(moved)[shown]

@@ -49,10 +49,15 @@ class Innovations:
         return np.asarray(white - ((white @ self.lags) @ self.inverse) @ self.lags.T)
 
 
+def without_gaps(used: BoolArray) -> BoolArray:
+    """Return which samples are used with all of the past that predicts them, shape (samples - order,)."""
+    return np.asarray(np.lib.stride_tricks.sliding_window_view(used, ORDER + 1).all(axis=1), dtype=np.bool_)
+
+
 def innovations(residual: FloatArray, used: BoolArray) -> Innovations:
     """Fit the colour of a residual, shape (samples,), and take it away."""
     windows = np.lib.stride_tricks.sliding_window_view(residual, ORDER + 1)
-    kept = np.asarray(np.lib.stride_tricks.sliding_window_view(used, ORDER + 1).all(axis=1), dtype=np.bool_)
+    kept = without_gaps(used)
     past = np.ascontiguousarray(windows[:, :ORDER][:, ::-1]) * kept[:, None]
     now = windows[:, ORDER] * kept
     gram = past.T @ past

@@ -11,7 +11,7 @@ from shaftprint.errors import IdentificationError
 from shaftprint.identify import fit_percent
 from shaftprint.identify.likelihood import FittedTerm, LineTest, Repeats, TermCheck, TermTest, WhitenedTerm
 from shaftprint.limits._candidates import IDLE
-from shaftprint.limits.prediction._noise_colour import Innovations, innovations
+from shaftprint.limits.prediction._noise_colour import Innovations, innovations, without_gaps
 from shaftprint.limits.prediction._set_point import GovernorRecord
 from shaftprint.models import Structure
 from shaftprint.time_domain import ExactDelays, Record, qr_reduced, simulated_on
@@ -109,6 +109,11 @@ class PredictionError(WhitenedTerm):
     def data_count(self) -> int:
         """Number of used samples."""
         return int(np.count_nonzero(self.record.used))
+
+    @property
+    def innovation_count(self) -> int:
+        """Number of innovations: of used samples whose whole past is used."""
+        return int(np.count_nonzero(without_gaps(self.record.used)))
 
     @property
     def null_cost(self) -> float:
