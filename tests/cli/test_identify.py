@@ -135,5 +135,5 @@ def test_the_answer_is_printed_before_the_report_is_drawn(run, recording, tmp_pa
     )
     result = run("identify", recording, *GIVEN, "-o", tmp_path / "out")
     assert result.exit_code == 0
-    order = [result.output.index(words) for words in ("GAUGE-CLOSED", "Verdict", "the report begins", "Report:  ")]
+    order = [result.output.index(words) for words in ("Verdict", "GAUGE-CLOSED", "the report begins", "Report:  ")]
     assert order == sorted(order)
