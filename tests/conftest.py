@@ -20,7 +20,7 @@ ONE_LINE = 10_000
 def _sentences_on_one_line() -> Iterator[None]:
     """Let no sentence that a command prints be wrapped: tests of what it says look for it as a whole.
 
-    A test that sets COLUMNS has lines of that width.
+    A test that sets COLUMNS has lines of that width; the width of the terminal that runs the tests counts nowhere.
     """
     as_it_is = CliRunner.invoke
 
@@ -29,6 +29,7 @@ def _sentences_on_one_line() -> Iterator[None]:
         return as_it_is(self, *arguments, env=environment, **options)
 
     with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("COLUMNS", raising=False)
         patch.setattr(CliRunner, "invoke", invoke)
         yield
 

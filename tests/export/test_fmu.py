@@ -343,14 +343,20 @@ def test_parameters_with_names_that_c_does_not_take(exported, tmp_path):
     assert found.coSimulation.modelIdentifier == "own_ship"
 
 
-def test_systems_are_compiled_together_and_stand_in_their_order(exported, tmp_path, monkeypatch):
+@pytest.fixture
+def compile_by(monkeypatch):
+    """Let another function compile the binary of each system."""
+    return lambda build: monkeypatch.setattr("shaftprint.export._fmu.build_binary", build)
+
+
+def test_systems_are_compiled_together_and_stand_in_their_order(exported, tmp_path, monkeypatch, compile_by):
     both, shares = threading.Barrier(2, timeout=10.0), []
 
     def build(folder, sources, name, binary):
         both.wait()
         binary.write_bytes(name.encode())
 
-    monkeypatch.setattr("shaftprint.export._fmu.build_binary", build)
+    compile_by(build)
     monkeypatch.setattr("os.cpu_count", lambda: 2)
     write_fmu(exported(*TORQUE), tmp_path / "m.fmu", platforms=["win64", "linux64"], progress=shares.append)
     with zipfile.ZipFile(tmp_path / "m.fmu") as archive:
@@ -360,13 +366,13 @@ def test_systems_are_compiled_together_and_stand_in_their_order(exported, tmp_pa
     assert shares == [0.5, 1.0]
 
 
-def test_a_compiler_that_fails_leaves_no_file(exported, tmp_path, monkeypatch):
+def test_a_compiler_that_fails_leaves_no_file(exported, tmp_path, compile_by):
     def build(folder, sources, name, binary):
         if name == "win64":
             raise ExportError("FMU for win64: no compiler")
         binary.write_bytes(b"")
 
-    monkeypatch.setattr("shaftprint.export._fmu.build_binary", build)
+    compile_by(build)
     with pytest.raises(ExportError, match="FMU for win64"):
         write_fmu(exported(*TORQUE), tmp_path / "m.fmu", platforms=["linux64", "win64"])
     assert not (tmp_path / "m.fmu").exists()

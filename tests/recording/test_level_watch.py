@@ -8,6 +8,11 @@ import pytest
 from shaftprint.recording import Channel, Recording, watch_levels
 
 
+@pytest.fixture(autouse=True)
+def _blocks_of_two(monkeypatch):
+    monkeypatch.setattr("shaftprint.recording._levels.BLOCK_SAMPLES", 2)
+
+
 def recording_of(scale=2.0, offset=1.0):
     counts = {"read": np.array([3, -2, 7, 7, 0], dtype=np.int16), "left": np.array([4, 4, 1], dtype=np.int16)}
     channels = {
@@ -27,8 +32,7 @@ def recording_of(scale=2.0, offset=1.0):
 
 
 @pytest.mark.parametrize("scale", [2.0, -2.0])
-def test_levels_are_of_what_was_read_and_of_the_rest(monkeypatch, scale):
-    monkeypatch.setattr("shaftprint.recording._levels.BLOCK_SAMPLES", 2)
+def test_levels_are_of_what_was_read_and_of_the_rest(scale):
     watch = watch_levels(recording_of(scale))
     channel = watch.recording.channel("read")
     # a look at a few samples, the same block twice, and one out of order count once
@@ -43,8 +47,7 @@ def test_levels_are_of_what_was_read_and_of_the_rest(monkeypatch, scale):
     assert levels["left"].mean == pytest.approx(scale * 3.0 + 1.0)
 
 
-def test_nothing_is_read_twice(monkeypatch):
-    monkeypatch.setattr("shaftprint.recording._levels.BLOCK_SAMPLES", 2)
+def test_nothing_is_read_twice():
     raw = recording_of()
     spans = []
 

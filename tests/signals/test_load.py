@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.campaign import load_campaign
 from shaftprint.errors import SignalError
-from shaftprint.signals._gaps import Coverage, Gap
+from shaftprint.signals import Coverage, Gap
 from shaftprint.signals.levels import torque_of_mean_load
 
 RATE_HZ = 20.0
