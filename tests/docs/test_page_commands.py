@@ -14,6 +14,7 @@ from pages import berth, commands
 from shaftprint.cli import shaftprint
 
 pytestmark = pytest.mark.slow
+WINDOWS = ("cp850", "cp1252")
 
 
 def key(words):
@@ -58,5 +59,8 @@ def test_a_command_does_what_its_page_says(line, harbour, printed, ashore, witho
         result = CliRunner().invoke(shaftprint, words, catch_exceptions=False)
     assert result.exit_code == 0, result.output
     assert result.stderr == ""
+    for code_page in WINDOWS:
+        # its tables have other rules there: tests/cli/test_code_pages.py
+        result.stdout.replace("─", "-").encode(code_page)
     assert key(words) in EXPECTED, f"nobody says what {key(words)} leaves behind"
     EXPECTED[key(words)](folder, result.stdout, words)

@@ -140,7 +140,16 @@ def print_findings(title: str, findings: Sequence[str], *, is_answer: bool = Fal
 def print_lines_of_table(title: str, lines: Sequence[str]) -> None:
     """Print a table that is laid out already, its title in bold on a terminal."""
     for line in (click.style(printable(title), bold=True), "", *map(printable, lines), ""):
-        click.echo(line)
+        click.echo(_with_letters_of_the_stream(line))
+
+
+def _with_letters_of_the_stream(line: str) -> str:
+    """Return a line of a table; a rule is of hyphens where the code page has no other, as that of files on Windows."""
+    try:
+        line.encode(sys.stdout.encoding)
+    except UnicodeEncodeError:
+        return line.replace("─", "-")
+    return line
 
 
 def print_document() -> None:
