@@ -33,17 +33,17 @@ def quay(demo, tmp_path):
 
 def commands(folder):
     """Return commands that print tables or sentences with all letters of the program's own, and take little time."""
-    fingerprint, vessel = folder / "fingerprint.json", folder / "vessel.toml"
+    fingerprint, vessel, campaign = folder / "fingerprint.json", folder / "vessel.toml", folder / "campaign.toml"
     return [
         ("new", "vessel", folder / "second vessel.toml"),
         ("structures", "GAUGE-CLOSED"),
         ("inertia", vessel),
         ("inspect", folder / "recording.nc"),
         ("show", fingerprint),
-        ("compare", fingerprint, fingerprint),
+        ("compare", fingerprint, fingerprint, "--name", "Frühjahr", "--name", "Herbst"),
         ("export", "modelica", fingerprint, "-o", folder / "Tug.mo"),
         ("convert", folder / "recording.nc", "-o", folder / "Ä ö.nc"),
-        ("identify", folder / "Ü.nc", "--vessel", vessel, "--campaign", vessel, "-o", folder / "out"),
+        ("identify", folder / "Ü.nc", "--vessel", vessel, "--campaign", campaign, "-o", folder / "out"),
     ]
 
 
@@ -70,7 +70,7 @@ def test_tables_have_rules_that_the_code_page_has(demo, code_page, rule):
 def test_a_name_that_the_code_page_lacks_ends_nothing(demo, tmp_path, code_page):
     vessel = tmp_path / "vessel.toml"
     text = (demo[0] / "vessel.toml").read_text(encoding="utf-8")
-    vessel.write_text(text.replace('name = "Damper housing"', 'name = "減衰器 housing"'), encoding="utf-8")
+    vessel.write_text(text.replace("Damper housing", "減衰器 housing"), encoding="utf-8")
     environment = os.environ | {"PYTHONIOENCODING": code_page, "PYTHONUTF8": "0"}
     command = [sys.executable, "-m", "shaftprint", "inertia", str(vessel)]
     done = subprocess.run(command, env=environment, capture_output=True, check=True)
