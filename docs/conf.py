@@ -17,6 +17,8 @@ HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "_extensions"))
 # where a page that shows an example finds it to run it
 os.environ["SHAFTPRINT_EXAMPLES"] = str(HERE.parent / "examples")
+# and what it needs to show a command with its output
+os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, [str(HERE / "_extensions"), os.environ.get("PYTHONPATH")]))
 
 project = "shaftprint"
 author = "the shaftprint authors"
@@ -65,15 +67,21 @@ html_theme = "pydata_sphinx_theme"
 html_title = "shaftprint"
 html_static_path = ["_static"]
 html_css_files = ["shaftprint.css"]
+html_search_scorer = "_static/search_scorer.js"
 html_context = {"default_mode": "auto"}
 html_show_sourcelink = False
 html_copy_source = False
-html_sidebars = {page: [] for page in ("index", "start", "what-to-measure")}
+html_sidebars = {page: [] for page in ("index", "start", "glossary")}
 html_theme_options = {
     "show_prev_next": False,
     "header_links_before_dropdown": 8,
     "navigation_with_keys": True,
     "show_nav_level": 1,
+    # hundreds of names: only the room that is being read is opened
+    "collapse_navigation": True,
+    "navigation_depth": 3,
+    "navbar_align": "left",
+    "navbar_persistent": ["search-button"],
     "navbar_end": ["theme-switcher"],
     "footer_start": ["copyright"],
     "footer_end": [],

@@ -1,4 +1,4 @@
-"""Pages that come from the code: one for each room with every name in its ``__all__``, and one for the commands."""
+"""Pages that come from the code: one a room with tables of its names, one a name, and one for the commands."""
 
 import importlib
 import inspect
@@ -15,6 +15,7 @@ from shaftprint.cli import shaftprint as program
 
 FOLDER = "reference/generated"
 COMMANDS_PAGE = "commands"
+ROOMS_TABLE = "<!-- rooms -->"
 # The command line is described by its commands, the entry point by none of them.
 NOT_DESCRIBED = {"__main__", "cli"}
 # Rooms whose folders have names for other rooms that are not at the room's own door.
@@ -39,8 +40,8 @@ def public_names(module: ModuleType) -> tuple[str, ...]:
 
 
 def first_sentence(value: object) -> str:
-    """Return the first sentence of a docstring; nothing for a constant."""
-    if not (inspect.isclass(value) or inspect.isroutine(value)):
+    """Return the first paragraph of a docstring; nothing for a constant."""
+    if not (inspect.isclass(value) or inspect.isroutine(value) or inspect.ismodule(value)):
         return ""
     return " ".join((inspect.getdoc(value) or "").split("\n\n")[0].split())
 
@@ -52,34 +53,60 @@ def directive(value: object) -> str:
     return "autofunction" if inspect.isroutine(value) else "autodata"
 
 
-def room_page(room: str) -> str:
-    """Return the page of one room in reStructuredText: what is at its door, then at those of its folders."""
+HEADINGS = {"autoclass": "Nouns", "autofunction": "Verbs", "autodata": "Values and types"}
+"""Headings of the tables of a room, in their order."""
+
+
+def room_pages(room: str) -> dict[str, str]:
+    """Return the page of one room and one for each of its names, by path without ending, in reStructuredText."""
     full = f"shaftprint.{room}"
     module = importlib.import_module(full)
     names = public_names(module)
-    parts = [_section(full, "=", names)]
+    pages: dict[str, str] = {}
+    text = _door(room, full, names, "=", pages)
     if room in ROOMS_WITH_DOORS:
         for found in pkgutil.iter_modules(module.__path__):
             inner = f"{full}.{found.name}"
             more = tuple(name for name in public_names(importlib.import_module(inner)) if name not in names)
-            parts.append(_section(inner, "-", more))
+            text += _door(room, inner, more, "-", pages)
+    return {room: text} | pages
+
+
+def _door(room: str, full: str, names: tuple[str, ...], line: str, pages: dict[str, str]) -> str:
+    """Return what a module says of itself and its names in tables; add the page of each name to the pages."""
+    module = importlib.import_module(full)
+    parts = [f"{full}\n{line * len(full)}\n\n.. automodule:: {full}\n   :no-members:\n\n"]
+    kinds = {name: directive(getattr(module, name)) for name in names}
+    for kind, heading in HEADINGS.items():
+        chosen = [name for name in names if kinds[name] == kind]
+        if not chosen:
+            continue
+        # a heading for who looks, not for the contents: the tables are short
+        parts.append(f".. rubric:: {heading}\n\n.. list-table::\n   :widths: 30 70\n   :class: summary\n\n")
+        parts += [
+            f"   * - :py:obj:`{name} <{full}.{name}>`\n     - {first_sentence(getattr(module, name))}\n"
+            for name in chosen
+        ]
+        parts.append("\n")
+    paths = []
+    for name in names:
+        described = f".. {kinds[name]}:: {full}.{name}\n" + ("   :no-value:\n" if kinds[name] == "autodata" else "")
+        if not hasattr(module, "__path__"):
+            # a leaf module is a file of a few names: they stay on its page
+            parts.append(f"{described}\n")
+            continue
+        path = f"{room}/{_file_name(name, kinds[name], pages, room)}"
+        pages[path] = f"{name}\n{'=' * len(name)}\n\n{described}"
+        paths.append(path)
+    if paths:
+        parts.append(".. toctree::\n   :hidden:\n\n" + "".join(f"   {path}\n" for path in paths) + "\n")
     return "".join(parts)
 
 
-def _section(full: str, line: str, names: tuple[str, ...]) -> str:
-    """Return what a module says of itself, a list of names, and each name."""
-    module = importlib.import_module(full)
-    parts = [f"{full}\n{line * len(full)}\n\n.. automodule:: {full}\n   :no-members:\n\n"]
-    if names:
-        parts.append(".. list-table::\n   :widths: 30 70\n\n")
-    parts += [
-        f"   * - :py:obj:`{name} <{full}.{name}>`\n     - {first_sentence(getattr(module, name))}\n" for name in names
-    ]
-    for public in names:
-        kind = directive(getattr(module, public))
-        hidden = "   :no-value:\n" if kind == "autodata" else ""
-        parts.append(f"\n.. {kind}:: {full}.{public}\n{hidden}")
-    return "".join(parts) + "\n"
+def _file_name(name: str, kind: str, pages: dict[str, str], room: str) -> str:
+    """Return the name of a page; some disks take Margins and margins for one file."""
+    taken = {path.lower() for path in pages}
+    return f"{name}-{kind.removeprefix('auto')}" if f"{room}/{name}".lower() in taken else name
 
 
 def commands_page() -> str:
@@ -103,13 +130,16 @@ def write_pages(app: Sphinx) -> None:
     """Write the pages; one that has not changed is left alone, so that it is not built again."""
     folder = Path(app.srcdir) / FOLDER
     folder.mkdir(parents=True, exist_ok=True)
-    pages = {name: room_page(name) for name in rooms()} | {COMMANDS_PAGE: commands_page()}
+    pages = {COMMANDS_PAGE: commands_page()}
+    for room in rooms():
+        pages |= room_pages(room)
     for name, text in pages.items():
         path = folder / f"{name}.rst"
+        path.parent.mkdir(exist_ok=True)
         if not path.exists() or path.read_text(encoding="utf-8") != text:
             path.write_text(text, encoding="utf-8")
-    for path in folder.glob("*.rst"):
-        if path.stem not in pages:
+    for path in folder.rglob("*.rst"):
+        if path.relative_to(folder).with_suffix("").as_posix() not in pages:
             path.unlink()
 
 
@@ -124,9 +154,22 @@ def link_names(app: Sphinx, page: str, source: list[str]) -> None:
         source[0] = re.sub(r"`(shaftprint(?:\.[a-z]\w*)+\.[A-Za-z]\w*)`", r"{py:obj}`\1`", source[0])
 
 
+def list_rooms(app: Sphinx, page: str, source: list[str]) -> None:
+    """Put a table of the rooms, with what each is for, in the order of the data, on the page of the reference."""
+    if page != "reference/index":
+        return
+    order = re.findall(r"^generated/(\w+)$", source[0], flags=re.MULTILINE)
+    rows = ["| room | what it is for |", "|---|---|"]
+    for room in (name for name in order if name != COMMANDS_PAGE):
+        words = first_sentence(importlib.import_module(f"shaftprint.{room}")).replace("``", "`").replace("|", "\\|")
+        rows.append(f"| [{room}](generated/{room}.rst) | {words} |")
+    source[0] = source[0].replace(ROOMS_TABLE, "\n".join(rows))
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Write the pages before any is read."""
     app.connect("builder-inited", write_pages)
     app.connect("autodoc-process-docstring", keep_dashes)
     app.connect("source-read", link_names)
+    app.connect("source-read", list_rooms)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

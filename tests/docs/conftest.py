@@ -3,6 +3,7 @@
 import contextlib
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 from pages import as_run, berth
@@ -56,6 +57,7 @@ def write_loggers(folder):
     """Write the recording as text, and as two loggers would have made it."""
     with read_recording(folder / "recording.nc") as recording:
         write_csv(folder / "log.csv", recording.channels.values())
+        write_mdf(folder / "log.mf4", recording)
         write_recording(folder / "bridge.nc", [recording.channel(name) for name in ("U_setpoint", "PTM_e")])
         rate = 1.0 + SLOW
         shaft = [
@@ -63,6 +65,18 @@ def write_loggers(folder):
             for channel in (recording.channel(name) for name in ("PTM_1", "PTM_4", "M_s"))
         ]
         write_recording(folder / "shaft.nc", shaft)
+
+
+def write_mdf(path, recording):
+    """Write a recording as an MDF logger would have made it."""
+    asammdf = pytest.importorskip("asammdf", reason="asammdf writes MDF")
+    log = asammdf.MDF()
+    for channel in recording.channels.values():
+        seconds = channel.start_s + np.arange(channel.count) / channel.rate_hz
+        volts = channel.values(0, channel.count).astype(np.float32)
+        log.append([asammdf.Signal(samples=volts, timestamps=seconds, name=channel.name, unit=channel.unit)])
+    log.save(path)
+    log.close()
 
 
 def write_last_years(folder, voyage):

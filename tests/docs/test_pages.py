@@ -30,8 +30,10 @@ OTHER_TEXT = "\n".join(path.read_text(encoding="utf-8") for path in OTHER_TESTS)
 OPENED = {page for page in PAGES if f'"{Path(page).name}"' in OTHER_TEXT}
 WITH_PYTHON = [page for page in PAGES if python_of(page)]
 WITH_COMMANDS = [page for page in PAGES if commands_of(page)]
-# sails the whole campaign
-SLOW = {"docs/thesis-figures.md"}
+# these sail a test and identify it
+SLOW = {"docs/thesis-figures.md"} | {
+    f"docs/tutorials/{name}.md" for name in ("first-fingerprint", "own-structure", "logger-file", "two-loggers", "fmu")
+}
 # Kinds of blocks, each with the file that holds them against something.
 CHECKED = dict.fromkeys(PYTHON, "test_pages.py")
 CHECKED |= dict.fromkeys(SHELL, "test_page_commands.py, test_page_programs.py and test_page_output.py")

@@ -1,5 +1,6 @@
 """Data of a noun with names, units and meanings, as pandas and xarray hold them."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -98,14 +99,14 @@ def _along(variable: Variable, rows: tuple[str, ...], shape: tuple[int, ...]) ->
     return np.array(np.broadcast_to(variable.values.reshape([lengths.get(name, 1) for name in rows]), shape))
 
 
-class Labelled:
+class Labelled(ABC):
     """A noun that holds data which pandas and xarray can take over."""
 
     __slots__ = ()
 
+    @abstractmethod
     def labelled(self) -> LabelledData:
         """Return its data with their labels."""
-        raise NotImplementedError
 
     def to_xarray(self) -> "Dataset":
         """Return its data as a dataset of xarray: dimensions by name, units and meanings as attributes.

@@ -10,7 +10,7 @@ pytestmark = pytest.mark.slow
 
 ROOT = Path(__file__).parents[2]
 EXAMPLE = ROOT / "examples" / "compare_fingerprints.py"
-PAGE = (ROOT / "docs" / "tutorials" / "two-fingerprints.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "tutorials" / "what-changed.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
@@ -23,7 +23,7 @@ def ran(tmp_path_factory):
         # what docs/conf.py says where the page is built
         patch.setenv("SHAFTPRINT_EXAMPLES", str(EXAMPLE.parent))
         for cell in re.findall(r"```\{code-cell\} ipython3\n(.*?)```", PAGE, flags=re.DOTALL):
-            exec(compile(re.sub(r"^[:%]\w.*\n", "", cell, flags=re.M), "two-fingerprints.md", "exec"), names)  # noqa: S102
+            exec(compile(re.sub(r"^[:%]\w.*\n", "", cell, flags=re.M), "what-changed.md", "exec"), names)  # noqa: S102
     return names
 
 
