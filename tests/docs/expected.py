@@ -107,7 +107,7 @@ def expect_identification(folder, printed, words):
     torque, speed = found.conditions.shaft_torque.value, found.conditions.engine_speed.value
     tau_up = 2.0 * math.pi * 54.006 * speed / 60.0 / 3.82 / torque
     assert found.priors["tau_up"].mean == pytest.approx(tau_up, rel=1e-3)
-    sources = [("recording", "log.csv"), ("vessel", "mine.toml"), ("campaign", "test.toml")]
+    sources = [("recording", words[1]), ("vessel", after(words, "--vessel")), ("campaign", after(words, "--campaign"))]
     assert [(s.role, s.name) for s in found.sources] == sources + [("structure", "my_ship.py")] * own
     # the truth of the simulated tug: 17.0 kg m2 of propeller, shaft and water; 0.0703 + 0.0518 s
     assert found.quantity("I_dn").value == pytest.approx(17.0, rel=0.02)
