@@ -1,4 +1,4 @@
-"""Tables 3.1 to 3.7, D.1 and E.1 of the thesis: printed, computed again, and on a simulated recording; docs/thesis-tables.md.
+"""Tables 3.1 to 3.7, D.1 and E.1 of the thesis: printed, computed again, and simulated; docs/thesis-tables.md.
 
 Run ``python benchmarks/thesis_measurements.py``; with ``--write`` the tables go into the document. Sailing takes a
 minute of a processor, reading the recording in both ways half a minute; ``--recording`` takes one that is there.

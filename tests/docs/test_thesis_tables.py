@@ -1,4 +1,4 @@
-"""The page with the tables of the thesis row by row: what needs no recording is made again, the rest is held to truth."""
+"""Tables of the thesis row by row: what needs no recording is made again, the rest is held to truth."""
 
 import re
 from pathlib import Path
