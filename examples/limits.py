@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from shaftprint.catalogue import limited, structure
-from shaftprint.report import SimulatedSignal, plot_simulation, save_figure
+from shaftprint.report import SimulatedSignal, save_chart, simulation_chart
 from shaftprint.simulation import simulate
 
 SPEED_RPM, TORQUE_NM, BRAKE_NM = 1183.8, 1725.0, 465.54
@@ -69,7 +69,7 @@ def signals(trace):
     )
 
 
-figure = plot_simulation(
+figure = simulation_chart(
     time_s, signals(traces[ship.name]), name=ship.name, beside={linear.name: signals(traces[linear.name])}
 )
-save_figure(figure, Path("limits.svg"))
+save_chart(figure, Path("limits.svg"))

@@ -2,67 +2,83 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.report.marks import legend, mark, marks
 
 from shaftprint.catalogue import structure
-from shaftprint.report import Curve, plot_bode, plot_closed_loop_response, plot_governor_fits, plot_line_selection
-from shaftprint.report.figures import measured_phase_deg, trace_of
-
-
-def line_of(axes, label):
-    return next(line for line in axes.get_lines() if line.get_label().startswith(label))
-
-
-def legend_of(figure):
-    return [text.get_text() for text in figure.legends[0].get_texts()]
-
-
-def markers(axes, face):
-    """Return the x values of all points whose markers have this face."""
-    found = [line for line in axes.get_lines() if line.get_marker() == "o" and line.get_markerfacecolor() == face]
-    return np.concatenate([line.get_xdata() for line in found]) if found else np.empty(0)
+from shaftprint.report import Curve, bode_chart, fit_chart
+from shaftprint.report.charts import Band, Line, Points, as_plain
+from shaftprint.report.figures import measured_phase_deg, normalised_residuals, trace_of
 
 
 def test_drawn_model_is_the_structure_s_response(identification, response):
-    figure = plot_bode([Curve.of(identification)], data=response)
+    chart = bode_chart([Curve.of(identification)], data=response)
     for column, output in ((0, 0), (1, 1)):
-        line = line_of(figure.axes[column], "GAUGE-CLOSED")
-        expected = identification.structure.response(identification.values, 1j * line.get_xdata())[output]
-        np.testing.assert_allclose(line.get_ydata(), 20.0 * np.log10(np.abs(expected)), atol=1e-9)
-        phase = line_of(figure.axes[2 + column], "GAUGE-CLOSED").get_ydata()
-        turns = (phase - np.degrees(np.angle(expected))) / 360.0
+        line = mark(chart.panels[column], "GAUGE-CLOSED", Line)
+        expected = identification.structure.response(identification.values, 1j * line.x)[output]
+        np.testing.assert_allclose(line.y, 20.0 * np.log10(np.abs(expected)), atol=1e-9)
+        phase = mark(chart.panels[2 + column], "GAUGE-CLOSED", Line).y
+        turns = ((phase - np.degrees(np.angle(expected))) / 360.0)[np.isfinite(phase)]
         np.testing.assert_allclose(turns, np.round(turns), atol=1e-9)
-        assert np.abs(np.diff(phase)).max() < 60.0
+
+
+def test_a_phase_of_many_turns_is_drawn_within_one_and_one_of_few_as_it_is(identification, response, open_responses):
+    """The closed loop turns by more than three turns, the core propulsion ``n / M_s`` by less than half of one."""
+    for panel in bode_chart([Curve.of(identification)], data=response).panels[2:]:
+        for drawn in panel.marks:
+            if isinstance(drawn, Line | Points):
+                known = drawn.y[np.isfinite(drawn.y)]
+                assert known.min() > -270.0
+                assert known.max() <= 90.0
+        (line,) = [m for m in panel.marks if isinstance(m, Line)]
+        # where it jumps by a turn it has a gap
+        steps = np.diff(line.y)
+        assert np.nanmax(np.abs(steps)) < 180.0
+        assert panel.y.step == 90.0
+    core = open_responses[1]
+    model = Curve.at(structure("OL1"), {})
+    (line,) = marks(bode_chart([model], data=core).panels[1], "OL1", Line)
+    assert np.isfinite(line.y).all()
+
+
+def test_a_first_order_lag_falls_by_3_db_and_45_degrees():
+    """OL1 is 1 / (tau s + 2 - k) like: at the default values its corner is where |H| is 3.01 dB below its DC value."""
+    model = structure("OL1")
+    magnitude, phase = (mark(p, "OL1") for p in bode_chart([Curve.at(model, {})]).panels)
+    drop = magnitude.y - 20.0 * np.log10(abs(model.response(model.vector({}), np.array([1e-9j]))[0, 0]))
+    corner = int(np.argmin(np.abs(drop + 10.0 * np.log10(2.0))))
+    assert phase.y[corner] == pytest.approx(-45.0, abs=1.0)
 
 
 def test_band_is_drawn_at_the_edges_of_the_propagated_covariance(fits, open_responses):
     curve = Curve.of(fits["OL1"])
-    figure = plot_bode([curve], data=open_responses[1])
-    vertices = figure.axes[0].collections[0].get_paths()[0].vertices
-    line = line_of(figure.axes[0], "OL1")
-    omega, middle = line.get_xdata()[::3], line.get_ydata()[::3]
+    panel = bode_chart([curve], data=open_responses[1]).panels[0]
+    band, line = mark(panel, "OL1", Band), mark(panel, "OL1", Line)
+    omega, middle = line.x[::3], line.y[::3]
     slope = -1j * omega / (1j * omega * curve.values[curve.structure.names.index("tau_n")] + 2.0)
     half = 1.959964 * np.sqrt(curve.covariance[0, 0]) * np.abs(slope.real) * 20.0 / np.log(10.0)
-    for at, expected in zip(omega, middle + half, strict=True):
-        edge = vertices[np.isclose(vertices[:, 0], at, rtol=1e-12), 1].max()
-        assert edge == pytest.approx(expected, abs=1e-8)
+    np.testing.assert_allclose(band.x, omega)
+    np.testing.assert_allclose(band.upper, middle + half, atol=1e-8)
+    np.testing.assert_allclose(band.lower, middle - half, atol=1e-8)
 
 
 def test_used_lines_are_filled_and_the_others_hollow(response):
-    axes = plot_closed_loop_response(response, aliasing_limit_hz=9.87).axes[0]
-    np.testing.assert_allclose(markers(axes, "#000000"), response.omega_rad_s[:14])
-    np.testing.assert_allclose(markers(axes, "white"), response.omega_rad_s[14:])
-    (limit,) = [line for line in axes.get_lines() if str(line.get_label()).startswith("aliasing")]
-    assert limit.get_xdata()[0] == pytest.approx(2.0 * np.pi * 9.87)
+    panel = bode_chart(data=response, aliasing_limit_hz=9.87).panels[0]
+    filled, hollow = marks(panel, "data", Points)
+    assert (filled.filled, hollow.filled) == (True, False)
+    np.testing.assert_allclose(filled.x, response.omega_rad_s[:14])
+    np.testing.assert_allclose(hollow.x, response.omega_rad_s[14:])
+    assert mark(panel, "aliasing").at == pytest.approx(2.0 * np.pi * 9.87)
 
 
 def test_labels_carry_units_and_the_legend_states_the_coverage(identification, response):
-    figure = plot_bode([Curve.of(identification)], data=response, aliasing_limit_hz=9.87)
-    assert figure.axes[0].get_ylabel() == "magnitude [dB]"
-    assert figure.axes[2].get_ylabel() == "phase [deg]"
-    assert figure.axes[2].get_xlabel() == "frequency [rad/s]"
-    assert figure.axes[0].get_title(loc="left").startswith("(a) $n$ / $n_{\\mathrm{set}}$")
-    assert legend_of(figure) == [
+    chart = bode_chart([Curve.of(identification)], data=response, aliasing_limit_hz=9.87)
+    assert chart.panels[0].y.title == "magnitude [dB]"
+    assert chart.panels[2].y.title == "phase [deg]"
+    assert chart.panels[2].x.title == "frequency [rad/s]"
+    assert as_plain(chart.panels[0].title) == "n / n_set"
+    assert legend(chart) == [
         "GAUGE-CLOSED, 95 % band",
+        "GAUGE-CLOSED",
         "data, 95 % interval",
         "data, line not used",
         "aliasing limit of the speed, 9.87 Hz",
@@ -70,11 +86,38 @@ def test_labels_carry_units_and_the_legend_states_the_coverage(identification, r
 
 
 def test_error_bars_have_the_length_of_the_interval(response):
-    axes = plot_closed_loop_response(response).axes[0]
-    segments = np.array(axes.containers[0].lines[2][0].get_segments())
+    points = marks(bode_chart(data=response).panels[0], "data", Points)[0]
     std = np.sqrt(response.covariance[:14, 0, 0])
     upper = 20.0 * np.log10(np.abs(response.response[0, 0, :14]) + 2.063899 * std)
-    np.testing.assert_allclose(segments[:, 1, 1], upper, atol=1e-5)
+    np.testing.assert_allclose(points.y + points.bars[1], upper, atol=1e-5)
+
+
+def test_the_panel_below_a_fit_shows_its_residuals_in_deviations_of_the_data(identification):
+    """Of equal deviations of real and imaginary part, both ways to divide a residual have the same sum of squares."""
+    chart = fit_chart(identification)
+    assert len(chart.panels) == 6
+    fitted, count = identification.fitted, len(identification.fit_percent)
+    normalised = normalised_residuals(identification)[:, fitted]
+    for channel, panel in enumerate(chart.panels[4:]):
+        along, across = marks(panel, "residual", Points)
+        expected = normalised[channel] ** 2 + normalised[count + channel] ** 2
+        np.testing.assert_allclose(along.y**2 + across.y**2, expected, rtol=1e-9)
+        assert panel.y.span[1] > np.abs(np.concatenate([along.y, across.y])).max()
+
+
+def test_the_band_below_a_fit_is_that_of_the_model_in_deviations_of_the_data(fits):
+    """OL1 has one parameter: its band is |dH/dtau| 1.96 std(tau), along and across the response, over the data's."""
+    fit = fits["OL1"]
+    panel = fit_chart(fit).panels[2]
+    omega = fit.response.omega_rad_s[fit.fitted]
+    tau = fit.values[fit.structure.names.index("tau_n")]
+    slope = -1j * omega / (1j * omega * tau + 2.0)
+    half = 1.959964 * np.sqrt(fit.covariance[0, 0]) * np.abs(slope.real)
+    size = np.abs(fit.response.response[0, 0, fit.fitted])
+    unit = (fit.response.response[0, 0, fit.fitted] / size).view(np.float64).reshape(-1, 2)
+    std = np.sqrt(np.einsum("li,lij,lj->l", unit, fit.response.covariance[fit.fitted], unit))
+    band = mark(panel, "band of the model, along", Band)
+    np.testing.assert_allclose(band.upper, half * size / std, rtol=1e-6)
 
 
 def test_phase_of_data_follows_the_closest_model(identification, response):
@@ -107,17 +150,17 @@ def test_lines_that_are_not_used_do_not_turn_those_that_are(response):
 
 
 def test_zoom_shows_the_same_model_between_its_limits(fits, open_responses):
-    figure = plot_governor_fits(open_responses[0], [Curve.of(fits["OL5"])])
-    assert figure.axes[1].get_xlim() == (1.0, 10.0)
-    whole, zoomed = (line_of(figure.axes[place], "OL5") for place in (0, 1))
+    chart = bode_chart([Curve.of(fits["OL5"])], data=open_responses[0], zoom_rad_s=(1.0, 10.0))
+    assert chart.panels[1].x.span == (1.0, 10.0)
+    whole, zoomed = (mark(chart.panels[place], "OL5", Line) for place in (0, 1))
     at = np.geomspace(1.0, 10.0, 50)
-    one, two = (np.interp(at, line.get_xdata(), line.get_ydata()) for line in (whole, zoomed))
+    one, two = (np.interp(at, line.x, line.y) for line in (whole, zoomed))
     np.testing.assert_allclose(one, two, atol=1e-9)
+    assert chart.linked == "columns"
 
 
 def test_a_model_that_leaves_the_data_does_not_squeeze_them(fits, response):
-    figure = plot_bode([Curve.of(fits["CL3"])], data=response)
-    low, high = figure.axes[0].get_ylim()
+    low, high = bode_chart([Curve.of(fits["CL3"])], data=response).panels[0].y.span
     points = 20.0 * np.log10(np.abs(response.response[0, 0]))
     assert low > points.min() - 30.0
     assert low < points.min()
@@ -125,32 +168,29 @@ def test_a_model_that_leaves_the_data_does_not_squeeze_them(fits, response):
 
 
 def test_several_ways_to_measure_stand_side_by_side(response):
-    figure = plot_line_selection({"fit": response, "bin": response, "peak": response})
-    first = figure.axes[0]
-    ratios = [c.lines[0].get_xdata()[0] / response.omega_rad_s[0] for c in first.containers[::2]]
-    assert ratios == pytest.approx([1 / 1.12, 1.0, 1.12])
-    assert "bin, 95 % interval" in legend_of(figure)
+    chart = bode_chart(data={"fit": response, "bin": response, "peak": response})
+    shown = marks(chart.panels[0], "", Points)[::2]
+    assert [points.x[0] / response.omega_rad_s[0] for points in shown] == pytest.approx([1 / 1.12, 1.0, 1.12])
+    assert len({points.shade for points in shown}) == 3
+    assert "bin, 95 % interval" in legend(chart)
 
 
 def test_a_model_without_covariance_has_no_band():
-    model = structure("CL4")
-    curve = Curve.at(model, {"K_p": 1.6}, "thesis")
-    figure = plot_bode([curve])
-    assert legend_of(figure) == ["thesis"]
-    assert not figure.axes[0].collections
+    chart = bode_chart([Curve.at(structure("CL4"), {"K_p": 1.6}, "thesis")])
+    assert legend(chart) == ["thesis"]
+    assert not marks(chart.panels[0], "", Band)
 
 
 def test_unknown_parameters_are_said_in_the_legend(fits, response):
     """v and K_p, K_i of the benchmark cannot be told apart from each other."""
-    figure = plot_bode([Curve.of(fits["BENCHMARK"])], data=response)
-    assert legend_of(figure)[0] == "BENCHMARK, no band"
+    assert legend(bode_chart([Curve.of(fits["BENCHMARK"])], data=response))[0] == "BENCHMARK, no band"
 
 
 def test_integral_output_has_its_unit():
-    figure = plot_bode([Curve.at(structure("INITIAL"), {})], outputs=["E_n"])
-    assert figure.axes[0].get_ylabel() == "magnitude [dB re 1 s]"
+    chart = bode_chart([Curve.at(structure("INITIAL"), {})], outputs=["E_n"])
+    assert chart.panels[0].y.title == "magnitude [dB re 1 s]"
 
 
 def test_nothing_to_draw_is_refused():
     with pytest.raises(ValueError, match="needs a model or data"):
-        plot_bode()
+        bode_chart()

@@ -88,7 +88,7 @@ def test_words_say_what_it_does_to_the_result():
 def test_a_report_of_a_merged_recording_shows_its_maps(tmp_path, survey, recording):
     held = replace(SHAFT, channels=("M_s",))
     merged = replace(recording, attributes=clock_attributes([held]))
-    text = render_report(tmp_path / "merged", survey, recording=merged, interactive=False).read_text(encoding="utf-8")
+    text = render_report(tmp_path / "merged", survey, recording=merged).read_text(encoding="utf-8")
     quality = text[text.index('id="quality"') :].partition("</section>")[0]
     assert "was logged by shaft.nc, whose clock was 400.0 ± 1.0 ms behind that of bridge.nc at 430" in quality
     assert "Clock maps of the other loggers" in quality
@@ -98,5 +98,5 @@ def test_a_report_of_a_merged_recording_shows_its_maps(tmp_path, survey, recordi
         assert sha256 in text
     broken = replace(recording, attributes={"clock_maps": "[{}]"})
     with pytest.raises(RecordingError, match="attribute clock_maps"):
-        render_report(tmp_path / "broken", survey, recording=broken, interactive=False)
+        render_report(tmp_path / "broken", survey, recording=broken)
     assert not (tmp_path / "broken").exists()

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.report.marks import mark, names
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
@@ -16,7 +17,7 @@ from shaftprint.report import (
     gain_table,
     inertia_table,
     integral_table,
-    plot_missing_damping,
+    missing_damping_chart,
 )
 from shaftprint.report.thesis import integral_gain
 from shaftprint.spectra import open_loop
@@ -146,16 +147,14 @@ def test_a_set_point_that_is_off_takes_the_fits_down_together(thesis, response):
 
 
 def test_the_figure_shows_models_and_points(explanation):
-    figure = plot_missing_damping(explanation)
-    gain, phase, speed = figure.axes
-    points = next(line for line in gain.lines if line.get_label() == "measured")
+    gain, phase, speed = missing_damping_chart(explanation).panels
     expected = 20.0 * np.log10([abs(step.measured) for step in explanation.lines])
-    np.testing.assert_allclose(points.get_ydata(), expected)
-    assert len(phase.lines) == 3
-    model, marks = phase.lines[1], phase.lines[2]
-    at = np.interp(marks.get_xdata(), model.get_xdata(), model.get_ydata())
-    assert np.abs(at - marks.get_ydata()).max() < 30.0
-    assert {line.get_label() for line in speed.lines} >= {"GAUGE-CLOSED", "OL1+OL5"}
+    np.testing.assert_allclose(mark(gain, "measured").y, expected)
+    assert len(phase.marks) == 3
+    model, points = mark(phase, "with the inertia"), mark(phase, "measured")
+    at = np.interp(points.x, model.x, model.y)
+    assert np.abs(at - points.y).max() < 30.0
+    assert {"GAUGE-CLOSED", "OL1+OL5"} <= set(names(speed))
 
 
 def test_missing_fits_are_named(thesis, fits, response, vessel):

@@ -35,7 +35,7 @@ def test_budget_water_and_modes_follow(section):
     assert rows(section, "Entrained water")["Schwanecke"][0].startswith("5.9 ±")
     assert rows(section, "Torsional modes")["1"][0] == "13.60 ± 0.96"
     (picture,) = section.pictures
-    assert len(picture.draw().axes) == 4
+    assert len(picture.chart().panels) == 4
 
 
 def test_a_vessel_without_stiffness_has_no_modes(fingerprint, vessel):

@@ -4,10 +4,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from tests.report.marks import legend, mark
 
 from shaftprint.catalogue import AHEAD_S
 from shaftprint.limits import Kind, LimitEstimate
-from shaftprint.report import plot_limits
+from shaftprint.report import limit_chart
 
 RATE_HZ = 12.5
 
@@ -28,20 +29,15 @@ def limits(*, level):
     return SimpleNamespace(predicted=part, numbers=(number,) if level else ())
 
 
-def labels(figure):
-    return {text.get_text() for legend in figure.legends for text in legend.get_texts()}
-
-
 @pytest.mark.parametrize("level", [True, False])
 def test_a_torque_limit_is_shown_where_one_acts(level):
-    figure = plot_limits(limits(level=level))
-    assert ("torque limit, 95 %" in labels(figure)) == level
-    assert {"measured", "predicted", "predicted, 95 % of the noise"} <= labels(figure)
+    chart = limit_chart(limits(level=level))
+    assert ("torque limit, 95 %" in legend(chart)) == level
+    assert {"measured", "predicted", "predicted, 95 % of the noise"} <= set(legend(chart))
 
 
 def test_the_seconds_that_move_most_are_shown():
-    figure = plot_limits(limits(level=False))
-    begin, end = figure.axes[1].lines[0].get_xdata()[[0, -1]]
+    begin, end = mark(limit_chart(limits(level=False)).panels[1], "measured").x[[0, -1]]
     assert begin < 57.5
     assert end > 62.5
     assert end - begin == pytest.approx(12.0, abs=0.1)
@@ -49,8 +45,7 @@ def test_the_seconds_that_move_most_are_shown():
 
 def test_speed_is_that_of_the_same_instant_as_the_torque():
     """The record has the speed early: over speed, the cloud must be where ``n`` is 0.1 sin(0.1 pi t)."""
-    figure = plot_limits(limits(level=False))
-    measured = figure.axes[0].lines[0]
+    measured = mark(limit_chart(limits(level=False)).panels[0], "measured")
     time = np.arange(0.0, 100.0, 1.0 / RATE_HZ)
     expected = 1.0 + 0.1 * np.sin(2.0 * np.pi * 0.05 * time[time > 5.0])
-    np.testing.assert_allclose(measured.get_xdata(), expected, atol=1e-4)
+    np.testing.assert_allclose(measured.x, expected, atol=1e-4)

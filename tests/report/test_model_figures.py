@@ -2,65 +2,73 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from tests.report.marks import legend, mark, marks
 
 from shaftprint.catalogue import structure, thesis_families
 from shaftprint.errors import StructureError
 from shaftprint.models import loop_gain
-from shaftprint.report import Curve, plot_correlation, plot_nyquist, plot_residuals, plot_sensitivity
+from shaftprint.report import Curve, correlation_chart, nyquist_chart, residual_chart, sensitivity_chart
+from shaftprint.report.charts import Fields, Points, as_plain
 from shaftprint.report.figures import line_chi_square, normalised_residuals, parameter_steps
 
 
 def test_nyquist_margins_lie_where_they_are_defined(identification):
-    figure = plot_nyquist(Curve.of(identification))
-    axes = figure.axes[0]
-    lines = {str(line.get_label()).split()[0]: line for line in axes.get_lines()}
-    phase = complex(lines["phase"].get_xdata()[0], lines["phase"].get_ydata()[0])
-    assert abs(phase) == pytest.approx(1.0, abs=1e-9)
-    gain = lines["gain"].get_xdata()[0]
-    assert -1.0 < gain < 0.0
-    text = next(str(line.get_label()) for line in axes.get_lines() if "gain margin" in str(line.get_label()))
-    assert f"gain margin {-1.0 / gain:.2f}" in text
-    curve = lines["loop"]
-    expected = loop_gain(identification.structure, identification.values, np.array([1j * 0.05]))[0]
-    assert curve.get_xdata()[0] == pytest.approx(expected.real)
-    assert axes.get_xlabel() == "real part of L [-]"
+    (panel,) = nyquist_chart(Curve.of(identification)).panels
+    phase = mark(panel, "phase margin")
+    assert np.hypot(phase.x[0], phase.y[0]) == pytest.approx(1.0, abs=1e-9)
+    gain = mark(panel, "gain margin")
+    assert -1.0 < gain.x[0] < 0.0
+    assert as_plain(gain.name).startswith(f"gain margin {-1.0 / gain.x[0]:.2f}")
+    drawn = mark(panel, "loop gain")
+    place = int(np.nanargmin(np.abs(drawn.y + 1.0)))
+    omega = float(drawn.words[place].split()[0])
+    expected = loop_gain(identification.structure, identification.values, np.array([1j * omega]))[0]
+    assert complex(drawn.x[place], drawn.y[place]) == pytest.approx(expected, abs=2e-2)
+    assert panel.x.title == "real part of L [-]"
+
+
+def test_nyquist_has_the_circle_that_touches_the_curve(identification):
+    """No point of the loop gain lies within the margin circle, and one lies on it."""
+    (panel,) = nyquist_chart(Curve.of(identification)).panels
+    gain, circle = mark(panel, "loop gain"), mark(panel, "nearest")
+    radius = np.hypot(circle.x + 1.0, circle.y)
+    assert np.ptp(radius) < 1e-9
+    assert np.nanmin(np.hypot(gain.x + 1.0, gain.y)) == pytest.approx(radius[0], rel=1e-3)
 
 
 def test_nyquist_of_a_line_without_margins():
     """CL1 has infinite gain margin: there is nothing to mark."""
-    figure = plot_nyquist(Curve.at(structure("CL1"), {"tau_n": 0.278, "K_p": 0.01, "K_i": 5.99}))
-    labels = " ".join(str(line.get_label()) for line in figure.axes[0].get_lines())
-    assert "gain margin" not in labels
-    assert "stable" in labels
+    chart = nyquist_chart(Curve.at(structure("CL1"), {"tau_n": 0.278, "K_p": 0.01, "K_i": 5.99}))
+    assert "gain margin" not in " ".join(legend(chart))
+    assert "stable" in " ".join(legend(chart))
 
 
 def test_an_unstable_line_is_called_so():
     """CL4 of the thesis with half a second more delay than its delay margin of 0.39 s leaves."""
     values = {"tau_n": 0.33, "K_p": 1.6, "K_i": 4.4, "t_d": 0.62, "omega_n": 9.77, "zeta": 0.4}
-    labels = " ".join(
-        str(line.get_label()) for line in plot_nyquist(Curve.at(structure("CL4"), values)).axes[0].get_lines()
-    )
-    assert "UNSTABLE" in labels
+    assert "UNSTABLE" in " ".join(legend(nyquist_chart(Curve.at(structure("CL4"), values))))
 
 
 def test_a_line_without_feedback_has_no_nyquist_plot():
     with pytest.raises(StructureError, match="no feedback loop"):
-        plot_nyquist(Curve.at(structure("OL1"), {}))
+        nyquist_chart(Curve.at(structure("OL1"), {}))
 
 
-def test_correlation_is_written_in_its_field(identification):
-    axes = plot_correlation(identification).axes[0]
-    count = len(identification.structure.free)
-    written = np.array([float(text.get_text().replace("−", "-")) for text in axes.texts]).reshape(count, count)
+def test_correlation_is_written_in_its_field_and_coloured_by_its_sign(identification):
+    (panel,) = correlation_chart(identification).panels
+    (fields,) = panel.marks
+    written = np.array([[float(word.replace("−", "-")) for word in row] for row in fields.words])
     np.testing.assert_allclose(written, identification.correlation, atol=0.0051)
-    assert [label.get_text() for label in axes.get_xticklabels()][:2] == [r"$K_{\mathrm{p}}$", r"$K_{\mathrm{i}}$"]
+    np.testing.assert_allclose(fields.values, identification.correlation)
+    assert fields.values.min() < -0.5
+    assert list(panel.x.names)[:2] == ["K_p", "K_i"]
 
 
 def test_correlation_that_is_not_known_is_a_question_mark(identification):
     covariance = identification.covariance.copy()
     covariance[0, 0] = np.inf
-    axes = plot_correlation(replace(identification, covariance=covariance)).axes[0]
-    assert axes.texts[0].get_text() == "?"
+    (panel,) = correlation_chart(replace(identification, covariance=covariance)).panels
+    assert mark(panel, "", Fields).words[0][0] == "?"
 
 
 def test_residuals_of_the_truth_are_standard_normal(identification):
@@ -82,40 +90,29 @@ def test_residuals_hold_the_load_of_each_window(identification):
 
 def test_residual_figure_states_the_limit_of_chi_square(identification):
     """The 95 % point of chi-square with four degrees of freedom is 9.488 (published table)."""
-    figure = plot_residuals(identification)
-    labels = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert "95 % limit, 9.5 for 4 numbers" in labels
-    top, bottom = figure.axes
-    hollow = [line for line in bottom.get_lines() if line.get_markerfacecolor() == "white"]
-    assert hollow[0].get_xdata().size == 2
-    assert top.get_ylabel() == "residual over\nstandard deviation [-]"
+    chart = residual_chart(identification)
+    assert "95 % limit, 9.5 for 4 numbers" in legend(chart)
+    top, bottom = chart.panels
+    assert [points.x.size for points in marks(bottom, "", Points) if not points.filled] == [2]
+    assert top.y.title == "residual over its std [-]"
 
 
 def test_each_parameter_is_varied_between_its_bounds():
     model = structure("OL4")
     omega_n = next(p for p in model.parameters if p.name == "omega_n")
     np.testing.assert_allclose(parameter_steps(omega_n), [7.0, 8.5, 10.0, 11.5, 13.0])
-    figure = plot_sensitivity(model, vary=["omega_n"])
-    magnitude, phase = figure.axes
-    for line, value in zip(magnitude.get_lines(), (7.0, 8.5, 10.0, 11.5, 13.0), strict=True):
-        expected = model.response(model.vector({"omega_n": value}), 1j * line.get_xdata())[0]
-        np.testing.assert_allclose(line.get_ydata(), 20.0 * np.log10(np.abs(expected)), atol=1e-9)
-    texts = [text.get_text() for text in phase.get_legend().get_texts()]
-    assert texts == ["7 rad/s", "8.5 rad/s", "10 rad/s", "11.5 rad/s", "13 rad/s"]
+    magnitude, phase = sensitivity_chart(model, vary=["omega_n"]).panels
+    for line, value in zip(magnitude.marks, (7.0, 8.5, 10.0, 11.5, 13.0), strict=True):
+        expected = model.response(model.vector({"omega_n": value}), 1j * line.x)[0]
+        np.testing.assert_allclose(line.y, 20.0 * np.log10(np.abs(expected)), atol=1e-9)
+    assert as_plain(phase.title) == "omega_n = 7, 8.5, 10, 11.5, 13 rad/s"
+    assert len({line.shade for line in magnitude.marks}) == 5
 
 
-def test_lines_of_a_family_differ_in_dashes_and_lightness():
-    lines = plot_sensitivity(structure("OL2"), vary=["K_p"]).axes[0].get_lines()
-    lightness = [
-        np.dot([0.299, 0.587, 0.114], [int(line.get_color()[i : i + 2], 16) for i in (1, 3, 5)]) for line in lines
-    ]
-    assert np.all(np.diff(lightness) > 15.0)
-    assert len({str(line._dash_pattern) for line in lines}) == 5
-
-
-def test_a_vanishing_response_is_said_to_vanish():
-    texts = plot_sensitivity(structure("INITIAL"), vary=["v"]).axes[1].get_legend().get_texts()
-    assert texts[0].get_text() == "0, no response"
+def test_a_vanishing_response_is_not_drawn():
+    magnitude, phase = sensitivity_chart(structure("INITIAL"), vary=["v"]).panels
+    for panel in (magnitude, phase):
+        assert [bool(np.isfinite(line.y).any()) for line in panel.marks] == [False, True, True, True, True]
 
 
 def test_the_thesis_families_have_its_parameters_and_bounds():
@@ -134,9 +131,9 @@ def test_low_frequency_limits_of_table_2_4():
     families = {family.figure: family for family in thesis_families()}
     for figure, limit in (("4.2", 1.0), ("B.1-B.2", 2.5 / 3.0), ("B.3-B.4", 2.0)):
         family = families[figure]
-        drawn = plot_sensitivity(family.structure, output=family.output, vary=["tau_n"]).axes[0].get_lines()
+        drawn = sensitivity_chart(family.structure, output=family.output, vary=["tau_n"]).panels[0].marks
         for line in drawn:
-            assert line.get_ydata()[0] == pytest.approx(20.0 * np.log10(limit), abs=0.01)
+            assert line.y[0] == pytest.approx(20.0 * np.log10(limit), abs=0.01)
 
 
 def test_simplified_closed_loop_of_appendix_d():
@@ -159,10 +156,12 @@ def test_open_loop_of_eq_4_4():
 
 def test_data_are_drawn_into_every_row(open_responses):
     family = next(family for family in thesis_families() if family.figure == "4.5")
-    figure = plot_sensitivity(family.structure, output="M_s", vary=family.vary, data=open_responses[0])
-    assert [len(axes.containers) for axes in figure.axes] == [2, 2, 2, 2]
-    points = 20.0 * np.log10(np.abs(open_responses[0].response[0, 0]))
-    low, high = figure.axes[0].get_ylim()
+    chart = sensitivity_chart(family.structure, output="M_s", vary=family.vary, data=open_responses[0])
+    assert [len(marks(panel, "data", Points)) for panel in chart.panels] == [1, 1, 1, 1]
+    used = open_responses[0].used
+    points = 20.0 * np.log10(np.abs(open_responses[0].response[0, 0, used]))
+    np.testing.assert_allclose(mark(chart.panels[0], "data").y, points)
+    low, high = chart.panels[0].y.span
     assert low < points.min()
     assert high > points.max()
 
@@ -170,8 +169,8 @@ def test_data_are_drawn_into_every_row(open_responses):
 def test_wrong_names_are_refused():
     model = structure("OL2")
     with pytest.raises(StructureError, match="OL2 has no output n; it has M_s"):
-        plot_sensitivity(model, output="n")
+        sensitivity_chart(model, output="n")
     with pytest.raises(StructureError, match="out of K_p, K_i, found t_d"):
-        plot_sensitivity(model, vary=["t_d"])
+        sensitivity_chart(model, vary=["t_d"])
     with pytest.raises(StructureError, match="found none"):
-        plot_sensitivity(model, vary=[])
+        sensitivity_chart(model, vary=[])

@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from tests.report.marks import marks, names
 
 from shaftprint.identify import Settings, identify
 from shaftprint.models import Gain, Parameter, RationalBlock, Structure
-from shaftprint.report import Curve, plot_bode, plot_correlation, plot_residuals, plot_sensitivity
+from shaftprint.report import Curve, bode_chart, correlation_chart, residual_chart, sensitivity_chart
+from shaftprint.report.charts import Line, Points, as_plain
 from shaftprint.spectra import FrequencyResponse
 
 FREQUENCY_HZ = np.geomspace(0.5, 20.0, 9)
@@ -53,25 +55,23 @@ def found(measured):
 
 
 def test_every_channel_has_its_column_with_its_own_data_and_model(found, measured):
-    figure = plot_bode([Curve.of(found)], data=measured)
-    titles = [axes.get_title(loc="left") for axes in figure.axes[:4]]
-    assert titles == [
-        "(a) position / $force_{\\mathrm{1}}$",
-        "(b) position / $force_{\\mathrm{2}}$",
-        "(c) angle / $force_{\\mathrm{1}}$",
-        "(d) angle / $force_{\\mathrm{2}}$",
+    panels = bode_chart([Curve.of(found)], data=measured).panels[:4]
+    assert [as_plain(panel.title) for panel in panels] == [
+        "position / force_1",
+        "position / force_2",
+        "angle / force_1",
+        "angle / force_2",
     ]
-    for axes, (output, cause) in zip(figure.axes[:4], ((0, 0), (0, 1), (1, 0), (1, 1)), strict=True):
-        points = axes.containers[0].lines[0]
+    for panel, (output, cause) in zip(panels, ((0, 0), (0, 1), (1, 0), (1, 1)), strict=True):
+        (points,), (line,) = marks(panel, "data", Points), marks(panel, "PAIR", Line)
         size = np.abs(measured.response[output, cause])
-        np.testing.assert_allclose(points.get_ydata(), 20.0 * np.log10(size), rtol=1e-12)
-        line = next(line for line in axes.get_lines() if str(line.get_label()).startswith("PAIR"))
-        s = 1j * line.get_xdata()
+        np.testing.assert_allclose(points.y, 20.0 * np.log10(size), rtol=1e-12)
+        s = 1j * line.x
         m, gain = found.values
         stiffness = m * s**2 + s + 2.0
         expected = (stiffness if output == cause else 1.0) / (stiffness**2 - 1.0)
         expected = expected * gain if (output, cause) == (0, 0) else expected
-        np.testing.assert_allclose(line.get_ydata(), 20.0 * np.log10(np.abs(expected)), atol=1e-9)
+        np.testing.assert_allclose(line.y, 20.0 * np.log10(np.abs(expected)), atol=1e-9)
 
 
 def test_error_bars_are_those_of_the_channel(measured):
@@ -84,42 +84,34 @@ def test_error_bars_are_those_of_the_channel(measured):
         inputs=measured.inputs,
         outputs=measured.outputs,
     )
-    axes = plot_bode(data=other).axes
-    ends = [np.array(a.containers[0].lines[2][0].get_segments())[:, 1, 1] for a in axes[:4]]
+    shown = [marks(panel, "data", Points)[0] for panel in bode_chart(data=other).panels[:4]]
     # 1.96 standard deviations outwards along the response: 0.01, and 0.02 of the last channel
     for place, std in enumerate((0.01, 0.01, 0.01, 0.02)):
         size = np.abs(measured.response.reshape(4, -1)[place])
-        np.testing.assert_allclose(ends[place], 20.0 * np.log10(size + 1.959964 * std), atol=1e-6)
+        upper = shown[place].y + shown[place].bars[1]
+        np.testing.assert_allclose(upper, 20.0 * np.log10(size + 1.959964 * std), atol=1e-6)
 
 
 def test_residuals_are_of_every_channel_and_named_after_it(found, measured):
-    figure = plot_residuals(found)
-    labels = [str(line.get_label()) for line in figure.axes[0].get_lines()]
-    assert labels[:2] == [
-        "real part of position from $force_{\\mathrm{1}}$",
-        "real part of position from $force_{\\mathrm{2}}$",
-    ]
-    assert labels[7] == "imaginary part of angle from $force_{\\mathrm{2}}$"
+    top, bottom = residual_chart(found).panels
+    assert names(top)[1:3] == ["real part of position from force_1", "real part of position from force_2"]
+    assert names(top)[8] == "imaginary part of angle from force_2"
     model = found.structure.response(found.values, 2j * np.pi * FREQUENCY_HZ)
     expected = (measured.response[1, 0] - model[2]).imag / 0.01
-    np.testing.assert_allclose(figure.axes[0].get_lines()[6].get_ydata(), expected, rtol=1e-9)
+    np.testing.assert_allclose(top.marks[7].y, expected, rtol=1e-9)
     # eight independent numbers a line
     total = np.concatenate(
         [(measured.response.reshape(4, -1) - model).real, (measured.response.reshape(4, -1) - model).imag]
     )
-    points = figure.axes[1].get_lines()[0]
-    np.testing.assert_allclose(points.get_ydata(), (total**2).sum(axis=0) / 1e-4, rtol=1e-9)
+    np.testing.assert_allclose(bottom.marks[0].y, (total**2).sum(axis=0) / 1e-4, rtol=1e-9)
 
 
 def test_sensitivity_of_one_channel(found):
-    figure = plot_sensitivity(pair(), output="angle", cause="force_2", vary=["m_1"])
-    assert "angle / $force_{\\mathrm{2}}$" in figure.get_suptitle()
-    line = figure.axes[0].get_lines()[0]
-    s = 1j * line.get_xdata()
+    line = sensitivity_chart(pair(), output="angle", cause="force_2", vary=["m_1"]).panels[0].marks[0]
+    s = 1j * line.x
     stiffness = 1e-4 * s**2 + s + 2.0
-    np.testing.assert_allclose(line.get_ydata(), 20.0 * np.log10(np.abs(stiffness / (stiffness**2 - 1.0))), atol=1e-9)
+    np.testing.assert_allclose(line.y, 20.0 * np.log10(np.abs(stiffness / (stiffness**2 - 1.0))), atol=1e-9)
 
 
-def test_a_name_of_words_is_drawn_as_words(found):
-    labels = [text.get_text() for text in plot_correlation(found).axes[0].get_xticklabels()]
-    assert "gain of sensor" in labels
+def test_a_name_of_words_is_written_as_it_is(found):
+    assert "gain of sensor" in correlation_chart(found).panels[0].x.names

@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from shaftprint.report.plots import Plot, plotly_script, quick_script
+from shaftprint.report.charts import plotly_script, quick_script
 
 # A bundle in the form of plotly's, small enough to be read: five kinds of traces, one in two steps, and calendars.
 BUNDLE = b"""/** plotly.js v9.9.9 */
@@ -81,8 +81,3 @@ def test_the_installed_script_is_recognised():
     assert lists[1].count(b"()") <= 3
     back = quick.replace(b"[%s]" % lists[1], b"[%s]" % lists[0]).replace(b"this, (() =>", b"this, () =>")
     assert re.sub(rb"\}\)\)\);(?=\s*$)", b"}));", back) == whole
-
-
-def test_a_kind_that_the_script_has_not_is_refused():
-    with pytest.raises(ValueError, match="expected a trace of type bar or scatter, found pie"):
-        Plot(traces=[{"type": "pie", "values": [1.0]}], layout={})

@@ -1,4 +1,6 @@
 import re
+import subprocess
+import sys
 from dataclasses import replace
 from html.parser import HTMLParser
 from types import SimpleNamespace
@@ -13,7 +15,7 @@ from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.report import _page as page_module
 from shaftprint.report import _render as render_module
 from shaftprint.report import render_report
-from shaftprint.report.sections import fit_section, stability_section, summary_section, time_section
+from shaftprint.report.sections import stability_section, summary_section, time_section
 from shaftprint.survey import ThesisMode
 
 VOID = {"meta", "img", "br", "link"}
@@ -103,18 +105,16 @@ def thesis_page(report):
 
 
 @pytest.mark.slow
-def test_every_picture_is_there_parses_and_has_words(report, page, thesis_page):
-    images = [*page.all("img"), *thesis_page.all("img")]
-    assert len(images) >= 20
-    for image in images:
-        file = report.parent / image["src"]
-        assert file.stat().st_size < 500_000
-        assert len(image["alt"]) > 20
-        if file.suffix == ".svg":
-            root = ET.parse(file).getroot()  # noqa: S314
-            assert root.tag.endswith("svg")
-    drawn = {file.name for file in (report.parent / "figures").iterdir()}
-    assert drawn == {image["src"].partition("/")[2] for image in images}
+def test_every_chart_has_its_data_and_words(report, page, thesis_page):
+    charts = [one for shown in (page, thesis_page) for one in shown.all("div") if one.get("class") == "plot"]
+    assert len(charts) >= 20
+    for chart in charts:
+        data = (report.parent / chart["data-source"]).read_text(encoding="utf-8")
+        assert data.startswith(f'shaftprintChart("{chart["data-plot"]}",{{')
+        assert len(data) < 300_000
+        assert len(chart["aria-label"]) > 20
+    assert not page.all("img")
+    assert "shaftprint identify --figures" in page.text
 
 
 @pytest.mark.slow
@@ -135,24 +135,25 @@ def test_the_page_asks_for_nothing_outside(report, page):
     assert policy.replace("style-src-attr 'unsafe-inline'", "").count("unsafe") == 0
 
 
-def test_without_interactive_figures_the_page_runs_no_script(tmp_path, survey, monkeypatch):
-    monkeypatch.setattr(render_module, "page_sections", lambda inputs: [fit_section(inputs)])
-    report = render_report(tmp_path / "static", survey, interactive=False)
-    page = Page(report.read_text(encoding="utf-8"))
-    assert not page.all("script")
-    assert len(page.all("img")) == 3
-    assert not any("plot" in (tag.get("class") or "") for tag in page.all("div"))
-    policy = next(m["content"] for m in page.all("meta") if m.get("http-equiv") == "Content-Security-Policy")
-    assert "script-src" not in policy
-    assert "unsafe" not in policy
-    assert sorted(file.name for file in report.parent.iterdir()) == ["figures", "index.html"]
+def test_pictures_are_written_where_they_are_asked_for(tmp_path, survey, monkeypatch):
+    monkeypatch.setattr(render_module, "page_sections", lambda inputs: stability_section(inputs))
+    report = render_report(tmp_path / "pictures", survey, pictures=True)
+    figures = report.parent / "figures"
+    assert sorted(file.name for file in figures.iterdir()) == ["nyquist.pdf", "nyquist.png", "nyquist.svg"]
+    (image,) = Page(report.read_text(encoding="utf-8")).all("img")
+    assert image["src"] == "figures/nyquist.svg"
+    text = (figures / "nyquist.svg").read_text(encoding="utf-8")
+    assert ET.fromstring(text).tag.endswith("svg")  # noqa: S314
+    links = re.findall(r'(?:href|src)="([^"]*)"', text)
+    assert all(link.startswith(("#", "data:")) for link in links)
 
 
 @pytest.mark.slow
-def test_pictures_refer_to_nothing_outside(report):
-    for file in (report.parent / "figures").glob("*.svg"):
-        links = re.findall(r'(?:href|src)="([^"]*)"', file.read_text(encoding="utf-8"))
-        assert all(link.startswith(("#", "data:")) for link in links)
+def test_a_report_needs_no_matplotlib(tmp_path):
+    """It takes half a second to load and most of a report's time to draw: nothing on the way may import it."""
+    code = "import sys, shaftprint.cli, shaftprint.cli.commands._identify; print('matplotlib' in sys.modules)"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "False"
 
 
 @pytest.mark.slow
@@ -245,7 +246,7 @@ def test_a_report_of_a_bare_survey(tmp_path, survey):
     assert "truth within" not in page.text
     assert "thesis-mode" not in page.ids
     assert "time" not in page.ids
-    assert not any("campaign" in image["src"] for image in page.all("img"))
+    assert "plot-campaign" not in page.ids
 
 
 def test_tests_that_ended_before_the_recording_began_are_not_drawn(campaign, signals):
@@ -253,7 +254,7 @@ def test_tests_that_ended_before_the_recording_began_are_not_drawn(campaign, sig
     late = replace(signals, start_s=455.0)
     (section,) = time_section(SimpleNamespace(campaign=campaign, signals=late))
     assert [picture.name for picture in section.pictures] == ["chirp_c2"]
-    assert section.pictures[0].draw().axes
+    assert section.pictures[0].chart().panels
     assert time_section(SimpleNamespace(campaign=campaign, signals=replace(signals, start_s=700.0))) == []
 
 
@@ -289,25 +290,13 @@ def test_an_earlier_report_is_kept_unless_overwriting_is_asked_for(tmp_path, sur
 
 
 def test_a_report_that_fails_leaves_nothing(tmp_path, survey, monkeypatch):
-    def fail(*_):
+    def fail(*_, **__):
         raise OSError("disk full")
 
-    monkeypatch.setattr(page_module, "_written_still", fail)
+    monkeypatch.setattr(page_module, "write_charts", fail)
     with pytest.raises(OSError, match="disk full"):
         render_report(tmp_path / "report", survey)
     assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.slow
-def test_a_large_picture_becomes_png(tmp_path, survey, monkeypatch):
-    sections = [fit_section]
-    monkeypatch.setattr(page_module, "LARGEST_SVG_BYTES", 10)
-    monkeypatch.setattr(render_module, "page_sections", lambda inputs: [make(inputs) for make in sections])
-    page = render_report(tmp_path / "report", survey)
-    images = Page(page.read_text(encoding="utf-8")).all("img")
-    assert {image["src"] for image in images} == {"figures/fit.png", "figures/residuals.png", "figures/step.png"}
-    for image in images:
-        assert (page.parent / image["src"]).read_bytes().startswith(b"\x89PNG")
 
 
 def test_a_structure_without_feedback_has_no_stability_section(tmp_path, survey, fits, monkeypatch):

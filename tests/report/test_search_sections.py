@@ -11,7 +11,8 @@ from shaftprint.identify import Settings, Unweighted, identify
 from shaftprint.identify.comparison import compare_fits
 from shaftprint.identify.fit import scan
 from shaftprint.reasons import Reason
-from shaftprint.report import plot_scan
+from shaftprint.report import scan_chart
+from shaftprint.report.charts import as_plain
 from shaftprint.report.notation import cell_html
 from shaftprint.report.sections import (
     comparison_section,
@@ -95,21 +96,18 @@ def test_the_cost_along_every_free_delay_is_drawn(fits):
     }
     assert names["OL1"] == names["OL2"] == names["CL1"] == []
     assert names["OL3"] == names["OL5"] == names["CL4"] == ["scan_t_d"]
-    figure = search_section(SimpleNamespace(identification=fits["OL3"])).pictures[0].draw()
-    assert figure.axes[0].get_xlabel() == r"$t_{\mathrm{d}}$ [s]"
+    chart = search_section(SimpleNamespace(identification=fits["OL3"])).pictures[0].chart()
+    assert as_plain(chart.panels[0].x.title) == "t_d [s]"
 
 
 def test_the_curve_is_the_root_of_the_deviance_and_its_optima_lie_on_it(fits):
     fit = fits["OL3"]
     scanned = scan(fit, "t_d")
-    axes = plot_scan(scanned, fit).axes[0]
-    curve, optima, limit = axes.lines
-    assert curve.get_ydata() == pytest.approx(
-        np.sqrt(np.maximum(2.0 * (scanned.cost - scanned.best.cost), 0.0)), abs=1e-9
-    )
-    assert optima.get_ydata()[0] == 0.0
-    assert list(optima.get_xdata()) == [minimum.value for minimum in scanned.minima]
-    assert limit.get_ydata() == pytest.approx([1.96, 1.96], abs=1e-4)
+    limit, curve, optima = scan_chart(scanned, fit).panels[0].marks
+    assert curve.y == pytest.approx(np.sqrt(np.maximum(2.0 * (scanned.cost - scanned.best.cost), 0.0)), abs=1e-9)
+    assert optima.y[0] == 0.0
+    assert list(optima.x) == [minimum.value for minimum in scanned.minima]
+    assert limit.at == pytest.approx(1.96, abs=1e-4)
 
 
 def test_without_weights_the_curve_is_that_of_one_unknown_variance(response, open_responses):
@@ -117,9 +115,9 @@ def test_without_weights_the_curve_is_that_of_one_unknown_variance(response, ope
     settings = Settings(weighting=Unweighted(), starts=12)
     fit = identify(structure("OL3"), governor, rng=np.random.default_rng(3), settings=settings)
     scanned = scan(fit, "t_d", grid=[0.0, 0.2])
-    curve = plot_scan(scanned, fit).axes[0].lines[0]
+    curve = scan_chart(scanned, fit).panels[0].marks[1]
     expected = np.sqrt(24.0 * np.log(scanned.cost / scanned.best.cost))
-    assert curve.get_ydata() == pytest.approx(expected, rel=1e-9)
+    assert curve.y == pytest.approx(expected, rel=1e-9)
 
 
 # ---- which structure ----

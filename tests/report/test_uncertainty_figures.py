@@ -1,11 +1,15 @@
 """Figures and table of the uncertainty: what they show is what the budget and the profiles say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from tests.report.marks import legend, mark, marks
 
 from shaftprint.identify import profile_intervals
 from shaftprint.identify.uncertainty import Budget, BudgetRow, budget, step_band
-from shaftprint.report.figures import plot_budget, plot_profiles, plot_step_band
+from shaftprint.report import budget_chart, profile_chart, step_chart
+from shaftprint.report.charts import Band, Bars, Line, as_plain
 from shaftprint.tables import Column, Symbol, budget_table
 
 STATED = Budget(
@@ -18,28 +22,26 @@ STATED = Budget(
 )
 
 
-def bars(figure):
-    """Return left end and width of every bar by source, shape (numbers, 2)."""
-    return {
-        container.get_label(): np.array([(bar.get_x(), bar.get_width()) for bar in container])
-        for container in figure.axes[0].containers
-    }
+def bars(chart):
+    """Return start and length of every bar by source, shape (numbers, 2)."""
+    drawn = marks(chart.panels[0], "", Bars)
+    return {as_plain(bar.name): np.stack([bar.starts, bar.lengths], axis=-1) for bar in drawn}
 
 
 def test_bars_are_the_shares_one_after_the_other():
-    found = bars(plot_budget(STATED))
-    np.testing.assert_allclose(found["noise of $n$"], [(0.0, 50.0), (0.0, 150.0)])
-    np.testing.assert_allclose(found["noise of $M_{\\mathrm{s}}$"], [(50.0, 25.0), (0.0, -50.0)])
+    found = bars(budget_chart(STATED))
+    np.testing.assert_allclose(found["noise of n"], [(0.0, 50.0), (0.0, 150.0)])
+    np.testing.assert_allclose(found["noise of M_s"], [(50.0, 25.0), (0.0, -50.0)])
     np.testing.assert_allclose(found["TVC"], [(75.0, 25.0), (150.0, 0.0)])
     # a source that counts nowhere is not in the picture, nor is a number that is not known
     assert len(found) == 3
-    assert plot_budget(STATED).axes[0].get_xlim() == pytest.approx((-50.0, 150.0))
+    assert budget_chart(STATED).panels[0].x.span == pytest.approx((-50.0, 150.0))
 
 
 def test_some_numbers_only_and_none():
-    assert len(bars(plot_budget(STATED, ["K_p"]))["TVC"]) == 1
+    assert len(bars(budget_chart(STATED, ["K_p"]))["TVC"]) == 1
     with pytest.raises(ValueError, match="budget: expected a number whose uncertainty is known, found none"):
-        plot_budget(STATED, ["v"])
+        budget_chart(STATED, ["v"])
 
 
 def test_table_has_shares_in_percent_and_leaves_out_what_is_not_known():
@@ -54,57 +56,52 @@ def test_table_has_shares_in_percent_and_leaves_out_what_is_not_known():
     assert len(table.rows) == 2
 
 
-def test_more_sources_than_colours_are_hatched():
-    sources = tuple(f"source {number}" for number in range(8))
-    row = BudgetRow(name="K_p", unit="-", value=1.0, variances=dict.fromkeys(sources, 1.0))
-    hatches = [c[0].get_hatch() for c in plot_budget(Budget(sources=sources, rows=(row,))).axes[0].containers]
-    assert hatches[:6] == [""] * 6
-    assert all(hatches[6:])
-
-
 def test_budget_of_a_fit_is_drawn_whole(identification):
     stated = budget(identification)
-    found = bars(plot_budget(stated))
-    np.testing.assert_allclose(sum(widths[:, 1] for widths in found.values()), 100.0 * np.ones(len(stated.rows)))
+    found = bars(budget_chart(stated))
+    np.testing.assert_allclose(sum(shares[:, 1] for shares in found.values()), 100.0 * np.ones(len(stated.rows)))
 
 
 @pytest.mark.slow
 def test_profiles_pass_the_limit_at_the_ends_of_the_intervals(identification):
     names = ["K_p", "zeta", "k_q"]
-    figure = plot_profiles(identification, names)
+    chart = profile_chart(identification, names)
     intervals = profile_intervals(identification)
-    visible = [axes for axes in figure.axes if axes.get_visible()]
-    assert len(visible) == 3
-    for axes, name in zip(visible, names, strict=True):
-        curve = next(line for line in axes.get_lines() if line.get_label() == "profile of the likelihood")
-        values, rise = curve.get_data()
+    for panel, name in zip(chart.panels, names, strict=True):
+        curve = mark(panel, "profile of the likelihood")
         interval = intervals[name]
         for end, is_open in ((interval.lower, interval.lower_open), (interval.upper, interval.upper_open)):
             if not is_open:
-                assert np.interp(end, values, rise) == pytest.approx(1.9207, rel=0.05)
-        assert axes.get_xlabel().endswith("[-]")
+                assert np.interp(end, curve.x, curve.y) == pytest.approx(1.9207, rel=0.05)
+        assert as_plain(panel.x.title) == f"{name} [-]"
 
 
 def test_every_free_parameter_has_a_panel(fits):
-    figure = plot_profiles(fits["OL5"])
-    assert [axes.get_visible() for axes in figure.axes] == [True] * 5 + [False] * 3
+    assert len(profile_chart(fits["OL5"]).panels) == 5
 
 
 def test_a_profile_without_deviation_has_no_parabola(fits):
     """Of the benchmark's ``v`` only the product with the gains is known."""
-    axes = plot_profiles(fits["BENCHMARK"], ["v"]).axes[0]
-    assert [line.get_label() for line in axes.get_lines()][:2] == ["95 % interval below", "profile of the likelihood"]
+    assert legend(profile_chart(fits["BENCHMARK"], ["v"])) == ["95 % interval below", "profile of the likelihood"]
 
 
 def test_step_is_drawn_with_its_band_and_the_coverage_is_told(identification):
-    figure = plot_step_band(identification, duration_s=3.0)
+    chart = step_chart(identification, duration_s=3.0)
     band = step_band(identification, np.linspace(0.0, 3.0, 301))
-    assert len(figure.axes) == 2
-    for place, axes in enumerate(figure.axes):
-        line = axes.get_lines()[0]
-        np.testing.assert_allclose(line.get_ydata(), band.value[place])
-        vertices = axes.collections[0].get_paths()[0].vertices
-        assert vertices[:, 1].max() == pytest.approx(band.upper[place].max())
-        assert vertices[:, 1].min() == pytest.approx(min(band.lower[place].min(), 0.0), abs=1e-9)
-    assert "95 % band, at each time" in [text.get_text() for text in figure.legends[0].get_texts()]
-    assert figure.axes[1].get_ylabel().endswith("after a step of 1 of $n_{\\mathrm{set}}$")
+    assert len(chart.panels) == 2
+    for place, panel in enumerate(chart.panels):
+        drawn, line = mark(panel, "95 % band, at each time", Band), mark(panel, "GAUGE-CLOSED", Line)
+        np.testing.assert_allclose(line.y, band.value[place])
+        np.testing.assert_allclose(drawn.upper, band.upper[place, ::3])
+        np.testing.assert_allclose(drawn.lower, band.lower[place, ::3])
+    assert as_plain(chart.panels[1].y.title) == "M_s after a step of 1 [-]"
+
+
+def test_the_smallest_measured_step_stands_beside_the_model_over_its_height(identification, signals):
+    """All steps of the staircase are 1 V; the made speed follows 0.4 s later by exactly the step of the set point."""
+    panel = step_chart(identification, signals=signals).panels[0]
+    measured = mark(panel, "measured, smallest step")
+    assert measured.x[0] == pytest.approx(0.0, abs=0.02)
+    assert measured.y[measured.x > 1.0].mean() == pytest.approx(1.0, abs=0.02)
+    assert measured.y[measured.x < 0.3].mean() == pytest.approx(0.0, abs=0.02)
+    assert not marks(step_chart(identification, signals=replace(signals, step_delays=())).panels[0], "measured")

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from tests.report.marks import mark, names
 
-from shaftprint.report import plot_validation, plot_validation_summary, save_figure
+from shaftprint.report import validation_chart, validation_summary_chart
+from shaftprint.report.charts import Band, as_plain
 from shaftprint.validation import ValidationSettings, thesis_models, validate
 
 
@@ -17,64 +19,54 @@ def validations(identification, signals, campaign):
     ]
 
 
-def labels(axes):
-    return axes.get_legend_handles_labels()[1]
-
-
 def test_models_over_the_data_of_a_chirp_band(validations):
-    figure = plot_validation(validations, "C11", "1 to 5")
-    speed, torque = figure.axes
-    for axes in (speed, torque):
-        assert labels(axes) == ["measured", "95 % band of GAUGE-CLOSED", "GAUGE-CLOSED", "CL4", "OL1+OL5"]
-    assert speed.get_title(loc="left") == "(a) engine speed, C11, 1 to 5 rad/s"
+    speed, torque = validation_chart(validations, "C11", "1 to 5").panels
+    for panel in (speed, torque):
+        assert names(panel) == ["measured", "95 % band of GAUGE-CLOSED", "GAUGE-CLOSED", "CL4", "OL1+OL5"]
+    assert as_plain(speed.title) == "engine speed n, C11, 1 to 5 rad/s"
     excerpt = validations[0].of("C11", "1 to 5").excerpt
-    assert speed.get_xlim() == pytest.approx((excerpt.start_s, excerpt.stop_s))
+    assert speed.x.span == pytest.approx((excerpt.start_s, excerpt.stop_s))
 
 
 def test_a_model_line_is_the_model(validations):
-    figure = plot_validation(validations[1:2], "C11", "5 to 10")
+    line = mark(validation_chart(validations[1:2], "C11", "5 to 10").panels[1], "CL4")
     traces = validations[1].of("C11", "5 to 10").traces
-    line = next(line for line in figure.axes[1].lines if line.get_label() == "CL4")
-    time_s, drawn = line.get_data()
     # not every sample is drawn, but each that is stands where it belongs
-    assert drawn.size > 100
-    assert drawn == pytest.approx(np.interp(time_s, traces.time_s, traces.model[1]))
+    assert line.y.size > 100
+    assert line.y == pytest.approx(np.interp(line.x, traces.time_s, traces.model[1]))
 
 
 def test_the_band_is_two_deviations_wide(validations):
-    figure = plot_validation(validations[:1], "St1", "step at 230")
+    band = mark(validation_chart(validations[:1], "St1", "step at 230").panels[0], "95 % band", Band)
     traces = validations[0].of("St1", "step at 230").traces
-    band = figure.axes[0].collections[0].get_paths()[0].vertices[:, 1]
-    assert band.max() == pytest.approx((traces.model[0] + 1.96 * traces.model_std[0]).max(), rel=1e-4)
+    at = np.searchsorted(traces.time_s, band.x)
+    np.testing.assert_allclose(band.upper - band.lower, 2.0 * 1.959964 * traces.model_std[0, at], rtol=1e-5)
+    np.testing.assert_allclose(0.5 * (band.upper + band.lower), traces.model[0, at], atol=1e-12)
 
 
 def test_the_set_point_stands_beside_the_speed_only(validations):
-    figure = plot_validation(validations, "St1", "step at 230", set_point=True, around_step_s=(0.5, 4.0))
-    speed, torque = figure.axes
-    assert any("set point" in label for label in labels(speed))
-    assert not any("set point" in label for label in labels(torque))
-    assert speed.get_xlim() == pytest.approx((229.5, 234.0))
-    assert "−4 to −5 V" in speed.get_title(loc="left")
+    chart = validation_chart(validations, "St1", "step at 230", set_point=True, around_step_s=(0.5, 4.0))
+    speed, torque = chart.panels
+    assert "set point n_set" in names(speed)
+    assert "set point n_set" not in names(torque)
+    assert speed.x.span == pytest.approx((229.5, 234.0))
+    assert "−4 to −5 V" in as_plain(speed.title)
 
 
 def test_bands_one_after_the_other(validations):
-    figure = plot_validation(validations, "C11", "5 to 10", "above 10")
-    assert figure.axes[0].get_xlim() == pytest.approx(
+    chart = validation_chart(validations, "C11", "5 to 10", "above 10")
+    assert chart.panels[0].x.span == pytest.approx(
         (validations[0].of("C11", "5 to 10").excerpt.start_s, validations[0].of("C11", "above 10").excerpt.stop_s)
     )
 
 
-def test_the_summary_has_a_row_for_every_excerpt(validations, tmp_path):
+def test_the_summary_has_a_row_for_every_excerpt(validations):
     validation = validations[0]
-    figure = plot_validation_summary(validation)
-    axes = figure.axes[0]
-    rows = [label.get_text() for label in axes.get_yticklabels()]
-    assert len(rows) == len(validation.comparisons)
-    assert rows[0] == "C11, up to 1 rad/s"
-    shown = axes.containers[0].lines[0].get_xdata()
-    assert shown == pytest.approx([100.0 * c.misfits[0].error for c in validation.comparisons])
-    save_figure(figure, tmp_path / "summary.svg")
-    assert (tmp_path / "summary.svg").stat().st_size > 10_000
+    (panel,) = validation_summary_chart(validation).panels
+    assert len(panel.y.names) == len(validation.comparisons)
+    assert panel.y.names[0] == "C11, up to 1 rad/s"
+    shown = mark(panel, "engine speed")
+    assert shown.x == pytest.approx([100.0 * c.misfits[0].error for c in validation.comparisons])
 
 
 @pytest.mark.parametrize(
@@ -86,9 +78,9 @@ def test_the_summary_has_a_row_for_every_excerpt(validations, tmp_path):
 )
 def test_what_is_not_there_is_refused(validations, record, titles, words):
     with pytest.raises(ValueError, match=words):
-        plot_validation(validations, record, *titles)
+        validation_chart(validations, record, *titles)
 
 
 def test_a_model_without_uncertainty_has_no_band(validations):
-    figure = plot_validation(validations[1:], "C11", "1 to 5")
-    assert labels(figure.axes[0]) == ["measured", "CL4", "OL1+OL5"]
+    panel = validation_chart(validations[1:], "C11", "1 to 5").panels[0]
+    assert names(panel) == ["measured", "CL4", "OL1+OL5"]

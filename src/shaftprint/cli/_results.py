@@ -22,6 +22,7 @@ def write_results(
     steps: Steps,
     thesis: ThesisMode | None = None,
     truth: Mapping[str, float] | None = None,
+    pictures: bool = False,
     previous: Fingerprint | None = None,
     pdf: bool = False,
 ) -> None:
@@ -39,13 +40,15 @@ def write_results(
         The same recording done the thesis' way, to compare.
     truth
         True values by name, where they are known.
+    pictures
+        Whether the charts are written as pictures, too.
     previous
         Fingerprint of an earlier test, with which the first page compares.
     pdf
         Whether the first pages are written as PDF too.
     """
     write_fingerprint(survey.fingerprint, folder / FINGERPRINT)
-    steps.begin("Drawing the figures of the report", total=1.0)
+    steps.begin("Writing the report", total=1.0)
     with read_recording(recording) as opened:
         render_report(
             folder,
@@ -56,6 +59,7 @@ def write_results(
             line_selection=_line_selection(survey),
             sensitivity=(survey.identification.structure,),
             previous=previous,
+            pictures=pictures,
             pdf=pdf,
             progress=steps.reach,
         )

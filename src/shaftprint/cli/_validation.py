@@ -12,7 +12,7 @@ from shaftprint.errors import FingerprintError
 from shaftprint.escape import plain_name
 from shaftprint.fingerprint import Fingerprint, identified_model
 from shaftprint.models import Structure
-from shaftprint.report import plot_validation, plot_validation_summary, save_figure
+from shaftprint.report import save_chart, validation_chart, validation_summary_chart
 from shaftprint.signals import Signals
 from shaftprint.tables import excerpt_name, misfit_table, step_number_table
 from shaftprint.units import rpm_from_rev_s
@@ -38,19 +38,19 @@ def write_validations(folder: Path, validations: Sequence[Validation], *, steps:
     first = validations[0]
     shown = _shown(first)
     steps.begin("Drawing the figures", total=1.0 + len(shown))
-    save_figure(plot_validation_summary(first), folder / "missed_beyond_noise.svg")
+    save_chart(validation_summary_chart(first), folder / "missed_beyond_noise.svg")
     for comparison in shown:
         steps.advance(1.0)
         excerpt = comparison.excerpt
         for suffix, group in _groups(validations).items():
-            figure = plot_validation(
+            figure = validation_chart(
                 group,
                 excerpt.record,
                 excerpt.title,
                 set_point=excerpt.kind != "chirp band",
                 around_step_s=AROUND_STEP_S if excerpt.step_s is not None else None,
             )
-            save_figure(figure, folder / f"{plain_name(f'{excerpt.record} {_title(comparison)}{suffix}')}.svg")
+            save_chart(figure, folder / f"{plain_name(f'{excerpt.record} {_title(comparison)}{suffix}')}.svg")
 
 
 def _title(comparison: ExcerptComparison) -> str:

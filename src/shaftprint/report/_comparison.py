@@ -19,8 +19,7 @@ from shaftprint.report.comparison import (
     vessel_file_sentences,
     vessel_file_table,
 )
-from shaftprint.report.figures import plot_bode, plot_differences, shown_names
-from shaftprint.report.plots import bode_plot, difference_plot
+from shaftprint.report.figures import bode_chart, difference_chart, shown_names
 from shaftprint.report.sections import Picture, Section, comparison_cover, not_alike
 from shaftprint.tables import Table, texts
 
@@ -39,7 +38,7 @@ def render_comparison(
     *,
     structures: "Mapping[str, Structure] | None" = None,
     load_repeatability: float = LOAD_REPEATABILITY,
-    interactive: bool = True,
+    pictures: bool = False,
     overwrite: bool = False,
 ) -> Path:
     """Write a report on two or more fingerprints, ``index.html`` with its figures; return the path of the page.
@@ -64,7 +63,7 @@ def render_comparison(
     FileExistsError
         If there is a report already and ``overwrite`` is false.
     ReportError
-        If there are fewer than two fingerprints, or figures are to be interactive and plotly is not installed.
+        If there are fewer than two fingerprints, or plotly is not installed.
     """
     if len(fingerprints) < FEWEST:
         raise ReportError(
@@ -82,7 +81,7 @@ def render_comparison(
         files=_files(fingerprints),
         ending="± is one standard deviation throughout; bands, intervals and error bars hold 95 %.",
     )
-    return write_page(directory, page, interactive=interactive, overwrite=overwrite, progress=None)
+    return write_page(directory, page, pictures=pictures, overwrite=overwrite, progress=None)
 
 
 def _sections(
@@ -144,8 +143,7 @@ def _difference_pictures(comparisons: Mapping[str, Sequence[Difference]]) -> lis
             name="differences",
             caption="Difference of each number from the first fingerprint, in percent of it.",
             alt="Points with intervals, a row for each number, about a vertical line at zero difference.",
-            draw=partial(plot_differences, comparisons),
-            plot=partial(difference_plot, comparisons),
+            chart=partial(difference_chart, comparisons),
         )
     ]
 
@@ -187,8 +185,7 @@ def _responses(fingerprints: "Mapping[str, Fingerprint]", structures: "Mapping[s
         name="responses",
         caption="Identified models with their 95 % bands. Normalised with the working point of each test.",
         alt="Bode diagram of all identified models over each other, with bands.",
-        draw=partial(plot_bode, shown),
-        plot=partial(bode_plot, shown),
+        chart=partial(bode_chart, shown),
     )
     return [Section(key="responses", title="Responses", paragraphs=words, pictures=(picture,))]
 

@@ -1,4 +1,4 @@
-"""A page of words, tables and pictures, written with its figures and plots into a folder that needs no network.
+"""A page of words, tables and charts, written with their data into a folder that needs no network.
 
 The page's policy allows its own style sheet, scripts and pictures of its folder, and nothing else. ``file:`` stands
 beside ``'self'`` because a page opened from a disk has no origin of its own; an empty style sheet is allowed because
@@ -8,7 +8,6 @@ plotly makes one and fills it rule by rule, and attributes of style because it s
 import base64
 import hashlib
 import importlib
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
@@ -22,23 +21,19 @@ from markupsafe import Markup
 
 from shaftprint.errors import ReportError
 from shaftprint.escape import html_value
-from shaftprint.report._folder import FIGURES, PAGE, PDF, PLOTS, report_written_whole
-from shaftprint.report.figures import save_figure
+from shaftprint.report._chart_files import ChartFiles, write_charts, write_scripts
+from shaftprint.report._folder import PAGE, PDF, report_written_whole
+from shaftprint.report.charts import plotly_script, plotly_sheets
 from shaftprint.report.notation import cell_html, sentence_html
-from shaftprint.report.plots import plotly_script, plotly_sheets, plotly_version, quick_script
-from shaftprint.report.sections import Cover, Picture, Section
+from shaftprint.report.sections import Cover, Section
 from shaftprint.tables import Table
 
-# Of a larger one a picture in dots is smaller, and still fine in print.
-LARGEST_SVG_BYTES = 80_000
-CSS_PX_AN_INCH = 96.0
-TEMPLATE = "report.html.j2"
+TEMPLATE, TABLE_TEMPLATE, CHART_TEMPLATE = "report.html.j2", "table.html.j2", "chart.html.j2"
+TEMPLATES = (TEMPLATE, TABLE_TEMPLATE, CHART_TEMPLATE, "sketch.svg.j2")
+STYLES = ("report.css", "charts.css")
+SCRIPTS = ("report.js", "charts.js")
 # Loaded when a PDF is asked for: it needs a library that not everybody has.
 PAPER = "shaftprint.report.paper"
-TABLE_TEMPLATE = "table.html.j2"
-SKETCH_TEMPLATE = "sketch.svg.j2"
-STYLE = "report.css"
-SCRIPT = "report.js"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -67,42 +62,17 @@ class Page:
     """SHA-256 of the file of the fingerprint that the page shows; None for a page on several."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Still:
-    """Where a static figure is, as the page names it, and its size."""
-
-    source: str
-    width_px: int
-    height_px: int
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Chart:
-    """Where the data of an interactive figure are, as the page names them, and its height."""
-
-    source: str
-    height_px: int
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class _Scripts:
-    """Where the page's own script and plotly's are, as the page names them."""
-
-    page: str
-    library: str
-
-
 def write_page(
     directory: str | Path,
     page: Page,
     *,
-    interactive: bool,
+    pictures: bool,
     overwrite: bool,
     progress: Callable[[float], None] | None,
     further: Mapping[str, Page] = MappingProxyType({}),
     pdf: bool = False,
 ) -> Path:
-    """Write a page with its figures, whole or not at all; return its path.
+    """Write a page with its charts, whole or not at all; return its path.
 
     Parameters
     ----------
@@ -110,8 +80,8 @@ def write_page(
         Where the page goes; made if it does not exist. Other files there are left alone.
     page
         What it says.
-    interactive
-        Whether the figures that can be interactive are; otherwise the page runs no script.
+    pictures
+        Whether the charts are written as pictures too.
     overwrite
         Whether an earlier report there may be replaced.
     progress
@@ -126,26 +96,19 @@ def write_page(
     FileExistsError
         If there is a report already and ``overwrite`` is false.
     ReportError
-        If figures are to be interactive and plotly is not installed, or ReportLab is not and a PDF is asked for.
+        If plotly is not installed, or ReportLab is not and a PDF is asked for.
     """
     folder = Path(directory)
-    library = plotly_script() if interactive else b""
+    library = plotly_script()
     if pdf:
         expect_reportlab()
     with report_written_whole(folder, overwrite=overwrite) as part:
         pages = {PAGE: page, **further}
-        pictures = [picture for one in pages.values() for section in one.sections for picture in section.pictures]
-        stills, plots = {}, {}
-        for number, picture in enumerate(pictures, start=1):
-            stills[picture.name] = _written_still(picture, part)
-            if interactive and picture.plot is not None:
-                plots[picture.name] = _written_plot(picture, part)
-            if progress is not None:
-                progress(number / len(pictures))
-        scripts = _written_scripts(part, library) if interactive else None
+        shown = [picture for one in pages.values() for section in one.sections for picture in section.pictures]
+        charts = write_charts(shown, part, pictures=pictures, progress=progress)
+        scripts = write_scripts(part, {name: _template(name) for name in SCRIPTS}, library)
         for name, one in pages.items():
-            text = _html(one, stills, plots, scripts, plotly_sheets(library))
-            (part / name).write_text(text, encoding="utf-8")
+            (part / name).write_text(_html(one, charts, scripts, plotly_sheets(library)), encoding="utf-8")
         if pdf:
             page_as_pdf(page, part / PDF)
     return folder / PAGE
@@ -182,55 +145,11 @@ def expect_reportlab() -> None:
         raise ReportError('PDF: expected the package reportlab, found none; pip install "shaftprint[pdf]".')
 
 
-def _written_still(picture: Picture, part: Path) -> _Still:
-    """Draw and save a picture, as PNG where an SVG would be large."""
-    figure = picture.draw()
-    path = part / FIGURES / f"{picture.name}.svg"
-    save_figure(figure, path)
-    if path.stat().st_size > LARGEST_SVG_BYTES:
-        path.unlink()
-        path = path.with_suffix(".png")
-        save_figure(figure, path)
-    width, height = (round(CSS_PX_AN_INCH * length) for length in figure.get_size_inches())
-    return _Still(source=f"{FIGURES}/{path.name}", width_px=width, height_px=height)
-
-
-def _written_plot(picture: Picture, part: Path) -> _Chart:
-    """Write an interactive figure as a script that hands it to the page: a page from a disk may not read other files.
-
-    Raises
-    ------
-    ValueError
-        If the picture has no interactive figure.
-    """
-    if picture.plot is None:
-        raise ValueError(f"picture {picture.name}: expected an interactive figure, found none.")
-    plot = picture.plot()
-    address = f"{PLOTS}/{picture.name}.js"
-    (part / address).write_text(f"shaftprintPlot({json.dumps(picture.name)},{plot.text()});\n", encoding="utf-8")
-    return _Chart(source=address, height_px=plot.height_px)
-
-
-def _written_scripts(part: Path, library: bytes) -> _Scripts:
-    """Write plotly's script and the page's own into the folder of plots."""
-    scripts = _Scripts(page=f"{PLOTS}/{SCRIPT}", library=f"{PLOTS}/plotly-{plotly_version(library)}.min.js")
-    (part / scripts.page).write_text(_template(SCRIPT), encoding="utf-8")
-    (part / scripts.library).write_bytes(quick_script(library))
-    return scripts
-
-
-def _html(
-    page: Page,
-    stills: Mapping[str, _Still],
-    plots: Mapping[str, _Chart],
-    scripts: _Scripts | None,
-    empty_sheets: Sequence[str],
-) -> str:
+def _html(page: Page, charts: Mapping[str, ChartFiles], scripts: Sequence[str], empty_sheets: Sequence[str]) -> str:
     names = [picture.name for section in page.sections for picture in section.pictures]
-    first_plot = next((name for name in names if name in plots), None)
-    style = _template(STYLE)
+    style = "".join(_template(name) for name in STYLES)
     environment = _environment()
-    table_template = environment.get_template(TABLE_TEMPLATE)
+    table_template, chart_template = (environment.get_template(name) for name in (TABLE_TEMPLATE, CHART_TEMPLATE))
     return environment.get_template(TEMPLATE).render(
         title=page.title,
         subtitle=page.subtitle,
@@ -243,24 +162,21 @@ def _html(
         neighbours=page.neighbours,
         files=page.files,
         ending=page.ending,
-        stills=stills,
-        plots=plots,
-        first_plot=first_plot,
-        # What a reader sees first is not to wait for a place near the screen.
-        at_once={next(iter(names), None), first_plot},
+        first_chart=charts[names[0]] if names else None,
         scripts=scripts,
         empty_sheets=empty_sheets,
-        shown=lambda table: _shown(table_template, table),
+        shown=lambda table: _shown(table_template, table=table),
+        drawn=lambda picture: _shown(chart_template, picture=picture, chart=charts[picture.name]),
         # The style sheet is ours and holds nothing of the user's.
         style=Markup(style),  # noqa: S704
-        policy=_policy(style, scripted=scripts is not None),
+        policy=_policy(style),
     )
 
 
 def _environment() -> Environment:
     """Return what fills the templates in: whatever it writes is escaped here, and nowhere else."""
     environment = Environment(
-        loader=DictLoader({name: _template(name) for name in (TEMPLATE, TABLE_TEMPLATE, SKETCH_TEMPLATE)}),
+        loader=DictLoader({name: _template(name) for name in TEMPLATES}),
         autoescape=True,
         finalize=html_value,
         undefined=StrictUndefined,
@@ -272,17 +188,18 @@ def _environment() -> Environment:
     return environment
 
 
-def _shown(template: Template, table: Table) -> Markup:
-    # The template escapes what the table holds.
-    return Markup(template.render(table=table))  # noqa: S704
+def _shown(template: Template, **content: object) -> Markup:
+    # The template escapes what it is given.
+    return Markup(template.render(**content))  # noqa: S704
 
 
-def _policy(style: str, *, scripted: bool) -> str:
+def _policy(style: str) -> str:
     """Return the page's policy: what it may load and run."""
-    allowed = [style, ""] if scripted else [style]
-    sheets = " ".join(f"'sha256-{_digest(sheet)}'" for sheet in allowed)
-    scripts = "script-src 'self' file:; style-src-attr 'unsafe-inline'; " if scripted else ""
-    return f"default-src 'none'; img-src 'self' file:; {scripts}style-src {sheets}; base-uri 'none'; form-action 'none'"
+    sheets = " ".join(f"'sha256-{_digest(sheet)}'" for sheet in (style, ""))
+    return (
+        "default-src 'none'; img-src 'self' file:; script-src 'self' file:; style-src-attr 'unsafe-inline'; "
+        f"style-src {sheets}; base-uri 'none'; form-action 'none'"
+    )
 
 
 def _digest(text: str) -> str:

@@ -37,14 +37,13 @@ def render_report(
     sensitivity: "Sequence[Structure]" = (),
     previous: "Fingerprint | None" = None,
     pdf: bool = False,
-    interactive: bool = True,
+    pictures: bool = False,
     overwrite: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> Path:
     """Write a report, ``index.html`` with its figures and plots, whole or not at all; return the path of the page.
 
-    The page opens from a disk and asks for nothing outside its folder. In print, and where scripts are off, it shows
-    static figures.
+    The page opens from a disk and asks for nothing outside its folder.
 
     Parameters
     ----------
@@ -81,7 +80,7 @@ def render_report(
     RecordingError
         If the clock maps of the recording cannot be understood.
     ReportError
-        If figures are to be interactive and plotly is not installed, or ReportLab is not and a PDF is asked for.
+        If plotly is not installed, or ReportLab is not and a PDF is asked for.
     """
     inputs = _inputs(
         survey,
@@ -97,7 +96,7 @@ def render_report(
     page = _page(inputs, page_sections(inputs), neighbours=[(THESIS, THESIS_TITLE)] if beside else [])
     further = {THESIS: _thesis_page(page, beside)} if beside else {}
     return write_page(
-        directory, page, interactive=interactive, overwrite=overwrite, progress=progress, further=further, pdf=pdf
+        directory, page, pictures=pictures, overwrite=overwrite, progress=progress, further=further, pdf=pdf
     )
 
 

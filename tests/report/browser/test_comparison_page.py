@@ -54,8 +54,9 @@ def test_a_bar_is_where_the_difference_is(visit, report):
     with visit(report) as found:
         found.show("differences")
         shown = found.page.evaluate(
-            "document.getElementById('plot-differences').data.map(t => [t.name, Object.fromEntries(t.y.map((n, i) =>"
-            " [n.replace(/<[^>]*>/g, ''), t.x[i]]))])"
+            "(chart => chart.data.map(t => [t.name, Object.fromEntries(t.y.map((place, i) =>"
+            " [chart._fullLayout.yaxis.ticktext[Math.round(place)].replace(/<[^>]*>/g, ''), t.x[i]]))]))"
+            "(document.getElementById('plot-differences'))"
         )
         values = dict(shown)
         assert values["rope"]["Idn"] == pytest.approx(50.0)
@@ -70,7 +71,7 @@ def test_one_fingerprint_is_no_comparison(tmp_path, fingerprint):
 
 def test_a_structure_that_is_not_known_is_named(tmp_path, fingerprint):
     own = fingerprint.model_copy(update={"structure": "MY-LOOP"})
-    page = render_comparison(tmp_path / "own", {"a": fingerprint, "b": own}, interactive=False)
+    page = render_comparison(tmp_path / "own", {"a": fingerprint, "b": own})
     text = page.read_text(encoding="utf-8")
     assert "Not drawn, since its structure is another or not known here: b." in text
     assert "structure MY-LOOP instead of GAUGE-CLOSED" in text

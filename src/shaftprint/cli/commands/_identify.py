@@ -30,6 +30,7 @@ from shaftprint.tables import fits_table
     metavar="NAME",
     help=f"Model structure: {OWN_FILE_HELP}. The fingerprint is of the first, others are fitted beside it.",
 )
+@click.option("--figures", is_flag=True, help="Write every chart as SVG, PDF and PNG, too: half a minute more.")
 @fit_options
 @click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the results.")
 @report_options
@@ -40,6 +41,7 @@ def command(
     vessel: str,
     campaign: str,
     names: tuple[TypedName, ...],
+    figures: bool,
     options: FitOptions,
     output: Path,
     about: ReportOptions,
@@ -71,7 +73,9 @@ def command(
         # the answer first: the report takes as long again
         _print_answer(survey)
         with progress(hidden=no_progress) as steps:
-            write_results(folder, recording, survey, steps=steps, previous=about.previous, pdf=about.pdf)
+            write_results(
+                folder, recording, survey, steps=steps, pictures=figures, previous=about.previous, pdf=about.pdf
+            )
     print_paths(output)
 
 

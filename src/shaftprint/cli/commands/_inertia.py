@@ -10,8 +10,8 @@ from shaftprint.digits import plain_letters
 from shaftprint.files import written_whole
 from shaftprint.fingerprint import inertia_beside
 from shaftprint.report import (
-    plot_modes,
-    save_figure,
+    mode_chart,
+    save_chart,
 )
 from shaftprint.tables import (
     expected_inertia_table,
@@ -95,7 +95,7 @@ def _expected(ship: Vessel, fingerprint_path: Path | None) -> tuple[ExpectedIner
 
 def _draw(vibrations: Modes, path: Path) -> None:
     with written_whole(path, overwrite=True) as part:
-        save_figure(plot_modes(vibrations), part)
+        save_chart(mode_chart(vibrations), part)
 
 
 def _print(

@@ -3,7 +3,7 @@
 import math
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
 import click
 
@@ -12,12 +12,9 @@ from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output import force_option, no_progress_option, output_folder, progress
 from shaftprint.escape import plain_name
-from shaftprint.report import plot_sensitivity, save_figure
+from shaftprint.report import Chart, save_chart, sensitivity_chart
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    Drawings: TypeAlias = dict[str, partial[Figure]]
+Drawings: TypeAlias = dict[str, partial[Chart]]
 
 ALL_OF_THE_THESIS = "THESIS"
 
@@ -68,7 +65,7 @@ def command(
     with output_folder(output, of="sensitivity", force=force) as folder, progress(hidden=no_progress) as steps:
         steps.begin("Drawing", total=float(len(drawings)))
         for stem, draw in drawings.items():
-            save_figure(draw(), folder / f"{stem}.{suffix}")
+            save_chart(draw(), folder / f"{stem}.{suffix}")
             steps.advance(1.0)
     for stem in drawings:
         answer(output / f"{stem}.{suffix}")
@@ -79,12 +76,12 @@ def _of_structure(name: TypedName, span: tuple[float, float]) -> "Drawings":
     drawings = {}
     for output, cause in chosen.channels:
         stem = f"{chosen.name}_{output}" + (f"_{cause}" if len(chosen.inputs) > 1 else "")
-        drawings[plain_name(stem)] = partial(plot_sensitivity, chosen, output=output, cause=cause, span_rad_s=span)
+        drawings[plain_name(stem)] = partial(sensitivity_chart, chosen, output=output, cause=cause, span_rad_s=span)
     return drawings
 
 
 def _of_the_thesis() -> "Drawings":
     return {
-        f"figure_{family.figure}": partial(plot_sensitivity, family.structure, output=family.output, vary=family.vary)
+        f"figure_{family.figure}": partial(sensitivity_chart, family.structure, output=family.output, vary=family.vary)
         for family in thesis_families()
     }

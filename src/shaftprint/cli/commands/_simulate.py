@@ -24,7 +24,7 @@ from shaftprint.cli.output import (
 )
 from shaftprint.files import written_whole
 from shaftprint.models import Structure
-from shaftprint.report import SimulatedSignal, plot_simulation, save_figure
+from shaftprint.report import SimulatedSignal, save_chart, simulation_chart
 
 
 def span_of_time(
@@ -151,7 +151,7 @@ def _drive(
 
 def _draw(drive: Drive, signals: tuple[SimulatedSignal, ...], name: str, path: Path) -> None:
     with written_whole(path, overwrite=True) as part:
-        save_figure(plot_simulation(drive.time_s, signals, name=name), part)
+        save_chart(simulation_chart(drive.time_s, signals, name=name), part)
 
 
 def _warnings(structure: Structure, drive: Drive, prediction: Prediction) -> list[str]:

@@ -1,100 +1,72 @@
-"""Figures of matplotlib, one a file; every ``plot_*`` function returns a ``Figure`` that belongs to nobody else."""
+"""What each figure of a report shows, one a file; every ``*_chart`` function returns a ``Chart``, whoever draws it."""
 
-from shaftprint.report.figures._bode import plot_bode
-from shaftprint.report.figures._bode_parts import BAND_STEP, ENDLESS_DB, Trace, channel_of, measured_phase_deg, trace_of
-from shaftprint.report.figures._calibration import plot_calibration, plot_strip_angles
-from shaftprint.report.figures._campaign import plot_campaign, spread
-from shaftprint.report.figures._covariance import PERCENT, plot_budget, plot_correlation
-from shaftprint.report.figures._differences import in_percent, plot_differences, shown_names, shown_percent
-from shaftprint.report.figures._envelope import channel_envelope, envelope, worthwhile
-from shaftprint.report.figures._explanation import plot_missing_damping
-from shaftprint.report.figures._limits import plot_limits
-from shaftprint.report.figures._modes import plot_modes
-from shaftprint.report.figures._nyquist import plot_nyquist
-from shaftprint.report.figures._outliers import plot_outliers
-from shaftprint.report.figures._profiles import ROOM, plot_profiles
-from shaftprint.report.figures._residuals import line_chi_square, normalised_residuals, plot_residuals
-from shaftprint.report.figures._responses import (
-    plot_closed_loop_comparison,
-    plot_closed_loop_fits,
-    plot_closed_loop_response,
-    plot_core_fit,
-    plot_governor_fits,
-    plot_line_selection,
-    plot_open_loop_comparison,
-    plot_open_loop_responses,
-)
-from shaftprint.report.figures._scan import plot_scan
-from shaftprint.report.figures._sensitivity import parameter_steps, plot_sensitivity
-from shaftprint.report.figures._signal_to_noise import THESIS_LIMIT_DB, plot_signal_to_noise
-from shaftprint.report.figures._simulation import SimulatedSignal, plot_simulation
-from shaftprint.report.figures._step_band import DURATION_S, plot_step_band
-from shaftprint.report.figures._steps import plot_step_delays
-from shaftprint.report.figures._style import LOOKS, house_style, legend_below, new_figure, save_figure, shorter_svg
-from shaftprint.report.figures._time_series import plot_chirp, plot_excitation, plot_staircase
+from shaftprint.report.figures._bode import bode_chart
+from shaftprint.report.figures._calibration import calibration_chart, strip_chart
+from shaftprint.report.figures._campaign import campaign_chart, spread
+from shaftprint.report.figures._covariance import budget_chart, correlation_chart
+from shaftprint.report.figures._differences import difference_chart, in_percent, shown_names
+from shaftprint.report.figures._envelope import channel_envelope, envelope
+from shaftprint.report.figures._explanation import missing_damping_chart
+from shaftprint.report.figures._fit import fit_chart
+from shaftprint.report.figures._limits import limit_chart
+from shaftprint.report.figures._modes import mode_chart
+from shaftprint.report.figures._nyquist import nyquist_chart
+from shaftprint.report.figures._outliers import outlier_chart
+from shaftprint.report.figures._profiles import profile_chart
+from shaftprint.report.figures._residuals import line_chi_square, normalised_residuals, residual_chart
+from shaftprint.report.figures._responses import CRITICAL_SPAN_RAD_S, open_loop_chart
+from shaftprint.report.figures._scan import scan_chart
+from shaftprint.report.figures._sensitivity import parameter_steps, sensitivity_chart
+from shaftprint.report.figures._signal_to_noise import THESIS_LIMIT_DB, signal_to_noise_chart
+from shaftprint.report.figures._simulation import SimulatedSignal, simulation_chart
+from shaftprint.report.figures._step_band import step_chart
+from shaftprint.report.figures._steps import delay_chart
+from shaftprint.report.figures._time_series import chirp_chart, excitation_chart, signal_chart, staircase_chart
+from shaftprint.report.figures._traces import measured_phase_deg, trace_of
 from shaftprint.report.figures._uncertainty import measured_points
-from shaftprint.report.figures._validation import plot_validation, plot_validation_summary
+from shaftprint.report.figures._validation import validation_chart, validation_summary_chart
 
 __all__ = [
-    "BAND_STEP",
-    "DURATION_S",
-    "ENDLESS_DB",
-    "LOOKS",
-    "PERCENT",
-    "ROOM",
+    "CRITICAL_SPAN_RAD_S",
     "THESIS_LIMIT_DB",
     "SimulatedSignal",
-    "Trace",
+    "bode_chart",
+    "budget_chart",
+    "calibration_chart",
+    "campaign_chart",
     "channel_envelope",
-    "channel_of",
+    "chirp_chart",
+    "correlation_chart",
+    "delay_chart",
+    "difference_chart",
     "envelope",
-    "house_style",
+    "excitation_chart",
+    "fit_chart",
     "in_percent",
-    "legend_below",
+    "limit_chart",
     "line_chi_square",
     "measured_phase_deg",
     "measured_points",
-    "new_figure",
+    "missing_damping_chart",
+    "mode_chart",
     "normalised_residuals",
+    "nyquist_chart",
+    "open_loop_chart",
+    "outlier_chart",
     "parameter_steps",
-    "plot_bode",
-    "plot_budget",
-    "plot_calibration",
-    "plot_campaign",
-    "plot_chirp",
-    "plot_closed_loop_comparison",
-    "plot_closed_loop_fits",
-    "plot_closed_loop_response",
-    "plot_core_fit",
-    "plot_correlation",
-    "plot_differences",
-    "plot_excitation",
-    "plot_governor_fits",
-    "plot_limits",
-    "plot_line_selection",
-    "plot_missing_damping",
-    "plot_modes",
-    "plot_nyquist",
-    "plot_open_loop_comparison",
-    "plot_open_loop_responses",
-    "plot_outliers",
-    "plot_profiles",
-    "plot_residuals",
-    "plot_scan",
-    "plot_sensitivity",
-    "plot_signal_to_noise",
-    "plot_simulation",
-    "plot_staircase",
-    "plot_step_band",
-    "plot_step_delays",
-    "plot_strip_angles",
-    "plot_validation",
-    "plot_validation_summary",
-    "save_figure",
-    "shorter_svg",
+    "profile_chart",
+    "residual_chart",
+    "scan_chart",
+    "sensitivity_chart",
     "shown_names",
-    "shown_percent",
+    "signal_chart",
+    "signal_to_noise_chart",
+    "simulation_chart",
     "spread",
+    "staircase_chart",
+    "step_chart",
+    "strip_chart",
     "trace_of",
-    "worthwhile",
+    "validation_chart",
+    "validation_summary_chart",
 ]

@@ -7,28 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report.figures._bode_parts import channel_of, draw_data, draw_trace, measured_phase_deg, trace_of
-from shaftprint.report.figures._style import (
-    REFERENCE,
-    Handle,
-    house_style,
-    legend_below,
-    look,
-    new_figure,
-    plain_log_axis,
-)
+from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.identify.uncertainty import model_band
+from shaftprint.report.charts import Band, Chart, Line, Mark, Panel, Points, Scale, Shade, Straight, Text, joined, over
+from shaftprint.report.figures._phase import TURN_DEG, WRAPPED_SPAN_DEG, reads_better_wrapped, wrapped, wrapped_line
+from shaftprint.report.figures._traces import Trace, channel_of, measured_phase_deg, trace_of
 from shaftprint.report.figures._uncertainty import measured_points
-from shaftprint.report.notation import response_label
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
     from shaftprint.report._curve import Curve
-    from shaftprint.report.figures._bode_parts import Trace
     from shaftprint.spectra import FrequencyResponse
 
-GRID_POINTS = 600
+GRID_POINTS = 301
+# Bands are smoother than lines: every third point will do, and keeps the file small.
+BAND_STEP = 3
 DEFAULT_SPAN = (0.02, 300.0)
 # How much wider than the data the picture is, and how far models may leave the data before the axis lets them go.
 WIDER = 1.4
@@ -37,13 +29,17 @@ BEYOND_DEG = 90.0
 ROOM = 0.06
 # Points of several responses at one frequency stand side by side, this factor apart.
 SIDEWAYS = 1.12
+# Stands for an error bar without end.
+ENDLESS_DB = 500.0
+TURN_STEP_DEG = 90.0
+HEIGHTS_PX = (260, 220)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Column:
-    """One column of a Bode figure: magnitude above, phase below."""
+    """One column of a Bode diagram: magnitude above, phase below."""
 
-    title: str
+    title: Text
     """Title above the column."""
     output: str
     """Output that is drawn."""
@@ -64,23 +60,25 @@ class Column:
         return float(omega.min() / WIDER), float(omega.max() * WIDER)
 
 
-def plot_bode(
+def bode_chart(
     curves: Sequence["Curve"] = (),
     *,
-    data: "FrequencyResponse | None" = None,
+    data: "FrequencyResponse | Mapping[str, FrequencyResponse] | None" = None,
     aliasing_limit_hz: float | None = None,
     outputs: Sequence[str] | None = None,
     span_rad_s: tuple[float, float] | None = None,
     zoom_rad_s: tuple[float, float] | None = None,
-) -> "Figure":
-    """Return a Bode diagram of models and data: rad/s, dB, unwrapped degrees, 95 % intervals and bands.
+) -> Chart:
+    """Return a Bode diagram of models and data: rad/s, dB, degrees, 95 % intervals and bands.
+
+    A phase of more than a turn and a quarter is drawn between -270 and 90 degrees, where it can be read.
 
     Parameters
     ----------
     curves
         Models; a band is drawn around those with a covariance.
     data
-        Measured response; lines that are not used are drawn as hollow markers.
+        Measured response, or several by their label; lines that are not used are drawn as hollow markers.
     aliasing_limit_hz
         Half the pulse rate of the speed sensor [Hz], drawn as a vertical line.
     outputs
@@ -95,91 +93,174 @@ def plot_bode(
     ValueError
         If there is neither model nor data.
     """
-    if not curves and data is None:
+    measured = data if isinstance(data, Mapping) else {} if data is None else {"data": data}
+    if not curves and not measured:
         raise ValueError("a Bode diagram needs a model or data, found neither.")
-    names = outputs or (data.outputs if data is not None else tuple(curves[0].structure.outputs))
-    causes = data.inputs if data is not None else curves[0].structure.inputs
-    measured = {} if data is None else {"data": data}
+    first = next(iter(measured.values())) if measured else curves[0].structure
     columns = []
-    for name, cause in product(names, causes):
-        title = response_label(name, cause)
+    for name, cause in product(outputs or tuple(first.outputs), first.inputs):
+        title = over(name, cause)
         column = Column(title=title, output=name, cause=cause, curves=curves, data=measured, span_rad_s=span_rad_s)
         columns.append(column)
         if zoom_rad_s is not None:
-            title = f"{title}, {zoom_rad_s[0]:g} to {zoom_rad_s[1]:g} rad/s"
+            title = joined(title, f", {zoom_rad_s[0]:g} to {zoom_rad_s[1]:g} rad/s")
             columns.append(replace(column, title=title, span_rad_s=zoom_rad_s))
-    return plot_columns(columns, aliasing_limit_hz=aliasing_limit_hz)
+    return columns_chart(columns, aliasing_limit_hz=aliasing_limit_hz)
 
 
-def plot_columns(columns: Sequence[Column], *, aliasing_limit_hz: float | None = None) -> "Figure":
-    """Return a figure of Bode diagrams side by side, under one legend."""
-    with house_style():
-        figure = new_figure(11.5)
-        grid = figure.subplots(2, len(columns), squeeze=False, sharex="col")
-        entries: dict[str, Handle] = {}
-        for index, column in enumerate(columns):
-            pair = (grid[0, index], grid[1, index])
-            entries |= _draw_column(pair, column, aliasing_limit_hz)
-            letter = f"({chr(ord('a') + index)}) " if len(columns) > 1 else ""
-            pair[0].set_title(f"{letter}{column.title}")
-            pair[1].set_xlabel("frequency [rad/s]")
-        grid[0, 0].set_ylabel("magnitude [dB re 1 s]" if columns[0].output == "E_n" else "magnitude [dB]")
-        grid[1, 0].set_ylabel("phase [deg]")
-        figure.align_ylabels(grid[:, 0])
-        legend_below(figure, entries)
-        return figure
+def columns_chart(
+    columns: Sequence[Column], *, aliasing_limit_hz: float | None = None, below: Sequence[Panel] = ()
+) -> Chart:
+    """Return Bode diagrams side by side, under one legend.
+
+    Parameters
+    ----------
+    columns
+        What is drawn, from the left.
+    aliasing_limit_hz
+        Half the pulse rate of the speed sensor [Hz].
+    below
+        A further panel below each column, or none.
+    """
+    pairs = [_panels(column, aliasing_limit_hz, is_first=number == 0) for number, column in enumerate(columns)]
+    rows = [*zip(*pairs, strict=True), tuple(below)]
+    same = len({column.span_rad_s or column.whole_span() for column in columns}) == 1
+    return Chart(
+        panels=[panel for row in rows for panel in row],
+        columns=len(columns),
+        heights_px=HEIGHTS_PX,
+        linked="all" if same else "columns",
+    )
 
 
-def _draw_column(pair: "tuple[Axes, Axes]", column: Column, aliasing_limit_hz: float | None) -> dict[str, Handle]:
-    """Draw one output over one span into a magnitude and a phase panel; return the legend's entries."""
-    entries: dict[str, Handle] = {}
-    span = column.span_rad_s or column.whole_span()
-    full_span = column.whole_span()
-    omega = np.geomspace(min(span[0], full_span[0]), max(span[1], full_span[1]), GRID_POINTS)
+def frequency_scale(span: tuple[float, float]) -> Scale:
+    """Return the horizontal axis of a response: rad/s, logarithmic."""
+    return Scale(title="frequency [rad/s]", log=True, span=span)
+
+
+def _panels(column: Column, aliasing_limit_hz: float | None, *, is_first: bool) -> tuple[Panel, Panel]:
+    """Return magnitude and phase of one output over one span."""
+    span, whole = column.span_rad_s or column.whole_span(), column.whole_span()
+    omega = np.geomspace(min(span[0], whole[0]), max(span[1], whole[1]), GRID_POINTS)
     traces = [trace_of(curve, column.output, omega, column.cause) for curve in column.curves]
-    for index, (curve, trace) in enumerate(zip(column.curves, traces, strict=True)):
-        entries |= draw_trace(pair, curve, trace, column.output, look(index), cause=column.cause)
-    for index, (label, response) in enumerate(column.data.items()):
-        style = look(index) if len(column.data) > 1 else None
-        aside = SIDEWAYS ** (index - 0.5 * (len(column.data) - 1))
-        entries |= draw_data(
-            pair, response, column.output, traces, style=style, label=label, sideways=aside, cause=column.cause
-        )
-    for axes in pair:
-        if aliasing_limit_hz is not None and 2.0 * np.pi * aliasing_limit_hz < span[1]:
-            text = f"aliasing limit of the speed, {aliasing_limit_hz:.2f} Hz"
-            entries[text] = axes.axvline(
-                2.0 * np.pi * aliasing_limit_hz,
-                color=REFERENCE,
-                linewidth=0.9,
-                linestyle=(0.0, (1.0, 1.5)),
-                label=text,
-            )
-        plain_log_axis(axes)
-        axes.set_xlim(*span)
-    _set_limits(pair, column, traces, span)
-    return entries
+    limits = _limits(column, traces, span)
+    wraps = reads_better_wrapped(limits[1])
+    pair: tuple[list[Mark], list[Mark]] = ([], [])
+    for shade, (curve, trace) in enumerate(zip(column.curves, traces, strict=True)):
+        _add_model(pair, column, curve, trace, shade, wraps=wraps)
+    for place, label in enumerate(column.data):
+        _add_data(pair, column, traces, place, label, wraps=wraps)
+    if aliasing_limit_hz is not None and 2.0 * np.pi * aliasing_limit_hz < span[1]:
+        text = f"aliasing limit of the speed, {aliasing_limit_hz:.2f} Hz"
+        for marks in pair:
+            marks.append(Straight(at=2.0 * np.pi * aliasing_limit_hz, axis="x", name=text))
+    level = "magnitude [dB re 1 s]" if column.output == "E_n" else "magnitude [dB]"
+    turn = Scale(
+        title="phase [deg]" if is_first else "",
+        span=WRAPPED_SPAN_DEG if wraps else limits[1],
+        step=TURN_STEP_DEG if wraps or np.ptp(limits[1]) > 2.0 * TURN_STEP_DEG else None,
+    )
+    return (
+        Panel(
+            title=column.title,
+            marks=pair[0],
+            x=frequency_scale(span),
+            y=Scale(title=level if is_first else "", span=limits[0]),
+        ),
+        Panel(marks=pair[1], x=frequency_scale(span), y=turn),
+    )
 
 
-def _set_limits(
-    pair: "tuple[Axes, Axes]", column: Column, traces: Sequence["Trace"], span: tuple[float, float]
+def _add_model(
+    pair: tuple[list[Mark], list[Mark]], column: Column, curve: "Curve", trace: Trace, shade: Shade, *, wraps: bool
 ) -> None:
-    """Let the axes hold all points, and the models as far as they are not far from them."""
+    """Add a model's line, and its band where it has a covariance."""
+    name = curve.label
+    phase = wrapped_line(trace.phase_deg) if wraps else trace.phase_deg
+    if curve.covariance is not None:
+        at = channel_of(curve.structure.outputs, curve.structure.inputs, column.output, column.cause)
+        few = slice(None, None, BAND_STEP)
+        omega = trace.omega_rad_s[few]
+        band = model_band(curve.structure, curve.values, curve.covariance, omega / (2.0 * np.pi))
+        halves = (band.magnitude_upper_db - band.magnitude_db)[at], (band.phase_upper_deg - band.phase_deg)[at]
+        if np.isfinite(halves).all():
+            words = f"{curve.label}, {100.0 * band.coverage:g} % band"
+            for marks, middle, half in zip(pair, (trace.magnitude_db[few], phase[few]), halves, strict=True):
+                marks.append(Band(x=omega, lower=middle - half, upper=middle + half, name=words, shade=shade))
+        else:
+            name = f"{curve.label}, no band"
+    for marks, values in zip(pair, (trace.magnitude_db, phase), strict=True):
+        marks.append(Line(x=trace.omega_rad_s, y=values, name=name, shade=shade))
+
+
+def _add_data(
+    pair: tuple[list[Mark], list[Mark]],
+    column: Column,
+    traces: Sequence[Trace],
+    place: int,
+    label: str,
+    *,
+    wraps: bool,
+) -> None:
+    """Add a measured response with 95 % intervals, used lines filled, the others hollow."""
+    data = column.data[label]
+    index = channel_of(data.outputs, data.inputs, column.output, column.cause)
+    points = measured_points(data, index)
+    phase = measured_phase_deg(data, index, traces)
+    phase = wrapped(phase) if wraps else _seen_with(phase, data.used)
+    below = np.minimum(points.below_db, ENDLESS_DB)
+    aside = SIDEWAYS ** (place - 0.5 * (len(column.data) - 1))
+    for chosen, filled, text in (
+        (data.used, True, f"{label}, 95 % interval"),
+        (~data.used, False, f"{label}, line not used"),
+    ):
+        if not chosen.any():
+            continue
+        for marks, middle, bars in (
+            (pair[0], points.magnitude_db, (below, points.above_db)),
+            (pair[1], phase, (points.phase_half_deg, points.phase_half_deg)),
+        ):
+            marks.append(
+                Points(
+                    x=aside * data.omega_rad_s[chosen],
+                    y=middle[chosen],
+                    name=text,
+                    shade="data" if len(column.data) == 1 else place,
+                    filled=filled,
+                    bars=(bars[0][chosen], bars[1][chosen]),
+                    words=[line for line, is_shown in zip(data.lines, chosen, strict=True) if is_shown],
+                )
+            )
+
+
+def _seen_with(phase_deg: FloatArray, used: BoolArray) -> FloatArray:
+    """Return phases [deg], those of lines that are not used by whole turns nearest to the last used one."""
+    last = phase_deg[used][-1:] if used.any() else phase_deg[:1]
+    return np.where(used, phase_deg, phase_deg + TURN_DEG * np.round((last - phase_deg) / TURN_DEG))
+
+
+def _limits(
+    column: Column, traces: Sequence[Trace], span: tuple[float, float]
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the ends of both vertical axes: all points, and the models as far as they are not far from them."""
     magnitudes, phases = [np.empty(0)], [np.empty(0)]
     for response in column.data.values():
         inside = (response.omega_rad_s >= span[0]) & (response.omega_rad_s <= span[1])
         index = channel_of(response.outputs, response.inputs, column.output, column.cause)
         magnitudes.append(measured_points(response, index).magnitude_db[inside])
-        phases.append(measured_phase_deg(response, index, traces)[inside])
+        phases.append(_seen_with(measured_phase_deg(response, index, traces), response.used)[inside])
     seen = [(trace.omega_rad_s >= span[0]) & (trace.omega_rad_s <= span[1]) for trace in traces]
-    for axes, points, lines, beyond in (
-        (pair[0], magnitudes, [t.magnitude_db[i] for t, i in zip(traces, seen, strict=True)], BEYOND_DB),
-        (pair[1], phases, [t.phase_deg[i] for t, i in zip(traces, seen, strict=True)], BEYOND_DEG),
-    ):
-        measured = np.concatenate(points)
-        drawn = np.concatenate([*lines, np.empty(0)])
-        if measured.size:
-            drawn = np.clip(drawn, measured.min() - beyond, measured.max() + beyond)
-        drawn = np.concatenate([drawn, measured])
-        width = max(float(np.ptp(drawn)), 1.0)
-        axes.set_ylim(float(drawn.min()) - ROOM * width, float(drawn.max()) + ROOM * width)
+    levels = [t.magnitude_db[i] for t, i in zip(traces, seen, strict=True)]
+    turns = [t.phase_deg[i] for t, i in zip(traces, seen, strict=True)]
+    return _around(magnitudes, levels, BEYOND_DB), _around(phases, turns, BEYOND_DEG)
+
+
+def _around(points: Sequence[FloatArray], lines: Sequence[FloatArray], beyond: float) -> tuple[float, float]:
+    measured = np.concatenate(points)
+    drawn = np.concatenate([*lines, np.empty(0)])
+    drawn = drawn[np.isfinite(drawn)]
+    if measured.size:
+        drawn = np.clip(drawn, measured.min() - beyond, measured.max() + beyond)
+    drawn = np.concatenate([drawn, measured])
+    room = ROOM * max(float(np.ptp(drawn)), 1.0)
+    return float(drawn.min()) - room, float(drawn.max()) + room

@@ -6,25 +6,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale, Words
 from shaftprint.report.figures._envelope import STRETCHES, channel_envelope
-from shaftprint.report.figures._style import REFERENCE, house_style, legend_below, legend_entries, look, new_figure
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
     from shaftprint.campaign import Campaign
     from shaftprint.recording import Recording
     from shaftprint.vessel import Vessel
 
-ROWS = 2
+ROWS = 3
 # Names of tests must keep this share of a row's length from each other to be read.
-NAME_SHARE = 0.043
+NAME_SHARE = 0.034
 # How much of the range of the test the picture shows beyond it.
 BEYOND = 0.5
+# Room for the names above, and where bars and names stand in it, as shares of the range.
+NAMES_ROOM, NAME_AT, BAR_AT, EVERY_OTHER = 0.28, 0.16, 0.02, 0.035
 
 
-def plot_campaign(recording: "Recording", vessel: "Vessel", campaign: "Campaign") -> "Figure":
+def campaign_chart(recording: "Recording", vessel: "Vessel", campaign: "Campaign") -> Chart:
     """Return the raw set-point voltage over the whole campaign with its tests named: what figure 2.2 shows.
 
     The voltage is drawn with the smallest and largest sample of each stretch, so that every spike is seen; those that
@@ -41,24 +40,21 @@ def plot_campaign(recording: "Recording", vessel: "Vessel", campaign: "Campaign"
     """
     channel = recording.channel(vessel.sensors.set_point.channel)
     time, volts = channel_envelope(channel, stretches=2 * STRETCHES)
-    span = (channel.start_s, channel.start_s + channel.duration_s)
-    edges = np.linspace(*span, ROWS + 1)
-    low, high = _range_v(campaign)
-    with house_style():
-        figure = new_figure(9.5)
-        for row, axes in enumerate(figure.subplots(ROWS, 1)):
-            first, last = float(edges[row]), float(edges[row + 1])
-            inside = (time >= first) & (time <= last)
-            axes.plot(time[inside], np.clip(volts[inside], low, high), color=look(0).colour, linewidth=0.6)
-            axes.set_xlim(first, last)
-            axes.set_ylabel("set point [V]")
-        for axes in figure.axes:
-            axes.set_ylim(low, high)
-            _mark_spikes(axes, time, volts)
-            _name_tests(axes, campaign)
-        figure.axes[-1].set_xlabel("time in the recording [s]")
-        legend_below(figure, legend_entries(figure.axes))
-        return figure
+    edges = np.linspace(channel.start_s, channel.start_s + channel.duration_s, ROWS + 1)
+    limits = _range_v(campaign)
+    panels = []
+    for first, last in zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True):
+        inside = (time >= first) & (time <= last)
+        voltage = Line(x=time[inside], y=np.clip(volts[inside], *limits), width=1.0)
+        named = _named_tests(campaign, limits, (first, last))
+        panels.append(
+            Panel(
+                marks=[voltage, *_spikes(time[inside], volts[inside], limits), *named],
+                x=Scale(title="time in the recording [s]", span=(first, last)),
+                y=Scale(title="set point [V]", span=(limits[0], limits[1] + NAMES_ROOM * (limits[1] - limits[0]))),
+            )
+        )
+    return Chart(panels=panels, heights_px=(190,), linked="none")
 
 
 def _range_v(campaign: "Campaign") -> tuple[float, float]:
@@ -73,38 +69,37 @@ def _range_v(campaign: "Campaign") -> tuple[float, float]:
     return min(volts) - room, max(volts) + room
 
 
-def _mark_spikes(axes: "Axes", time: FloatArray, volts: FloatArray) -> None:
-    """Put a triangle at the edge of the picture where a spike leaves it."""
-    low, high = axes.get_ylim()
-    first, last = axes.get_xlim()
-    for beyond, edge, inward, marker in ((volts > high, high, -1.0, "^"), (volts < low, low, 1.0, "v")):
-        places = time[beyond & (time >= first) & (time <= last)]
-        axes.plot(
-            places,
-            np.full(places.size, edge + inward * 0.03 * (high - low)),
-            linestyle="none",
-            marker=marker,
-            markersize=4.0,
-            color=look(1).colour,
-            label="spike that leaves the picture" if places.size else "_none",
-        )
+def _spikes(time: FloatArray, volts: FloatArray, limits: tuple[float, float]) -> list[Mark]:
+    """Return a triangle at the edge of the picture where a spike leaves it."""
+    inward = 0.03 * (limits[1] - limits[0])
+    marks: list[Mark] = []
+    if np.any(volts > limits[1]):
+        high = time[volts > limits[1]]
+        edge = np.full(high.size, limits[1] - inward)
+        marks.append(Points(x=high, y=edge, shade=1, marker="triangle-up", name="spike that leaves the picture"))
+    if np.any(volts < limits[0]):
+        low = time[volts < limits[0]]
+        edge = np.full(low.size, limits[0] + inward)
+        marks.append(Points(x=low, y=edge, shade=1, marker="triangle-down", name="spike that leaves the picture"))
+    return marks
 
 
-def _name_tests(axes: "Axes", campaign: "Campaign") -> None:
-    """Write each test's name above the panel, with a line down to where it runs."""
-    first, last = axes.get_xlim()
-    tests = [t for t in campaign.excitations if first <= 0.5 * (t.start_s + t.stop_s) < last]
-    middle = np.array([0.5 * (test.start_s + test.stop_s) for test in tests])
-    places = spread(middle, NAME_SHARE * (last - first), (first, last))
-    low, high = axes.get_ylim()
-    height = high - low
-    axes.set_ylim(low, high + 0.28 * height)
-    for number, (test, position, centre) in enumerate(zip(tests, places, middle, strict=True)):
+def _named_tests(campaign: "Campaign", limits: tuple[float, float], span: tuple[float, float]) -> list[Mark]:
+    """Return each test's name above the panel, with a line down to where it runs."""
+    tests = [t for t in campaign.excitations if span[0] <= 0.5 * (t.start_s + t.stop_s) < span[1]]
+    middles = [0.5 * (test.start_s + test.stop_s) for test in tests]
+    places = spread(middles, NAME_SHARE * (span[1] - span[0]), span).tolist()
+    height = limits[1] - limits[0]
+    marks: list[Mark] = []
+    for number, (test, place, middle) in enumerate(zip(tests, places, middles, strict=True)):
         # Neighbours follow each other closely: every other bar is set a little higher.
-        level = high + (0.02 + 0.035 * (number % 2)) * height
-        axes.plot([test.start_s, test.stop_s], [level] * 2, color="black", linewidth=1.5, solid_capstyle="butt")
-        axes.plot([centre, position], [level, high + 0.15 * height], color=REFERENCE, linewidth=0.5)
-        axes.text(position, high + 0.16 * height, test.name, ha="center", va="bottom")
+        level = limits[1] + (BAR_AT + EVERY_OTHER * (number % 2)) * height
+        name_at = limits[1] + NAME_AT * height
+        bar, way = np.array([test.start_s, test.stop_s]), np.array([middle, place])
+        marks.append(Line(x=bar, y=np.full(2, level), shade="ink"))
+        marks.append(Line(x=way, y=np.array([level, name_at]), shade="reference", width=0.8))
+        marks.append(Words(x=place, y=name_at, text=test.name, anchor="above"))
+    return marks
 
 
 def spread(places: FloatArray | Sequence[float], gap: float, span: tuple[float, float]) -> FloatArray:

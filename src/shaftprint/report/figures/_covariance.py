@@ -5,49 +5,43 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report.figures._style import house_style, legend_below, legend_entries, look, new_figure
-from shaftprint.report.notation import mathtext
+from shaftprint.report.charts import Bars, Chart, Fields, Mark, Panel, Scale, Straight
+from shaftprint.tables import Symbol
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from shaftprint.identify import Identification
     from shaftprint.identify.uncertainty import Budget
 
-DARK = 0.6
 PERCENT = 100.0
-BAR_CM = 0.48
-AROUND_CM = 3.2
-# Sources beyond the colours of the house style are told apart by their hatching.
-COLOURS = 6
-HATCHES = ("", "////", "....")
+BAR_PX, FIELD_PX = 26, 30
 
 
-def plot_correlation(identification: "Identification") -> "Figure":
-    """Return the correlation matrix of the free parameters; the sign is written, the strength also shaded."""
-    names = [mathtext(parameter.name) for parameter in identification.structure.free]
+def correlation_chart(identification: "Identification") -> Chart:
+    """Return the correlation matrix of the free parameters; colour shows sign and strength, the number is written."""
+    names = [Symbol(parameter.name) for parameter in identification.structure.free]
     correlation = identification.correlation
+    words = [[_signed(value) for value in row] for row in correlation.tolist()]
     count = len(names)
-    with house_style():
-        figure = new_figure(min(2.5 + 1.05 * count, 14.0))
-        axes = figure.subplots()
-        axes.grid(visible=False)
-        strength = np.ma.masked_invalid(np.abs(correlation))
-        image = axes.imshow(strength, cmap="Blues", vmin=0.0, vmax=1.0, aspect="auto")
-        for row in range(count):
-            for column in range(count):
-                value = correlation[row, column]
-                text = "?" if not np.isfinite(value) else f"{round(value, 2) + 0.0:+.2f}".replace("-", "−")
-                light = np.isfinite(value) and abs(value) > DARK
-                axes.text(column, row, text, ha="center", va="center", color="white" if light else "black")
-        axes.set_xticks(np.arange(count), names)
-        axes.set_yticks(np.arange(count), names)
-        bar = figure.colorbar(image, ax=axes, pad=0.02)
-        bar.set_label("strength of the correlation [-]")
-        return figure
+    return Chart(
+        panels=(
+            Panel(
+                marks=(Fields(values=correlation, words=words),),
+                x=Scale(names=names, span=(-0.5, count - 0.5)),
+                y=Scale(names=names, span=(count - 0.5, -0.5)),
+            ),
+        ),
+        heights_px=(max(240, FIELD_PX * count),),
+    )
 
 
-def plot_budget(budget: "Budget", names: Sequence[str] | None = None) -> "Figure":
+def _signed(value: float) -> str:
+    """Return a correlation with its sign and the digits that fit a field; ``?`` where none is known."""
+    if not np.isfinite(value):
+        return "?"
+    return f"{round(value, 2) + 0.0:+.2f}".replace("-", "−").replace("0.", ".")
+
+
+def budget_chart(budget: "Budget", names: Sequence[str] | None = None) -> Chart:
     """Return one bar a number, divided by the share of each source in its variance.
 
     Where the noise of two outputs partly makes up for each other, one share is negative and the bar begins left of 0.
@@ -68,31 +62,23 @@ def plot_budget(budget: "Budget", names: Sequence[str] | None = None) -> "Figure
     if not rows:
         raise ValueError("budget: expected a number whose uncertainty is known, found none.")
     shown = [source for source in budget.sources if any(row.shares.get(source, 0.0) != 0.0 for row in rows)]
-    with house_style():
-        figure = new_figure(AROUND_CM + BAR_CM * len(rows))
-        axes = figure.subplots()
-        places = np.arange(len(rows))
-        above, below = np.zeros(len(rows)), np.zeros(len(rows))
-        for number, source in enumerate(shown):
-            share = np.array([PERCENT * row.shares.get(source, 0.0) for row in rows])
-            start = np.where(share >= 0.0, above, below)
-            axes.barh(
-                places,
-                share,
-                left=start,
-                height=0.7,
-                color=look(number).colour,
-                hatch=HATCHES[number // COLOURS % len(HATCHES)],
-                edgecolor="white",
-                linewidth=0.4,
-                label=mathtext(source),
-            )
-            above, below = np.where(share >= 0.0, above + share, above), np.where(share < 0.0, below + share, below)
-        axes.set_yticks(places, [mathtext(row.name) for row in rows])
-        axes.invert_yaxis()
-        axes.grid(visible=False, axis="y")
-        axes.axvline(0.0, color="black", linewidth=0.8)
-        axes.set_xlim(min(0.0, float(below.min())), max(PERCENT, float(above.max())))
-        axes.set_xlabel("share of the variance [%]")
-        legend_below(figure, legend_entries((axes,)))
-        return figure
+    places = np.arange(len(rows), dtype=np.float64)
+    above, below = np.zeros(len(rows)), np.zeros(len(rows))
+    marks: list[Mark] = []
+    for shade, source in enumerate(shown):
+        share = np.array([PERCENT * row.shares.get(source, 0.0) for row in rows])
+        start = np.where(share >= 0.0, above, below)
+        marks.append(Bars(places=places, lengths=share, starts=start, name=Symbol(source), shade=shade, upright=False))
+        above, below = np.where(share >= 0.0, above + share, above), np.where(share < 0.0, below + share, below)
+    marks.append(Straight(at=0.0, axis="x", shade="ink", dash="solid"))
+    span = (min(0.0, float(below.min())), max(PERCENT, float(above.max())))
+    return Chart(
+        panels=(
+            Panel(
+                marks=marks,
+                x=Scale(title="share of the variance [%]", span=span),
+                y=Scale(names=[Symbol(row.name) for row in rows], span=(len(rows) - 0.5, -0.5)),
+            ),
+        ),
+        heights_px=(BAR_PX * len(rows) + 20,),
+    )

@@ -5,16 +5,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report.figures._style import REFERENCE, house_style, legend_below, legend_entries, look, new_figure
-from shaftprint.report.notation import mathtext, plain_label
+from shaftprint.report.charts import Chart, Mark, Panel, Points, Scale, Straight
+from shaftprint.tables import Symbol
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from shaftprint.report.comparison import Difference
 
 PERCENT = 100.0
-ROW_CM, FRAME_CM = 0.62, 3.4
+ROW_PX, FRAME_PX = 30, 20
 APART = 0.5
 
 
@@ -30,7 +28,7 @@ def in_percent(difference: "Difference") -> tuple[float, float, float] | None:
     return scale * difference.value, scale * low, scale * high
 
 
-def plot_differences(found: Mapping[str, Sequence["Difference"]]) -> "Figure":
+def difference_chart(found: Mapping[str, Sequence["Difference"]]) -> Chart:
     """Return differences in percent of the first fingerprint, each with its 95 % interval.
 
     Parameters
@@ -46,31 +44,32 @@ def plot_differences(found: Mapping[str, Sequence["Difference"]]) -> "Figure":
     names = shown_names(found)
     if not names:
         raise ValueError("differences: expected a number that both fingerprints know, found none.")
-    with house_style():
-        figure = new_figure(FRAME_CM + ROW_CM * len(names))
-        axes = figure.subplots()
-        axes.axvline(0.0, color=REFERENCE, linewidth=1.0)
-        for index, (label, differences) in enumerate(found.items()):
-            style = look(index)
-            rows = {d.first.name: percent for d in differences if (percent := shown_percent(d)) is not None}
-            at = np.array([names.index(name) for name in rows], dtype=np.float64)
-            values = np.array(list(rows.values())).reshape(-1, 3)
-            axes.errorbar(
-                values[:, 0],
-                at + APART * ((index + 0.5) / len(found) - 0.5),
-                xerr=[values[:, 0] - values[:, 1], values[:, 2] - values[:, 0]],
-                fmt=style.marker,
-                color=style.colour,
-                markersize=4.0,
-                linewidth=1.0,
-                capsize=2.0,
-                label=plain_label(label),
+    marks: list[Mark] = [Straight(at=0.0, axis="x", dash="solid")]
+    for index, (label, differences) in enumerate(found.items()):
+        shown = [(d, percent) for d in differences if (percent := shown_percent(d)) is not None]
+        places = np.array([names.index(d.first.name) for d, _ in shown], dtype=np.float64)
+        value, low, high = np.array([percent for _, percent in shown]).reshape(-1, 3).T
+        marks.append(
+            Points(
+                x=value,
+                y=places + APART * ((index + 0.5) / len(found) - 0.5),
+                bars=(value - low, high - value),
+                bars_along="x",
+                name=label,
+                shade=index,
+                words=[d.outcome for d, _ in shown],
             )
-        axes.set_yticks(range(len(names)), [mathtext(name) for name in names])
-        axes.set_ylim(len(names) - 0.5, -0.5)
-        axes.set_xlabel("difference from the first fingerprint, with 95 % interval [%]")
-        legend_below(figure, legend_entries((axes,)))
-        return figure
+        )
+    return Chart(
+        panels=(
+            Panel(
+                marks=marks,
+                x=Scale(title="difference, with 95 % interval [%]"),
+                y=Scale(names=[Symbol(name) for name in names], span=(len(names) - 0.5, -0.5)),
+            ),
+        ),
+        heights_px=(ROW_PX * len(names) + FRAME_PX,),
+    )
 
 
 def shown_names(found: Mapping[str, Sequence["Difference"]]) -> list[str]:

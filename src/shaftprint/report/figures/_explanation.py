@@ -1,27 +1,17 @@
 """Governor and engine as the thesis sees them, and what the inertia upstream of the gauge makes of them."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report.figures._style import (
-    house_style,
-    legend_below,
-    legend_entries,
-    letter_panels,
-    look,
-    new_figure,
-    plain_log_axis,
-)
+from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale
 from shaftprint.units import decibel
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from shaftprint.report.thesis import Explanation
 
 
-def plot_missing_damping(explanation: "Explanation") -> "Figure":
+def missing_damping_chart(explanation: "Explanation") -> Chart:
     """Return ``M_s / e`` measured, of governor and engine alone, and with the inertia; below that ``|n / n_set|``.
 
     Where the upstream inertia is left out the model runs away from the points between 1 and 10 rad/s.
@@ -29,31 +19,29 @@ def plot_missing_damping(explanation: "Explanation") -> "Figure":
     curves = explanation.curves
     at = np.array([step.omega_rad_s for step in explanation.lines])
     measured = np.array([step.measured for step in explanation.lines])
-    with house_style():
-        figure = new_figure(16.0)
-        gain, phase, speed = figure.subplots(3, 1, sharex=True)
-        models = {
-            "governor and engine alone": curves.governor,
-            "with the inertia upstream of the gauge": curves.governor * curves.inertia,
-        }
-        for index, (label, values) in enumerate(models.items()):
-            drawn: dict[str, Any] = {"color": look(index).colour, "linestyle": look(index).dashes}
-            turned = np.degrees(np.unwrap(np.angle(values)))
-            gain.plot(curves.omega_rad_s, decibel(np.abs(values)), label=label, **drawn)
-            phase.plot(curves.omega_rad_s, turned, **drawn)
-        measured_deg = np.degrees(np.angle(measured))
-        measured_deg += 360.0 * np.round((np.interp(at, curves.omega_rad_s, turned) - measured_deg) / 360.0)
-        gain.plot(at, decibel(np.abs(measured)), "ko", markersize=4.0, label="measured")
-        phase.plot(at, measured_deg, "ko", markersize=4.0)
-        speed.plot(at, [step.speed for step in explanation.lines], "ko", markersize=4.0)
-        closed = {"GAUGE-CLOSED": curves.speed_gauge_aware, "OL1+OL5": curves.speed_thesis}
-        for index, (label, peak) in enumerate(closed.items(), start=2):
-            speed.plot(curves.omega_rad_s, peak, color=look(index).colour, linestyle=look(index).dashes, label=label)
-        gain.set_ylabel("dB")
-        phase.set_ylabel("deg")
-        speed.set_ylabel("|n / n_set| [-]")
-        speed.set_xlabel("rad/s")
-        plain_log_axis(speed)
-        letter_panels((gain, phase, speed), ("M_s / e, magnitude", "M_s / e, phase", "n / n_set, magnitude"))
-        legend_below(figure, legend_entries((gain, phase, speed)))
-    return figure
+    models = {
+        "governor and engine alone": curves.governor,
+        "with the inertia upstream of the gauge": curves.governor * curves.inertia,
+    }
+    gain: list[Mark] = []
+    phase: list[Mark] = []
+    for shade, (name, values) in enumerate(models.items()):
+        turned = np.degrees(np.unwrap(np.angle(values)))
+        gain.append(Line(x=curves.omega_rad_s, y=decibel(np.abs(values)), name=name, shade=shade))
+        phase.append(Line(x=curves.omega_rad_s, y=turned, name=name, shade=shade))
+    measured_deg = np.degrees(np.angle(measured))
+    measured_deg += 360.0 * np.round((np.interp(at, curves.omega_rad_s, turned) - measured_deg) / 360.0)
+    gain.append(Points(x=at, y=decibel(np.abs(measured)), name="measured"))
+    phase.append(Points(x=at, y=measured_deg, name="measured"))
+    closed = {"GAUGE-CLOSED": curves.speed_gauge_aware, "OL1+OL5": curves.speed_thesis}
+    speed: list[Mark] = [Points(x=at, y=np.array([step.speed for step in explanation.lines]), name="measured")]
+    speed += [Line(x=curves.omega_rad_s, y=y, name=name, shade=2 + i) for i, (name, y) in enumerate(closed.items())]
+    frequency = Scale(title="frequency [rad/s]", log=True)
+    return Chart(
+        panels=(
+            Panel(title="M_s / e, magnitude", marks=gain, x=frequency, y=Scale(title="magnitude [dB]")),
+            Panel(title="M_s / e, phase", marks=phase, x=frequency, y=Scale(title="phase [deg]")),
+            Panel(title="n / n_set, magnitude", marks=speed, x=frequency, y=Scale(title="|n / n_set| [-]")),
+        ),
+        heights_px=(220,),
+    )

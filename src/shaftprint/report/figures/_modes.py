@@ -4,31 +4,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.report.figures._style import (
-    FONT_PT,
-    REFERENCE,
-    house_style,
-    legend_below,
-    legend_entries,
-    letter_panels,
-    look,
-    new_figure,
-)
+from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale, Straight
 from shaftprint.tables import plain, with_deviation
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
     from shaftprint.arrays import FloatArray
     from shaftprint.torsion import Modes, TorsionalLine
 
 SHOWN = 4
-PANEL_CM, NAMES_CM = 3.1, 5.4
 BESIDE = 0.5
+HIGHEST = 1.15
 
 
-def plot_modes(modes: "Modes", *, shown: int = SHOWN) -> "Figure":
+def mode_chart(modes: "Modes", *, shown: int = SHOWN) -> Chart:
     """Return the shapes of the slowest modes, one panel each, with frequency and damping ratio in the title.
 
     The bodies stand in the order of the line from the engine's free end to the propeller; what branches off, such as
@@ -43,22 +31,18 @@ def plot_modes(modes: "Modes", *, shown: int = SHOWN) -> "Figure":
         How many, from the slowest on.
     """
     line = modes.line
-    count = min(shown, len(modes.frequency_hz))
     chain, branches = _layout(line)
     across = np.zeros(len(line.bodies))
     across[chain] = np.arange(len(chain))
     for body, carrier in branches:
         across[body] = across[carrier] + BESIDE
-    with house_style():
-        figure = new_figure(PANEL_CM * count + NAMES_CM)
-        panels = list(np.atleast_1d(figure.subplots(count, 1, sharex=True, sharey=True)))
-        for mode, axes in enumerate(panels):
-            _draw(axes, modes, mode, chain, branches, across)
-        letter_panels(panels, [_title(modes, mode) for mode in range(count)])
-        panels[-1].set_xticks(across, labels=line.bodies, rotation=90)
-        figure.supylabel("amplitude at the propeller shaft [-]", fontsize=FONT_PT)
-        legend_below(figure, legend_entries(panels))
-        return figure
+    bodies = Scale(names=[line.bodies[body] for body in chain])
+    amplitude = Scale(title="amplitude [-]", span=(-HIGHEST, HIGHEST))
+    panels = [
+        Panel(title=_title(modes, mode), marks=_shape(modes, mode, chain, branches, across), x=bodies, y=amplitude)
+        for mode in range(min(shown, len(modes.frequency_hz)))
+    ]
+    return Chart(panels=panels, heights_px=(150,))
 
 
 def _title(modes: "Modes", mode: int) -> str:
@@ -66,29 +50,21 @@ def _title(modes: "Modes", mode: int) -> str:
     return f"{frequency} Hz, damping ratio {plain(float(modes.damping_ratio[mode]), 3)}"
 
 
-def _draw(
-    axes: "Axes", modes: "Modes", mode: int, chain: list[int], branches: list[tuple[int, int]], across: "FloatArray"
-) -> None:
+def _shape(
+    modes: "Modes", mode: int, chain: list[int], branches: list[tuple[int, int]], across: "FloatArray"
+) -> list[Mark]:
     line, shape = modes.line, modes.shape[mode].real
-    main, branch = look(0), look(1)
-    axes.axhline(0.0, color=REFERENCE, linewidth=0.7)
     gauge = float(np.mean(across[list(line.links[line.gauge].between)]))
-    axes.axvline(gauge, color=REFERENCE, linewidth=0.9, linestyle=(0.0, (1.0, 1.5)), label="torque gauge")
-    axes.plot(across[chain], shape[chain], color=main.colour, marker=main.marker, markersize=3.5, label="line")
-    for body, carrier in branches:
-        axes.plot(
-            across[[carrier, body]], shape[[carrier, body]], color=branch.colour, linestyle=branch.dashes, linewidth=0.9
-        )
-        axes.plot(
-            across[body],
-            shape[body],
-            color=branch.colour,
-            marker=branch.marker,
-            markersize=3.5,
-            linestyle="none",
-            label="branch",
-        )
-    axes.set_ylim(-1.15, 1.15)
+    marks: list[Mark] = [
+        Straight(at=0.0, axis="y", dash="solid"),
+        Straight(at=gauge, axis="x", name="torque gauge"),
+        Line(x=across[chain], y=shape[chain], name="line", marker="circle"),
+    ]
+    for shade, (body, carrier) in enumerate(branches, start=1):
+        way = [carrier, body]
+        marks.append(Line(x=across[way], y=shape[way], shade=shade, width=1.5))
+        marks.append(Points(x=across[[body]], y=shape[[body]], name=f"branch: {line.bodies[body]}", shade=shade))
+    return marks
 
 
 def _layout(line: "TorsionalLine") -> tuple[list[int], list[tuple[int, int]]]:

@@ -5,24 +5,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale
 from shaftprint.report.figures._envelope import channel_envelope, envelope
-from shaftprint.report.figures._style import house_style, legend_below, legend_entries, letter_panels, look, new_figure
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
     from shaftprint.recording import Recording
     from shaftprint.signals import Signals
     from shaftprint.vessel import Vessel
 
-BEFORE = "#e08a4a"
 # Kinds of repair of a voltage or torque channel; pulses are repaired elsewhere.
 KINDS = ("outlier", "dropout", "saturated")
+# Where the marks of repaired places stand above all that is drawn, as a share of its range.
+MARKS_AT = 0.05
 
 
-def plot_outliers(recording: "Recording", signals: "Signals", vessel: "Vessel") -> "Figure":
+def outlier_chart(recording: "Recording", signals: "Signals", vessel: "Vessel") -> Chart:
     """Return set point and shaft torque before and after repair: what figure 3.2 of the thesis shows.
 
     Both are drawn with the smallest and largest sample of each stretch; a triangle marks every repaired place.
@@ -37,35 +35,30 @@ def plot_outliers(recording: "Recording", signals: "Signals", vessel: "Vessel") 
         Names the channels and the scale of the torque gauge.
     """
     sensors = vessel.sensors
-    time = signals.start_s + np.arange(signals.samples) / signals.rate_hz
-    with house_style():
-        figure = new_figure(10.5)
-        panels = figure.subplots(2, 1, sharex=True)
-        raw = recording.channel(sensors.set_point.channel)
-        rates = (f"raw, {raw.rate_hz:g} Hz", f"prepared, {signals.rate_hz:g} Hz")
-        before_s, volts = channel_envelope(raw)
-        _draw(
-            panels[0],
-            (before_s, SECONDS_PER_MINUTE * _demanded(signals, volts)),
-            envelope(time, SECONDS_PER_MINUTE * signals.set_point_rev_s),
-            _repaired_s(signals, sensors.set_point.channel),
-            rates,
-        )
-        before_s, reading = channel_envelope(recording.channel(sensors.shaft_torque.channel))
-        _draw(
-            panels[1],
-            (before_s, sensors.shaft_torque.torque_nm(reading)),
-            envelope(time, signals.shaft_torque_nm),
-            _repaired_s(signals, sensors.shaft_torque.channel),
-            rates,
-        )
-        panels[0].set_ylabel("set point [rpm]")
-        panels[1].set_ylabel("shaft torque [N·m]")
-        panels[1].set_xlabel("time in the recording [s]")
-        panels[1].set_xlim(time[0], time[-1])
-        letter_panels(panels, ("engine-speed set point", "shaft torque at the gauge"))
-        legend_below(figure, legend_entries(panels))
-        return figure
+    set_point, torque = (recording.channel(sensor.channel) for sensor in (sensors.set_point, sensors.shaft_torque))
+    set_point_s, volts = channel_envelope(set_point)
+    torque_s, reading = channel_envelope(torque)
+    rates = (f"raw, {set_point.rate_hz:g} Hz", f"prepared, {signals.rate_hz:g} Hz")
+    demanded = SECONDS_PER_MINUTE * _demanded(signals, volts)
+    prepared = SECONDS_PER_MINUTE * signals.set_point_rev_s
+    torque_nm = sensors.shaft_torque.torque_nm(reading)
+    return Chart(
+        panels=(
+            Panel(
+                title="engine-speed set point",
+                marks=_marks(signals, set_point.name, (set_point_s, demanded), prepared, rates),
+                x=Scale(title="time in the recording [s]"),
+                y=Scale(title="set point [rpm]"),
+            ),
+            Panel(
+                title="shaft torque at the gauge",
+                marks=_marks(signals, torque.name, (torque_s, torque_nm), signals.shaft_torque_nm, rates),
+                x=Scale(title="time in the recording [s]"),
+                y=Scale(title="shaft torque [N·m]"),
+            ),
+        ),
+        heights_px=(220,),
+    )
 
 
 def _demanded(signals: "Signals", volts: FloatArray) -> FloatArray:
@@ -79,24 +72,21 @@ def _repaired_s(signals: "Signals", channel: str) -> FloatArray:
     return np.array([r.time_s for r in signals.repairs if r.channel == channel and r.kind in KINDS])
 
 
-def _draw(
-    axes: "Axes",
+def _marks(
+    signals: "Signals",
+    channel: str,
     before: tuple[FloatArray, FloatArray],
-    after: tuple[FloatArray, FloatArray],
-    repaired_s: FloatArray,
+    after: FloatArray,
     rates: tuple[str, str],
-) -> None:
-    axes.plot(*before, color=BEFORE, linewidth=0.7, label=rates[0])
-    axes.plot(*after, color=look(0).colour, linewidth=0.7, label=rates[1])
-    low, high = axes.get_ylim()
-    axes.set_ylim(low, high + 0.08 * (high - low))
-    axes.plot(
-        repaired_s,
-        np.full(repaired_s.size, high + 0.03 * (high - low)),
-        linestyle="none",
-        marker="v",
-        markersize=4.0,
-        markerfacecolor="white",
-        color="black",
-        label="repaired place",
-    )
+) -> list[Mark]:
+    time, values = envelope(signals.start_s + np.arange(signals.samples) / signals.rate_hz, after)
+    marks: list[Mark] = [
+        Line(x=before[0], y=before[1], name=rates[0], shade="early", width=1.2),
+        Line(x=time, y=values, name=rates[1], width=1.2),
+    ]
+    repaired = _repaired_s(signals, channel)
+    if repaired.size:
+        high, low = float(np.nanmax(before[1])), float(np.nanmin(before[1]))
+        at = np.full(repaired.size, high + MARKS_AT * (high - low))
+        marks.append(Points(x=repaired, y=at, name="repaired place", marker="triangle-down", filled=False))
+    return marks

@@ -7,33 +7,22 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.distributions import NORMAL_95, chi_square_quantile
 from shaftprint.identify.likelihood import load_factors
-from shaftprint.report.figures._style import (
-    REFERENCE,
-    house_style,
-    legend_below,
-    legend_entries,
-    letter_panels,
-    look,
-    new_figure,
-    plain_log_axis,
-)
+from shaftprint.report.charts import Band, Chart, Mark, Panel, Points, Scale, Straight, joined
 from shaftprint.report.figures._uncertainty import COVERAGE
-from shaftprint.report.notation import mathtext
+from shaftprint.tables import Symbol
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
     from shaftprint.identify import Identification
 
 # The picture shows at least this many standard deviations.
 LEAST_STD = 3.2
+WIDER = 1.4
 
 
 def normalised_residuals(identification: "Identification") -> FloatArray:
     """Return measured minus model over standard deviation, real parts first, shape (2 channels, lines)."""
     data = identification.response
-    residuals = _left(identification)
+    residuals = unexplained(identification)
     std = np.sqrt(np.diagonal(data.covariance, axis1=1, axis2=2)).T
     return np.asarray(np.concatenate([residuals.real, residuals.imag]) / std)
 
@@ -41,13 +30,13 @@ def normalised_residuals(identification: "Identification") -> FloatArray:
 def line_chi_square(identification: "Identification") -> FloatArray:
     """Return ``r^T C^-1 r`` of each line with its full covariance, shape (lines,)."""
     data = identification.response
-    residuals = _left(identification)
+    residuals = unexplained(identification)
     stacked = np.concatenate([residuals.real, residuals.imag]).T
     solved = np.linalg.solve(data.covariance, stacked[:, :, None])[:, :, 0]
     return np.asarray(np.einsum("lr,lr->l", stacked, solved))
 
 
-def _left(identification: "Identification") -> ComplexArray:
+def unexplained(identification: "Identification") -> ComplexArray:
     """Return measured minus model, shape (channels, lines); the load of each window acts on ``k_q`` as in the fit."""
     data = identification.response
     model = identification.structure.response(
@@ -56,66 +45,75 @@ def _left(identification: "Identification") -> ComplexArray:
     return np.asarray(data.response.reshape(model.shape) - model)
 
 
-def plot_residuals(identification: "Identification") -> "Figure":
+def residual_chart(identification: "Identification") -> Chart:
     """Return normalised residuals and chi-square of each line; lines that were not fitted are hollow, below only.
 
     Of a model that explains the data 95 % of the residuals lie within 1.96 standard deviations, and 95 % of the lines
     below the drawn limit.
     """
-    with house_style():
-        figure = new_figure(10.5)
-        top, bottom = figure.subplots(2, 1, sharex=True)
-        _draw_residuals(top, identification)
-        _draw_chi_square(bottom, identification)
-        plain_log_axis(bottom)
-        bottom.set_xlabel("frequency [rad/s]")
-        titles = (f"residuals of {identification.structure.name}", "all numbers of a line together")
-        letter_panels((top, bottom), titles)
-        legend_below(figure, legend_entries((top, bottom)))
-        return figure
+    omega = identification.response.omega_rad_s
+    span = float(omega.min()) / WIDER, float(omega.max()) * WIDER
+    frequency = Scale(title="frequency [rad/s]", log=True, span=span)
+    residuals = normalised_residuals(identification)[:, identification.fitted]
+    largest = max(LEAST_STD, 1.1 * float(np.abs(residuals).max()))
+    return Chart(
+        panels=(
+            Panel(
+                title=f"residuals of {identification.structure.name}",
+                marks=[explained_band(span), *_residual_points(identification, residuals)],
+                x=frequency,
+                y=Scale(title="residual over its std [-]", span=(-largest, largest)),
+            ),
+            Panel(
+                title="all numbers of a line together",
+                marks=_chi_square_marks(identification),
+                x=frequency,
+                y=Scale(title="chi-square of the line [-]", log=True),
+            ),
+        ),
+        heights_px=(240, 220),
+    )
 
 
-def _draw_residuals(axes: "Axes", identification: "Identification") -> None:
+def explained_band(span: tuple[float, float]) -> Band:
+    """Return where 95 % of the residuals of a right model lie."""
+    ends = np.array(span)
+    half = np.full(2, NORMAL_95)
+    return Band(x=ends, lower=-half, upper=half, name="95 % of a model that explains all", shade="reference")
+
+
+def _residual_points(identification: "Identification", residuals: FloatArray) -> list[Mark]:
     data, fitted = identification.response, identification.fitted
-    residuals = normalised_residuals(identification)
     names = tuple(identification.fit_percent)
-    axes.axhspan(-NORMAL_95, NORMAL_95, color="#dddddd", linewidth=0.0, label="95 % of a model that explains all")
-    for row in range(residuals.shape[0]):
+    marks: list[Mark] = []
+    for row, values in enumerate(residuals):
         part, channel = divmod(row, len(names))
-        style = look(channel)
-        axes.plot(
-            data.omega_rad_s[fitted],
-            residuals[row, fitted],
-            linestyle="none",
-            marker="x" if part else style.marker,
-            markersize=4.0,
-            color=style.colour,
-            label=f"{'imaginary' if part else 'real'} part of {mathtext(names[channel])}",
+        marks.append(
+            Points(
+                x=data.omega_rad_s[fitted],
+                y=values,
+                name=joined(f"{'imaginary' if part else 'real'} part of ", Symbol(names[channel])),
+                shade=channel,
+                marker="x" if part else None,
+                words=[name for name, is_shown in zip(data.lines, fitted, strict=True) if is_shown],
+            )
         )
-    largest = max(LEAST_STD, 1.1 * float(np.abs(residuals[:, fitted]).max()))
-    axes.set_ylim(-largest, largest)
-    axes.set_ylabel("residual over\nstandard deviation [-]")
+    return marks
 
 
-def _draw_chi_square(axes: "Axes", identification: "Identification") -> None:
-    chi_square = line_chi_square(identification)
+def _chi_square_marks(identification: "Identification") -> list[Mark]:
+    data, chi_square = identification.response, line_chi_square(identification)
     size = 2 * len(identification.fit_percent)
-    for chosen, fill, text in (
-        (identification.fitted, "black", "fitted line"),
-        (~identification.fitted, "white", "line not fitted"),
+    limit = chi_square_quantile(COVERAGE, size)
+    marks: list[Mark] = []
+    for chosen, filled, name in (
+        (identification.fitted, True, "fitted line"),
+        (~identification.fitted, False, "line not fitted"),
     ):
         if chosen.any():
-            axes.plot(
-                identification.response.omega_rad_s[chosen],
-                chi_square[chosen],
-                linestyle="none",
-                marker="o",
-                markersize=4.0,
-                color="black",
-                markerfacecolor=fill,
-                label=text,
+            words = [line for line, is_shown in zip(data.lines, chosen, strict=True) if is_shown]
+            marks.append(
+                Points(x=data.omega_rad_s[chosen], y=chi_square[chosen], name=name, filled=filled, words=words)
             )
-    limit = chi_square_quantile(COVERAGE, size)
-    axes.axhline(limit, color=REFERENCE, label=f"95 % limit, {limit:.1f} for {size} numbers")
-    axes.set_ylabel("chi-square of the line [-]")
-    plain_log_axis(axes, "y")
+    marks.append(Straight(at=limit, axis="y", name=f"95 % limit, {limit:.1f} for {size} numbers"))
+    return marks

@@ -9,41 +9,37 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import StructureError
 from shaftprint.report._curve import Curve
-from shaftprint.report.figures._bode_parts import channel_of, draw_data, measured_phase_deg, trace_of
-from shaftprint.report.figures._style import RAMP_DASHES, house_style, new_figure, plain_log_axis, plain_number, ramp
+from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale, joined
+from shaftprint.report.figures._bode import ENDLESS_DB, GRID_POINTS, frequency_scale
+from shaftprint.report.figures._traces import channel_of, measured_phase_deg, trace_of
 from shaftprint.report.figures._uncertainty import measured_points
-from shaftprint.report.notation import mathtext, response_label
-from shaftprint.tables import unit_text
+from shaftprint.tables import Symbol, unit_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
     from shaftprint.models import Parameter, Structure
     from shaftprint.spectra import FrequencyResponse
 
-STEPS = 5
+STEPS = ("lower bound", "a quarter up", "half way", "three quarters up", "upper bound")
 # What a meaning explains after its first words: too long for a title.
 _TAIL = re.compile(r"[,:;].*")
-GRID_POINTS = 500
 SPAN_RAD_S = (0.01, 300.0)
-ROW_CM = 3.9
-FOOT_CM = 1.2
 # Magnitudes farther below the largest than this are let go: at a bound of 0 the response may vanish altogether.
 DEPTH_DB = 90.0
+# So are phases: delays turn on for ever.
+DEPTH_DEG = 720.0
 BEYOND_DATA_DB = 15.0
 BEYOND_DATA_DEG = 200.0
 ROOM = 0.05
 
 
-def parameter_steps(parameter: "Parameter", steps: int = STEPS) -> FloatArray:
+def parameter_steps(parameter: "Parameter", steps: int = len(STEPS)) -> FloatArray:
     """Return evenly spaced values of a parameter from its lower to its upper bound, shape (steps,)."""
     return np.linspace(parameter.lower, parameter.upper, steps)
 
 
-def plot_sensitivity(
+def sensitivity_chart(
     structure: "Structure",
     *,
     output: str | None = None,
@@ -52,7 +48,7 @@ def plot_sensitivity(
     values: "Mapping[str, float] | None" = None,
     data: "FrequencyResponse | None" = None,
     span_rad_s: tuple[float, float] = SPAN_RAD_S,
-) -> "Figure":
+) -> Chart:
     """Return the Bode families of a structure, one row a parameter, each varied between its bounds.
 
     The other parameters keep their values. With the thesis' structures (``thesis_families``) these are its figures 4.2
@@ -81,23 +77,12 @@ def plot_sensitivity(
         If output, input or parameters are not of the structure, or nothing is left to vary.
     """
     name, cause = output or next(iter(structure.outputs)), cause or structure.input
-    varied = _varied(structure, (name, cause), vary)
     base = structure.vector(values or {})
-    count = len(varied)
-    with house_style():
-        figure = new_figure(ROW_CM * count + FOOT_CM)
-        grid = figure.subplots(count, 2, squeeze=False, sharex=True)
-        for row, parameter in enumerate(varied):
-            _draw_row((grid[row, 0], grid[row, 1]), structure, (name, cause), parameter, base, data, span_rad_s)
-            letter = f"({chr(ord('a') + row)}) " if count > 1 else ""
-            grid[row, 0].set_title(f"{letter}{mathtext(parameter.name)}: {_TAIL.sub('', parameter.meaning)}")
-            grid[row, 0].set_ylabel("magnitude [dB re 1 s]" if name == "E_n" else "magnitude [dB]")
-            grid[row, 1].set_ylabel("phase [deg]")
-        for axes in grid[-1]:
-            axes.set_xlabel("frequency [rad/s]")
-        figure.suptitle(f"{structure.title}: {response_label(name, cause)}", x=0.01, ha="left")
-        figure.align_ylabels()
-        return figure
+    pairs = [
+        _pair(structure, (name, cause), parameter, base, data, span_rad_s)
+        for parameter in _varied(structure, (name, cause), vary)
+    ]
+    return Chart(panels=[panel for pair in pairs for panel in pair], columns=2, heights_px=(200,))
 
 
 def _varied(structure: "Structure", channel: tuple[str, str], vary: Sequence[str] | None) -> "tuple[Parameter, ...]":
@@ -115,49 +100,74 @@ def _varied(structure: "Structure", channel: tuple[str, str], vary: Sequence[str
     return tuple(parameters[name] for name in wanted)
 
 
-def _draw_row(
-    pair: "tuple[Axes, Axes]",
+def _pair(
     structure: "Structure",
     channel: tuple[str, str],
     parameter: "Parameter",
     base: FloatArray,
     data: "FrequencyResponse | None",
     span: tuple[float, float],
-) -> None:
-    """Draw the family of one parameter into a magnitude and a phase panel."""
+) -> tuple[Panel, Panel]:
+    """Return the family of one parameter: magnitude and phase, with its values in the title."""
     omega = np.geomspace(*span, GRID_POINTS)
     index = structure.names.index(parameter.name)
-    for value, colour, dashes in zip(parameter_steps(parameter), ramp(STEPS), RAMP_DASHES, strict=True):
+    magnitudes: list[Mark] = []
+    phases: list[Mark] = []
+    steps = parameter_steps(parameter)
+    for shade, (name, value) in enumerate(zip(STEPS, steps, strict=True)):
         table = base.copy()
         table[index] = value
-        label = f"{plain_number(value)} {unit_text(parameter.unit)}".strip()
         with np.errstate(divide="ignore"):
-            trace = trace_of(Curve(label=label, structure=structure, values=table), channel[0], omega, channel[1])
+            trace = trace_of(Curve(label="", structure=structure, values=table), channel[0], omega, channel[1])
         silent = not np.any(np.isfinite(trace.magnitude_db))
-        phase = np.full_like(trace.phase_deg, np.nan) if silent else trace.phase_deg
-        pair[0].plot(omega, trace.magnitude_db, color=colour, linestyle=dashes)
-        pair[1].plot(omega, phase, color=colour, linestyle=dashes, label=f"{label}, no response" if silent else label)
-    _limit(pair, data, channel)
+        magnitudes.append(Line(x=omega, y=trace.magnitude_db, name=name, shade=shade))
+        turned = np.full_like(trace.phase_deg, np.nan) if silent else trace.phase_deg
+        phases.append(Line(x=omega, y=turned, name=name, shade=shade))
+    limits = _limits(magnitudes, phases, data, channel)
     if data is not None:
-        draw_data(pair, data, channel[0], (), label="data", cause=channel[1])
-    for axes in pair:
-        plain_log_axis(axes)
-        axes.set_xlim(*span)
-    pair[1].legend(loc="center left", bbox_to_anchor=(1.01, 0.5), title=mathtext(parameter.name), borderaxespad=0.0)
+        _add_data(magnitudes, phases, data, channel)
+    unit = unit_text(parameter.unit)
+    numbers = ", ".join(f"{value:g}" for value in steps).replace("-", "−")
+    values_text = joined(Symbol(parameter.name), f" = {numbers} {unit}".rstrip())
+    level = "magnitude [dB re 1 s]" if channel[0] == "E_n" else "magnitude [dB]"
+    return (
+        Panel(
+            title=joined(Symbol(parameter.name), f": {_TAIL.sub('', parameter.meaning)}"),
+            marks=magnitudes,
+            x=frequency_scale(span),
+            y=Scale(title=level, span=limits[0]),
+        ),
+        Panel(title=values_text, marks=phases, x=frequency_scale(span), y=Scale(title="phase [deg]", span=limits[1])),
+    )
 
 
-def _limit(pair: "tuple[Axes, Axes]", data: "FrequencyResponse | None", channel: tuple[str, str]) -> None:
-    """Let go of lines that leave all others, or the data, far behind."""
-    low, high = pair[0].get_ylim()
-    pair[0].set_ylim(max(low, high - DEPTH_DB), high)
-    if data is None:
-        return
+def _add_data(magnitudes: list[Mark], phases: list[Mark], data: "FrequencyResponse", channel: tuple[str, str]) -> None:
     index = channel_of(data.outputs, data.inputs, *channel)
-    for axes, points, beyond in (
-        (pair[0], measured_points(data, index).magnitude_db, BEYOND_DATA_DB),
-        (pair[1], measured_phase_deg(data, index), BEYOND_DATA_DEG),
-    ):
-        low, high = axes.get_ylim()
-        least, most = float(points.min()), float(points.max())
-        low, high = max(min(low, least), least - beyond), min(max(high, most), most + beyond)
-        axes.set_ylim(low - ROOM * (high - low), high + ROOM * (high - low))
+    points, phase = measured_points(data, index), measured_phase_deg(data, index)
+    used = data.used
+    bars = np.minimum(points.below_db, ENDLESS_DB)[used], points.above_db[used]
+    turns = points.phase_half_deg[used], points.phase_half_deg[used]
+    name = "data, 95 % interval"
+    magnitudes.append(Points(x=data.omega_rad_s[used], y=points.magnitude_db[used], bars=bars, name=name))
+    phases.append(Points(x=data.omega_rad_s[used], y=phase[used], bars=turns, name=name))
+
+
+def _limits(
+    magnitudes: list[Mark], phases: list[Mark], data: "FrequencyResponse | None", channel: tuple[str, str]
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return the ends of both axes, which let go of lines that leave all others, or the data, far behind."""
+    ends = []
+    for marks in (magnitudes, phases):
+        drawn = np.concatenate([mark.y for mark in marks if isinstance(mark, Line)])
+        drawn = drawn[np.isfinite(drawn)]
+        ends.append((float(drawn.min()), float(drawn.max())) if drawn.size else (-1.0, 1.0))
+    ends = [(max(low, high - depth), high) for (low, high), depth in zip(ends, (DEPTH_DB, DEPTH_DEG), strict=True)]
+    if data is not None:
+        index = channel_of(data.outputs, data.inputs, *channel)
+        points = measured_points(data, index).magnitude_db, measured_phase_deg(data, index)
+        for place, beyond in enumerate((BEYOND_DATA_DB, BEYOND_DATA_DEG)):
+            least, most = float(points[place][data.used].min()), float(points[place][data.used].max())
+            low, high = ends[place]
+            ends[place] = max(min(low, least), least - beyond), min(max(high, most), most + beyond)
+    first, second = ((low - ROOM * (high - low), high + ROOM * (high - low)) for low, high in ends)
+    return first, second

@@ -5,30 +5,22 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.report.figures._style import (
-    REFERENCE,
-    house_style,
-    legend_below,
-    legend_entries,
-    letter_panels,
-    look,
-    new_figure,
-)
-from shaftprint.report.notation import mathtext
+from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale, Straight, Words, joined
+from shaftprint.report.figures._envelope import envelope
+from shaftprint.tables import Symbol
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
     from shaftprint.signals import Signals, StepDelay
 
 AROUND_S = 20.0
 ZOOM_BEFORE_S, ZOOM_AFTER_S = 0.6, 1.8
 # The middle of a step lies between the set points this long before and after it.
 BESIDE_S = 0.5
+HIGHER = 1.2
+TIME, DEVIATION = "time in the recording [s]", "deviation [-]"
 
 
-def plot_step_delays(signals: "Signals", *, staircase: str | None = None) -> "Figure":
+def delay_chart(signals: "Signals", *, staircase: str | None = None) -> Chart:
     """Return the steps of a staircase, one of them enlarged, and all delays: what figure 3.3 of the thesis shows.
 
     Parameters
@@ -47,91 +39,82 @@ def plot_step_delays(signals: "Signals", *, staircase: str | None = None) -> "Fi
     steps = [s for s in steps if s.staircase == steps[0].staircase]
     if not steps:
         raise ValueError(f"step delays: expected steps of {staircase or 'a staircase'}, found none in the signals.")
-    with house_style():
-        figure = new_figure(11.5)
-        panels = figure.subplot_mosaic([["overview", "overview"], ["zoom", "delays"]])
-        overview, zoom, delays = panels["overview"], panels["zoom"], panels["delays"]
-        begin, end = steps[0].set_point_time_s - AROUND_S, steps[-1].speed_time_s + AROUND_S
-        _draw_signals(overview, signals, begin, end)
-        shown = steps[0].set_point_time_s
-        _draw_signals(zoom, signals, shown - ZOOM_BEFORE_S, shown + ZOOM_AFTER_S)
-        _mark_crossings(zoom, signals, steps[0])
-        _draw_delays(delays, steps)
-        letter_panels(
-            (overview, zoom, delays),
-            (f"staircase {steps[0].staircase}", "first step, enlarged", "delay of each step"),
-        )
-        legend_below(figure, legend_entries((overview, zoom, delays)))
-        return figure
+    first = steps[0]
+    whole = (first.set_point_time_s - AROUND_S, steps[-1].speed_time_s + AROUND_S)
+    zoom = (first.set_point_time_s - ZOOM_BEFORE_S, first.set_point_time_s + ZOOM_AFTER_S)
+    return Chart(
+        panels=(
+            Panel(
+                title=f"staircase {first.staircase}, deviation over working point",
+                marks=_signals(signals, whole),
+                x=Scale(title=TIME),
+                y=Scale(title=DEVIATION),
+            ),
+            Panel(
+                title="first step, enlarged",
+                marks=[*_signals(signals, zoom), *_crossings(signals, first)],
+                x=Scale(title=TIME, span=zoom),
+                y=Scale(title=DEVIATION),
+            ),
+            _delays(steps),
+        ),
+        heights_px=(210,),
+        linked="none",
+    )
 
 
-def _draw_signals(axes: "Axes", signals: "Signals", begin_s: float, end_s: float) -> None:
-    first = max(0, int((begin_s - signals.start_s) * signals.rate_hz))
-    last = min(signals.samples, int((end_s - signals.start_s) * signals.rate_hz) + 1)
+def _signals(signals: "Signals", span_s: tuple[float, float]) -> list[Mark]:
+    first = max(0, int((span_s[0] - signals.start_s) * signals.rate_hz))
+    last = min(signals.samples, int((span_s[1] - signals.start_s) * signals.rate_hz) + 1)
     time = signals.start_s + np.arange(first, last) / signals.rate_hz
-    for values, name, style in (
-        (signals.set_point_rev_s, "n_set", look(0)),
-        (signals.engine_speed.speed_rev_s, "n", look(1)),
+    marks: list[Mark] = []
+    for values, words, shade in (
+        (signals.engine_speed.speed_rev_s, ("n", ", engine speed"), 0),
+        (signals.set_point_rev_s, ("n_set", ", set point"), 1),
     ):
-        axes.plot(
-            time,
-            _deviation(signals, values[first:last]),
-            color=style.colour,
-            linestyle=style.dashes,
-            label=_label(name),
-        )
-    axes.set_xlim(time[0], time[-1])
-    axes.set_xlabel("time in the recording [s]")
-    axes.set_ylabel("deviation over\nworking point [-]")
-
-
-def _label(name: str) -> str:
-    return f"{mathtext(name)}, {'set point' if name == 'n_set' else 'engine speed'}"
+        x, y = envelope(time, _deviation(signals, values[first:last]))
+        name = joined(Symbol(words[0]), words[1])
+        marks.append(Line(x=x, y=y, name=name, shade=shade, dash="solid", width=1.6))
+    return marks
 
 
 def _deviation(signals: "Signals", speed_rev_s: FloatArray) -> FloatArray:
     return speed_rev_s / signals.working_point.engine_speed_rev_s - 1.0
 
 
-def _mark_crossings(axes: "Axes", signals: "Signals", step: "StepDelay") -> None:
-    """Draw where set point and speed cross the middle of the step, and the time between."""
+def _crossings(signals: "Signals", step: "StepDelay") -> list[Mark]:
+    """Return where set point and speed cross the middle of the step, and the time between."""
     sides = (step.set_point_time_s + np.array([-BESIDE_S, BESIDE_S]) - signals.start_s) * signals.rate_hz
     level = float(_deviation(signals, signals.set_point_rev_s[sides.astype(np.intp)]).mean())
-    for at in (step.set_point_time_s, step.speed_time_s):
-        axes.axvline(at, color=REFERENCE, linewidth=0.8, linestyle=(0.0, (3.0, 2.0)))
-    axes.annotate(
-        "",
-        xy=(step.speed_time_s, level),
-        xytext=(step.set_point_time_s, level),
-        arrowprops={"arrowstyle": "<->", "linewidth": 0.8, "shrinkA": 0.0, "shrinkB": 0.0},
-    )
-    axes.annotate(
-        f"{step.delay_s:.3f} s",
-        xy=(step.speed_time_s, level),
-        xytext=(6.0, 0.0),
-        textcoords="offset points",
-        va="center",
-        bbox={"facecolor": "white", "edgecolor": "none", "pad": 1.0},
-    )
+    ends = np.array([step.set_point_time_s, step.speed_time_s])
+    return [
+        *(Straight(at=float(end), axis="x", dash="dash") for end in ends),
+        Line(x=ends, y=np.full(2, level), shade="ink", width=1.4),
+        Words(x=step.speed_time_s, y=level, text=f"{step.delay_s:.3f} s"),
+    ]
 
 
-def _draw_delays(axes: "Axes", steps: "list[StepDelay]") -> None:
+def _delays(steps: "list[StepDelay]") -> Panel:
     delay = np.array([step.delay_s for step in steps])
     rising = np.array([step.rising for step in steps])
-    number = np.arange(1, delay.size + 1)
-    for chosen, text, marker, fill in ((rising, "speed rises", "^", "black"), (~rising, "speed falls", "v", "white")):
+    number = np.arange(delay.size, dtype=np.float64)
+    marks: list[Mark] = []
+    for chosen, name, filled in ((rising, "speed rises", True), (~rising, "speed falls", False)):
         if chosen.any():
-            axes.plot(
-                number[chosen],
-                delay[chosen],
-                linestyle="none",
-                marker=marker,
-                color="black",
-                markerfacecolor=fill,
-                label=text,
+            marks.append(
+                Points(
+                    x=number[chosen],
+                    y=delay[chosen],
+                    name=name,
+                    marker="triangle-up" if filled else "triangle-down",
+                    filled=filled,
+                    size=9.0,
+                )
             )
-    axes.axhline(delay.mean(), color=REFERENCE, linewidth=1.0, label=f"mean {delay.mean():.3f} s")
-    axes.set_xticks(number)
-    axes.set_xlabel("step [-]")
-    axes.set_ylabel("delay [s]")
-    axes.set_ylim(0.0, 1.2 * float(delay.max()))
+    marks.append(Straight(at=float(delay.mean()), axis="y", name=f"mean {delay.mean():.3f} s"))
+    return Panel(
+        title="delay of each step",
+        marks=marks,
+        x=Scale(title="step", names=[str(place + 1) for place in range(delay.size)], span=(-0.5, delay.size - 0.5)),
+        y=Scale(title="delay [s]", span=(0.0, HIGHER * float(delay.max()))),
+    )

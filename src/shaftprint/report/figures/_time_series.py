@@ -6,21 +6,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.report.charts import Chart, Line, Mark, Panel, Scale, Straight, joined
 from shaftprint.report.figures._envelope import envelope
-from shaftprint.report.figures._style import house_style, legend_below, legend_entries, letter_panels, look, new_figure
-from shaftprint.report.notation import mathtext
+from shaftprint.tables import Symbol
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from shaftprint.campaign import Campaign, Excitation
     from shaftprint.signals import Signals
 
-RESPONSE = "#6db3e2"
 WHAT = ("engine speed", "shaft torque")
 
 
-def plot_excitation(signals: "Signals", excitations: Sequence["Excitation"]) -> "Figure":
+def excitation_chart(signals: "Signals", excitations: Sequence["Excitation"]) -> Chart:
     """Return normalised set point with speed and with torque over one or more tests put end to end.
 
     Parameters
@@ -38,35 +35,63 @@ def plot_excitation(signals: "Signals", excitations: Sequence["Excitation"]) -> 
     time, places, joints = _joined(signals, excitations)
     point = signals.working_point
     set_point = signals.set_point_rev_s[places] / point.engine_speed_rev_s - 1.0
-    outputs = (
-        ("n", signals.engine_speed.speed_rev_s[places] / point.engine_speed_rev_s - 1.0),
-        ("M_s", signals.shaft_torque_nm[places] / point.shaft_torque_nm - 1.0),
-    )
-    with house_style():
-        figure = new_figure(10.5)
-        panels = figure.subplots(2, 1, sharex=True)
-        for axes, (_, values), order in zip(panels, outputs, ((1, 0), (0, 1)), strict=True):
-            # Speed lies over the set point that it follows, noisy torque under it.
-            both = (
-                (values, "response", RESPONSE),
-                (set_point, f"set point {mathtext('n_set')}", look(0).colour),
+    outputs = {
+        "n": signals.engine_speed.speed_rev_s[places] / point.engine_speed_rev_s - 1.0,
+        "M_s": signals.shaft_torque_nm[places] / point.shaft_torque_nm - 1.0,
+    }
+    names = ", ".join(excitation.name for excitation in excitations)
+    span = (float(time[0]), float(time[-1]))
+    panels = []
+    for words, (name, values) in zip(WHAT, outputs.items(), strict=True):
+        marks: list[Mark] = [Straight(at=joint, axis="x", shade="ink", dash="dash") for joint in joints]
+        marks += _lines(time, values, set_point, is_above=name == "n")
+        panels.append(
+            Panel(
+                title=joined(f"{words} ", Symbol(name), f", {names}"),
+                marks=marks,
+                x=Scale(title="time since the start of the first test [s]", span=span),
+                y=Scale(title="deviation [-]"),
             )
-            for shown, label, colour in (both[index] for index in order):
-                axes.plot(*envelope(time, shown), color=colour, linewidth=0.8, label=label)
-            for joint in joints:
-                axes.axvline(joint, color="black", linewidth=0.8, linestyle=(0.0, (4.0, 2.0)))
-            axes.set_ylabel("deviation over\nworking point [-]")
-            axes.set_xlim(time[0], time[-1])
-        names = ", ".join(excitation.name for excitation in excitations)
-        letter_panels(
-            panels, [f"{what} {mathtext(name)}, {names}" for what, (name, _) in zip(WHAT, outputs, strict=True)]
         )
-        panels[-1].set_xlabel("time since the start of the first test [s]")
-        legend_below(figure, legend_entries(panels))
-        return figure
+    return Chart(panels=panels, heights_px=(230,))
 
 
-def plot_chirp(signals: "Signals", campaign: "Campaign", *, name: str) -> "Figure":
+def signal_chart(signals: "Signals") -> Chart:
+    """Return set point, speed and torque of a whole recording, smallest and largest sample of each stretch.
+
+    Parameters
+    ----------
+    signals
+        The prepared recording.
+    """
+    point = signals.working_point
+    time = signals.start_s + np.arange(signals.samples) / signals.rate_hz
+    set_point = signals.set_point_rev_s / point.engine_speed_rev_s - 1.0
+    speed = signals.engine_speed.speed_rev_s / point.engine_speed_rev_s - 1.0
+    torque = signals.shaft_torque_nm / point.shaft_torque_nm - 1.0
+    panels = [
+        Panel(
+            title=joined(f"{words} ", Symbol(name)),
+            marks=_lines(time, values, set_point, is_above=name == "n"),
+            x=Scale(title="time in the recording [s]"),
+            y=Scale(title="deviation [-]"),
+        )
+        for words, name, values in zip(WHAT, ("n", "M_s"), (speed, torque), strict=True)
+    ]
+    return Chart(panels=panels, heights_px=(230,))
+
+
+def _lines(time: FloatArray, values: FloatArray, set_point: FloatArray, *, is_above: bool) -> list[Mark]:
+    """Return a response and the set point: speed lies over the set point that it follows, noisy torque under it."""
+    lines = [(values, "response", 0), (set_point, joined("set point ", Symbol("n_set")), 1)]
+    marks: list[Mark] = []
+    for drawn, name, shade in reversed(lines) if is_above else lines:
+        x, y = envelope(time, drawn)
+        marks.append(Line(x=x, y=y, name=name, shade=shade, dash="solid", width=1.2))
+    return marks
+
+
+def chirp_chart(signals: "Signals", campaign: "Campaign", *, name: str) -> Chart:
     """Return the chirps whose names begin alike, put end to end: what figures 3.9 (C2) and 3.10 (C1) show.
 
     Parameters
@@ -81,10 +106,10 @@ def plot_chirp(signals: "Signals", campaign: "Campaign", *, name: str) -> "Figur
     ValueError
         If the campaign has no chirp of such a name, or the recording does not hold it.
     """
-    return plot_excitation(signals, [chirp for chirp in campaign.chirps if chirp.name.startswith(name)])
+    return excitation_chart(signals, [chirp for chirp in campaign.chirps if chirp.name.startswith(name)])
 
 
-def plot_staircase(signals: "Signals", campaign: "Campaign", *, name: str | None = None) -> "Figure":
+def staircase_chart(signals: "Signals", campaign: "Campaign", *, name: str | None = None) -> Chart:
     """Return one staircase, the last by default (St2 of the thesis): what figure 3.11 of the thesis shows.
 
     Raises
@@ -93,7 +118,7 @@ def plot_staircase(signals: "Signals", campaign: "Campaign", *, name: str | None
         If the campaign has no staircase of that name.
     """
     chosen = [stairs for stairs in campaign.staircases if name in (None, stairs.name)]
-    return plot_excitation(signals, chosen[-1:])
+    return excitation_chart(signals, chosen[-1:])
 
 
 def _joined(

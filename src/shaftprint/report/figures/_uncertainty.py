@@ -32,6 +32,10 @@ class MeasuredPoints:
     """Length of the error bar upwards [dB], shape (lines,)."""
     phase_half_deg: FloatArray
     """Half length of the phase's error bar [deg], shape (lines,); 180 where nothing is known of it."""
+    radial_std: FloatArray
+    """Standard deviation along the response over its size [-], shape (lines,)."""
+    turning_std: FloatArray
+    """Standard deviation across the response over its size [-], shape (lines,)."""
 
 
 def measured_points(response: "FrequencyResponse", channel: int) -> MeasuredPoints:
@@ -48,8 +52,10 @@ def measured_points(response: "FrequencyResponse", channel: int) -> MeasuredPoin
     along = np.stack([values.real, values.imag], axis=-1) / size[:, None]
     across = np.stack([-along[:, 1], along[:, 0]], axis=-1)
     factor = _quantile(response.degrees_of_freedom)
-    radial = factor * np.sqrt(np.einsum("li,lij,lj->l", along, covariance, along)) / size
-    turning = factor * np.sqrt(np.einsum("li,lij,lj->l", across, covariance, across)) / size
+    radial_std, turning_std = (
+        np.sqrt(np.einsum("li,lij,lj->l", way, covariance, way)) / size for way in (along, across)
+    )
+    radial, turning = factor * radial_std, factor * turning_std
     with np.errstate(divide="ignore"):
         below = -decibel(np.maximum(1.0 - radial, 0.0))
     return MeasuredPoints(
@@ -58,6 +64,8 @@ def measured_points(response: "FrequencyResponse", channel: int) -> MeasuredPoin
         below_db=below,
         above_db=decibel(1.0 + radial),
         phase_half_deg=np.where(turning < 1.0, np.degrees(np.arcsin(np.minimum(turning, 1.0))), 180.0),
+        radial_std=radial_std,
+        turning_std=turning_std,
     )
 
 

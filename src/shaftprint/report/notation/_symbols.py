@@ -3,7 +3,6 @@
 import re
 
 from shaftprint.escape import printable
-from shaftprint.tables import unit_text
 
 _GREEK = {"tau", "omega", "zeta", "delta", "eta", "rho"}
 _NAME = re.compile(r"[A-Za-z]+(?:_[A-Za-z0-9]+)?")
@@ -39,16 +38,6 @@ def mathtext(formula: str) -> str:
         symbol = rf"\{base}" if base in _GREEK else base
         words.append(rf"${symbol}_{{\mathrm{{{index}}}}}$" if index else rf"${symbol}$")
     return "".join(words)
-
-
-def with_unit(label: str, unit: str) -> str:
-    """Return an axis label with its unit in brackets, ``[-]`` for a number without unit."""
-    return f"{label} [{unit_text(unit) or '-'}]"
-
-
-def response_label(output: str, input_: str) -> str:
-    """Return the label of a response, output over input, as mathtext."""
-    return f"{mathtext(output)} / {mathtext(input_)}"
 
 
 def plain_label(label: str) -> str:

@@ -15,6 +15,7 @@ from reportlab.platypus import Image, KeepTogether, ListFlowable, PageBreak, Sim
 from reportlab.platypus import Table as Grid
 
 from shaftprint.escape import printable
+from shaftprint.report.charts import draw
 from shaftprint.report.notation import cell_html
 from shaftprint.report.paper._looks import CELL_PT, MARGIN_MM, PAPER_COLOURS, WIDTH_MM, Looks, make_looks
 from shaftprint.report.paper._sketch_drawing import sketch_drawing
@@ -157,7 +158,7 @@ def _letters(heading: str, cells: Sequence[str]) -> int:
 
 def _picture(picture: "Picture", looks: Looks) -> list[Any]:
     content = io.BytesIO()
-    figure = picture.draw()
+    figure = draw(picture.chart())
     figure.savefig(content, format="png", dpi=200)
     wide, high = figure.get_size_inches()
     height = min(HIGHEST_PICTURE_MM, WIDTH_MM * high / wide)

@@ -1,7 +1,7 @@
 """The section of a report on the inertia by calculation and the torsional modes of the line."""
 
 from shaftprint.fingerprint import inertia_beside
-from shaftprint.report.figures import plot_modes
+from shaftprint.report.figures import mode_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 from shaftprint.tables import (
     expected_inertia_table,
@@ -34,7 +34,7 @@ def inertia_section(inputs: Inputs) -> list[Section]:
                     "as one."
                 ),
                 alt="One panel for each mode with the amplitude of every mass along the line.",
-                draw=lambda: plot_modes(vibrations),
+                chart=lambda: mode_chart(vibrations),
             )
         )
     return [

@@ -5,18 +5,16 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from shaftprint.report.figures import (
-    plot_calibration,
-    plot_campaign,
-    plot_closed_loop_response,
-    plot_excitation,
-    plot_line_selection,
-    plot_open_loop_responses,
-    plot_outliers,
-    plot_staircase,
-    plot_step_delays,
-    plot_strip_angles,
+    bode_chart,
+    calibration_chart,
+    campaign_chart,
+    delay_chart,
+    excitation_chart,
+    open_loop_chart,
+    outlier_chart,
+    staircase_chart,
+    strip_chart,
 )
-from shaftprint.report.plots import bode_plot, excitation_plot
 from shaftprint.report.sections._sections import Inputs, Picture, Section, picture_name
 from shaftprint.spectra import open_loop
 from shaftprint.tables import calibration_table, step_table, strip_table
@@ -36,7 +34,7 @@ def signal_section(inputs: Inputs) -> Section:
             name="calibration",
             caption="Line from voltage to engine speed through the steady levels, with residuals (as figure 3.1).",
             alt="Straight line of engine speed over set-point voltage, and the distances of the levels from it.",
-            draw=partial(plot_calibration, signals.calibration),
+            chart=partial(calibration_chart, signals.calibration),
         ),
     ]
     if any(strip.angle_rev.size > 1 for strip in signals.strips):
@@ -48,7 +46,7 @@ def signal_section(inputs: Inputs) -> Section:
                     "is counted first differs between recordings: the angles of the vessel file are turned to fit."
                 ),
                 alt="Bars of the deviation of each strip angle from an even spacing.",
-                draw=partial(plot_strip_angles, signals.strips, inputs.vessel),
+                chart=partial(strip_chart, signals.strips, inputs.vessel),
             )
         )
     if signals.step_delays:
@@ -57,7 +55,7 @@ def signal_section(inputs: Inputs) -> Section:
                 name="step_delays",
                 caption="Steps of the set point, the speed that follows, and the level-crossing delay (as figure 3.3).",
                 alt="Staircase of set point and speed, one step enlarged with its delay, and the delay of every step.",
-                draw=partial(plot_step_delays, signals),
+                chart=partial(delay_chart, signals),
             )
         )
     return Section(
@@ -77,13 +75,13 @@ def _raw_pictures(inputs: Inputs) -> list[Picture]:
             name="campaign",
             caption="Raw set-point voltage over the whole recording, with the tests named (as figure 2.2).",
             alt="Set-point voltage over time in two rows, with a bar and a name above each test.",
-            draw=partial(plot_campaign, inputs.recording, inputs.vessel, inputs.campaign),
+            chart=partial(campaign_chart, inputs.recording, inputs.vessel, inputs.campaign),
         ),
         Picture(
             name="outliers",
             caption="Set point and shaft torque before and after the repair of outliers (as figure 3.2).",
             alt="Set point and shaft torque over time; spikes of the raw signal stand out of the prepared one.",
-            draw=partial(plot_outliers, inputs.recording, inputs.signals, inputs.vessel),
+            chart=partial(outlier_chart, inputs.recording, inputs.signals, inputs.vessel),
         ),
     ]
 
@@ -97,14 +95,13 @@ def response_section(inputs: Inputs) -> Section:
             name="closed_loop",
             caption="Measured closed-loop response of speed and torque with 95 % intervals (as figure 3.7).",
             alt="Bode diagram of measured engine speed and shaft torque over set point.",
-            draw=partial(plot_closed_loop_response, response, aliasing_limit_hz=limit),
-            plot=partial(bode_plot, data={"data": response}, aliasing_limit_hz=limit),
+            chart=partial(bode_chart, data=response, aliasing_limit_hz=limit),
         ),
         Picture(
             name="open_loop",
             caption="Open-loop responses calculated from it, with the covariance carried through (as figure 3.8).",
             alt="Bode diagram of torque over speed error and of speed over torque.",
-            draw=partial(plot_open_loop_responses, governor, core, aliasing_limit_hz=limit),
+            chart=partial(open_loop_chart, governor, core, aliasing_limit_hz=limit),
         ),
     ]
     if inputs.line_selection:
@@ -113,8 +110,7 @@ def response_section(inputs: Inputs) -> Section:
                 name="line_selection",
                 caption="The same lines measured in several ways, points side by side (as figure 3.5).",
                 alt="Bode diagram with one set of points for each way to measure a sine.",
-                draw=partial(plot_line_selection, inputs.line_selection, aliasing_limit_hz=limit),
-                plot=partial(bode_plot, data=inputs.line_selection, aliasing_limit_hz=limit),
+                chart=partial(bode_chart, data=inputs.line_selection, aliasing_limit_hz=limit),
             )
         )
     return Section(key="responses", title="Measured responses", pictures=pictures)
@@ -132,8 +128,7 @@ def time_section(inputs: Inputs) -> list[Section]:
                 name=picture_name("chirp", name),
                 caption=f"Chirp {listed}: smallest and largest sample of each stretch (as figures 3.9 and 3.10).",
                 alt=f"Engine speed and shaft torque over time with the set point, chirp {listed}.",
-                draw=partial(plot_excitation, inputs.signals, chirps),
-                plot=partial(excitation_plot, inputs.signals, chirps),
+                chart=partial(excitation_chart, inputs.signals, chirps),
             )
         )
     staircases = [stairs for stairs in inputs.campaign.staircases if _is_recorded(stairs, inputs.signals)]
@@ -144,8 +139,7 @@ def time_section(inputs: Inputs) -> list[Section]:
                 name="staircase",
                 caption=f"Staircase {last}: smallest and largest sample of each stretch (as figure 3.11).",
                 alt=f"Engine speed and shaft torque over time with the set point, staircase {last}.",
-                draw=partial(plot_staircase, inputs.signals, inputs.campaign, name=last),
-                plot=partial(excitation_plot, inputs.signals, staircases[-1:]),
+                chart=partial(staircase_chart, inputs.signals, inputs.campaign, name=last),
             )
         )
     return [Section(key="time", title="Time signals", pictures=pictures)] if pictures else []

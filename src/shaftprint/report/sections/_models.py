@@ -6,16 +6,7 @@ from typing import TYPE_CHECKING
 
 from shaftprint.escape import plain_name
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
-from shaftprint.report.figures import (
-    plot_bode,
-    plot_closed_loop_comparison,
-    plot_closed_loop_fits,
-    plot_core_fit,
-    plot_governor_fits,
-    plot_missing_damping,
-    plot_open_loop_comparison,
-    plot_sensitivity,
-)
+from shaftprint.report.figures import CRITICAL_SPAN_RAD_S, bode_chart, missing_damping_chart, sensitivity_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 from shaftprint.report.thesis import (
     can_explain,
@@ -81,7 +72,7 @@ def explanation_section(inputs: Inputs) -> list[Section]:
                     name="missing_damping",
                     caption="Governor and engine without and with the inertia upstream of the gauge; the closed loop.",
                     alt="Bode diagram of M_s / e from 0.5 to 12 rad/s with two models and the measured points.",
-                    draw=partial(plot_missing_damping, explanation),
+                    chart=partial(missing_damping_chart, explanation),
                 ),
             ),
         )
@@ -111,7 +102,7 @@ def _other_fit(fit: "Identification", limit_hz: float) -> Picture:
         name=f"structures_{plain_name(name.lower())}",
         caption=f"{name}: {fit.structure.title}, with data. {BAND_NOTE}",
         alt=f"Bode diagram of the model {name} and the measured points.",
-        draw=partial(plot_bode, [Curve.of(fit)], data=fit.response, aliasing_limit_hz=limit_hz),
+        chart=partial(bode_chart, [Curve.of(fit)], data=fit.response, aliasing_limit_hz=limit_hz),
     )
 
 
@@ -124,30 +115,31 @@ def fit_pictures(
     selected = _selected(curves)
     benchmark = [open_loop_curve(curves["BENCHMARK"])] if "BENCHMARK" in curves else []
     plans = (
-        ("5.1", plot_core_fit, core, [curves["OL1"]] if "OL1" in curves else [], "core propulsion"),
-        ("5.2", plot_governor_fits, governor, [curves[n] for n in GOVERNOR if n in curves], "governor and engine"),
-        ("5.3", plot_closed_loop_fits, response, [curves[n] for n in CLOSED if n in curves], "closed loop"),
-        ("5.4", plot_closed_loop_comparison, response, selected, "selected sets in closed loop"),
-        (
-            "5.5",
-            plot_open_loop_comparison,
-            governor,
-            [open_loop_curve(c) for c in selected],
-            "selected sets in open loop",
-        ),
+        ("5.1", core, [curves["OL1"]] if "OL1" in curves else [], "core propulsion"),
+        ("5.2", governor, [curves[n] for n in GOVERNOR if n in curves], "governor and engine"),
+        ("5.3", response, [curves[n] for n in CLOSED if n in curves], "closed loop"),
+        ("5.4", response, selected, "selected sets in closed loop"),
+        ("5.5", governor, [open_loop_curve(c) for c in selected], "selected sets in open loop"),
     )
     pictures = []
-    for number, plot, data, chosen, what in plans:
+    for number, data, chosen, what in plans:
         if not chosen:
             continue
-        drawn = chosen + benchmark if number in ("5.2", "5.5") else chosen
+        is_governor = number in ("5.2", "5.5")
+        drawn = chosen + benchmark if is_governor else chosen
         names = ", ".join(curve.label for curve in drawn)
         pictures.append(
             Picture(
                 name=f"{prefix}_{number.replace('.', '_')}",
                 caption=f"{what.capitalize()}: {names} with data (as figure {number}). {BAND_NOTE}",
                 alt=f"Bode diagram of {what}: the models {names} and the measured points.",
-                draw=partial(plot, data, drawn, aliasing_limit_hz=limit_hz),
+                chart=partial(
+                    bode_chart,
+                    drawn,
+                    data=data,
+                    aliasing_limit_hz=limit_hz,
+                    zoom_rad_s=CRITICAL_SPAN_RAD_S if is_governor else None,
+                ),
             )
         )
     return pictures
@@ -179,7 +171,7 @@ def sensitivity_section(inputs: Inputs) -> list[Section]:
                         f"their {'identified' if same else 'default'} values."
                     ),
                     alt=f"Rows of Bode diagrams, one for each of {', '.join(names)}, with five lines each.",
-                    draw=partial(plot_sensitivity, model, vary=names, values=values),
+                    chart=partial(sensitivity_chart, model, vary=names, values=values),
                 )
             )
     return [Section(key="sensitivity", title="Sensitivity", pictures=pictures)] if pictures else []

@@ -4,9 +4,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from shaftprint.fingerprint import clock_influences
-from shaftprint.report.figures import THESIS_LIMIT_DB, plot_signal_to_noise
+from shaftprint.report.figures import THESIS_LIMIT_DB, signal_to_noise_chart
 from shaftprint.report.notation import name_parts
-from shaftprint.report.plots import signal_to_noise_plot
 from shaftprint.report.sections._clocks import clock_sentences
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 from shaftprint.tables import (
@@ -48,8 +47,7 @@ def quality_section(inputs: Inputs) -> Section:
                 name="signal_to_noise",
                 caption="Local signal-to-noise ratio of each line and channel; lines that are not used are hollow.",
                 alt="Signal-to-noise ratio over frequency, one line a channel; it falls towards high frequencies.",
-                draw=partial(plot_signal_to_noise, spectra, aliasing_limit_hz=limit),
-                plot=partial(signal_to_noise_plot, spectra, aliasing_limit_hz=limit),
+                chart=partial(signal_to_noise_chart, spectra, aliasing_limit_hz=limit),
             ),
         ),
     )

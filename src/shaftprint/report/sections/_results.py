@@ -3,8 +3,7 @@
 from typing import TYPE_CHECKING
 
 from shaftprint.report._curve import Curve
-from shaftprint.report.figures import plot_bode, plot_correlation, plot_nyquist, plot_residuals, plot_step_band
-from shaftprint.report.plots import bode_plot, nyquist_plot, residual_plot, step_plot
+from shaftprint.report.figures import correlation_chart, fit_chart, nyquist_chart, residual_chart, step_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 from shaftprint.report.sections._validation import step_against_data
 from shaftprint.tables import (
@@ -37,6 +36,14 @@ def summary_section(inputs: Inputs) -> Section:
         paragraphs=(*fingerprint.verdict.sentences, *_against_vessel(fingerprint)),
         tables=(fit_table(fingerprint),),
         points=(*fingerprint.findings, *fingerprint.quality.remarks),
+        pictures=(
+            Picture(
+                name="residuals",
+                caption="What the model leaves, over its standard deviation, and chi-square of each line.",
+                alt="Two panels: normalised residuals and chi-square of each test line.",
+                chart=lambda: residual_chart(inputs.identification),
+            ),
+        ),
     )
 
 
@@ -90,7 +97,7 @@ def parameter_section(inputs: Inputs) -> Section:
                     "test; their combinations above can."
                 ),
                 alt="Matrix of the correlation between all free parameters, with the numbers written in each field.",
-                draw=lambda: plot_correlation(inputs.identification),
+                chart=lambda: correlation_chart(inputs.identification),
             ),
         ),
     )
@@ -113,7 +120,6 @@ def _given(fingerprint: "Fingerprint") -> tuple[str, ...]:
 
 def fit_section(inputs: Inputs) -> Section:
     """Return how well the model explains the data."""
-    curve = Curve.of(inputs.identification)
     return Section(
         key="fit",
         title="Model and data",
@@ -123,22 +129,11 @@ def fit_section(inputs: Inputs) -> Section:
                 name="fit",
                 caption=(
                     "Identified model with its 95 % band (covariance of the parameters) and measured response with "
-                    "95 % intervals, most of them smaller than their markers. Hollow lines are not used."
+                    "95 % intervals, most of them smaller than their markers. Hollow lines are not used. Below, what "
+                    "the model leaves and its band, in standard deviations of each measured line."
                 ),
                 alt="Bode diagram of the identified model through the measured points of all outputs.",
-                draw=lambda: plot_bode(
-                    [curve], data=inputs.identification.response, aliasing_limit_hz=inputs.aliasing_limit_hz
-                ),
-                plot=lambda: bode_plot(
-                    [curve], data={"data": inputs.identification.response}, aliasing_limit_hz=inputs.aliasing_limit_hz
-                ),
-            ),
-            Picture(
-                name="residuals",
-                caption="What the model leaves, over its standard deviation, and chi-square of each line.",
-                alt="Two panels: normalised residuals and chi-square of each test line.",
-                draw=lambda: plot_residuals(inputs.identification),
-                plot=lambda: residual_plot(inputs.identification),
+                chart=lambda: fit_chart(inputs.identification, aliasing_limit_hz=inputs.aliasing_limit_hz),
             ),
             step_against_data(inputs) or model_step(inputs),
         ),
@@ -151,11 +146,10 @@ def model_step(inputs: Inputs) -> Picture:
         name="step",
         caption=(
             "What the identified linear model does after a step of its input, delays exact, with its 95 % band "
-            "at each time."
+            "at each time, and the smallest measured step over its height."
         ),
         alt="Response of every output to a step of the input, with a band around it.",
-        draw=lambda: plot_step_band(inputs.identification),
-        plot=lambda: step_plot(inputs.identification),
+        chart=lambda: step_chart(inputs.identification, signals=inputs.signals),
     )
 
 
@@ -171,8 +165,7 @@ def stability_section(inputs: Inputs) -> list[Section]:
             "dashed circle about the critical point −1 touches the curve: the wider, the further from hunting."
         ),
         alt="Curve of the loop gain in the complex plane with gain margin, phase margin and critical point marked.",
-        draw=lambda: plot_nyquist(curve),
-        plot=lambda: nyquist_plot(curve),
+        chart=lambda: nyquist_chart(curve),
     )
     return [
         Section(

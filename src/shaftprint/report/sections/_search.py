@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from shaftprint.identify.fit import scan
 from shaftprint.identify.judgement import report_search
 from shaftprint.models import Delay
-from shaftprint.report.figures import plot_scan
+from shaftprint.report.figures import scan_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 from shaftprint.tables import Symbol, Table, numbers, rounded, structure_tables, texts, unit_text
 
@@ -33,7 +33,7 @@ def search_section(inputs: Inputs) -> Section:
                     "parameters are searched anew. Below the dotted line the data cannot tell a value from the best."
                 ),
                 alt=f"Curve of the distance over {name} with its optima marked.",
-                draw=lambda name=name: plot_scan(scan(fit, name), fit),  # type: ignore[misc]
+                chart=lambda name=name: scan_chart(scan(fit, name), fit),  # type: ignore[misc]
             )
             for name in _loop_delays(fit)
         ],

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 from shaftprint.tables import Table
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from shaftprint.campaign import Campaign
     from shaftprint.clocks import LoggerClock
     from shaftprint.fingerprint import Fingerprint
@@ -17,7 +15,7 @@ if TYPE_CHECKING:
     from shaftprint.identify.comparison import StructureComparison
     from shaftprint.models import Structure
     from shaftprint.recording import Recording
-    from shaftprint.report.plots import Plot
+    from shaftprint.report.charts import Chart
     from shaftprint.signals import Signals
     from shaftprint.spectra import FrequencyResponse, Spectra
     from shaftprint.survey import ThesisMode
@@ -62,10 +60,8 @@ class Picture:
     """What the figure shows, below it."""
     alt: str
     """What the figure shows, for those who cannot see it."""
-    draw: "Callable[[], Figure]"
-    """Draws it, for print and for browsers without scripts."""
-    plot: "Callable[[], Plot] | None" = None
-    """Describes the interactive figure that a browser shows instead; None where there is none."""
+    chart: "Callable[[], Chart]"
+    """Describes it when it is needed."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -1,7 +1,6 @@
 """The section of a report that draws the uncertainty: shares of the sources, and how far parabolas can be trusted."""
 
-from shaftprint.report.figures import plot_budget, plot_profiles
-from shaftprint.report.plots import budget_plot, profile_plot
+from shaftprint.report.figures import budget_chart, profile_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section
 
 
@@ -15,8 +14,7 @@ def uncertainty_section(inputs: Inputs) -> list[Section]:
             name="budget",
             caption="Share of each source in the variance of every number.",
             alt="One horizontal bar for each number, divided by the share of each source in its variance.",
-            draw=lambda: plot_budget(budget),
-            plot=lambda: budget_plot(budget),
+            chart=lambda: budget_chart(budget),
         )
     ]
     if inputs.identification.is_likelihood:
@@ -29,8 +27,7 @@ def uncertainty_section(inputs: Inputs) -> list[Section]:
                     "the profile passes the dotted line. A profile that ends below it has met a bound of the search."
                 ),
                 alt="One small panel for each parameter with the profile of the cost and the parabola beside it.",
-                draw=lambda: plot_profiles(inputs.identification),
-                plot=lambda: profile_plot(inputs.identification),
+                chart=lambda: profile_chart(inputs.identification),
             )
         )
     return [

@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
-from shaftprint.report.figures import plot_validation, plot_validation_summary
-from shaftprint.report.plots import validation_plot
+from shaftprint.report.figures import validation_chart, validation_summary_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section, picture_name
 from shaftprint.tables import misfit_table
 
@@ -29,7 +28,7 @@ def validation_section(inputs: Inputs) -> list[Section]:
             name="validation_summary",
             caption="What the model misses of each excerpt beyond noise, with 95 % intervals, and what is allowed.",
             alt="Error of speed and torque in every excerpt as points with intervals, and a line at the allowed error.",
-            draw=partial(plot_validation_summary, first),
+            chart=partial(validation_summary_chart, first),
         ),
         *(picture for picture in _excerpt_pictures(inputs) if shown is None or picture.name != shown.name),
     ]
@@ -67,15 +66,14 @@ def _picture(validations: "Sequence[Validation]", comparison: "ExcerptComparison
             f"{validations[0].settings.highest_hz:g} Hz."
         ),
         alt=f"Speed and torque over time, measured and by the model, of {excerpt.record}, {excerpt.title}.",
-        draw=partial(
-            plot_validation,
+        chart=partial(
+            validation_chart,
             validations,
             excerpt.record,
             excerpt.title,
             set_point=excerpt.kind != "chirp band",
             around_step_s=AROUND_STEP_S if is_step else None,
         ),
-        plot=partial(validation_plot, validations, excerpt.record, excerpt.title),
     )
 
 

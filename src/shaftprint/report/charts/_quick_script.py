@@ -7,7 +7,7 @@ asks for it. Taken out of that list it lies idle. What is not recognised stays a
 
 import re
 
-from shaftprint.report.plots._plot import TRACE_TYPES
+from shaftprint.report.charts._plotly import TRACE_TYPES
 
 _NAME = r"[\w$]+"
 # Functions that wait until somebody asks for what they export.

@@ -32,7 +32,7 @@ def plotly_script() -> bytes:
     where = f"in {places[0]}" if places else "installed"
     raise ReportError(
         f"report: expected the package plotly with its script {SCRIPT.name}, found none {where}; install it with "
-        '`pip install "plotly>=6"`, or render the report with interactive=False.'
+        '`pip install "plotly>=6"`.'
     )
 
 
