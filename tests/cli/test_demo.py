@@ -27,10 +27,10 @@ def test_files(demo):
 def test_report_has_its_figures(demo):
     folder, _ = demo
     page = "".join((folder / name).read_text(encoding="utf-8") for name in ("index.html", "thesis.html"))
-    named = {name for name in (path.name for path in (folder / "figures").iterdir()) if f"figures/{name}" in page}
-    assert named == {path.name for path in (folder / "figures").iterdir()}
-    # a figure of many points is a PNG, so that the folder stays small
-    assert {"fit", "closed_loop", "thesis_mode_5_1", "strips"} <= {Path(name).stem for name in named}
+    written = {path.name for path in (folder / "plots").iterdir()}
+    assert {name for name in written if f"plots/{name}" in page} == written
+    assert {"fit", "closed_loop", "thesis_mode_5_1", "strips"} <= {Path(name).stem for name in written}
+    assert not (folder / "figures").exists()
 
 
 def test_last_lines_say_what_was_found_and_where(demo):

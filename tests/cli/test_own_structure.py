@@ -151,7 +151,7 @@ def test_ties_go_through_the_whole_chain_and_lead_to_the_same_optimum(run, recor
     k_p, k_i, t_i = (tied.quantity(name).value for name in ("K_p", "K_i", "T_i"))
     assert k_i == pytest.approx(k_p / t_i, rel=1e-9)
     assert tied.quantity("gain margin").interval_95 is not None
-    figures = {path.stem for path in (tmp_path / "tied" / "figures").iterdir()}
+    figures = {path.stem for path in (tmp_path / "tied" / "plots").iterdir()}
     assert {"sensitivity_my-loop_1", "structures_5_3", "structures_gauge-core"} <= figures
 
     assert run("identify", recording, *GIVEN, "--structure", "CL4", "-o", tmp_path / "plain").exit_code == 0

@@ -98,8 +98,7 @@ def expect_identification(folder, printed, words):
     assert "shaftprint limits" in printed or "Nothing hints at a limit" in printed
     assert re.search(rf"^Fingerprint: {place.name}.fingerprint\.json$", printed, flags=re.MULTILINE)
     page = (place / "index.html").read_text(encoding="utf-8")
-    assert all(f"figures/{path.name}" in page for path in (place / "figures").iterdir())
-    assert any((place / "plots").iterdir())
+    assert all(f"plots/{path.name}" in page for path in (place / "plots").iterdir())
     assert found.quality.weighting == "MaximumLikelihood"
     assert found.quality.starts == 50
     assert (found.priors["g"].mean, found.priors["g"].std) == (0.0, 0.1)
@@ -226,7 +225,7 @@ def expect_explanation(folder, printed, words):
     assert not set("\N{MINUS SIGN}\N{PLUS-MINUS SIGN}\N{DEGREE SIGN}") & set(printed)
     place = folder / after(words, "-o")
     assert 'id="explanation"' in (place / "thesis.html").read_text(encoding="utf-8")
-    assert (place / "figures" / "missing_damping.svg").is_file()
+    assert (place / "plots" / "missing_damping.js").is_file()
     assert read_fingerprint(place / "fingerprint.json").structure == "GAUGE-CLOSED"
 
 

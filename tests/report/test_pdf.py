@@ -9,7 +9,7 @@ import pytest
 
 from shaftprint.errors import ReportError
 from shaftprint.report import render_pdf, render_report
-from shaftprint.report.figures import save_figure
+from shaftprint.report.charts import save_chart
 from shaftprint.report.paper import write_pdf
 from shaftprint.report.sections import cover_of, number_section, stability_section, verdict_section
 
@@ -45,7 +45,9 @@ def test_the_first_page_is_one_sheet_and_the_same_report_the_same_bytes(tmp_path
 
 
 def test_what_is_folded_is_left_out(tmp_path, survey, fingerprint, vessel):
-    inputs = SimpleNamespace(identification=survey.identification, fingerprint=fingerprint, truth={}, validations=())
+    inputs = SimpleNamespace(
+        identification=survey.identification, fingerprint=fingerprint, truth={}, validations=(), signals=None
+    )
     (section,) = stability_section(inputs)
     folded = written(tmp_path / "folded.pdf", fingerprint, vessel, further=[replace(section, folded=True)])
     assert folded == written(tmp_path / "without.pdf", fingerprint, vessel)
@@ -56,9 +58,11 @@ def test_what_is_folded_is_left_out(tmp_path, survey, fingerprint, vessel):
 def test_texts_of_files_stay_texts(tmp_path, survey, fingerprint, vessel):
     """Tags of ReportLab in names of a ship, test, place, parameter and unit: none loads a picture or makes a link."""
     (section,) = stability_section(
-        SimpleNamespace(identification=survey.identification, fingerprint=fingerprint, truth={}, validations=())
+        SimpleNamespace(
+            identification=survey.identification, fingerprint=fingerprint, truth={}, validations=(), signals=None
+        )
     )
-    save_figure(section.pictures[0].draw(), tmp_path / "x.png")
+    save_chart(section.pictures[0].chart(), tmp_path / "x.png")
     evil = f"<img src='{tmp_path / 'x.png'}' width='9' height='9'/> & <a href='http://x.y'>z</a> \x1b[2J </para>"
     conditions = fingerprint.conditions.model_copy(update={"vessel": evil, "campaign": evil, "place": evil})
     first = fingerprint.parameters[0].model_copy(update={"name": evil, "unit": evil, "meaning": evil})

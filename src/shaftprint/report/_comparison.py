@@ -53,8 +53,8 @@ def render_comparison(
         Structures of one's own by name; those that are shipped are known.
     load_repeatability
         As in ``differences``.
-    interactive
-        Whether figures can be zoomed; without it the page runs no script.
+    pictures
+        Whether every chart is written as SVG, PDF and PNG too, into the folder ``figures``.
     overwrite
         Whether an earlier report there may be replaced.
 

@@ -66,8 +66,8 @@ def render_report(
         Fingerprint of an earlier test of the line; the first page says what has changed since.
     pdf
         Whether page one and the engineer's summary are written as ``report.pdf`` too.
-    interactive
-        Whether figures can be zoomed; without it the page runs no script.
+    pictures
+        Whether every chart is written as SVG, PDF and PNG too, into the folder ``figures``.
     overwrite
         Whether an earlier report there may be replaced.
     progress

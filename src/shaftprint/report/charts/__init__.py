@@ -23,8 +23,8 @@ from shaftprint.report.charts._marks import (
     Straight,
     Words,
 )
-from shaftprint.report.charts._matplotlib import draw, save_chart
 from shaftprint.report.charts._packed import packed
+from shaftprint.report.charts._pictures import draw, save_chart
 from shaftprint.report.charts._plotly import chart_json, chart_script
 from shaftprint.report.charts._quick_script import quick_script
 from shaftprint.report.charts._script import plotly_script, plotly_sheets, plotly_version

@@ -1,13 +1,19 @@
-"""A chart as a picture for papers: matplotlib, which takes seconds to load and to draw, is asked for here alone.
+"""A chart as a picture for papers: matplotlib, which takes seconds to load and to draw. ``_pictures`` loads this file.
 
 Line colours go from dark to light in the order of use and every line has its own dashes, so a grey print keeps them
 apart. The hues are those of Okabe and Ito (Color Universal Design, 2008), which colour-blind readers tell apart.
 """
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
+import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator
 
 from shaftprint.report.charts._chart import Chart, Panel, Scale
 from shaftprint.report.charts._marks import (
@@ -25,11 +31,6 @@ from shaftprint.report.charts._marks import (
     marker_of,
 )
 from shaftprint.report.charts._text import as_mathtext, as_plain
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
-    from matplotlib.figure import Figure
 
 WIDTH_CM = 16.0
 CM_PER_INCH = 2.54
@@ -92,18 +93,8 @@ SETTINGS: dict[Any, Any] = {
 }
 
 
-def draw(chart: Chart) -> "Figure":
-    """Return a chart as a figure of matplotlib, which belongs to nobody else.
-
-    Parameters
-    ----------
-    chart
-        What is drawn.
-    """
-    import matplotlib as mpl
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
+def drawn(chart: Chart) -> Figure:
+    """Return a chart as a figure; see ``draw``."""
     rows = [chart.row_px(row) for row in range(chart.rows)]
     with mpl.rc_context(SETTINGS):
         height_cm = CM_PER_PX * chart.height_px
@@ -128,29 +119,16 @@ def draw(chart: Chart) -> "Figure":
     return figure
 
 
-def save_chart(chart: Chart, path: str | Path) -> None:
-    """Write a chart as SVG, PNG or PDF by the suffix; the same chart gives the same bytes.
-
-    Letters are written as outlines, so that the picture does not depend on the reader's fonts.
-
-    Parameters
-    ----------
-    chart
-        What is drawn.
-    path
-        Where it goes; an earlier file there is replaced.
-    """
-    import matplotlib as mpl
-
-    target = Path(path)
+def saved(chart: Chart, target: Path) -> None:
+    """Write a chart by the suffix; see ``save_chart``."""
     nobody = {".svg": {"Date": None, "Creator": None}, ".png": {"Software": None}}.get(
         target.suffix, {"CreationDate": None}
     )
     with mpl.rc_context(SETTINGS):
-        draw(chart).savefig(target, format=target.suffix[1:], dpi=PNG_DPI, metadata=nobody)
+        drawn(chart).savefig(target, format=target.suffix[1:], dpi=PNG_DPI, metadata=nobody)
 
 
-def _draw_panel(axes: "Axes", panel: Panel) -> None:
+def _draw_panel(axes: Axes, panel: Panel) -> None:
     for mark in panel.marks:
         _draw_mark(axes, mark)
     if as_plain(panel.title):
@@ -164,9 +142,7 @@ def _draw_panel(axes: "Axes", panel: Panel) -> None:
         axes.set_ylim(*panel.y.span)
 
 
-def _scale(axis: "Axis", scale: Scale) -> None:
-    from matplotlib.ticker import FuncFormatter, LogLocator, MultipleLocator
-
+def _scale(axis: Axis, scale: Scale) -> None:
     if scale.names:
         axis.set_ticks(np.arange(len(scale.names)), [as_mathtext(name) for name in scale.names])
         axis.grid(visible=False)
@@ -180,14 +156,14 @@ def _scale(axis: "Axis", scale: Scale) -> None:
         axis.set_major_locator(MultipleLocator(scale.step))
 
 
-def _minor_label(axis: "Axis", value: float) -> str:
+def _minor_label(axis: Axis, value: float) -> str:
     """Return a label at 2 and 5 of a decade on an axis that shows little more than one decade."""
     low, high = axis.get_view_interval()
     mantissa = round(value / 10.0 ** np.floor(np.log10(value)), 6)
     return f"{value:g}" if high < FEW_DECADES * low and mantissa in LABELLED else ""
 
 
-def _draw_mark(axes: "Axes", mark: Mark) -> None:
+def _draw_mark(axes: Axes, mark: Mark) -> None:
     label = as_mathtext(getattr(mark, "name", "")) or "_none"
     match mark:
         case Line():
@@ -217,7 +193,7 @@ def _draw_mark(axes: "Axes", mark: Mark) -> None:
             )  # fmt: skip
 
 
-def _draw_points(axes: "Axes", mark: Points, label: str) -> None:
+def _draw_points(axes: Axes, mark: Points, label: str) -> None:
     paint = _paint(mark.shade)
     bars = None if mark.bars is None else np.stack(mark.bars)
     axes.errorbar(
@@ -229,7 +205,7 @@ def _draw_points(axes: "Axes", mark: Points, label: str) -> None:
     )  # fmt: skip
 
 
-def _draw_bars(axes: "Axes", mark: Bars, label: str) -> None:
+def _draw_bars(axes: Axes, mark: Bars, label: str) -> None:
     hatch = HATCHES[mark.shade // COLOURS % len(HATCHES)] if isinstance(mark.shade, int) else ""
     looks: dict[str, Any] = {"color": _paint(mark.shade), "hatch": hatch, "edgecolor": "white", "linewidth": 0.4}
     if mark.upright:
@@ -238,7 +214,7 @@ def _draw_bars(axes: "Axes", mark: Bars, label: str) -> None:
         axes.barh(mark.places, mark.lengths, left=mark.starts, height=mark.width, label=label, **looks)
 
 
-def _draw_fields(axes: "Axes", mark: Fields) -> None:
+def _draw_fields(axes: Axes, mark: Fields) -> None:
     axes.grid(visible=False)
     image = axes.imshow(np.ma.masked_invalid(mark.values), cmap="RdBu_r", vmin=-1.0, vmax=1.0, aspect="auto")
     for row, words in enumerate(mark.words):
@@ -248,7 +224,7 @@ def _draw_fields(axes: "Axes", mark: Fields) -> None:
     axes.figure.colorbar(image, ax=axes, pad=0.02)
 
 
-def _draw_legend(figure: "Figure", panels: "list[Axes]") -> None:
+def _draw_legend(figure: Figure, panels: list[Axes]) -> None:
     """Put one legend for all panels below them, each name once, in as many columns as fit the figure."""
     entries: dict[str, Any] = {}
     for axes in panels:
