@@ -151,7 +151,7 @@ def test_pictures_are_written_where_they_are_asked_for(tmp_path, survey, monkeyp
 @pytest.mark.slow
 def test_a_report_needs_no_matplotlib(tmp_path):
     """It takes half a second to load and most of a report's time to draw: nothing on the way may import it."""
-    code = "import sys, shaftprint.cli, shaftprint.cli.commands._identify; print('matplotlib' in sys.modules)"
+    code = "import sys, shaftprint.cli, shaftprint.report; print('matplotlib' in sys.modules)"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "False"
 

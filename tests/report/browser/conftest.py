@@ -36,10 +36,13 @@ class Visit:
         raise AssertionError(f"never true: {expression}; messages: {self.messages}")
 
     def show(self, name):
-        """Scroll to a plot and wait until it is drawn; return a handle of it."""
+        """Scroll to a plot, unfold what it is in, and wait until it is drawn; return a handle of it."""
         place = self.page.locator(f"#plot-{name}")
         # Playwright's own way waits until nothing moves, which a busy machine may never see.
-        place.evaluate("element => element.scrollIntoView({block: 'center'})")
+        place.evaluate(
+            "element => { const part = element.closest('details'); if (part) part.open = true;"
+            " element.scrollIntoView({block: 'center'}); }"
+        )
         self.wait_for(f"document.getElementById('plot-{name}').dataset.state === 'drawn'")
         return place
 

@@ -15,7 +15,8 @@ from shaftprint.validation import ValidationSettings, validate
 pytestmark = pytest.mark.slow
 
 
-SECTIONS = ("fit", "stability", "validation", "quality", "uncertainty", "time")
+SECTIONS = ("fit", "summary", "stability", "validation", "quality", "uncertainty", "time")
+FOLDED = ("time",)
 PLOTS = (
     "fit",
     "residuals",
@@ -38,7 +39,8 @@ def report(browser, tmp_path_factory, survey, identification, signals, campaign)
 
     def chosen(inputs):
         groups = [make(inputs) for make in made]
-        return [section for group in groups for section in (group if isinstance(group, list) else [group])]
+        listed = [section for group in groups for section in (group if isinstance(group, list) else [group])]
+        return [replace(section, folded=section.key in FOLDED) for section in listed]
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(render_module, "page_sections", chosen)
@@ -75,6 +77,17 @@ def test_charts_have_the_room_that_they_take(opened):
         box = place.bounding_box()
         inner = opened.page.locator(f"#plot-{name} .main-svg").first.bounding_box()
         assert (inner["width"], inner["height"]) == pytest.approx((box["width"], box["height"]), abs=1.0), name
+
+
+def test_a_folded_chart_is_drawn_when_its_section_is_opened(opened):
+    opened.show("fit")
+    state = "document.getElementById('plot-staircase').dataset.state"
+    opened.page.locator("details summary").last.scroll_into_view_if_needed()
+    opened.page.wait_for_timeout(300)
+    assert opened.page.evaluate(state) != "drawn"
+    opened.page.locator("details summary").last.click()
+    opened.page.locator("#plot-staircase").scroll_into_view_if_needed()
+    opened.wait_for(f"{state} === 'drawn'")
 
 
 def test_no_letter_of_a_chart_is_smaller_than_eleven_px(opened):
@@ -164,7 +177,7 @@ def test_tab_goes_from_the_skip_link_through_the_page_in_its_order(opened):
     names = [name for _, name, _ in seen]
     assert "plot-fit" in names
     reached = list(dict.fromkeys(name for name in names if name.startswith("plot-")))
-    assert reached[:3] == ["plot-fit", "plot-residuals", "plot-validation_st1_step_208"]
+    assert reached[:3] == ["plot-fit", "plot-validation_st1_step_208", "plot-residuals"]
 
 
 def test_the_first_screen_holds_the_verdict(opened, fingerprint):
@@ -257,11 +270,15 @@ def test_print_has_every_chart_in_light_colours_and_no_buttons(visit, report, tm
             "document.querySelectorAll('head script[src*=plots]').length >= document.querySelectorAll('.plot').length"
         )
         found.page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
-        assert found.page.locator(".plot[data-state=drawn]").count() == found.page.locator(".plot").count()
+        drawn = found.page.eval_on_selector_all(".plot[data-state=drawn]", "list => list.map(e => e.dataset.plot)")
+        assert drawn == found.page.eval_on_selector_all(
+            "section > figure .plot", "list => list.map(e => e.dataset.plot)"
+        )
+        assert set(PLOTS) - set(drawn) == {"staircase"}
         found.page.emulate_media(media="print", color_scheme="light")
         visible = "list => list.filter(e => e.getBoundingClientRect().height > 0).length"
         assert found.page.eval_on_selector_all("button, nav, .instead", visible) == 0
-        assert found.page.eval_on_selector_all(".plot", visible) >= len(PLOTS)
+        assert found.page.eval_on_selector_all(".plot", visible) == len(drawn) >= len(PLOTS) - 1
         ink = "getComputedStyle(document.querySelector('#plot-fit .js-line')).stroke"
         assert found.page.evaluate(ink) == "rgb(0, 63, 107)"
         pdf = found.page.pdf(format="A4")
