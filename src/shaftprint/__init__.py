@@ -23,7 +23,7 @@ room            nouns                       verbs
 ``export``      ``ExportedModel``           ``exported_model``, ``write_fmu``, ``write_matlab``, ``write_modelica``
 ``survey``      ``Survey``                  ``run``, ``measure``, ``fit``, ``survey_of``
 ``tables``      ``Table``                   ``parameter_table``, ``physical_table``
-``report``                                  ``render_report``, ``plot_bode``
+``report``                                  ``render_report``, ``plot``, ``bode_chart``
 ``tug``         ``Truth``                   ``sail``
 =============== =========================== ==========================================================================
 

@@ -43,7 +43,7 @@ def test_a_name_that_is_not_there_is_refused_with_the_rooms():
         ("load_fingerprint", "sp.fingerprint.read_fingerprint"),
         ("read_vessel", "sp.vessel.load_vessel"),
         ("load_recording", "sp.recording.read_recording"),
-        ("plot_bodes", "sp.report.plot_bode"),
+        ("bode_charts", "sp.report.bode_chart"),
         ("Vessel", "sp.vessel.Vessel"),
         ("open", "sp.open_survey"),
     ],
