@@ -18,7 +18,7 @@ FENCE = re.compile(r"^```([^\n]*)\n(.*?)^```", flags=re.MULTILINE | re.DOTALL)
 PYTHON = ("python", "{code-cell} ipython3")
 # A block without a kind is one of these or one of ``SHOWN``.
 SHELL = ("", "sh", "bash", "console", "text")
-PROGRAMS = ("shaftprint", "make", "python", "py", "pip", "pytest")
+PROGRAMS = ("shaftprint", "make", "python", "py", "pip", "pytest", "pipx", "uv", "docker")
 # Blocks that are no lines for a shell, by page and first words: output of a command, or equations.
 SHOWN = {
     "README.md": "What was found",

@@ -12,6 +12,8 @@ import tomllib
 import pytest
 from pages import PAGES, ROOT, inline_lines, shell_lines
 
+from shaftprint.cli import shaftprint
+
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 # the line of a page with its arguments, each once
 LINES = list(
@@ -36,7 +38,7 @@ def of(*first):
 
 def test_every_line_is_looked_at():
     for line in LINES:
-        alone = line[0] in ("make", "pip", "pytest", "py")
+        alone = line[0] in ("make", "pip", "pytest", "py", "pipx", "uv", "docker")
         module = line[1] == "-m" and line[2].startswith(("benchmarks", "pip", "pytest", "tests.wrong_recordings"))
         assert alone or module or line[1] == "-c" or line[1].startswith("benchmarks/"), line
 
@@ -66,6 +68,27 @@ def test_pip_installs_what_is_there(words):
     if "--no-build-isolation" in words:
         # what builds the package has been installed by the line before
         assert re.search(r"^hatchling==", (ROOT / "requirements/run.txt").read_text(encoding="utf-8"), re.MULTILINE)
+
+
+@pytest.mark.parametrize("words", [*of("pipx", "install"), *of("uv", "tool", "install")])
+def test_what_is_installed_is_the_wheel_that_make_writes(words):
+    (word,) = words
+    path, extras = word.removesuffix("]").split("[")
+    assert path == f"./dist/shaftprint-{PROJECT['version']}-py3-none-any.whl"
+    assert set(extras.split(",")) <= set(PROJECT["optional-dependencies"])
+
+
+@pytest.mark.parametrize("words", of("docker", "build"))
+def test_container_is_built_from_its_file(words):
+    # what the file itself asks for: tests/test_container.py
+    assert words == ("-t", "shaftprint", ".")
+
+
+@pytest.mark.parametrize("words", of("docker", "run"))
+def test_container_takes_the_command(words):
+    options, (name, *rest) = words[: words.index("shaftprint")], words[words.index("shaftprint") + 1 :]
+    assert options == ("--rm", "--network", "none", "-v", ".:/data")
+    shaftprint.get_command(None, name).make_context(name, list(rest))
 
 
 @pytest.mark.parametrize("words", [*of("pytest"), *of("python", "-m", "pytest")])
