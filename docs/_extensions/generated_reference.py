@@ -8,6 +8,7 @@ from pathlib import Path
 from types import ModuleType
 
 import click
+from page_shell import WIDTH
 from sphinx.application import Sphinx
 
 import shaftprint
@@ -110,20 +111,25 @@ def _file_name(name: str, kind: str, pages: dict[str, str], room: str) -> str:
 
 
 def commands_page() -> str:
-    """Return the page of the commands: what ``--help`` prints of each of them."""
+    """Return the page of the commands: what ``--help`` prints of each of them, by what they are for."""
     title = "Commands"
     parts = [
         f"{title}\n{'=' * len(title)}\n\n",
-        "What ``shaftprint COMMAND --help`` prints. A command ends with 0 when it is done, with 1 when an input is\n"
-        "wrong that you can mend (one sentence says which), with 2 for an option that does not exist, and with 130\n"
-        "when it was interrupted.\n",
+        "What ``shaftprint COMMAND --help`` prints. :doc:`What commands print </command-output>` tells of JSON, of quiet\n"
+        "commands and of how a command ends.\n",
     ]
-    for name, words in program.helps.items():
-        _, command, _ = program.resolve_command(click.Context(program), [name])
-        context = click.Context(command, info_name=f"shaftprint {name}", max_content_width=96, terminal_width=96)
-        text = "\n".join(f"   {line}".rstrip() for line in command.get_help(context).splitlines())
-        parts.append(f"\n{name}\n{'-' * len(name)}\n\n{words}\n\n.. code-block:: none\n\n{text}\n")
+    for heading, commands in program.sections.items():
+        parts.append(f"\n{heading}\n{'-' * len(heading)}\n")
+        parts += [_command(name) for name in commands]
     return "".join(parts)
+
+
+def _command(name: str) -> str:
+    """Return name and help of one command."""
+    _, command, _ = program.resolve_command(click.Context(program), [name])
+    context = click.Context(command, info_name=f"shaftprint {name}", max_content_width=WIDTH, terminal_width=WIDTH)
+    text = "\n".join(f"   {line}".rstrip() for line in command.get_help(context).splitlines())
+    return f"\n{name}\n{'~' * len(name)}\n\n.. code-block:: none\n\n{text}\n"
 
 
 def write_pages(app: Sphinx) -> None:

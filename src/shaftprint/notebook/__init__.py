@@ -9,7 +9,7 @@ from shaftprint.notebook._labelled_rows import labelled_rows
 from shaftprint.notebook._library import library
 from shaftprint.notebook._public_names import closest_names
 from shaftprint.notebook._shown import Shown, field_words
-from shaftprint.notebook._summary import Summary, html_table, shortened
+from shaftprint.notebook._summary import Summary, shortened
 
 __all__ = [
     "Labelled",
@@ -19,7 +19,6 @@ __all__ = [
     "Variable",
     "closest_names",
     "field_words",
-    "html_table",
     "labelled_rows",
     "library",
     "shortened",

@@ -1,12 +1,14 @@
 """What matters of a noun, as lines of text and as a small table for a notebook."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from shaftprint.escape import html_text, terminal_line
 
 LINE_WIDTH = 100
 MOST_NAMES = 12
+# Notebooks set cells to the right, for numbers; a fact is a sentence.
+CELL_STYLE = 'style="text-align: left; vertical-align: top"'
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -26,40 +28,18 @@ class Summary:
         return "\n".join(_cut(terminal_line(line)) for line in lines)
 
     def html(self) -> str:
-        """Return a table of two columns in HTML, without scripts or styles of its own."""
-        rows = [(label, value) for label, value in self.facts.items() if value]
-        return html_table(self.title, (), rows)
+        """Return a table of two columns in HTML, whose every text is escaped, without scripts."""
+        rows = (
+            f'<tr><th scope="row" {CELL_STYLE}>{html_text(label)}</th><td {CELL_STYLE}>{html_text(value)}</td></tr>'
+            for label, value in self.facts.items()
+            if value
+        )
+        return f"<table><caption>{html_text(self.title)}</caption><tbody>{''.join(rows)}</tbody></table>"
 
 
 def _cut(line: str) -> str:
     """Return a line that fits a terminal; what is left out at its end is marked."""
     return line if len(line) <= LINE_WIDTH else line[: LINE_WIDTH - 1].rstrip() + "…"
-
-
-def html_table(title: str, headings: Sequence[str], rows: Iterable[Sequence[str]], note: str = "") -> str:
-    """Return a table in HTML whose every text is escaped.
-
-    Parameters
-    ----------
-    title
-        What it shows, above it.
-    headings
-        Names of the columns; none for a table of facts, whose rows begin with their name.
-    rows
-        Cells.
-    note
-        What a reader must know with it, below.
-    """
-    parts = [f"<table><caption>{html_text(title)}</caption>"]
-    if headings:
-        parts.append("<thead><tr>" + "".join(f'<th scope="col">{html_text(one)}</th>' for one in headings))
-        parts.append("</tr></thead>")
-    parts.append("<tbody>")
-    for name, *cells in rows:
-        parts.append(f'<tr><th scope="row">{html_text(name)}</th>')
-        parts.append("".join(f"<td>{html_text(cell)}</td>" for cell in cells) + "</tr>")
-    parts.append("</tbody></table>" + (f"<p>{html_text(note)}</p>" if note else ""))
-    return "".join(parts)
 
 
 def shortened(names: Iterable[str]) -> str:

@@ -1,0 +1,47 @@
+"""What the page on the output of commands states of all of them."""
+
+import re
+
+import click
+import pytest
+from click.testing import CliRunner
+from pages import PAGES
+
+from shaftprint.cli import shaftprint
+
+PAGE = PAGES["docs/command-output.md"]
+
+
+def first_cells(heading):
+    """Return the code in the first cell of each row of the table below a heading."""
+    part = PAGE[PAGE.index(heading) :]
+    return re.findall(r"^\| ([^|]+?) \|", part[: part.find("\n## ", 1)], flags=re.MULTILINE)[1:]
+
+
+def test_members_of_the_object_are_those_of_the_page():
+    document = CliRunner().invoke(shaftprint, ["structures", "CL4", "--json"]).stdout
+    assert set(re.findall(r'^ "(\w+)"', document, flags=re.MULTILINE)) == {
+        cell.strip("`") for cell in first_cells("## JSON")
+    }
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"),
+    [(["structures", "CL4"], 0), (["show", "nothing.json"], 1), (["structures", "--no-such-option"], 2), (["sho"], 2)],
+)
+def test_a_command_ends_as_the_page_states(arguments, code):
+    assert CliRunner().invoke(shaftprint, arguments).exit_code == code
+    assert str(code) in first_cells("## How a command ends")
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_a_shell_is_given_its_completion(shell):
+    assert f"{shell}_source" in PAGE
+    found = CliRunner(env={"_SHAFTPRINT_COMPLETE": f"{shell}_source"}).invoke(shaftprint, prog_name="shaftprint")
+    assert found.exit_code == 0
+    assert f"{shell}_complete" in found.stdout
+
+
+def test_a_shell_completes_the_commands():
+    completion = click.shell_completion.get_completion_class("bash")(shaftprint, {}, "shaftprint", "_X")
+    assert [item.value for item in completion.get_completions([], "ide")] == ["identify"]
