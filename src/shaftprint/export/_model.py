@@ -10,7 +10,7 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import ExportError
 from shaftprint.fingerprint import Fingerprint, identified_model, named_structure
 from shaftprint.models import Structure
-from shaftprint.notebook import Shown
+from shaftprint.notebook import Shown, Summary, shortened
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -62,6 +62,17 @@ class ExportedModel(Shown):
         covariance = self.covariance_matrix
         if covariance.shape != (size, size) or not np.all(np.isfinite(covariance)):
             raise ExportError(f"export: expected a finite covariance of {size} parameters, found {covariance.shape}.")
+
+    def summary(self) -> Summary:
+        """Return which model it is, and what of it is known."""
+        facts = {
+            "structure": f"{self.structure.name}: {self.structure.title}",
+            "working point": f"{self.engine_speed_rpm:.1f} rpm, {self.shaft_torque_nm:.0f} N m",
+            "values": shortened(f"{n} {v:.4g}" for n, v in zip(self.structure.names, self.values, strict=True)),
+            "uncertain": shortened(self.uncertain),
+            "not known": shortened(self.not_known),
+        }
+        return Summary(title=f"Model of {self.title}", facts=facts)
 
     @property
     def covariance_matrix(self) -> FloatArray:
