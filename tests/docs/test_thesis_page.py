@@ -69,7 +69,7 @@ def test_every_table_and_figure_of_the_thesis_has_a_row():
     assert printed - {"2.2"} <= tables
 
 
-@pytest.mark.parametrize("name", sorted(set(re.findall(r"`(plot_\w+)`", PAGE))))
+@pytest.mark.parametrize("name", sorted(set(re.findall(r"`(\w+_chart)`", PAGE))))
 def test_figures_are_functions_of_the_report(name):
     assert callable(getattr(report, name))
 
