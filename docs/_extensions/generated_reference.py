@@ -115,8 +115,8 @@ def commands_page() -> str:
     title = "Commands"
     parts = [
         f"{title}\n{'=' * len(title)}\n\n",
-        "What ``shaftprint COMMAND --help`` prints. :doc:`What commands print </command-output>` tells of JSON, of quiet\n"
-        "commands and of how a command ends.\n",
+        "What ``shaftprint COMMAND --help`` prints. JSON, quiet commands and how a command ends are on the page\n"
+        ":doc:`What commands print </command-output>`.\n",
     ]
     for heading, commands in program.sections.items():
         parts.append(f"\n{heading}\n{'-' * len(heading)}\n")

@@ -70,8 +70,7 @@ def test_pip_installs_what_is_there(words):
         assert re.search(r"^hatchling==", (ROOT / "requirements/run.txt").read_text(encoding="utf-8"), re.MULTILINE)
 
 
-# a sentence that only names the program says of what in words
-@pytest.mark.parametrize("words", list(filter(None, [*of("pipx", "install"), *of("uv", "tool", "install")])))
+@pytest.mark.parametrize("words", [*of("pipx", "install"), *of("uv", "tool", "install")])
 def test_what_is_installed_is_the_wheel_that_make_writes(words):
     (word,) = words
     path, extras = word.removesuffix("]").split("[")
