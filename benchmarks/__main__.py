@@ -12,6 +12,7 @@ from benchmarks import (
     readers,
     repeats,
     start_up,
+    waiting,
 )
 from benchmarks.timing import print_machine
 
@@ -25,6 +26,7 @@ ROWS = {
     9: (profiles.run, 15),
     10: (nonlinear_fit.run, 1),
     12: (readers.run, 1),
+    13: (waiting.run, 3),
 }
 
 
@@ -32,7 +34,7 @@ def main() -> None:
     """Run the chosen rows of the benchmarks and print what they took."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
     parser.add_argument("--rows", type=int, nargs="+", choices=tuple(ROWS), default=tuple(ROWS), help="rows to run")
-    parser.add_argument("--repetitions", type=int, help="repetitions of each instead of 9, 3, 7, 7, 5, 25, 15, 1 and 1")
+    parser.add_argument("--repetitions", type=int, help="repetitions instead of 9, 3, 7, 7, 5, 25, 15, 1, 1 and 3")
     chosen = parser.parse_args()
     print_machine()
     for row in chosen.rows:

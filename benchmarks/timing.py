@@ -46,6 +46,8 @@ class Run:
 
     wall_s: float
     """Wall time [s]."""
+    first_line_cpu_s: float
+    """CPU time until it printed its first line [s]; not a number where the system does not tell."""
     cpu_s: float
     """CPU time of all its threads, user and system [s]."""
     peak_mb: float

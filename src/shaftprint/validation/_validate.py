@@ -85,6 +85,8 @@ def validate(
             continue
         run = run_model(chosen, data, of_record, settings, predict=predict, quadratic_propeller=quadratic_propeller)
         comparisons += (_compared(excerpt, run, chosen, settings, rng) for excerpt in of_record)
+        # its derivatives are gone before those of the next record are made
+        del run
     return Validation(
         model=chosen,
         settings=settings,
@@ -195,9 +197,10 @@ def _traces(excerpt: Excerpt, run: Run, model: Model) -> ExcerptTraces:
     variance = np.einsum("iot,ij,jot->ot", slopes, model.covariance, slopes, optimize=True)
     return ExcerptTraces(
         time_s=frozen_float(_time(excerpt, run)),
-        set_point=frozen_float(run.data.set_point[in_data]),
-        measured=frozen_float(run.data.smooth[:, in_data]),
-        model=frozen_float(run.smooth[:, in_model]),
+        # copies: views would keep the whole recording in memory
+        set_point=frozen_float(run.data.set_point[in_data].copy()),
+        measured=frozen_float(run.data.smooth[:, in_data].copy()),
+        model=frozen_float(run.smooth[:, in_model].copy()),
         model_std=frozen_float(np.sqrt(np.maximum(variance, 0.0))),
     )
 
