@@ -81,29 +81,34 @@ def main() -> None:
 def tables(recording: Path) -> str:
     """Return all tables, in Markdown."""
     trial = load_trial("stan-tug-1205", "thesis")
-    thesis, own = (measure(recording, trial, mode=mode) for mode in ("thesis", "shaftprint"))
+    thesis, standard = (measure(recording, trial, mode=mode) for mode in ("thesis", "shaftprint"))
     parts = [
-        calibration(thesis.signals, own.signals),
-        working_point(thesis.signals, own.signals),
-        step_delays(thesis.signals, own.signals),
-        strips(own.signals),
+        calibration(thesis.signals, standard.signals),
+        working_point(thesis.signals, standard.signals),
+        step_delays(thesis.signals, standard.signals),
+        strips(standard.signals),
         windows(trial.campaign),
-        overall_ratios(thesis, own),
-        local_ratios(thesis, own),
+        overall_ratios(thesis, standard),
+        local_ratios(thesis, standard),
         limits(),
         inertias(trial.vessel),
     ]
     return "\n".join(parts)
 
 
-def calibration(thesis: Signals, own: Signals) -> str:
+def calibration(thesis: Signals, standard: Signals) -> str:
     """Return table 3.1: levels of the set point, the printed line and the line through the printed levels."""
     slope, intercept = np.polyfit(VOLTS, RPM, 1)
     rows = [
-        (f"{volt:.3f} V", f"{rpm:.2f}", f"{slope * volt + intercept:.2f}", *(_line_at(s, volt) for s in (thesis, own)))
+        (
+            f"{volt:.3f} V",
+            f"{rpm:.2f}",
+            f"{slope * volt + intercept:.2f}",
+            *(_line_at(s, volt) for s in (thesis, standard)),
+        )
         for volt, rpm in zip(VOLTS, RPM, strict=True)
     ]
-    lines = [_line(one) for one in (thesis, own)]
+    lines = [_line(one) for one in (thesis, standard)]
     rows.append(("line, eq. 3.2", "-250.97 U - 83.467", f"{slope:.2f} U - {-intercept:.3f}", *lines))
     headings = ("level", "printed [rpm]", "least squares of the printed [rpm]", *SIMULATED)
     return _table("Table 3.1, page 16: volts to engine speed", headings, rows)
@@ -120,9 +125,9 @@ def _line_at(signals: Signals, volt: float) -> str:
     return f"{rpm_from_rev_s(signals.calibration.slope_rev_s_per_v * volt + signals.calibration.intercept_rev_s):.2f}"
 
 
-def working_point(thesis: Signals, own: Signals) -> str:
+def working_point(thesis: Signals, standard: Signals) -> str:
     """Return table 3.2: engine speed and shaft torque at the working point."""
-    points = [one.working_point for one in (thesis, own)]
+    points = [one.working_point for one in (thesis, standard)]
     speeds = [f"{rpm_from_rev_s(point.engine_speed_rev_s):.1f}" for point in points]
     torques = [f"{point.shaft_torque_nm:.0f}" for point in points]
     rows = [
@@ -132,10 +137,12 @@ def working_point(thesis: Signals, own: Signals) -> str:
     return _table("Table 3.2, page 17: working point", ("number", "printed", "computed again", *SIMULATED), rows)
 
 
-def step_delays(thesis: Signals, own: Signals) -> str:
+def step_delays(thesis: Signals, standard: Signals) -> str:
     """Return table 3.3: time from set point to speed at the middle of six steps."""
     again = SPEED_S - SET_POINT_S
-    simulated = [[step.delay_s for step in one.step_delays if step.staircase == "St1"][:6] for one in (thesis, own)]
+    simulated = [
+        [step.delay_s for step in one.step_delays if step.staircase == "St1"][:6] for one in (thesis, standard)
+    ]
     rows = [
         (str(i + 1), printed, f"{again[i]:.4f}", *(f"{values[i]:.3f}" for values in simulated))
         for i, printed in enumerate(DELAY_S)
@@ -145,11 +152,11 @@ def step_delays(thesis: Signals, own: Signals) -> str:
     return _table("Table 3.3, page 17: delay of each step of St1 [s]", ("step", *WAYS), rows)
 
 
-def strips(own: Signals) -> str:
+def strips(standard: Signals) -> str:
     """Return table 3.4: angles between the reflection strips; the thesis' way keeps them and corrects nothing."""
-    found = 360.0 * own.strips[0].angle_rev
+    angles = 360.0 * standard.strips[0].angle_rev
     # strips are numbered from the first that the recording shows
-    turns = [np.roll(found, turn) for turn in range(found.size)]
+    turns = [np.roll(angles, turn) for turn in range(angles.size)]
     angles = min(turns, key=lambda turned: float(np.abs(turned - STRIP_DEG).sum()))
     errors = 100.0 * (STRIP_DEG / STRIP_DEG.sum() * STRIP_DEG.size - 1.0)
     rows = [
@@ -180,24 +187,24 @@ def windows(campaign: Campaign) -> str:
     return _table("Table 3.5, page 20: windows", headings, rows)
 
 
-def overall_ratios(thesis: Measurement, own: Measurement) -> str:
+def overall_ratios(thesis: Measurement, standard: Measurement) -> str:
     """Return table 3.6: overall signal-to-noise ratio of each channel."""
     rows = []
     for name, printed in OVERALL.items():
-        ratios = [one.spectra.signal_to_noise for one in (thesis, own)]
+        ratios = [one.spectra.signal_to_noise for one in (thesis, standard)]
         rows.append((f"`{name}`", printed, *(f"{one.overall[one.channels.index(name)]:.4f}" for one in ratios)))
     return _table("Table 3.6, page 21: overall signal-to-noise ratio", ("channel", "printed", *SIMULATED), rows)
 
 
-def local_ratios(thesis: Measurement, own: Measurement) -> str:
+def local_ratios(thesis: Measurement, standard: Measurement) -> str:
     """Return table 3.7: signal-to-noise ratio of each line and channel."""
-    ratios = [one.spectra.signal_to_noise for one in (thesis, own)]
+    ratios = [one.spectra.signal_to_noise for one in (thesis, standard)]
     rows = []
     for i, line in enumerate(ratios[0].lines):
         cells = [line]
         for name, printed in LOCAL_DB.items():
-            found = [one.local_db[one.lines.index(line), one.channels.index(name)] for one in ratios]
-            cells.append(" / ".join(f"{value:.1f}" for value in (printed[i], *found)))
+            ratios_db = [one.local_db[one.lines.index(line), one.channels.index(name)] for one in ratios]
+            cells.append(" / ".join(f"{value:.1f}" for value in (printed[i], *ratios_db)))
         rows.append(tuple(cells))
     headings = ("line", *(f"`{name}`" for name in LOCAL_DB))
     caption = "Table 3.7, page 22: ratio of each line [dB], printed / simulated, thesis' way / simulated, shaftprint"

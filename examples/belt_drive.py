@@ -113,18 +113,18 @@ response = response_from_arrays(
     {"torque": torque}, {"w_1": w_1, "w_2": w_2}, 1.0 / STEP_S, excitation=Periodic(period_s=PERIOD_S)
 )
 
-found = identify(drive, response, rng=rng)
-profiled = profile(found)
+fit = identify(drive, response, rng=rng)
+profiled = profile(fit)
 intervals = profiled.intervals
 print()
-for number in (*found.parameters, *found.combinations):
+for number in (*fit.parameters, *fit.combinations):
     interval = intervals[number.name]
     print(
         f"{number.name:14}{number.value:10.5g} +/- {number.std:<9.2g}"
         f"95 %: {interval.lower:.5g} to {interval.upper:.5g} {number.unit}"
     )
 
-verdict = assess(found, profile=profiled)
+verdict = assess(fit, profile=profiled)
 print(*verdict.sentences, sep="\n")
 
 # The same for a structure that is wrong: a belt that does not stretch.
@@ -150,5 +150,5 @@ def gain_margin(named):
     return margins(controlled, controlled.vector({name: named[name] for name in drive.names})).gain_margin
 
 
-margin = found.derived("gain margin", "-", gain_margin)
+margin = fit.derived("gain margin", "-", gain_margin)
 print(f"gain margin of the controller: {margin.value:.3f} +/- {margin.std:.3f}")

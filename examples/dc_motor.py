@@ -75,11 +75,11 @@ motor = Structure(
 print(identifiability(motor, rng=rng).text)
 print(identifiability(motor, outputs=["speed"], rng=rng).text)
 
-found = identify(motor, response, rng=rng)
-intervals = profile_intervals(found)
-print(f"\nchi-square {found.chi_square:.1f} for {found.degrees_of_freedom} degrees of freedom, p = {found.p_value:.2f}")
+fit = identify(motor, response, rng=rng)
+intervals = profile_intervals(fit)
+print(f"\nchi-square {fit.chi_square:.1f} for {fit.degrees_of_freedom} degrees of freedom, p = {fit.p_value:.2f}")
 print("\nconstant  estimate +/- std        95 % interval           truth")
-for number in found.parameters:
+for number in fit.parameters:
     interval = intervals[number.name]
     print(
         f"{number.name:8}{number.value:11.4g} +/- {number.std:<9.2g}{interval.lower:10.4g} to {interval.upper:<10.4g}"

@@ -45,13 +45,13 @@ with TemporaryDirectory() as folder:
     written = sp.export.write_fmu(model, Path(folder) / "tug.fmu", platforms=[here])
     size_kb, step_ms = written.path.stat().st_size / 1024, 1e3 * written.internal_step_s
     print(f"{written.path.name}: {size_kb:.0f} kB, steps of {step_ms:.2g} ms")
-    given = np.array(
+    course = np.array(
         list(zip(time_s, set_point_rpm, strict=True)), dtype=[("time", float), ("engine_speed_set_point", float)]
     )
     ran = fmpy.simulate_fmu(
         str(written.path),
         start_values={"engine_speed_set_point": set_point_rpm[0]},
-        input=given,
+        input=course,
         stop_time=time_s[-1],
         output_interval=0.01,
         output=["engine_speed", "shaft_torque"],

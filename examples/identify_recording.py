@@ -31,15 +31,15 @@ for name, prior in priors.items():
     print(f"known beforehand: {name} = {prior.mean:.4f} +/- {prior.std:.4f}")
 
 settings = sp.identify.Settings(priors=priors)
-found = sp.identify.identify(gauge, response, rng=np.random.default_rng(1), settings=settings)
-intervals = sp.identify.profile_intervals(found)
-for number in (*found.parameters, *found.combinations):
+fit = sp.identify.identify(gauge, response, rng=np.random.default_rng(1), settings=settings)
+intervals = sp.identify.profile_intervals(fit)
+for number in (*fit.parameters, *fit.combinations):
     interval = intervals[number.name]
     print(f"{number.name:26}{number.value:9.4f} {number.unit:6} 95 %: {interval.lower:.4f} to {interval.upper:.4f}")
 
 # The fingerprint adds physical values, margins, the verdict and the conditions under which all of it holds.
 fingerprint = sp.fingerprint.take_fingerprint(
-    found,
+    fit,
     signals=signals,
     signal_to_noise=measured.signal_to_noise,
     vessel=vessel,

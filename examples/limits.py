@@ -57,7 +57,7 @@ for name, trace in traces.items():
 units = {"lowest speed": "rpm", "overshoot": "%", "rise time": "s", "lowest torque": "N m", "highest torque": "N m"}
 print(f"{'':16}" + "".join(f"{name:>20}" for name in numbers))
 for number, unit in units.items():
-    print(f"{number:16}" + "".join(f"{found[number]:20.4g}" for found in numbers.values()) + f"  {unit}")
+    print(f"{number:16}" + "".join(f"{values[number]:20.4g}" for values in numbers.values()) + f"  {unit}")
 
 
 def signals(trace):

@@ -54,13 +54,12 @@ fits = {
     "CL4": identify_chirp(structure("CL4"), record, rng=np.random.default_rng(1)),
     "GAUGE-CLOSED": identify_chirp(gauge, record, rng=np.random.default_rng(1), settings=Settings(priors=priors)),
 }
-for name, found in fits.items():
+for name, fit in fits.items():
     percents = ", ".join(
-        f"{output} {percent:.1f} % of {found.fit_ceiling[output]:.1f} %"
-        for output, percent in found.fit_percent.items()
+        f"{output} {percent:.1f} % of {fit.fit_ceiling[output]:.1f} %" for output, percent in fit.fit_percent.items()
     )
-    print(f"\n{name}: FitPercent {percents}, p = {found.p_value:.2g}")
-    for estimate in found.parameters:
+    print(f"\n{name}: FitPercent {percents}, p = {fit.p_value:.2g}")
+    for estimate in fit.parameters:
         print(f"  {estimate.name:8}{estimate.value:9.4f} +/- {estimate.std:.4f} {estimate.unit}")
 # At an amplitude of 0.6 V the tug is not linear any more: no linear structure explains this chirp within its noise, and
 # numbers that the data hardly fix, such as t_sp, go wrong by more than their deviation. The verdict refuses the fit.

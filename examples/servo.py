@@ -110,10 +110,10 @@ plant = plant_from_closed_loop(response, input="force", output="position")
 # And as if there were no loop, which is wrong.
 direct = response_from_arrays({"force": force}, {"position": position}, 1.0 / STEP_S, band_hz=(0.2, 61.0))
 
-found = identify(servo, response, rng=rng)
-print(f"margins of the position loop: gain {margins(servo, found.values).gain_margin:.1f}\n")
+loop_fit = identify(servo, response, rng=rng)
+print(f"margins of the position loop: gain {margins(servo, loop_fit.values).gain_margin:.1f}\n")
 for title, fit in (
-    ("whole loop, gains known", found),
+    ("whole loop, gains known", loop_fit),
     ("axis from the responses to the reference", identify(axis_alone, plant, rng=rng)),
     ("axis from force and position as they are: wrong", identify(axis_alone, direct, rng=rng)),
 ):

@@ -73,10 +73,10 @@ frame = Structure(
 )
 frame = frame.tied("d_g", lambda beta, k_g: beta * k_g, BETA).tied("d_c", lambda beta, k_c: beta * k_c)
 
-found = identify(frame, response, rng=rng)
-intervals = profile_intervals(found)
-print(f"chi-square {found.chi_square:.1f} for {found.degrees_of_freedom} degrees of freedom, p = {found.p_value:.2f}")
-for number in (*found.parameters, *found.combinations):
+fit = identify(frame, response, rng=rng)
+intervals = profile_intervals(fit)
+print(f"chi-square {fit.chi_square:.1f} for {fit.degrees_of_freedom} degrees of freedom, p = {fit.p_value:.2f}")
+for number in (*fit.parameters, *fit.combinations):
     interval = intervals[number.name]
     true = f"truth {TRUE[number.name]:g}" if number.name in TRUE else "tied"
     print(

@@ -1,7 +1,12 @@
-// Guides, tutorials and theory come before the reference, and a page before a place within one.
+// What tells how to do something comes first, what tells why the code is as it is last; a page before a place within one.
+const scoreOfPlace = (page) => {
+  if (page.startsWith("reference/")) return -40;
+  if (page.startsWith("decisions")) return -20;
+  return page.startsWith("tutorials/") || page.startsWith("theory/") || page === "glossary" || page === "what-to-measure" ? 3 : 0;
+};
+
 var Scorer = {
-  score: ([page, title, anchor, description, score]) =>
-    score - (page.startsWith("reference/") ? 40 : 0) - (anchor ? 2 : 0),
+  score: ([page, title, anchor, description, score]) => score + scoreOfPlace(page) - (anchor ? 2 : 0),
   objNameMatch: 11,
   objPartialMatch: 6,
   objPrio: { 0: 15, 1: 5, 2: -5 },

@@ -29,7 +29,7 @@ def run():
 
 def expect_truth(defined, names):
     """Hold estimates and intervals against the constants of the simulation: 95 % of the intervals hold them."""
-    true, found, intervals = defined["TRUE"], defined["found"], defined["intervals"]
+    true, found, intervals = defined["TRUE"], defined["fit"], defined["intervals"]
     estimates = {estimate.name: estimate for estimate in found.parameters}
     assert set(estimates) == set(names)
     for name in names:
@@ -69,7 +69,7 @@ def test_servo(run, capsys):
     # with the reference as input all nine truths lie inside but for one in twenty; without it mass and friction do not
     assert sum(lower <= true[name] <= upper for name, lower, upper in ends[:6]) >= 5
     assert not any(lower <= true[name] <= upper for name, lower, upper in ends[6:])
-    assert defined["found"].p_value > 0.01
+    assert defined["loop_fit"].p_value > 0.01
 
 
 @pytest.mark.slow
@@ -105,7 +105,7 @@ def true_gain_margin(defined):
 def test_two_inputs(run):
     expect_truth(run("two_inputs.py"), ("m_1", "m_2", "k_g", "k_c", "beta"))
     # the dampers follow: 0.0015 s times 40 kN/m and 15 kN/m
-    tied = {c.name: c.value for c in run("two_inputs.py")["found"].combinations}
+    tied = {c.name: c.value for c in run("two_inputs.py")["fit"].combinations}
     assert tied["d_g"] == pytest.approx(60.0, rel=5e-3)
     assert tied["d_c"] == pytest.approx(22.5, rel=5e-3)
 
@@ -196,7 +196,7 @@ def test_every_example_is_run():
     here = Path(__file__).read_text(encoding="utf-8")
     others = (
         Path(__file__).parents[1] / "cli" / "test_readme.py",
-        Path(__file__).with_name("test_two_fingerprints_page.py"),
+        Path(__file__).with_name("test_what_changed_page.py"),
     )
     elsewhere = "".join(path.read_text(encoding="utf-8") for path in others)
     tested = re.findall(r'run\("(\w+\.py)"\)', here) + re.findall(r'"examples" / "(\w+\.py)"', elsewhere)

@@ -30,7 +30,7 @@ def test_the_fan_is_found(defined):
     found = defined["profiled"].intervals
     for name, true in (("K", 12.0), ("T", 0.8), ("t_d", 0.05)):
         assert found[name].lower <= true <= found[name].upper, name
-    assert defined["assess"](defined["found"]).trusted == ("K", "T", "t_d")
+    assert defined["assess"](defined["fit"]).trusted == ("K", "T", "t_d")
     assert {"fan.svg", "fan_residuals.svg"} <= defined["files"]
 
 

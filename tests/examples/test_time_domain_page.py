@@ -26,7 +26,7 @@ def defined(tmp_path_factory):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["found", "again"])
+@pytest.mark.parametrize("name", ["fit", "again"])
 def test_the_fan_is_found_from_all_three_tests(defined, name):
     fit = defined[name]
     assert len(fit.parts) == 3
@@ -38,7 +38,7 @@ def test_the_fan_is_found_from_all_three_tests(defined, name):
 @pytest.mark.slow
 def test_every_record_has_its_own_noise(defined):
     """First coefficients 0.5 and 0.8, as they were put in."""
-    chirp, steps = (part.noise for part in defined["found"].parts[1:])
+    chirp, steps = (part.noise for part in defined["fit"].parts[1:])
     assert chirp.coefficients[0, 0, 0] == pytest.approx(0.5, abs=0.1)
     assert steps.coefficients[0, 0, 0] == pytest.approx(0.8, abs=0.1)
     assert not defined["records"][1].used[700:760].any()

@@ -31,8 +31,8 @@ class Variable:
     @property
     def attributes(self) -> dict[str, str]:
         """Unit and meaning by the names that plots of xarray look for."""
-        known = {"units": self.unit, "long_name": self.meaning}
-        return {name: text for name, text in known.items() if text}
+        texts = {"units": self.unit, "long_name": self.meaning}
+        return {name: text for name, text in texts.items() if text}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -58,12 +58,12 @@ class LabelledData:
         """
         xarray = library("xarray", "to_xarray")
 
-        def given(variables: Mapping[str, Variable]) -> dict[str, Any]:
+        def arrays(variables: Mapping[str, Variable]) -> dict[str, Any]:
             # copies: the arrays of a noun are read-only, and stay so
             return {name: (one.dims, np.array(one.values), one.attributes) for name, one in variables.items()}
 
         dataset: Dataset = xarray.Dataset(
-            given(self.variables), coords=given(self.coordinates), attrs=dict(self.attributes)
+            arrays(self.variables), coords=arrays(self.coordinates), attrs=dict(self.attributes)
         )
         return dataset
 

@@ -61,7 +61,7 @@ class Survey(Shown):
             "structures": shortened(one.structure.name for one in self.fits),
             "verdict": verdict.reason,
             "known well enough": shortened(verdict.trusted),
-            "validation": shortened(f"{one.model.name} {one.outcome}" for one in self.validations),
+            "validation": "; ".join(f"{one.model.name}: {one.headline}" for one in self.validations),
             "remarks": shortened(self.remarks),
         }
         return Summary(title=f"Survey of {self.signals.recording_name}", facts=facts)

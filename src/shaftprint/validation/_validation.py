@@ -71,12 +71,12 @@ class Validation(Shown):
     def summary(self) -> Summary:
         """Return the outcome and the records that it rests on."""
         facts = {
-            "outcome": self.sentences[0] if self.sentences else "",
+            "outcome": self.headline,
             "excerpts": f"{len(self.comparisons)}, of which {len(self.failed)} fail",
             "records": shortened(dict.fromkeys(one.excerpt.record for one in self.comparisons)),
             "findings": str(len(self.findings)),
         }
-        return Summary(title=f"Validation of {self.model.name}: {self.outcome}", facts=facts)
+        return Summary(title=f"Validation of {self.model.name}", facts=facts)
 
     @property
     def failed(self) -> tuple[ExcerptComparison, ...]:
