@@ -157,7 +157,7 @@ def _delay(excerpt: Excerpt, run: Run, model: Model, smooth: Compared) -> Remain
         run.smooth[smooth.place, wide],
         run.slopes[:, smooth.place, wide],
         model.covariance,
-        smooth.noise.autocovariance(smooth.place),
+        smooth.noise.autocovariances[smooth.place],
         rate_hz=run.data.rate_hz,
         margin=margin,
     )

@@ -19,7 +19,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.distributions import chi_square_tail, deviations
 from shaftprint.identify import fit_percent
-from shaftprint.validation.measures._noise_pieces import NoisePieces, correlated
+from shaftprint.validation.measures._noise_pieces import NoisePieces, autocorrelated
 
 Outcome = Literal["passes", "fails", "undecided"]
 PERCENT = 100.0
@@ -103,7 +103,7 @@ def misfit_of(
     residual = smooth.measured - smooth.model
     residual = residual - residual.mean()
     samples = residual.size
-    autocovariance = smooth.noise.autocovariance(smooth.place)
+    autocovariance = smooth.noise.autocovariances[smooth.place]
     energy, energy_variance = _noise_energy(smooth, autocovariance)
     slopes = smooth.slopes - smooth.slopes.mean(axis=1, keepdims=True)
     spread = covariance @ (slopes @ slopes.T) / samples
@@ -153,7 +153,7 @@ def _trace_of_square(autocovariance: FloatArray, samples: int) -> float:
 
 def _noise_along(residual: FloatArray, autocovariance: FloatArray) -> float:
     """Return ``m^T R m / N^2`` for the model's error ``m``, from the residual, less what noise itself gives."""
-    products = correlated(residual, residual)
+    products = autocorrelated(residual)
     lags = min(autocovariance.size, products.size)
     both = float(products[0] * autocovariance[0] + 2.0 * (products[1:lags] @ autocovariance[1:lags]))
     return max(both - _trace_of_square(autocovariance, residual.size), 0.0) / residual.size**2

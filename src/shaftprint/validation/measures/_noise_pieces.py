@@ -15,6 +15,7 @@ is part of the noise.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -39,7 +40,7 @@ _MOST_PIECES = 48
 _LAG_SHARE = 0.5
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class NoisePieces:
     """Pieces of noise like that in one excerpt."""
 
@@ -48,13 +49,18 @@ class NoisePieces:
     as_long: bool
     """Whether they are as long as the excerpt; shorter ones lack what is slower."""
 
-    def autocovariance(self, row: int) -> FloatArray:
-        """Return the autocovariance of speed (0) or torque (1) from lag 0 on, shape (lags,)."""
+    @cached_property
+    def autocovariances(self) -> tuple[FloatArray, FloatArray]:
+        """Autocovariance of speed and of torque from lag 0 on, each of shape (lags,)."""
+        speed, torque = (self._autocovariance(row) for row in range(2))
+        return speed, torque
+
+    def _autocovariance(self, row: int) -> FloatArray:
         chosen = self.pieces[:, row]
         samples = chosen.shape[-1]
         lags = max(int(_LAG_SHARE * samples), 1)
         # divided by all samples, not by those of the lag: a covariance that no signal can have is never made
-        return np.asarray(correlated(chosen, chosen)[..., :lags].mean(axis=0) / samples)
+        return np.asarray(autocorrelated(chosen)[..., :lags].mean(axis=0) / samples)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -105,12 +111,12 @@ class QuietNoise:
         return NoisePieces(pieces=cut - cut.mean(axis=-1, keepdims=True), as_long=length == samples)
 
 
-def correlated(one: FloatArray, other: FloatArray) -> FloatArray:
-    """Return the sums of products at lags from 0 on, along the last axis."""
-    samples = one.shape[-1]
+def autocorrelated(values: FloatArray) -> FloatArray:
+    """Return the sums of products of values with themselves at lags from 0 on, along the last axis."""
+    samples = values.shape[-1]
     size = scipy.fft.next_fast_len(2 * samples, real=True)
-    spectrum = np.fft.rfft(one, size).conj() * np.fft.rfft(other, size)
-    return np.asarray(np.fft.irfft(spectrum, size)[..., :samples])
+    spectrum = np.fft.rfft(values, size)
+    return np.asarray(np.fft.irfft(spectrum.conj() * spectrum, size)[..., :samples])
 
 
 def quiet_noise(
