@@ -77,7 +77,7 @@ def to_digit_of(value: float, std: float) -> str:
     return plain(round(value, place), max(place, 0))
 
 
-def decimals_of(value: float, std: float) -> int:
+def _decimals_of(value: float, std: float) -> int:
     """Return how many decimals are worth printing: two digits of the standard deviation, or four of the value."""
     return max(0, _last_place(value, std)) if math.isfinite(value) else 0
 
@@ -87,7 +87,7 @@ def with_deviation(value: float, std: float) -> str:
     if not (math.isfinite(std) and math.isfinite(value)):
         return f"{rounded(value)} ({NOT_KNOWN})"
     if std == 0.0:
-        return f"{rounded(value)} ± {plain(0.0, decimals_of(value, 0.0))}"
+        return f"{rounded(value)} ± {plain(0.0, _decimals_of(value, 0.0))}"
     return f"{to_digit_of(value, std)} ± {to_digit_of(std, std)}"
 
 
@@ -96,7 +96,7 @@ def interval(lower: float, upper: float, std: float) -> str:
     if math.isnan(lower) or math.isnan(upper):
         return "–"
     if not (std > 0.0 and math.isfinite(std)):
-        decimals = decimals_of(upper, 0.0)
+        decimals = _decimals_of(upper, 0.0)
         return f"{plain(lower, decimals)} to {plain(upper, decimals)}"
     return f"{to_digit_of(lower, std)} to {to_digit_of(upper, std)}"
 

@@ -14,7 +14,7 @@ Every ``*_table`` function returns a ``Table`` of plain text. Who prints it esca
 its letters (±, a true minus sign, a narrow space between thousands) into those that the place has.
 """
 
-from shaftprint.digits import decimals_of, interval, p_value_text, plain, rounded, unit_text, with_deviation
+from shaftprint.digits import interval, p_value_text, plain, rounded, to_digit_of, unit_text, with_deviation
 from shaftprint.tables._fingerprint import (
     NO_TRUTH,
     budget_table,
@@ -63,7 +63,6 @@ __all__ = [
     "clock_map_table",
     "clock_table",
     "combination_table",
-    "decimals_of",
     "excerpt_name",
     "expected_inertia_table",
     "expected_text",
@@ -94,6 +93,7 @@ __all__ = [
     "strip_table",
     "structure_tables",
     "texts",
+    "to_digit_of",
     "truth_of_combinations",
     "two_mass_sentence",
     "unit_text",

@@ -9,7 +9,6 @@ from shaftprint.tables import (
     Column,
     Symbol,
     Table,
-    decimals_of,
     interval,
     limits,
     numbers,
@@ -17,6 +16,7 @@ from shaftprint.tables import (
     plain,
     rounded,
     texts,
+    to_digit_of,
     unit_text,
     with_deviation,
 )
@@ -84,7 +84,7 @@ def _apart(one: "Difference") -> tuple[str, str, str, str]:
         return rounded(one.value), NOT_THERE, share, NOT_THERE
     low, high = one.interval_95
     std = 0.5 * (high - low) / NORMAL_95
-    return plain(one.value, decimals_of(one.value, std)), interval(low, high, std), share, p_value_text(one.p_value)
+    return to_digit_of(one.value, std), interval(low, high, std), share, p_value_text(one.p_value)
 
 
 def beside_table(fingerprints: "Mapping[str, Fingerprint]") -> list[Table]:

@@ -37,6 +37,8 @@ SIZES: Mapping[str, tuple[float, float, float, bool]] = {
     "small": (7.0, 8.6, 1.5, False),
 }
 FAMILY = "DejaVu Sans"
+# Of the size of the letters around; by itself an index would stand on the line below a row of a table.
+INDEX_DROP, INDEX_SIZE = 0.2, 0.75
 FACES = {"": "DejaVuSans.ttf", "-Bold": "DejaVuSans-Bold.ttf", "-Oblique": "DejaVuSans-Oblique.ttf"}
 
 
@@ -53,7 +55,9 @@ class Looks:
 
     def marked(self, markup: Markup, style: str) -> Any:
         """Return a paragraph of text that is escaped already."""
-        return Paragraph(str(markup), self.styles[style])
+        looks = self.styles[style]
+        lowered = f'<sub rise="{INDEX_DROP * looks.fontSize}" size="{INDEX_SIZE * looks.fontSize}">'
+        return Paragraph(str(markup).replace("<sub>", lowered), looks)
 
     def coloured(self, text: str, colour: str) -> Any:
         """Return a line in bold and a colour."""

@@ -1,6 +1,7 @@
 """The section of a report on records that the model has not seen: in words, in numbers, and over time."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -48,8 +49,13 @@ def step_against_data(inputs: Inputs) -> Picture | None:
     """Return the largest step of the first staircase, measured and by the model; None where there is none."""
     if not inputs.validations:
         return None
-    steps = [c for c in shown_excerpts(inputs.validations[0]) if c.excerpt.step_s is not None]
-    return _picture(inputs.validations, steps[0]) if steps else None
+    first = inputs.validations[0]
+    steps = [c for c in shown_excerpts(first) if c.excerpt.step_s is not None]
+    if not steps:
+        return None
+    picture = _picture(inputs.validations, steps[0])
+    outcome = f"{first.headline[:1].upper()}{first.headline[1:]}"
+    return replace(picture, caption=f"The largest step: {picture.caption} {outcome}.")
 
 
 def _excerpt_pictures(inputs: Inputs) -> list[Picture]:

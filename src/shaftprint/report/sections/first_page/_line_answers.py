@@ -4,13 +4,15 @@ from typing import TYPE_CHECKING
 
 from shaftprint.report.sections._cover import Card, State
 from shaftprint.report.sections.first_page._doubts import FAR, TOO_FAR, deviations_apart, doubt_of, is_off
-from shaftprint.report.sections.first_page._number_table import shown
+from shaftprint.report.sections.first_page._number_table import expected_shown, shown
 from shaftprint.tables import expected_text, plain, unit_text, with_deviation
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint, Quantity
 
 PERCENT = 100.0
+SAME_PERCENT = 0.5
+"""Shares that are printed as 0 % [%]."""
 ANSWERED_ELSEWHERE = ("I_dn", "K_Q")
 """Physical values that have a question of their own."""
 NOT_TOLD = "Use the earlier value, and ask for a longer test if this number is needed."
@@ -84,10 +86,10 @@ def propeller(fingerprint: "Fingerprint") -> list[Card]:
     question = "Does the propeller take the torque that it should?"
     share = PERCENT * (quantity.value / (quantity.expected or quantity.value) - 1.0)
     value, _ = shown(quantity)
-    words = (
-        f"Its torque coefficient is {value}, {plain(abs(share), 0)} % {'below' if share < 0.0 else 'above'} the "
-        f"{expected_text(quantity)} of the vessel file."
-    )
+    beside = f"{plain(abs(share), 0)} % {'below' if share < 0.0 else 'above'}"
+    if abs(share) < SAME_PERCENT:
+        beside = "the same as"
+    words = f"Its torque coefficient is {value}, {beside} the {expected_shown(quantity)} of the vessel file."
     doubt = doubt_of(fingerprint, "K_Q")
     if doubt or not quantity.std < float("inf"):
         return [Card(question=question, state="open", sentence=f"{doubt} {words}".strip(), action=NOT_TOLD)]

@@ -30,7 +30,7 @@ def number_table(fingerprint: "Fingerprint") -> list[Table]:
         if quantity is None:
             continue
         value, interval = shown(quantity)
-        expected = expected_text(quantity) + (" (!)" if is_off(quantity) else "")
+        expected = expected_shown(quantity) + (" (!)" if is_off(quantity) else "")
         marked = words if not doubt_of(fingerprint, name) else f"{words} (not to be used)"
         rows.append((marked, value, interval, expected))
     if not rows:
@@ -41,13 +41,26 @@ def number_table(fingerprint: "Fingerprint") -> list[Table]:
 
 def shown(quantity: "Quantity") -> tuple[str, str]:
     """Return a value with its unit and its 95 % interval, with the digits that the interval leaves; times in ms."""
-    scale, unit = (MILLI, "ms") if quantity.unit == "s" else (1.0, unit_text(quantity.unit))
+    scale, unit = _scale(quantity)
     value, lower, upper = (scale * number for number in (quantity.value, *limits(quantity)))
     decimals = _decimals(value, upper - lower)
     text = f"{plain(value, decimals)} {unit}".strip()
     if not math.isfinite(upper - lower):
         return text, "not known"
     return text, f"{plain(lower, decimals)} to {plain(upper, decimals)}"
+
+
+def expected_shown(quantity: "Quantity") -> str:
+    """Return the value of the vessel file; where it has no deviation, with the digits of the measured value."""
+    scale, _ = _scale(quantity)
+    if quantity.expected is None or quantity.expected_std:
+        return expected_text(quantity, scale)
+    lower, upper = (scale * number for number in limits(quantity))
+    return plain(scale * quantity.expected, _decimals(scale * quantity.value, upper - lower))
+
+
+def _scale(quantity: "Quantity") -> tuple[float, str]:
+    return (MILLI, "ms") if quantity.unit == "s" else (1.0, unit_text(quantity.unit))
 
 
 def _decimals(value: float, width: float) -> int:
