@@ -80,7 +80,7 @@ def test_marks_are_traces_of_their_panel():
     assert (points["marker"]["color"], points["text"]) == ("@paper", ["a", "b", "c"])
     assert (bars["x"], bars["xaxis"], bars["marker"]["pattern"]["shape"]) == ([1.0, 10.0, 100.0], "x2", "/")
     assert fields["marker"]["color"] == ["@=1.000", "@=-0.900", "@paper", "@=0.100"]
-    assert fields["insidetextfont"]["color"] == ["@paper", "@paper", "@ink", "@ink"]
+    assert fields["insidetextfont"]["color"] == ["@on=1.000", "@on=-0.900", "@ink", "@on=0.100"]
     (limit,), (words,) = content["shapes"], content["words"]
     # plotly takes words on a logarithmic axis by their logarithm, lines by their value
     assert (limit["x0"], limit["yref"], words["x"], words["text"]) == (10.0, "y domain", 1.0, "<i>t</i><sub>d</sub>")

@@ -34,8 +34,6 @@ from shaftprint.report.charts._text import Text, as_html, as_plain
 TRACE_TYPES = ("bar", "scatter")
 PATTERNS = ("", "/", ".")
 SYMBOLS = {"x": "x-thin", "plus": "cross-thin"}
-# Fields darker than this have light letters.
-DARK = 0.6
 BAR_PX = 1.2
 WORDS_PX = 6
 ANCHORS: dict[str, Json] = {
@@ -217,7 +215,7 @@ def _fields(mark: Fields) -> Json:
         "textangle": 0,
         "constraintext": "none",
         "insidetextfont": {
-            "color": ["@paper" if k and abs(v) > DARK else "@ink" for v, k in zip(values, known, strict=True)]
+            "color": [f"@on={v:.3f}" if k else "@ink" for v, k in zip(values, known, strict=True)]
         },
         "hoverinfo": "skip",
     }

@@ -59,11 +59,18 @@
   function signed(value, colours) {
     const end = channels(value < 0 ? colours.low : colours.high);
     const share = Math.min(1, Math.abs(value));
-    return `rgb(${channels(colours.paper).map((c, i) => Math.round(c + share * (end[i] - c))).join(",")})`;
+    return channels(colours.paper).map((c, i) => Math.round(c + share * (end[i] - c)));
+  }
+
+  // What is written on a colour: of black and white the one with more contrast, 4.5 at least (WCAG's luminance).
+  function inkOn(rgb) {
+    const linear = rgb.map((c) => c / 255).map((c) => (c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4));
+    return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2] > 0.179 ? "#000000" : "#ffffff";
   }
 
   function painted(text, colours) {
-    if (text.startsWith("@=")) return signed(Number(text.slice(2)), colours);
+    if (text.startsWith("@=")) return `rgb(${signed(Number(text.slice(2)), colours).join(",")})`;
+    if (text.startsWith("@on=")) return inkOn(signed(Number(text.slice(4)), colours));
     const colour = colours[text.slice(1).replace(/~$/, "")];
     // A band is thin paint; a name that begins with the sign stays as it is.
     return colour === undefined ? text : text.endsWith("~") ? `${colour}47` : colour;
