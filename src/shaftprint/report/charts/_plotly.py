@@ -214,9 +214,7 @@ def _fields(mark: Fields) -> Json:
         "insidetextanchor": "middle",
         "textangle": 0,
         "constraintext": "none",
-        "insidetextfont": {
-            "color": [f"@on={v:.3f}" if k else "@ink" for v, k in zip(values, known, strict=True)]
-        },
+        "insidetextfont": {"color": [f"@on={v:.3f}" if k else "@ink" for v, k in zip(values, known, strict=True)]},
         "hoverinfo": "skip",
     }
 
