@@ -56,7 +56,7 @@ def write_results(
             recording=opened,
             thesis=thesis,
             truth=truth,
-            line_selection=_line_selection(survey),
+            line_selection={} if thesis is None else _line_selection(survey),
             sensitivity=(survey.identification.structure,),
             previous=previous,
             pictures=pictures,
