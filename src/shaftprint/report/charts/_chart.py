@@ -1,5 +1,6 @@
 """A chart as it is described once, whoever draws it: panels with axes, and what is in them."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
@@ -12,7 +13,7 @@ Linked: TypeAlias = Literal["all", "columns", "none"]
 # What stands around the panels [px], and what lies between two rows of them.
 ABOVE_PX, BELOW_PX, BETWEEN_PX, TITLED_PX = 30, 62, 18, 34
 # A row of the legend, and what an entry of so many letters needs.
-LEGEND_ROW_PX, LETTER_PX, SAMPLE_PX = 20, 7.0, 48
+LEGEND_ROW_PX, LETTER_PX, SAMPLE_PX, BESIDE_PX = 22, 7.4, 52, 80
 WIDE_PX, NARROW_PX = 940, 340
 
 
@@ -106,13 +107,16 @@ class Chart:
         titled = any(as_plain(panel.title) for panel in self.panels[self.columns :]) or len(rows) > self.rows
         alone = self.linked == "none" or len(rows) > self.rows
         between = BETWEEN_PX + (TITLED_PX if titled else 0) + (BELOW_PX - BETWEEN_PX if alone else 0)
-        panels = sum(self.row_px(row) for row in rows) + between * (len(rows) - 1)
-        return ABOVE_PX + panels + BELOW_PX + self._legend_px(width_px)
+        highest = NARROW_PX if self.square and width_px == NARROW_PX else math.inf
+        panels = sum(min(highest, self.row_px(row)) for row in rows) + between * (len(rows) - 1)
+        return ABOVE_PX + int(panels) + BELOW_PX + self._legend_px(width_px)
 
     def _legend_px(self, width_px: int) -> int:
-        """Return how high the legend is: entries in columns as wide as the widest."""
-        if not self.legend:
-            return 0
-        widest = SAMPLE_PX + LETTER_PX * max(len(as_plain(name)) for name in self.legend)
-        columns = max(1, int(width_px // widest))
-        return LEGEND_ROW_PX * -(-len(self.legend) // columns)
+        """Return how high the legend is, whose entries follow each other row by row."""
+        rows, used_px = 0, math.inf
+        for name in self.legend:
+            entry_px = SAMPLE_PX + LETTER_PX * len(as_plain(name))
+            rows, used_px = (
+                (rows + 1, entry_px) if used_px + entry_px > width_px - BESIDE_PX else (rows, used_px + entry_px)
+            )
+        return LEGEND_ROW_PX * rows

@@ -30,13 +30,14 @@ from shaftprint.report.charts._marks import (
     dash_of,
     marker_of,
 )
-from shaftprint.report.charts._text import as_mathtext, as_plain
+from shaftprint.report.charts._text import Text, as_mathtext, as_plain
 
 WIDTH_CM = 16.0
 CM_PER_INCH = 2.54
 CM_PER_PX = 0.0165
 FONT_PT = 8.0
 PNG_DPI = 170
+LETTER_CM = 0.15
 MOST_COLUMNS = 4
 LEGEND_SHARE = 0.98
 BAND_ALPHA = 0.28
@@ -93,12 +94,13 @@ SETTINGS: dict[Any, Any] = {
 }
 
 
-def drawn(chart: Chart) -> Figure:
+def drawn(chart: Chart, size_cm: tuple[float, float] | None = None) -> Figure:
     """Return a chart as a figure; see ``draw``."""
     rows = [chart.row_px(row) for row in range(chart.rows)]
     with mpl.rc_context(SETTINGS):
-        height_cm = CM_PER_PX * chart.height_px
-        figure = Figure(figsize=(WIDTH_CM / CM_PER_INCH, height_cm / CM_PER_INCH), layout="constrained")
+        usual_cm = CM_PER_PX * chart.height_px
+        width_cm, height_cm = size_cm or (WIDTH_CM, usual_cm)
+        figure = Figure(figsize=(width_cm / CM_PER_INCH, height_cm / CM_PER_INCH), layout="constrained")
         FigureCanvasAgg(figure)
         share: dict[str, Literal["all", "col", "none"]] = {"all": "all", "columns": "col", "none": "none"}
         grid = figure.subplots(
@@ -114,6 +116,8 @@ def drawn(chart: Chart) -> Figure:
             below = place + chart.columns < len(chart.panels)
             if not (below and chart.linked != "none"):
                 grid[place].set_xlabel(as_mathtext(panel.x.title))
+            panel_cm = CM_PER_PX * rows[place // chart.columns] * height_cm / usual_cm
+            grid[place].set_ylabel(_in_lines(panel.y.title, panel_cm))
         figure.align_ylabels()
         _draw_legend(figure, list(grid[: len(chart.panels)]))
     return figure
@@ -133,13 +137,22 @@ def _draw_panel(axes: Axes, panel: Panel) -> None:
         _draw_mark(axes, mark)
     if as_plain(panel.title):
         axes.set_title(as_mathtext(panel.title))
-    axes.set_ylabel(as_mathtext(panel.y.title))
     for axis, scale in ((axes.xaxis, panel.x), (axes.yaxis, panel.y)):
         _scale(axis, scale)
     if panel.x.span is not None:
         axes.set_xlim(*panel.x.span)
     if panel.y.span is not None:
         axes.set_ylim(*panel.y.span)
+
+
+def _in_lines(title: Text, height_cm: float) -> str:
+    """Return the title of an upright axis in two lines where it is longer than the axis."""
+    text = as_mathtext(title)
+    spaces = [place for place, letter in enumerate(text) if letter == " " and text[:place].count("$") % 2 == 0]
+    if LETTER_CM * len(as_plain(title)) < height_cm or not spaces:
+        return text
+    middle = min(spaces, key=lambda place: abs(place - len(text) // 2))
+    return f"{text[:middle]}\n{text[middle + 1 :]}"
 
 
 def _scale(axis: Axis, scale: Scale) -> None:

@@ -215,7 +215,7 @@ def _fields(mark: Fields) -> Json:
         "textangle": 0,
         "constraintext": "none",
         "insidetextfont": {"color": [f"@on={v:.3f}" if k else "@ink" for v, k in zip(values, known, strict=True)]},
-        "hoverinfo": "skip",
+        "hovertemplate": "%{text}<extra></extra>",
     }
 
 

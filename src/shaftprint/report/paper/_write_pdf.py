@@ -24,7 +24,10 @@ if TYPE_CHECKING:
     from shaftprint.report.sections import Card, Cover, Picture, Section
     from shaftprint.tables import Table
 
-HIGHEST_PICTURE_MM = 72.0
+# Two of them and the budget are a sheet. They are drawn larger than they are printed: letters of 6 pt.
+HIGHEST_PICTURE_MM = 60.0
+SHRUNK = 0.75
+MM_A_PX = 0.19
 CARDS_A_ROW = 3
 FEWEST_LETTERS, MOST_LETTERS = 7, 34
 
@@ -158,9 +161,10 @@ def _letters(heading: str, cells: Sequence[str]) -> int:
 
 def _picture(picture: "Picture", looks: Looks) -> list[Any]:
     content = io.BytesIO()
-    figure = draw(picture.chart())
+    chart = picture.chart()
+    height_mm = min(HIGHEST_PICTURE_MM, MM_A_PX * chart.height_px)
+    # ten millimetres are a centimetre
+    figure = draw(chart, size_cm=(WIDTH_MM / SHRUNK / 10.0, height_mm / SHRUNK / 10.0))
     figure.savefig(content, format="png", dpi=200)
-    wide, high = figure.get_size_inches()
-    height = min(HIGHEST_PICTURE_MM, WIDTH_MM * high / wide)
-    drawn = Image(content, width=height * wide / high * mm, height=height * mm)
+    drawn = Image(content, width=WIDTH_MM * mm, height=height_mm * mm)
     return [KeepTogether([drawn, looks.paragraph(picture.caption, "small")])]

@@ -1,14 +1,9 @@
 "use strict";
-// Lays out and draws the charts of the page when they come near the screen, and all of them before it is printed.
+// Draws the charts of the page when they come near the screen, and all that are not folded before it is printed.
 (() => {
   const NEAR = "500px 0px";
-  const NARROW = 600;
   const PAN = 0.15;
   const ZOOM = 0.6;
-  // Room around panels, between them, and for letters [px].
-  const ROOM = { above: 30, right: 14, below: 52, between: 18, title: 30, numbers: 58, column: 62, row: 20, sample: 48 };
-  const LETTER = 7;
-  const FONT = 'system-ui, "Segoe UI", "Liberation Sans", Arial, sans-serif';
   const CONFIG = {
     displayModeBar: false,
     displaylogo: false,
@@ -33,6 +28,10 @@
       paper: "#15191c", low: "#6db3e2", high: "#f2925a",
     },
   };
+  const { layoutOf, fitted, keyOf } = window.shaftprintLayout;
+  // Width of a sheet between its margins, and how high panels are on it, of their height on a screen.
+  const PAPER_PX = 688;
+  const PAPER_SHARE = 0.45;
   const root = document.documentElement;
   const charts = new Map();
   const darkScreen = window.matchMedia("(prefers-color-scheme: dark)");
@@ -87,149 +86,22 @@
     return Object.fromEntries(Object.entries(value).map(([key, part]) => [key, coloured(part, colours)]));
   }
 
-  // ---- layout by the width of the page
-
-  const letters = (text) => text.replace(/<[^>]*>|&[^;]*;/g, (tag) => (tag.startsWith("&") ? "x" : "")).length;
-  const longest = (names) => Math.max(0, ...names.map(letters));
-
-  // A text on as many lines as its room wants; tags hold no spaces.
-  function wrapped(text, width) {
-    const lines = [""];
-    for (const word of text.split(" ")) {
-      const last = lines[lines.length - 1];
-      if (last && LETTER * letters(`${last} ${word}`) > width) lines.push(word);
-      else lines[lines.length - 1] = last ? `${last} ${word}` : word;
-    }
-    return lines.join("<br>");
-  }
-
-  // Where each panel stands: side by side, or below each other on a phone.
-  function cells(chart, narrow) {
-    const places = chart.panels.map((panel, index) => ({
-      panel, index, row: Math.floor(index / chart.columns), column: index % chart.columns,
-    }));
-    for (const cell of places) {
-      cell.height = chart.heights[cell.row];
-      cell.isLast = chart.linked === "none" || cell.index + chart.columns >= places.length;
-      cell.partner = chart.linked === "all" ? 0 : chart.linked === "columns" ? cell.column : cell.index;
-    }
-    if (!narrow || chart.columns === 1) return places;
-    if (chart.linked !== "none") places.sort((a, b) => a.column - b.column || a.row - b.row);
-    places.forEach((cell, place) => Object.assign(cell, { row: place, column: 0 }));
-    return places;
-  }
-
-  const leftOf = (cell) => {
-    const names = cell.panel.y.names;
-    return names.length ? LETTER * longest(names) + 12 : ROOM.numbers;
-  };
-
-  // The room of upright names, where they have not enough beside each other.
-  function namesRoom(cell, width) {
-    const names = cell.panel.x.names;
-    return LETTER * longest(names) * names.length > width ? 4 * longest(names) : 0;
-  }
-
-  function frames(chart, places, width, height, legendPx) {
-    const columns = 1 + Math.max(...places.map((cell) => cell.column));
-    const rows = 1 + Math.max(...places.map((cell) => cell.row));
-    const inRow = (row) => places.filter((cell) => cell.row === row);
-    const left = Math.max(...places.filter((cell) => cell.column === 0).map(leftOf));
-    const beside = columns > 1 ? Math.max(...places.filter((cell) => cell.column > 0).map(
-      (cell) => leftOf(cell) - (cell.panel.y.names.length || cell.panel.y.title ? 0 : 14))) : 0;
-    const across = (width - left - ROOM.right - (columns - 1) * (beside + ROOM.right)) / columns;
-    const titled = (row) => inRow(row).some((cell) => cell.panel.title);
-    const above = titled(0) ? ROOM.above : 10;
-    const after = (row) => {
-      const labels = inRow(row).some((cell) => cell.isLast) ? ROOM.below + Math.max(...inRow(row).map((c) => namesRoom(c, across))) : 0;
-      return row === rows - 1 ? labels + legendPx : Math.max(ROOM.between, labels) + (titled(row + 1) ? ROOM.title : 0);
-    };
-    const gaps = Array.from({ length: rows }, (_, row) => after(row));
-    const wanted = Array.from({ length: rows }, (_, row) => Math.max(...inRow(row).map((cell) => cell.height)));
-    const share = (height - above - gaps.reduce((a, b) => a + b)) / wanted.reduce((a, b) => a + b);
-    const area = { width: width - left - ROOM.right, height: height - above - gaps[rows - 1] };
-    let top = 0;
-    for (let row = 0; row < rows; row += 1) {
-      const high = share * wanted[row];
-      for (const cell of inRow(row)) {
-        const from = cell.column * (across + beside + ROOM.right);
-        cell.px = { width: across, height: high };
-        cell.x = [from / area.width, Math.min(1, (from + across) / area.width)];
-        cell.y = [Math.max(0, 1 - (top + high) / area.height), Math.min(1, 1 - top / area.height)];
-      }
-      top += high + gaps[row];
-    }
-    return { l: left, r: ROOM.right, t: above, b: gaps[rows - 1], pad: 0, autoexpand: false };
-  }
-
-  function axisOf(which, scale, lengthPx, colours, narrow) {
-    const axis = {
-      zeroline: false, showline: true, mirror: true, ticks: "outside", ticklen: 4, exponentformat: "none",
-      gridcolor: colours.grid, linecolor: colours.reference, tickcolor: colours.reference,
-      tickfont: { size: narrow ? 11 : 12 }, automargin: false,
-      title: { text: wrapped(scale.title, lengthPx), standoff: 6, font: { size: narrow ? 12 : 13 } },
-    };
-    if (scale.span) Object.assign(axis, { range: [...scale.span], autorange: false });
-    if (scale.names.length) {
-      Object.assign(axis, { tickmode: "array", tickvals: scale.names.map((_, place) => place), ticktext: scale.names,
-                            showgrid: false });
-    } else if (scale.log) {
-      const decades = scale.span ? Math.abs(scale.span[1] - scale.span[0]) : 3;
-      Object.assign(axis, { type: "log", dtick: lengthPx / decades > 150 ? "D2" : 1, tickformat: "~g" });
-    } else if (scale.step) Object.assign(axis, { dtick: scale.step * (lengthPx < 110 ? 2 : 1), tick0: 0 });
-    else axis.nticks = Math.max(4, Math.floor(lengthPx / (which === "x" ? 75 : 34)));
-    return axis;
-  }
-
-  function layoutOf(chart, place, colours) {
-    const [width, height] = [place.clientWidth, place.clientHeight];
-    const narrow = width < NARROW;
-    const widest = ROOM.sample + LETTER * Math.max(0, ...chart.legend);
-    const legendRows = Math.ceil(chart.legend.length / Math.max(1, Math.floor(width / widest)));
-    const places = cells(chart, narrow);
-    const margin = frames(chart, places, width, height, legendRows * ROOM.row);
-    const layout = {
-      width, height, margin, barmode: "overlay", hovermode: "closest", dragmode: "zoom", uirevision: "kept", separators: ".\u202f",
-      font: { family: FONT, size: narrow ? 12 : 13, color: colours.ink },
-      paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
-      hoverlabel: { bgcolor: colours.paper, bordercolor: colours.reference, font: { color: colours.ink } },
-      legend: { orientation: "h", xref: "container", x: 0, xanchor: "left", yref: "container", y: 0, yanchor: "bottom",
-                font: { size: 12 }, itemsizing: "trace", bgcolor: "rgba(0,0,0,0)" },
-      shapes: coloured(chart.shapes, colours),
-      annotations: coloured(chart.words, colours),
-    };
-    for (const cell of places) {
-      const suffix = cell.index ? String(cell.index + 1) : "";
-      const x = axisOf("x", cell.panel.x, cell.px.width, colours, narrow);
-      const y = axisOf("y", cell.panel.y, cell.px.height, colours, narrow);
-      Object.assign(x, { domain: cell.x, anchor: `y${suffix}` });
-      Object.assign(y, { domain: cell.y, anchor: `x${suffix}` });
-      if (cell.partner !== cell.index) x.matches = `x${cell.partner ? cell.partner + 1 : ""}`;
-      if (!cell.isLast) Object.assign(x, { showticklabels: false, title: { text: "" } });
-      if (chart.square) {
-        Object.assign(x, { constrain: "domain" });
-        Object.assign(y, { constrain: "domain", scaleanchor: "x", scaleratio: 1 });
-      }
-      Object.assign(layout, { [`xaxis${suffix}`]: x, [`yaxis${suffix}`]: y });
-      if (cell.panel.title) {
-        layout.annotations.push({
-          text: `<b>${wrapped(cell.panel.title, cell.px.width)}</b>`, xref: "paper", yref: "paper", x: cell.x[0],
-          y: cell.y[1], xanchor: "left", yanchor: "bottom", align: "left", yshift: 3, showarrow: false,
-          font: { size: narrow ? 12 : 13 },
-        });
-      }
-    }
-    return layout;
-  }
-
   // ---- drawing
 
-  function draw(name, shade = look()) {
+  const screen = (place) => ({ width: place.clientWidth, height: place.clientHeight });
+
+  function paper({ place, chart }) {
+    const saved = (1 - PAPER_SHARE) * chart.heights.reduce((a, b) => a + b);
+    return { width: PAPER_PX, height: parseFloat(place.style.getPropertyValue("--height")) - saved, share: PAPER_SHARE };
+  }
+
+  function draw(name, shade = look(), size = screen(charts.get(name).place)) {
     const entry = charts.get(name);
     const { place, chart } = entry;
-    const layout = layoutOf(chart, place, COLOURS[shade]);
+    const layout = layoutOf(chart, size, COLOURS[shade], coloured);
     entry.width = layout.width;
-    const drawn = window.Plotly.react(place, coloured(chart.data, COLOURS[shade]), layout, CONFIG);
+    const data = fitted(coloured(chart.data, COLOURS[shade]), chart, size.width);
+    const drawn = window.Plotly.react(place, data, layout, CONFIG);
     // On paper the drawing becomes as wide as the page.
     for (const svg of place.querySelectorAll(".main-svg")) svg.setAttribute("viewBox", `0 0 ${layout.width} ${layout.height}`);
     place.style.setProperty("--ratio", layout.width / layout.height);
@@ -276,16 +148,14 @@
 
   const isFolded = (place) => place.closest("details:not([open])") !== null;
 
-  // Paper is light, and has what is not folded: what is not drawn yet is, and what is dark is drawn again.
+  // Paper is light, has its own width and what is not folded.
   function drawForPaper() {
     if (!window.Plotly) return;
-    for (const [name, { chart, place }] of charts) {
-      if (chart && !isFolded(place) && (look() !== "light" || place.dataset.state !== "drawn")) draw(name, "light");
-    }
+    for (const [name, entry] of charts) if (entry.chart && !isFolded(entry.place)) draw(name, "light", paper(entry));
   }
 
   function drawAgain() {
-    for (const [name, { place }] of charts) if (place.dataset.state === "drawn") draw(name);
+    for (const [name, { place }] of charts) if (place.dataset.state === "drawn" && !isFolded(place)) draw(name);
   }
 
   // ---- moving
@@ -317,7 +187,7 @@
     const change = {};
     charts.get(name).chart.panels.forEach((panel, index) => {
       for (const which of ["x", "y"]) {
-        const key = `${which}axis${index ? index + 1 : ""}`;
+        const key = keyOf(which, index);
         const { span } = panel[which];
         change[span ? `${key}.range` : `${key}.autorange`] = span ? [...span] : true;
       }
@@ -416,7 +286,7 @@
     places.forEach((place) => resized.observe(place));
     document.addEventListener("look", drawAgain);
     window.addEventListener("beforeprint", drawForPaper);
-    window.addEventListener("afterprint", () => look() === "light" || drawAgain());
+    window.addEventListener("afterprint", drawAgain);
   }
 
   // Words stand in place of the charts where this script does not run.
