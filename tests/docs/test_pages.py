@@ -31,7 +31,7 @@ OPENED = {page for page in PAGES if f'"{Path(page).name}"' in OTHER_TEXT}
 WITH_PYTHON = [page for page in PAGES if python_of(page)]
 WITH_COMMANDS = [page for page in PAGES if commands_of(page)]
 # these sail a test and identify it
-SLOW = {"docs/thesis-figures.md"} | {
+SLOW = {"docs/thesis-figures.md", "docs/gallery.md"} | {
     f"docs/tutorials/{name}.md" for name in ("first-fingerprint", "own-structure", "logger-file", "two-loggers", "fmu")
 }
 # Kinds of blocks, each with the file that holds them against something.

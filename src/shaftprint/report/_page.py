@@ -31,7 +31,7 @@ from shaftprint.tables import Table
 TEMPLATE, TABLE_TEMPLATE, CHART_TEMPLATE = "report.html.j2", "table.html.j2", "chart.html.j2"
 TEMPLATES = (TEMPLATE, TABLE_TEMPLATE, CHART_TEMPLATE, "sketch.svg.j2")
 STYLES = ("report.css", "charts.css")
-SCRIPTS = ("report.js", "chart_layout.js", "charts.js")
+SCRIPTS = ("report.js", "layout.js", "charts.js")
 # Loaded when a PDF is asked for: it needs a library that not everybody has.
 PAPER = "shaftprint.report.paper"
 

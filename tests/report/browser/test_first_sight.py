@@ -90,6 +90,7 @@ def test_the_page_is_light_or_dark_before_anything_is_painted(report):
     scripts = re.findall(r"<script ([^>]*)></script>", report.read_text(encoding="utf-8"))
     assert [("defer" in script, re.search(r'src="plots/(\w+)', script).group(1)) for script in scripts] == [
         (False, "report"),
+        (False, "layout"),
         (False, "charts"),
         (True, "differences"),
         (True, "plotly"),

@@ -99,6 +99,31 @@ def test_no_letter_of_a_chart_is_smaller_than_eleven_px(opened):
     assert min(sizes) >= 11.0
 
 
+# Texts of a chart that stand on each other or leave it; names that stand slanted overlap as boxes, not as letters.
+OVERLAPS = """() => [...document.querySelectorAll('.plot[data-state=drawn]')].flatMap((place) => {
+  const frame = place.getBoundingClientRect();
+  const texts = [...place.querySelectorAll('text')].filter((text) => text.textContent.trim()
+    && !/rotate\\((?!-?(90|0|180)\\b)/.test(text.getAttribute('transform') || ''));
+  const boxes = texts.map((text) => [text.textContent, text.getBoundingClientRect()]).filter(([, box]) => box.width > 0);
+  const outside = boxes.filter(([, box]) => box.left < frame.left - 1 || box.right > frame.right + 1
+    || box.top < frame.top - 1 || box.bottom > frame.bottom + 1).map(([words]) => `${place.id}: ${words} leaves`);
+  const pairs = boxes.flatMap(([words, a], index) => boxes.slice(index + 1).filter(([, b]) =>
+    Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 2)
+    .map(([others]) => `${place.id}: ${words} on ${others}`));
+  return [...outside, ...pairs];
+})"""
+
+
+@pytest.mark.parametrize("width", [390, 1280])
+def test_no_words_of_a_chart_stand_on_others(visit, report, width):
+    with visit(report, viewport={"width": width, "height": 900}) as found:
+        names = found.page.eval_on_selector_all(".plot", "list => list.map(e => e.dataset.plot)")
+        for name in names:
+            found.show(name)
+        assert len(names) >= len(PLOTS)
+        assert found.page.evaluate(OVERLAPS) == []
+
+
 def test_the_bode_diagram_has_model_band_data_and_bars(opened, identification):
     """Four panels: a line and a band in each, every used line as a point with an error bar, 14 of 16 used.
 

@@ -38,6 +38,8 @@ CM_PER_PX = 0.0165
 FONT_PT = 8.0
 PNG_DPI = 170
 LETTER_CM = 0.15
+# Names that need more beside each other stand slanted.
+NAMES_CM = 14.0
 MOST_COLUMNS = 4
 LEGEND_SHARE = 0.98
 BAND_ALPHA = 0.28
@@ -159,6 +161,10 @@ def _scale(axis: Axis, scale: Scale) -> None:
     if scale.names:
         axis.set_ticks(np.arange(len(scale.names)), [as_mathtext(name) for name in scale.names])
         axis.grid(visible=False)
+        longest = max(len(as_plain(name)) for name in scale.names)
+        if axis.axis_name == "x" and LETTER_CM * longest * len(scale.names) > NAMES_CM:  # type: ignore[attr-defined]
+            for label in axis.get_ticklabels():
+                label.set(rotation=40.0, ha="right", rotation_mode="anchor")
     elif scale.log:
         (axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale)("log")  # type: ignore[attr-defined]
         axis.set_major_locator(LogLocator(base=10.0))
