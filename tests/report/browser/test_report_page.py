@@ -104,11 +104,13 @@ OVERLAPS = """() => [...document.querySelectorAll('.plot[data-state=drawn]')].fl
   const frame = place.getBoundingClientRect();
   const texts = [...place.querySelectorAll('text')].filter((text) => text.textContent.trim()
     && !/rotate\\((?!-?(90|0|180)\\b)/.test(text.getAttribute('transform') || ''));
-  const boxes = texts.map((text) => [text.textContent, text.getBoundingClientRect()]).filter(([, box]) => box.width > 0);
+  const boxes = texts.map((text) => [text.textContent, text.getBoundingClientRect()])
+    .filter(([, box]) => box.width > 0);
   const outside = boxes.filter(([, box]) => box.left < frame.left - 1 || box.right > frame.right + 1
     || box.top < frame.top - 1 || box.bottom > frame.bottom + 1).map(([words]) => `${place.id}: ${words} leaves`);
   const pairs = boxes.flatMap(([words, a], index) => boxes.slice(index + 1).filter(([, b]) =>
-    Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 2)
+    Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1
+    && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 2)
     .map(([others]) => `${place.id}: ${words} on ${others}`));
   return [...outside, ...pairs];
 })"""
