@@ -293,9 +293,8 @@ def test_print_has_every_chart_in_light_colours_and_no_buttons(visit, report, tm
     """Charts that were never near the screen too: all of them are drawn before the page is printed."""
     with visit(report, color_scheme=scheme) as found:
         found.wait_for("document.getElementById('plot-fit').dataset.state === 'drawn'")
-        found.wait_for(
-            "document.querySelectorAll('head script[src*=plots]').length >= document.querySelectorAll('.plot').length"
-        )
+        # the data of all have come
+        found.wait_for("[...document.querySelectorAll('.plot')].every(place => place.dataset.state)")
         found.page.evaluate("window.dispatchEvent(new Event('beforeprint'))")
         drawn = found.page.eval_on_selector_all(".plot[data-state=drawn]", "list => list.map(e => e.dataset.plot)")
         assert drawn == found.page.eval_on_selector_all(
