@@ -33,7 +33,8 @@ def printable(text: str, *, keep: str = "") -> str:
     keep
         Characters that stay although they are of this kind.
     """
-    return "".join(letter if _is_seen(letter) or letter in keep else HIDDEN for letter in text)
+    hidden = {ord(letter): HIDDEN for letter in set(text) if not _is_seen(letter) and letter not in keep}
+    return text.translate(hidden) if hidden else text
 
 
 def _is_seen(letter: str) -> bool:
