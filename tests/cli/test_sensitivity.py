@@ -28,6 +28,24 @@ def test_figures_of_the_thesis(run, tmp_path):
     assert names == {f"figure_{figure}" for figure in figures}
 
 
+@pytest.mark.slow
+def test_measured_responses_are_drawn_where_the_thesis_draws_them(run, recording, tmp_path):
+    test = ("--recording", recording, "--vessel", "stan-tug-1205", "--campaign", "short")
+    result = run("sensitivity", "thesis", *test, "-o", tmp_path / "out", "--no-progress")
+    assert result.exit_code == 0, result.stderr
+    with_data = {path.stem for path in (tmp_path / "out").glob("*.svg") if "data, 95" in path.read_text()}
+    assert with_data == {f"figure_{figure}" for figure in ("4.4", "4.5", "4.6", "4.7", "4.8")}
+
+
+def test_a_recording_comes_with_its_vessel_and_campaign(run, recording, tmp_path):
+    result = run("sensitivity", "thesis", "--recording", recording, "--vessel", "stan-tug-1205", "-o", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "missing: --campaign" in result.stderr
+    result = run("sensitivity", "CL1", "--recording", recording, "-o", tmp_path / "out")
+    assert result.exit_code == 2
+    assert "shaftprint sensitivity thesis" in result.stderr
+
+
 def test_unknown_structure_and_kind(run, tmp_path):
     result = run("sensitivity", "OL9", "-o", tmp_path / "out")
     assert result.exit_code == 1

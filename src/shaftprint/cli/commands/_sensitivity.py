@@ -8,11 +8,14 @@ from typing import TypeAlias
 import click
 
 from shaftprint.catalogue import thesis_families
+from shaftprint.cli._options import SettingsPath
 from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output import force_option, no_progress_option, output_folder, progress
 from shaftprint.escape import plain_name
 from shaftprint.report import Chart, save_chart, sensitivity_chart
+from shaftprint.spectra import FrequencyResponse, open_loop
+from shaftprint.survey import load_trial, measure
 
 Drawings: TypeAlias = dict[str, partial[Chart]]
 
@@ -50,10 +53,26 @@ def ascending(context: click.Context, parameter: click.Parameter, span: tuple[fl
     callback=ascending,
     help="Frequencies to draw [rad/s]; not for the figures of the thesis.",
 )
+@click.option(
+    "--recording",
+    type=click.Path(path_type=Path),
+    help="Recording whose measured responses are drawn into figures 4.4 to 4.8 of the thesis; needs --vessel and "
+    "--campaign.",
+)
+@click.option("--vessel", type=SettingsPath("vessel", "stan-tug-1205"), help="Vessel file of the recording.")
+@click.option("--campaign", type=SettingsPath("campaign", "thesis"), help="Campaign file of the recording.")
 @force_option
 @no_progress_option
 def command(
-    name: TypedName, output: Path, suffix: str, span: tuple[float, float], force: bool, no_progress: bool
+    name: TypedName,
+    output: Path,
+    suffix: str,
+    span: tuple[float, float],
+    recording: Path | None,
+    vessel: str | None,
+    campaign: str | None,
+    force: bool,
+    no_progress: bool,
 ) -> None:
     """Draw the effect of each parameter of a structure on its response.
 
@@ -61,7 +80,11 @@ def command(
     STRUCTURE such as my_ship.py:my_loop is one in a file of your own, which is Python and is run. With `thesis` for
     STRUCTURE, the sensitivity figures of the thesis (4.2 to 4.8, B.1 to B.4, D.1).
     """
-    drawings = _of_the_thesis() if name.upper() == ALL_OF_THE_THESIS else _of_structure(name, span)
+    of_the_thesis = name.upper() == ALL_OF_THE_THESIS
+    if recording is not None and not of_the_thesis:
+        raise click.UsageError("--recording goes with the figures of the thesis only: shaftprint sensitivity thesis.")
+    responses = _measured(recording, vessel, campaign)
+    drawings = _of_the_thesis(responses) if of_the_thesis else _of_structure(name, span)
     with output_folder(output, of="sensitivity", force=force) as folder, progress(hidden=no_progress) as steps:
         steps.begin("Drawing", total=float(len(drawings)))
         for stem, draw in drawings.items():
@@ -80,8 +103,32 @@ def _of_structure(name: TypedName, span: tuple[float, float]) -> "Drawings":
     return drawings
 
 
-def _of_the_thesis() -> "Drawings":
+def _measured(recording: Path | None, vessel: str | None, campaign: str | None) -> dict[str, FrequencyResponse]:
+    """Return the open-loop responses of a recording as ``Family.data`` names them; none without a recording.
+
+    Raises
+    ------
+    click.UsageError
+        If recording, vessel and campaign are not stated together.
+    """
+    stated = {"--recording": recording, "--vessel": vessel, "--campaign": campaign}
+    missing = [option for option, value in stated.items() if value is None]
+    if len(missing) == len(stated):
+        return {}
+    if recording is None or vessel is None or campaign is None:
+        raise click.UsageError(f"Measured responses need {', '.join(stated)}; missing: {', '.join(missing)}.")
+    governor, core = open_loop(measure(recording, load_trial(vessel, campaign)).spectra.response)
+    return {"governor": governor, "core": core}
+
+
+def _of_the_thesis(responses: dict[str, FrequencyResponse]) -> "Drawings":
     return {
-        f"figure_{family.figure}": partial(sensitivity_chart, family.structure, output=family.output, vary=family.vary)
+        f"figure_{family.figure}": partial(
+            sensitivity_chart,
+            family.structure,
+            output=family.output,
+            vary=family.vary,
+            data=responses.get(family.data or ""),
+        )
         for family in thesis_families()
     }
