@@ -1,6 +1,5 @@
 """``shaftprint identify`` with its options; without any it is run in ``tests/docs``, as the pages show it."""
 
-import click
 import pytest
 
 from shaftprint.fingerprint import read_fingerprint
@@ -129,11 +128,9 @@ def test_place_below_a_file(run, recording, tmp_path):
 
 
 @pytest.mark.slow
-def test_the_answer_is_printed_before_the_report_is_drawn(run, recording, tmp_path, monkeypatch):
-    monkeypatch.setattr(
-        "shaftprint.cli._results.render_report", lambda *args, **kwargs: click.echo("the report begins")
-    )
-    result = run("identify", recording, *GIVEN, "-o", tmp_path / "out")
+def test_the_answer_is_printed_before_the_model_is_judged_and_the_report_is_drawn(run, recording, tmp_path):
+    result = run("identify", recording, *GIVEN, "-v", "-o", tmp_path / "out")
     assert result.exit_code == 0
-    order = [result.output.index(words) for words in ("Verdict", "GAUGE-CLOSED", "the report begins", "Report:  ")]
+    judging, drawing = "Holding the model against records that it has not seen ...", "Writing the report ..."
+    order = [result.output.index(words) for words in ("Verdict", "GAUGE-CLOSED", judging, drawing, "Report:  ")]
     assert order == sorted(order)

@@ -8,7 +8,7 @@ rooms that they come from.
 from shaftprint.survey._fits import comparisons_of, fit, priors_of
 from shaftprint.survey._measurement import Measurement, measure, pairs_of, response_of, responses_of
 from shaftprint.survey._progress import SILENT, Progress, Silent
-from shaftprint.survey._survey import SettingsOf, Survey, fingerprint_of, run, settings_by_name, survey_of
+from shaftprint.survey._survey import SettingsOf, Survey, fingerprint_of, judged, run, settings_by_name, survey_of
 from shaftprint.survey._thesis_mode import SET_POINT_OFF, ThesisMode
 from shaftprint.survey._thesis_way import GAUGE, set_point_scaled, thesis_way, weighted_fits
 from shaftprint.survey._trial import Trial, load_trial, settings_text
@@ -29,6 +29,7 @@ __all__ = [
     "failed_steps",
     "fingerprint_of",
     "fit",
+    "judged",
     "load_trial",
     "measure",
     "pairs_of",

@@ -110,6 +110,7 @@ def run(
     rng: np.random.Generator | None = None,
     now: datetime | None = None,
     tested_at: datetime | None = None,
+    judge: bool = True,
     progress: Progress = SILENT,
 ) -> Survey:
     """Identify a line from a recording: all that ``shaftprint identify`` does, before anything is written.
@@ -134,6 +135,9 @@ def run(
         When the fingerprint is made.
     tested_at
         When the recording began; where it is not given, by the logger's clock if its file says so.
+    judge
+        Whether structures are compared and the model is held against records that it has not seen; ``judged`` does it
+        later, for who wants the fingerprint first.
 
     Raises
     ------
@@ -149,7 +153,8 @@ def run(
         measurement = replace(measurement, began=tested_at)
     by_name = settings_by_name(chosen, measurement, trial, settings or _with_priors)
     fits = fit(chosen, measurement, settings=by_name, rng=rng, progress=progress)
-    return survey_of(fits, measurement, trial, rng=rng, now=now, progress=progress)
+    survey = _of_fits(fits, measurement, trial, now=now, progress=progress)
+    return judged(survey, rng=rng, progress=progress) if judge else survey
 
 
 def fingerprint_of(
@@ -178,19 +183,30 @@ def survey_of(
     progress: Progress = SILENT,
 ) -> Survey:
     """Return what follows from fits: fingerprint, comparisons, validation."""
+    return judged(_of_fits(fits, measurement, trial, now=now, progress=progress), rng=rng, progress=progress)
+
+
+def _of_fits(
+    fits: Sequence[Identification], measurement: Measurement, trial: Trial, *, now: datetime | None, progress: Progress
+) -> Survey:
     progress.begin("Finding the intervals")
     fingerprint = fingerprint_of(fits[0], measurement, trial, now=now)
-    comparisons = comparisons_of(fits, rng=rng, progress=progress)
-    validations, remarks = validations_of(fits[0], measurement, trial, rng=copy.deepcopy(rng), progress=progress)
-    return Survey(
-        trial=trial,
-        measurement=measurement,
-        fits=tuple(fits),
-        fingerprint=fingerprint,
-        comparisons=comparisons,
-        validations=validations,
-        remarks=remarks,
+    return Survey(trial=trial, measurement=measurement, fits=tuple(fits), fingerprint=fingerprint)
+
+
+def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SILENT) -> Survey:
+    """Return a survey with its structures compared and its model held against records that it has not seen.
+
+    Parameters
+    ----------
+    rng
+        For the starts of the fits without a line, and for the parameter sets that bands are drawn from.
+    """
+    comparisons = comparisons_of(survey.fits, rng=rng, progress=progress)
+    validations, remarks = validations_of(
+        survey.identification, survey.measurement, survey.trial, rng=copy.deepcopy(rng), progress=progress
     )
+    return replace(survey, comparisons=comparisons, validations=validations, remarks=remarks)
 
 
 def settings_by_name(

@@ -13,7 +13,7 @@ from shaftprint.cli._report_options import ReportOptions, report_options
 from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._terminal import print_findings, say
 from shaftprint.cli.output import force_option, no_progress_option, output_folder, print_table, progress
-from shaftprint.survey import Survey, load_trial, run
+from shaftprint.survey import Survey, judged, load_trial, run
 from shaftprint.tables import fits_table
 
 
@@ -55,7 +55,7 @@ def command(
     """
     structures = structures_of(names, options)
     # before the folder is made: a mistake in a settings file leaves none
-    trial = load_trial(vessel, campaign)
+    trial, rng = load_trial(vessel, campaign), np.random.default_rng(options.seed)
     with output_folder(output, of="identify", force=force) as folder:
         with progress(hidden=no_progress) as steps:
             survey = run(
@@ -66,12 +66,16 @@ def command(
                 settings=settings_of(structures, options),
                 mode=options.mode,
                 sources=(*trial.sources, *structure_sources(names)),
-                rng=np.random.default_rng(options.seed),
+                rng=rng,
                 tested_at=about.tested_at,
+                judge=False,
                 progress=steps,
             )
-        # the answer first: the report takes as long again
-        _print_answer(survey)
+        # the answer first: what follows takes as long again
+        print_fingerprint(survey.fingerprint)
+        with progress(hidden=no_progress) as steps:
+            survey = judged(survey, rng=rng, progress=steps)
+        _print_judgement(survey)
         with progress(hidden=no_progress) as steps:
             write_results(
                 folder, recording, survey, steps=steps, pictures=figures, previous=about.previous, pdf=about.pdf
@@ -79,11 +83,10 @@ def command(
     print_paths(output)
 
 
-def _print_answer(survey: Survey) -> None:
-    """Print fingerprint and verdict, and which structure the data want."""
+def _print_judgement(survey: Survey) -> None:
+    """Print what speaks for a limit, what was not validated, and which structure the data want."""
     for remark in survey.remarks:
         say(remark)
-    print_fingerprint(survey.fingerprint)
     print_findings("Limits", survey.limit_hints)
     if len(survey.fits) > 1:
         print_table(fits_table("All structures", survey.fits))
