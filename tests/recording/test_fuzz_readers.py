@@ -93,9 +93,15 @@ def _read_mutated(name, inputs, folder):
     return found
 
 
+def is_message(reason):
+    """Whether a reason is one line, or one with the first five mistakes indented below it and a count of the others."""
+    _, *mistakes = reason.splitlines()
+    return len(mistakes) <= 6 and all(line.startswith("  ") for line in mistakes)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", FORMATS)
-def test_mutated_files_end_in_channels_or_in_one_sentence(tmp_path, name):
+def test_mutated_files_end_in_channels_or_in_one_message(tmp_path, name):
     # Dewesoft's library runs in a process of its own, which takes half a second
     inputs = max(INPUTS // 50, 1) if name == "log.dxd" else INPUTS
     found = _read_mutated(name, inputs, tmp_path)
@@ -103,7 +109,7 @@ def test_mutated_files_end_in_channels_or_in_one_sentence(tmp_path, name):
     assert not faults, "\n".join(faults)
     reasons = [said["reason"] for said in found if said["reason"] is not None]
     assert reasons
-    assert [reason for reason in reasons if len(reason.splitlines()) != 1] == []
+    assert [reason for reason in reasons if not is_message(reason)] == []
     slowest = max(found, key=lambda said: said["took_s"])
     peak_mb = max(said["peak_mb"] for said in found)
     sys.stdout.write(
