@@ -1,4 +1,4 @@
-"""What is asked of the ship: sines, chirps and staircases of the speed set point, from a TOML file.
+"""What is asked of the ship: sines, multisines, chirps and staircases of the speed set point, from a TOML file.
 
 ===================== ======== ====================================================================
 quantity              unit     meaning
@@ -18,12 +18,16 @@ Every excitation holds in the half-open interval from its start to its stop.
 
 from shaftprint.campaign._campaign import Campaign, Excitation, load_campaign
 from shaftprint.campaign._excitations import Chirp, Sine, Staircase
+from shaftprint.campaign._leg import Leg
+from shaftprint.campaign._multisine import Multisine
 from shaftprint.campaign._setpoint import setpoint
 
 __all__ = [
     "Campaign",
     "Chirp",
     "Excitation",
+    "Leg",
+    "Multisine",
     "Sine",
     "Staircase",
     "load_campaign",

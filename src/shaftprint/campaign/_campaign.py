@@ -10,11 +10,12 @@ from pydantic import Field, model_validator
 
 from shaftprint.arguments import refusing_none
 from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
+from shaftprint.campaign._multisine import Multisine
 from shaftprint.errors import SettingsError
 from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.settings import Name, Number, PositiveNumber, Settings, load_settings
 
-Excitation: TypeAlias = Sine | Chirp | Staircase
+Excitation: TypeAlias = Sine | Multisine | Chirp | Staircase
 
 
 class Campaign(Shown, Settings):
@@ -34,6 +35,8 @@ class Campaign(Shown, Settings):
     """Rate at which the test is meant to be recorded [Hz]; no frequency may reach half of it."""
     sines: tuple[Sine, ...] = ()
     """Sines of constant frequency."""
+    multisines: tuple[Multisine, ...] = ()
+    """Sums of sines, each at a level of its own: one level, one working point."""
     chirps: tuple[Chirp, ...] = ()
     """Logarithmic sweeps."""
     staircases: tuple[Staircase, ...] = ()
@@ -56,7 +59,7 @@ class Campaign(Shown, Settings):
     @property
     def excitations(self) -> tuple[Excitation, ...]:
         """Every excitation in the order of time."""
-        every: tuple[Excitation, ...] = (*self.sines, *self.chirps, *self.staircases)
+        every: tuple[Excitation, ...] = (*self.sines, *self.multisines, *self.chirps, *self.staircases)
         return tuple(sorted(every, key=lambda excitation: excitation.start_s))
 
     @property
@@ -73,7 +76,7 @@ class Campaign(Shown, Settings):
         sines = tuple(sine for sine in self.sines if sine.input == name)
         if name == SPEED_SET_POINT:
             return self.model_copy(update={"sines": sines})
-        return self.model_copy(update={"sines": sines, "chirps": (), "staircases": ()})
+        return self.model_copy(update={"sines": sines, "multisines": (), "chirps": (), "staircases": ()})
 
     @model_validator(mode="after")
     def _can_be_sailed(self) -> Self:
@@ -85,7 +88,7 @@ class Campaign(Shown, Settings):
             *self._too_fast(),
         ]
         if not self.excitations:
-            errors.append("expected at least one sine, chirp or staircase, found none.")
+            errors.append("expected at least one sine, multisine, chirp or staircase, found none.")
         if errors:
             raise ValueError(" ".join(errors))
         return self

@@ -10,6 +10,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._campaign import Campaign, Excitation
 from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
+from shaftprint.campaign._multisine import Multisine
 from shaftprint.errors import SettingsError
 
 
@@ -42,16 +43,18 @@ def setpoint(campaign: Campaign, time_s: ArrayLike, *, input: str = SPEED_SET_PO
     for excitation in campaign.of_input(input).excitations:
         if excitation.start_s <= last and first < excitation.stop_s:
             inside = (time >= excitation.start_s) & (time < excitation.stop_s)
-            elapsed = time[inside] - excitation.start_s
-            voltage[inside] = _voltage(excitation, elapsed, offset_v)
+            voltage[inside] = _voltage(excitation, time[inside], offset_v)
     return voltage
 
 
-def _voltage(excitation: Excitation, elapsed_s: FloatArray, offset_v: float) -> FloatArray:
+def _voltage(excitation: Excitation, time_s: FloatArray, offset_v: float) -> FloatArray:
+    elapsed_s = time_s - excitation.start_s
     match excitation:
         case Sine():
             phase = 2.0 * math.pi * excitation.frequency_hz * elapsed_s
             return offset_v + excitation.amplitude_v * np.sin(phase)
+        case Multisine():
+            return excitation.value_at(time_s)
         case Chirp():
             return offset_v + excitation.amplitude_v * np.sin(_chirp_phase(excitation, elapsed_s))
         case Staircase():

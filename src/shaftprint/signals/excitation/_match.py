@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Campaign, Excitation, Sine, Staircase, setpoint
+from shaftprint.campaign import Campaign, Excitation, Leg, Sine, Staircase, setpoint
 from shaftprint.errors import SignalError
 from shaftprint.signals._gaps import EVERYTHING, Coverage, gap_findings
 from shaftprint.signals.excitation._found_test import FoundTest, common_shift_s
@@ -142,6 +142,8 @@ def _upside_down(found: Sequence[FoundTest]) -> str:
 def _extremes(item: Excitation, campaign: Campaign) -> tuple[float, ...]:
     if isinstance(item, Staircase):
         return item.levels_v
+    if isinstance(item, Leg):
+        return item.extremes_v
     return campaign.offset_v - item.amplitude_v, campaign.offset_v + item.amplitude_v
 
 

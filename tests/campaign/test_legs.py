@@ -1,0 +1,55 @@
+"""Periodic excitations at levels of their own."""
+
+import numpy as np
+import pytest
+from pydantic import ValidationError
+
+from shaftprint.campaign import Campaign, Multisine, setpoint
+
+MULTISINE = {
+    "name": "M1",
+    "level_v": -6.0,
+    "period_s": 8.0,
+    "harmonics": (1, 3),
+    "amplitudes_v": (0.5, 0.2),
+    "phases_rad": (0.0, np.pi / 2.0),
+    "start_s": 100.0,
+    "settled_s": 108.0,
+    "stop_s": 125.0,
+}
+
+
+def test_a_multisine_is_the_sum_of_its_sines_about_its_level():
+    campaign = Campaign(name="test", duration_s=200.0, offset_v=-5.0, multisines=(Multisine(**MULTISINE),))
+    # sin(2 pi t / 8) and cos(6 pi t / 8) at 0, 2, 4, 6 s: 0, 1, 0, -1 and 1, 0, -1, 0
+    expected = [-6.0 + 0.2, -6.0 + 0.5, -6.0 - 0.2, -6.0 - 0.5]
+    for period in range(3):
+        times = 100.0 + 8.0 * period + np.array([0.0, 2.0, 4.0, 6.0])
+        assert setpoint(campaign, times) == pytest.approx(expected)
+
+
+def test_the_window_of_a_leg_holds_whole_periods():
+    leg = Multisine(**MULTISINE)
+    assert (leg.periods, leg.window_s, leg.window_stop_s) == (2, 16.0, 124.0)
+    assert leg.lines == {1: 0.5, 3: 0.2}
+
+
+def test_the_extremes_of_a_leg_are_those_of_its_sum():
+    # sin x + sin(3 x + pi) / 2: d/dx = cos x - 1.5 cos 3x = 0 at cos(x)^2 = 11/12 or cos x = 0; sin x + 0.5 at x = pi/2
+    leg = Multisine(**MULTISINE | {"amplitudes_v": (0.6, 0.3), "phases_rad": (0.0, np.pi)})
+    assert leg.extremes_v == pytest.approx((-6.0 - 0.9, -6.0 + 0.9), abs=0.009)
+
+
+@pytest.mark.parametrize(
+    ("changed", "expected"),
+    [
+        ({"settled_s": 90.0}, "start_s <= settled_s < stop_s, found 100, 90, 125"),
+        ({"stop_s": 120.0}, "at least 2 periods of 8 s between settled_s and stop_s.*found 12 s"),
+        ({"harmonics": (3, 1)}, "harmonics to ascend, found 1 after 3"),
+        ({"amplitudes_v": (0.5,)}, "as many amplitudes_v and phases_rad as harmonics, found 1 and 2 for 2"),
+        ({"amplitudes_v": (0.5, 0.0)}, "greater than 0"),
+    ],
+)
+def test_an_impossible_multisine_is_refused(changed, expected):
+    with pytest.raises(ValidationError, match=expected):
+        Multisine(**(MULTISINE | changed))
