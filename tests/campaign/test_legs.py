@@ -20,7 +20,7 @@ MULTISINE = {
 
 
 def test_a_multisine_is_the_sum_of_its_sines_about_its_level():
-    campaign = Campaign(name="test", duration_s=200.0, offset_v=-5.0, multisines=(Multisine(**MULTISINE),))
+    campaign = Campaign(name="test", duration_s=200.0, offset_v=-5.0, ramp_s=4.0, multisines=(Multisine(**MULTISINE),))
     # sin(2 pi t / 8) and cos(6 pi t / 8) at 0, 2, 4, 6 s: 0, 1, 0, -1 and 1, 0, -1, 0
     expected = [-6.0 + 0.2, -6.0 + 0.5, -6.0 - 0.2, -6.0 - 0.5]
     for period in range(3):
@@ -53,3 +53,38 @@ def test_the_extremes_of_a_leg_are_those_of_its_sum():
 def test_an_impossible_multisine_is_refused(changed, expected):
     with pytest.raises(ValidationError, match=expected):
         Multisine(**(MULTISINE | changed))
+
+
+def _two_legs(**changed):
+    second = MULTISINE | {"name": "M2", "level_v": -3.0, "start_s": 145.0, "settled_s": 153.0, "stop_s": 169.0}
+    legs = (Multisine(**MULTISINE | {"stop_s": 124.0}), Multisine(**second))
+    settings = {"name": "test", "duration_s": 200.0, "offset_v": -5.0, "multisines": legs, "ramp_v_per_s": 0.5}
+    return Campaign(**(settings | changed))
+
+
+def test_the_set_point_goes_straight_from_leg_to_leg_and_back():
+    # the legs begin and end 0.2 V above their levels: -5.8 and -2.8 V; 0.5 V/s need 1.6, 6.0 and 4.4 s
+    times = [98.4, 99.2, 124.0, 138.9, 142.0, 144.0, 169.0, 171.0, 174.0]
+    expected = [-5.0, -5.4, -5.8, -5.8, -4.3, -3.3, -2.8, -3.8, -5.0]
+    assert setpoint(_two_legs(), times) == pytest.approx(expected)
+
+
+def test_no_set_point_jumps_by_more_than_its_own_motion():
+    times = np.arange(90.0, 190.0, 0.001)
+    steps = np.abs(np.diff(setpoint(_two_legs(ramp_v_per_s=None, ramp_s=6.0), times)))
+    # the fastest change is that of the lines, (0.5 + 3 0.2) 2 pi / 8 V/s, since all ramps are slower than 0.6 V/s
+    assert steps.max() < 0.001 * 1.1 * 2.0 * np.pi / 8.0
+
+
+@pytest.mark.parametrize(
+    ("changed", "expected"),
+    [
+        ({"ramp_v_per_s": None}, "ramp_s or ramp_v_per_s, how the set point goes from -5 to -5.8 V before M1"),
+        ({"ramp_s": 2.0}, "one of ramp_s and ramp_v_per_s, found both"),
+        ({"ramp_v_per_s": 0.1}, "at least 30 s between M1 and M2 for the ramp from -5.8 to -2.8 V, found 21 s"),
+        ({"duration_s": 170.0}, "at least 4.4 s after M2 for the ramp from -2.8 to -5 V, found 1 s"),
+    ],
+)
+def test_ramps_without_time_or_rate_are_refused(changed, expected):
+    with pytest.raises(ValidationError, match=expected):
+        _two_legs(**changed)

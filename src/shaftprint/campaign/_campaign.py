@@ -10,6 +10,8 @@ from pydantic import Field, model_validator
 
 from shaftprint.arguments import refusing_none
 from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
+from shaftprint.campaign._leg import Leg
+from shaftprint.campaign._moves import faults_of
 from shaftprint.campaign._multisine import Multisine
 from shaftprint.errors import SettingsError
 from shaftprint.notebook import Shown, Summary, shortened
@@ -33,6 +35,10 @@ class Campaign(Shown, Settings):
     """Middle of the sines that move something else than the set point of the speed [V], by the name of that input."""
     sample_rate_hz: PositiveNumber | None = None
     """Rate at which the test is meant to be recorded [Hz]; no frequency may reach half of it."""
+    ramp_s: PositiveNumber | None = None
+    """Time in which the set point goes to a leg, from one to the next, and back to the offset [s]."""
+    ramp_v_per_s: PositiveNumber | None = None
+    """The same as a rate [V/s]; one of the two is needed where there are legs."""
     sines: tuple[Sine, ...] = ()
     """Sines of constant frequency."""
     multisines: tuple[Multisine, ...] = ()
@@ -50,6 +56,7 @@ class Campaign(Shown, Settings):
             "sines": f"{shortened(s.name for s in self.sines)}: {min(hertz):.3g} to {max(hertz):.3g} Hz"
             if hertz
             else "",
+            "multisines": shortened(one.name for one in self.multisines),
             "chirps": shortened(chirp.name for chirp in self.chirps),
             "staircases": shortened(staircase.name for staircase in self.staircases),
             "set point": f"{self.offset_v:g} V in the middle",
@@ -61,6 +68,11 @@ class Campaign(Shown, Settings):
         """Every excitation in the order of time."""
         every: tuple[Excitation, ...] = (*self.sines, *self.multisines, *self.chirps, *self.staircases)
         return tuple(sorted(every, key=lambda excitation: excitation.start_s))
+
+    @property
+    def legs(self) -> tuple[Leg, ...]:
+        """What repeats itself at a level of its own, in the order of time."""
+        return tuple(excitation for excitation in self.excitations if isinstance(excitation, Leg))
 
     @property
     def inputs(self) -> tuple[str, ...]:
@@ -86,6 +98,7 @@ class Campaign(Shown, Settings):
             *self._overlaps(),
             *self._too_late(),
             *self._too_fast(),
+            *faults_of(self),
         ]
         if not self.excitations:
             errors.append("expected at least one sine, multisine, chirp or staircase, found none.")
@@ -124,6 +137,7 @@ class Campaign(Shown, Settings):
         if self.sample_rate_hz is None:
             return []
         highest = [(sine.name, sine.frequency_hz) for sine in self.sines]
+        highest += [(leg.name, max(leg.lines) / leg.length_of_period_s) for leg in self.legs]
         highest += [(chirp.name, max(chirp.start_frequency_hz, chirp.stop_frequency_hz)) for chirp in self.chirps]
         nyquist = self.sample_rate_hz / 2.0
         return [

@@ -10,6 +10,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._campaign import Campaign, Excitation
 from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
+from shaftprint.campaign._moves import moves_of
 from shaftprint.campaign._multisine import Multisine
 from shaftprint.errors import SettingsError
 
@@ -32,7 +33,7 @@ def setpoint(campaign: Campaign, time_s: ArrayLike, *, input: str = SPEED_SET_PO
     Returns
     -------
     voltage
-        Set point [V], shape of ``time_s``; the offset outside of every excitation.
+        Set point [V], shape of ``time_s``; outside of every excitation the offset, or the ramp to a leg and back.
     """
     time = np.asarray(time_s, dtype=np.float64)
     offset_v = campaign.middle_v(input)
@@ -40,6 +41,9 @@ def setpoint(campaign: Campaign, time_s: ArrayLike, *, input: str = SPEED_SET_PO
     if time.size == 0:
         return voltage
     first, last = float(time.min()), float(time.max())
+    for move in moves_of(campaign) if input == SPEED_SET_POINT else ():
+        inside = (time >= move.free_s[0]) & (time < move.free_s[1])
+        voltage[inside] = move.value_at(time[inside])
     for excitation in campaign.of_input(input).excitations:
         if excitation.start_s <= last and first < excitation.stop_s:
             inside = (time >= excitation.start_s) & (time < excitation.stop_s)
