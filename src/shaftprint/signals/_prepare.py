@@ -14,9 +14,10 @@ from shaftprint.signals._channel_signals import ChannelSignal
 from shaftprint.signals._channels import find_channel
 from shaftprint.signals._clock import Mode, clock_of
 from shaftprint.signals._gaps import Coverage
+from shaftprint.signals._leg_signals import samples_of_legs, steady_state_of_legs
 from shaftprint.signals._rates import expect_one_rate
 from shaftprint.signals._readings import Readings, usable_readings
-from shaftprint.signals._signals import SetPointCalibration, Signals
+from shaftprint.signals._signals import LegState, SetPointCalibration, Signals
 from shaftprint.signals.excitation import FoundTest, expect_campaign, find_step_delays, found_tests, left_out
 from shaftprint.signals.kinds import (
     Source,
@@ -33,6 +34,7 @@ from shaftprint.signals.levels import (
     expect_plausible,
     expect_steady_gauge,
     find_working_point,
+    leg_state,
     steady_stretches,
     stretches_at_working_point,
     working_point_of_test,
@@ -106,7 +108,16 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
     reasons = [*expect_one_rate(recording, logger_channels(readings.sources)), *_cut_crests(readings.sources)]
     lost, mismatches = _differences_from_campaign(recording, vessel, campaign, readings)
     differences = compare_speeds(readings.pick_ups, vessel)
-    steady, strange, unsteady = _steady_state(vessel, campaign, readings)
+    legs = samples_of_legs(campaign, readings)
+    states: tuple[LegState, ...]
+    unsteady: tuple[Reason, ...] = ()
+    if campaign.legs and not campaign.sines:
+        steady, states = steady_state_of_legs(campaign, readings, legs, channel=vessel.sensors.set_point.channel)
+        strange = expect_plausible(steady.working_point, vessel)
+        _calibrated_in_place(readings.set_point, steady.calibration)
+    else:
+        states = tuple(leg_state(one) for one in legs)
+        steady, strange, unsteady = _steady_state(vessel, campaign, readings)
     signals, absent = _signals_by_name(readings, steady)
     delays, missed = find_step_delays(
         readings.set_point,
@@ -127,6 +138,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
         dc_scale_std=scale.std,
         strips=tuple(pick_up.strips for pick_up in readings.pick_ups if pick_up.strips is not None),
         step_delays=delays,
+        legs=states,
         repairs=readings.repairs,
         gaps=readings.gaps,
         mode=clock.mode,

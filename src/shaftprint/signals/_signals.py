@@ -53,6 +53,20 @@ class WorkingPoint:
     """Standard deviation of the mean load ``M_s0 / n_0^2`` over its value [-]: the load of a propeller wanders."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class LegState:
+    """The steady state about which a leg of the campaign moves."""
+
+    name: str
+    """Name of the leg."""
+    start_s: float
+    """When its whole periods begin, in seconds of the recording."""
+    stop_s: float
+    """When they end [s]."""
+    working_point: WorkingPoint
+    """Mean speed, and the torque that a propeller has there whose mean torque was measured."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SetPointCalibration:
     """The line from set-point voltage to engine speed, ``n_set = slope U + intercept`` (thesis eq. 3.2)."""
@@ -130,6 +144,8 @@ class Signals(Shown, Labelled):
     """Delay of each step of the staircases."""
     repairs: tuple[Repair, ...]
     """What was repaired, in order of time."""
+    legs: tuple[LegState, ...] = ()
+    """Working point of each leg that the recording holds, in order of time."""
     gaps: tuple[Gap, ...] = ()
     """Where set point, torque, a speed or the ship's log say nothing, in order of time."""
     mode: Literal["shaftprint", "thesis"]

@@ -13,8 +13,8 @@ signal-to-noise ratio       dB      local, 20 DFT bins on each side; overall rat
 load drift ``delta``        -       propeller load of a window over that at the working point, minus 1
 =========================== ======= ==================================================================
 
-`estimate_spectra` gives all of it, `estimate_response` the response alone, `open_loop` and `governor_and_engine` its
-open-loop forms.
+`estimate_spectra` gives all of it for sines and `estimate_legs` for legs, `estimate_response` the response alone,
+`open_loop` and `governor_and_engine` its open-loop forms.
 
 For drives that are no ships `response_from_arrays` makes a response from plain time series, in the units of the arrays,
 `plant_from_closed_loop` takes a plant out of its loop, and `FrequencyResponse` holds what another program has measured.
@@ -22,6 +22,7 @@ For drives that are no ships `response_from_arrays` makes a response from plain 
 
 from shaftprint.spectra._closed_loop import plant_from_closed_loop
 from shaftprint.spectra._frequency_response import FrequencyResponse
+from shaftprint.spectra._leg_spectra import estimate_legs
 from shaftprint.spectra._line_responses import NOT_MEASURED_STD, measured
 from shaftprint.spectra._measured_inputs import with_measured_inputs
 from shaftprint.spectra._open_loop import governor_and_engine, open_loop
@@ -62,6 +63,7 @@ __all__ = [
     "WindowSamples",
     "circular_covariance",
     "coherence_covariance",
+    "estimate_legs",
     "estimate_response",
     "estimate_spectra",
     "governor_and_engine",

@@ -25,6 +25,8 @@ _OPPOSITE_DEG = 150.0
 def measured_windows(campaign: Campaign) -> tuple[tuple[str, float, float], ...]:
     """Return name, begin and end [s] of everything that is measured, in order of time."""
     windows = [(sine.name, sine.settled_s, sine.window_stop_s) for sine in campaign.sines]
+    # two periods of a leg are enough; how many the recording holds is told with its response
+    windows += [(leg.name, leg.settled_s, leg.settled_s + 2.0 * leg.length_of_period_s) for leg in campaign.legs]
     windows += [(chirp.name, chirp.start_s, chirp.stop_s) for chirp in campaign.chirps]
     for stairs in campaign.staircases:
         windows += [(f"step {k} of {stairs.name}", *step_window(stairs, k)) for k in range(1, len(stairs.levels_v))]

@@ -2,6 +2,8 @@
 
 from shaftprint.signals.levels._calibrate import calibrate, calibrate_through_wander
 from shaftprint.signals.levels._dc_scale import DcScale, LowLines, dc_scale, low_lines, zero_frequency_ratio
+from shaftprint.signals.levels._leg_periods import LegPeriods, leg_periods
+from shaftprint.signals.levels._leg_state import LegSamples, calibration_of_legs, leg_state, stretch_of
 from shaftprint.signals.levels._load import torque_of_mean_load
 from shaftprint.signals.levels._steadiness import expect_steady_gauge
 from shaftprint.signals.levels._steady import SteadyStretch, steady_stretches
@@ -18,19 +20,25 @@ from shaftprint.signals.levels._working_point import (
 
 __all__ = [
     "DcScale",
+    "LegPeriods",
+    "LegSamples",
     "LowLines",
     "SteadyStretch",
     "calibrate",
     "calibrate_through_wander",
+    "calibration_of_legs",
     "dc_scale",
     "deviation",
     "expect_plausible",
     "expect_steady_gauge",
     "find_working_point",
     "fit_through_wander",
+    "leg_periods",
+    "leg_state",
     "low_lines",
     "mean_of_stretches",
     "steady_stretches",
+    "stretch_of",
     "stretches_at_working_point",
     "torque_of_mean_load",
     "working_point_of_test",

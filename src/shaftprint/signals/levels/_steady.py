@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.campaign import Campaign, Chirp, Sine
+from shaftprint.campaign import Campaign, Chirp, Leg, Sine
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 
 _BLOCK_S = 1.0
@@ -57,15 +57,15 @@ def steady_stretches(
 ) -> tuple[SteadyStretch, ...]:
     """Return every stretch of at least 15 s in which the set point stands still, in order of time.
 
-    The crest of a slow sine stands nearly still too; therefore sines and chirps of the campaign are
-    left out.
+    The crest of a slow sine stands nearly still too; therefore sines, legs and chirps of the campaign
+    are left out.
 
     Parameters
     ----------
     set_point_v, speed_rev_s, torque_nm
         Signals on the grid, shape (samples,).
     campaign
-        Says where the sines and chirps are.
+        Says where the sines, legs and chirps are.
     rate_hz, start_s
         The grid.
     coverage
@@ -121,7 +121,7 @@ def _block_spread(values: FloatArray, length: int) -> FloatArray:
 def _outside_waves(starts: FloatArray, length_s: float, campaign: Campaign) -> BoolArray:
     outside = np.ones(starts.size, dtype=np.bool_)
     for wave in campaign.excitations:
-        if isinstance(wave, Sine | Chirp):
+        if isinstance(wave, Sine | Chirp | Leg):
             outside &= (starts + length_s <= wave.start_s) | (starts >= wave.stop_s)
     return outside
 

@@ -10,6 +10,7 @@ from shaftprint.spectra.lines._load_drift import LoadDrift, load_drift
 from shaftprint.spectra.lines._message_line import cut_messages
 from shaftprint.spectra.lines._modulation import without_modulation
 from shaftprint.spectra.lines._noise import (
+    LineNoise,
     Neighbours,
     ShaftRelation,
     equivalent_samples,
@@ -22,7 +23,7 @@ from shaftprint.spectra.lines._set_point_check import (
     check_set_point,
     shape_reasons,
 )
-from shaftprint.spectra.lines._signal_to_noise import SignalToNoise, signal_to_noise
+from shaftprint.spectra.lines._signal_to_noise import LineVariances, SignalToNoise, signal_to_noise
 from shaftprint.spectra.lines._sine_fit import WholePeriodSine
 from shaftprint.spectra.lines._windows import Window, plan_windows, whole_period_window
 
@@ -32,6 +33,8 @@ __all__ = [
     "HighestPeak",
     "LineFit",
     "LineMeasurement",
+    "LineNoise",
+    "LineVariances",
     "LoadDrift",
     "Neighbours",
     "ShaftRelation",

@@ -1,0 +1,181 @@
+"""The working point of a leg and the line of the set point through several, from whole periods alone.
+
+Over whole periods the mean speed is that of the mean set point, since the governor integrates its error, and nothing
+has to stand still: ``n_0`` is the mean speed and ``M_0 = mean(M_s) / mean((n / n_0)^2)``, the torque at ``n_0`` of a
+propeller whose torque goes with the square of the speed. The load of the leg is 1 by definition. Several levels give
+the line from volts to speed; a single leg gives it by its slow lines, at which the speed follows the set point.
+
+The standard deviation of a mean is that of the coefficients beside it: below the first line there is nothing but noise.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.errors import SignalError
+from shaftprint.signals._signals import LegState, SetPointCalibration, WorkingPoint
+from shaftprint.signals.levels._dc_scale import LowLines, zero_frequency_ratio
+from shaftprint.signals.levels._leg_periods import LegPeriods, between_lines
+from shaftprint.signals.levels._steady import SteadyStretch
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Leg
+
+# Means nearer to each other than this are one level [V].
+_SAME_LEVEL_V = 0.05
+# At lines whose speed departs further from the set point the low-order form does not hold (see _dc_scale.py).
+_LARGEST_DEPARTURE, _MOST_LINES, _FEWEST_LINES = 0.2, 9, 4
+# Deviation of a slope that rests on the slowest line alone, at which the speed may lag already.
+_ROUGH_STD = 0.05
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class LegSamples:
+    """Set point, speed and torque in the whole periods of one leg."""
+
+    leg: "Leg"
+    """The leg."""
+    periods: LegPeriods
+    """Its periods."""
+    set_point_v: FloatArray
+    """Set point [V], shape (samples,)."""
+    speed_rev_s: FloatArray
+    """Engine speed [rev/s], shape (samples,)."""
+    torque_nm: FloatArray
+    """Shaft torque [N m], shape (samples,)."""
+
+
+def leg_state(samples: LegSamples) -> LegState:
+    """Return the working point of a leg.
+
+    Parameters
+    ----------
+    samples
+        Its whole periods.
+    """
+    periods = samples.periods
+    speed = float(samples.speed_rev_s.mean())
+    square = (samples.speed_rev_s / speed) ** 2
+    torque = float(samples.torque_nm.mean() / square.mean())
+    speed_std = _std_of_mean(samples.speed_rev_s, periods.periods)
+    load_std = _std_of_mean(samples.torque_nm / torque - square, periods.periods)
+    point = WorkingPoint(
+        engine_speed_rev_s=speed,
+        shaft_torque_nm=torque,
+        engine_speed_std_rev_s=speed_std,
+        shaft_torque_std_nm=abs(torque) * float(np.hypot(load_std, 2.0 * speed_std / speed)),
+        set_point_v=float(samples.set_point_v.mean()),
+        load_std=load_std,
+    )
+    return LegState(name=samples.leg.name, start_s=periods.start_s, stop_s=periods.stop_s, working_point=point)
+
+
+def stretch_of(state: LegState) -> SteadyStretch:
+    """Return a leg as a stretch of time whose means are those of its working point, for channels that need one."""
+    point = state.working_point
+    return SteadyStretch(
+        start_s=state.start_s,
+        stop_s=state.stop_s,
+        set_point_v=point.set_point_v,
+        speed_rev_s=point.engine_speed_rev_s,
+        speed_std_rev_s=point.engine_speed_std_rev_s,
+        torque_nm=point.shaft_torque_nm,
+        torque_std_nm=point.shaft_torque_std_nm,
+    )
+
+
+def calibration_of_legs(legs: Sequence[LegSamples], states: Sequence[LegState], *, channel: str) -> SetPointCalibration:
+    """Return the line from volts to speed: through the levels of the legs, or of one level by its slow lines.
+
+    Parameters
+    ----------
+    legs, states
+        Samples and working point of each leg.
+    channel
+        Name of the set-point channel, for messages.
+
+    Raises
+    ------
+    SignalError
+        If the speed does not follow the set point.
+    """
+    volts = np.array([state.working_point.set_point_v for state in states])
+    speed = np.array([state.working_point.engine_speed_rev_s for state in states])
+    std = np.array([state.working_point.engine_speed_std_rev_s for state in states])
+    order = np.argsort(volts)
+    if np.ptp(volts) > _SAME_LEVEL_V:
+        weight = 1.0 / np.maximum(std, 1e-9 * speed)
+        columns = weight[:, np.newaxis] * np.column_stack([volts, np.ones(volts.size)])
+        (slope, intercept), *_ = np.linalg.lstsq(columns, weight * speed, rcond=None)
+        covariance = np.linalg.inv(columns.T @ columns)
+    else:
+        slope, slope_std = _slope_of_slow_lines(legs[0], channel)
+        intercept = float(np.mean(speed - slope * volts))
+        # the mean is known apart from the slope
+        about = float(volts.mean())
+        covariance = slope_std**2 * np.array([[1.0, -about], [-about, about**2]])
+        covariance[1, 1] += float(np.mean(std**2))
+    if not slope:
+        raise SignalError(f"channel {channel}: expected the speed to follow the set point, found the same at all legs.")
+    return SetPointCalibration(
+        slope_rev_s_per_v=float(slope),
+        intercept_rev_s=float(intercept),
+        covariance=frozen_float(covariance),
+        level_v=frozen_float(volts[order]),
+        level_rev_s=frozen_float(speed[order]),
+        level_std_rev_s=frozen_float(std[order]),
+    )
+
+
+def _std_of_mean(values: FloatArray, periods: int) -> float:
+    return float(np.sqrt(np.mean(np.abs(between_lines(values, periods)) ** 2)))
+
+
+def _slope_of_slow_lines(samples: LegSamples, channel: str) -> tuple[float, float]:
+    """Return slope and deviation [rev/s per V] at zero frequency, from the lines at which the speed follows."""
+    periods, harmonics = samples.periods, list(samples.leg.lines)[:_MOST_LINES]
+    volts, speed = (
+        _amplitudes(values, periods.periods, harmonics) for values in (samples.set_point_v, samples.speed_rev_s)
+    )
+    power = np.sum(np.abs(volts) ** 2, axis=1)
+    if not np.all(power > 0.0):
+        raise SignalError(
+            f"channel {channel}: expected a set point that moves in {samples.leg.name}, found one that stands still."
+        )
+    ratio = np.sum(volts.conj() * speed, axis=1) / power
+    rough = float(ratio[0].real)
+    if rough == 0.0:
+        raise SignalError(
+            f"channel {channel}: expected the speed to follow the set point in {samples.leg.name}, found no motion."
+        )
+    residual = np.sum(np.abs(speed - ratio[:, np.newaxis] * volts) ** 2, axis=1)
+    std = np.sqrt(residual / (2.0 * (periods.periods - 1)) / power) / abs(rough)
+    follows = np.abs(ratio / rough - 1.0) <= _LARGEST_DEPARTURE
+    count = int(np.argmin(follows)) if not follows.all() else follows.size
+    if count < _FEWEST_LINES:
+        return rough, _ROUGH_STD * abs(rough)
+    lines = LowLines(
+        omega_rad_s=2.0 * np.pi * np.array(harmonics[:count]) / periods.period_s,
+        ratio=ratio[:count] / rough,
+        std=np.maximum(std[:count], 1e-7),
+    )
+    value, value_std = zero_frequency_ratio(lines)
+    return rough * value, abs(rough) * value_std
+
+
+def _amplitudes(
+    values: FloatArray, periods: int, harmonics: Sequence[int]
+) -> "np.ndarray[tuple[int, int], np.dtype[np.complex128]]":
+    """Return the complex amplitude of lines in each period, shape (lines, periods)."""
+    borders = np.round(np.arange(periods + 1) * values.size / periods).astype(int)
+    turns = 2j * np.pi * periods * np.arange(values.size) / values.size
+    centred = values - values.mean()
+    return np.array(
+        [
+            np.add.reduceat(centred * np.exp(-harmonic * turns), borders[:-1]) * (2.0 * periods / values.size)
+            for harmonic in harmonics
+        ]
+    )

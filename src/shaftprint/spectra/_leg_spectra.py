@@ -1,0 +1,123 @@
+"""The verb for legs: from signals and campaign to the response of each leg about its own working point."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arguments import refusing_none
+from shaftprint.errors import ResponseError
+from shaftprint.signals import about_leg, leg_periods
+from shaftprint.spectra._line_responses import response_of_lines
+from shaftprint.spectra._shift_check import shift_reasons
+from shaftprint.spectra._spectra import Spectra
+from shaftprint.spectra.legs import check_leg, cut_leg, leg_clock_reasons, leg_shape_reasons, measure_leg
+from shaftprint.spectra.lines import LoadDrift, collect_harmonics, signal_to_noise
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign, Leg
+    from shaftprint.signals import Signals, SpeedSignal
+    from shaftprint.spectra.legs import LegLines
+
+
+@refusing_none(ResponseError)
+def estimate_legs(signals: "Signals", campaign: "Campaign") -> dict[str, Spectra]:
+    """Measure every leg of a campaign that the recording holds, each about its own working point.
+
+    Set point and speed are divided by the mean speed ``n_0`` of the leg, the torque by ``M_0`` (see ``LegState``). The
+    load of each line is 1 by definition. A leg that was cut off gives a result of its whole periods.
+
+    Parameters
+    ----------
+    signals
+        The prepared recording.
+    campaign
+        What was asked of the ship; only its legs are used.
+
+    Returns
+    -------
+    Response, signal-to-noise ratios and remarks of each leg by its name, in order of time.
+
+    Raises
+    ------
+    ResponseError
+        If a channel holds values that are not numbers or does not move, or the set point of a leg stands still.
+    """
+    by_name = {leg.name: leg for leg in campaign.legs}
+    return {state.name: _leg(about_leg(signals, state.name), by_name[state.name]) for state in signals.legs}
+
+
+def _leg(signals: "Signals", leg: "Leg") -> Spectra:
+    sensor, moved = signals.engine_speed, signals.excitations["n_set"]
+    measured = _measured(signals, leg, sensor)
+    expected = np.array([leg.lines[harmonic] for harmonic in measured.harmonics]) * abs(moved.per_volt)
+    finding = check_leg(measured, expected=expected / moved.reference, moved=moved)
+    lines = [line for line in measured.lines if line.window.line not in finding.silent]
+    if not lines:
+        raise ResponseError(
+            f"{leg.name}: expected a set point that moves at the lines of the campaign, found none of them between "
+            f"{measured.window.periods.start_s:g} and {measured.window.periods.stop_s:g} s: check that campaign and "
+            "recording belong together."
+        )
+    remarks, used = dict(finding.remarks), np.ones(len(lines), dtype=np.bool_)
+    for row, line in enumerate(lines):
+        name = line.window.line
+        aliased = line.window.frequency_hz > sensor.nyquist_hz
+        if aliased:
+            alias = f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased"
+            remarks[name] = "; ".join(part for part in (remarks.get(name), alias) if part)
+        used[row] = not aliased and name not in finding.unusable
+    missing = leg.periods - measured.window.periods.periods
+    if missing > 0:
+        remarks[leg.name] = f"{measured.window.periods.periods} of {leg.periods} periods are in the recording"
+    load = np.ones(len(lines))
+    response = replace(
+        response_of_lines(signals, lines, excitation=moved, sensor=sensor, load=load),
+        used=used,
+        remarks=remarks | finding.silent,
+        averaging_s=sensor.averaging_s,
+        hold_s=sensor.hold_s,
+        pick_up_delay_s=sensor.delay_s,
+    )
+    against = (*leg_clock_reasons(measured), *leg_shape_reasons(measured), *shift_reasons(response))
+    return Spectra(
+        response=replace(response, reasons=(*signals.reasons, *against)),
+        windows=tuple(line.window for line in lines),
+        signal_to_noise=signal_to_noise(
+            [line.variances for line in lines],
+            lines=tuple(line.window.line for line in lines),
+            channels=measured.window.channels,
+        ),
+        harmonics=collect_harmonics(lines, speed=sensor.name),
+        load_drift=LoadDrift(delta=np.zeros(len(lines)), standard_deviation=0.0),
+        speed=sensor.name,
+        remarks=remarks | finding.silent,
+    )
+
+
+def _measured(signals: "Signals", leg: "Leg", sensor: "SpeedSignal") -> "LegLines":
+    """Return the lines of a leg in every channel on the grid but further set points."""
+    periods = leg_periods(leg, signals.coverage)
+    if periods is None:
+        raise ResponseError(f"{leg.name}: expected two whole periods in the recording, found fewer.")
+    apart = {*signals.excitations, *signals.messages} - {"n_set"}
+    channels = {name: signal for name, signal in signals.channels.items() if name not in apart}
+    window = cut_leg(
+        {name: signal.values for name, signal in channels.items()},
+        {name: signal.reference for name, signal in channels.items()},
+        periods,
+        tuple(leg.lines),
+        excitation="n_set",
+        rate_hz=signals.rate_hz,
+        start_s=signals.start_s,
+    )
+    for name in window.channels:
+        values = window.of(name)
+        if not np.isfinite(values).all():
+            raise ResponseError(f"{leg.name}: expected numbers in {name}, found some that are not: repair the signal.")
+        if name != "n_set" and np.ptp(values) == 0.0:
+            raise ResponseError(
+                f"{leg.name}: expected {name} to move, found a constant from {periods.start_s:g} to {periods.stop_s:g} "
+                "s: the sensor or its channel is dead."
+            )
+    return measure_leg(leg, window, excitation="n_set", speed=sensor.name)

@@ -1,0 +1,156 @@
+"""The whole periods of a leg in every channel, over the working point of the leg.
+
+The generator that puts out the set point has a clock of its own. A period that is off by 50 ppm turns a line of 2.5 Hz
+by 0.2 rad within five minutes, and what turns leaks between the lines, where the noise is looked for. The period is
+therefore measured in the set point itself, and where it is not a whole number of samples the channels are put on a grid
+on which it is.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from shaftprint.arrays import ComplexArray, FloatArray, frozen_float
+
+if TYPE_CHECKING:
+    from shaftprint.signals import LegPeriods
+
+# Periods together may miss whole samples by this: the fastest lines then turn by less than 1e-3 rad.
+_SAME_SAMPLES = 1e-3
+# Samples beside the window that a spline needs.
+_MARGIN = 4
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class LegWindow:
+    """Whole periods of a leg, each of a whole number of samples."""
+
+    periods: "LegPeriods"
+    """Name, begin, length and number of the periods, as they are in the recording."""
+    clock_ratio: float
+    """Length of a period over that of the campaign, minus 1."""
+    channels: tuple[str, ...]
+    """Names of the channels."""
+    values: FloatArray
+    """Values over the working point of the leg, shape (channels, periods, samples a period)."""
+
+    def of(self, channel: str) -> FloatArray:
+        """Return the values of one channel, shape (periods, samples a period)."""
+        values: FloatArray = self.values[self.channels.index(channel)]
+        return values
+
+    def spectrum(self) -> ComplexArray:
+        """Return complex amplitudes ``2 / N sum x exp(-j w t)`` of all periods together, shape (channels, bins).
+
+        Bin ``k P`` is harmonic ``k``; the bins between hold what differs between the ``P`` periods.
+        """
+        flat = self.values.reshape(len(self.channels), -1)
+        spectrum: ComplexArray = np.fft.rfft(flat, axis=1) * (2.0 / flat.shape[1])
+        return spectrum
+
+    def by_period(self) -> ComplexArray:
+        """Return complex amplitudes of each harmonic in each period, shape (channels, periods, harmonics)."""
+        spectrum: ComplexArray = np.fft.rfft(self.values, axis=2) * (2.0 / self.values.shape[2])
+        return spectrum
+
+
+def cut_leg(
+    channels: Mapping[str, FloatArray],
+    references: Mapping[str, float],
+    periods: "LegPeriods",
+    harmonics: Sequence[int],
+    *,
+    excitation: str,
+    rate_hz: float,
+    start_s: float,
+) -> LegWindow:
+    """Cut a leg out of whole channels, with the period that the set point really has.
+
+    Parameters
+    ----------
+    channels
+        Channels on one grid by name, each of shape (samples,).
+    references
+        Value of each at the working point of the leg.
+    periods
+        Which part of the recording, with the period of the campaign.
+    harmonics
+        Lines of the leg.
+    excitation
+        Name of the channel that is moved.
+    rate_hz, start_s
+        The grid.
+    """
+    moved = _cut({excitation: channels[excitation]}, references, periods, rate_hz=rate_hz, start_s=start_s)
+    ratio = _clock_ratio(moved.by_period()[0][:, list(harmonics)], harmonics)
+    measured = replace(periods, period_s=periods.period_s * (1.0 + ratio))
+    # the last period must still be inside
+    longest = (start_s + channels[excitation].size / rate_hz - measured.start_s) / measured.period_s
+    measured = replace(measured, periods=min(measured.periods, int(np.floor(longest + _SAME_SAMPLES))))
+    window = _cut(channels, references, measured, rate_hz=rate_hz, start_s=start_s)
+    return replace(window, clock_ratio=ratio)
+
+
+def _clock_ratio(amplitude: ComplexArray, harmonics: Sequence[int]) -> float:
+    """Return by how much a period is longer than was cut, as a share, from the turning of the lines.
+
+    A line of harmonic ``k`` turns by ``-2 pi k`` of that share from one period to the next. Weighted by the power of
+    the lines, which is what their phases are known by.
+
+    Parameters
+    ----------
+    amplitude
+        Complex amplitudes of the set point, shape (periods, lines).
+    harmonics
+        The lines.
+    """
+    turn = np.unwrap(np.angle(amplitude * amplitude.mean(axis=0).conj()), axis=0)
+    centred = np.arange(len(turn)) - 0.5 * (len(turn) - 1)
+    slope = centred @ turn / (centred @ centred)
+    order = np.asarray(harmonics, dtype=np.float64)
+    weight = np.mean(np.abs(amplitude) ** 2, axis=0)
+    power = float(weight @ order**2)
+    return -float((weight * order) @ slope) / (2.0 * np.pi * power) if power else 0.0
+
+
+def _cut(
+    channels: Mapping[str, FloatArray],
+    references: Mapping[str, float],
+    periods: "LegPeriods",
+    *,
+    rate_hz: float,
+    start_s: float,
+) -> LegWindow:
+    """Return the channels in whole periods of so many samples each, over their values at the working point."""
+    exact = periods.period_s * rate_hz
+    length = round(exact)
+    count = length * periods.periods
+    first = max(round((periods.start_s - start_s) * rate_hz), 0)
+    is_whole = abs(exact - length) * periods.periods < _SAME_SAMPLES and first + count <= _size(channels)
+    places = first + (exact / length) * np.arange(count, dtype=np.float64)
+    rows = [
+        (values[first : first + count] if is_whole else _at(values, places)) / references[name]
+        for name, values in channels.items()
+    ]
+    return LegWindow(
+        periods=replace(periods, start_s=start_s + first / rate_hz),
+        clock_ratio=0.0,
+        channels=tuple(channels),
+        values=frozen_float(np.stack(rows).reshape(len(rows), periods.periods, length)),
+    )
+
+
+def _size(channels: Mapping[str, FloatArray]) -> int:
+    return min(values.size for values in channels.values())
+
+
+def _at(values: FloatArray, places: FloatArray) -> FloatArray:
+    """Return the values between samples; beyond the last one its value goes on."""
+    first = max(int(places[0]) - _MARGIN, 0)
+    stop = min(int(places[-1]) + _MARGIN + 1, values.size)
+    spline = CubicSpline(np.arange(first, stop), values[first:stop])
+    between: FloatArray = spline(np.minimum(places, values.size - 1.0))
+    return between
