@@ -22,20 +22,12 @@ from shaftprint.signals._content import Content, content_of
 from shaftprint.signals._contradictions import contradictions
 from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._inspect import ChannelReport, PulseReport, channel_reports, inspect_channels
-from shaftprint.signals._leg_signals import about_leg
 from shaftprint.signals._prepare import find_tests, prepare_signals
-from shaftprint.signals._signals import (
-    LegState,
-    Repair,
-    SetPointCalibration,
-    Signals,
-    StepDelay,
-    StripAngles,
-    WorkingPoint,
-)
+from shaftprint.signals._signals import Repair, SetPointCalibration, Signals, StepDelay, StripAngles
+from shaftprint.signals._working_points import LegState, WorkingPoint
 from shaftprint.signals.excitation import FoundTest, common_shift_s, proposed_campaign
 from shaftprint.signals.kinds import KINDS, ChannelKind
-from shaftprint.signals.levels import LegPeriods, deviation, leg_periods
+from shaftprint.signals.levels import deviation
 
 __all__ = [
     "KINDS",
@@ -49,7 +41,6 @@ __all__ = [
     "ExcitationSignal",
     "FoundTest",
     "Gap",
-    "LegPeriods",
     "LegState",
     "MessageSignal",
     "Mode",
@@ -61,7 +52,6 @@ __all__ = [
     "StepDelay",
     "StripAngles",
     "WorkingPoint",
-    "about_leg",
     "channel_reports",
     "common_shift_s",
     "content_of",
@@ -69,7 +59,6 @@ __all__ = [
     "deviation",
     "find_tests",
     "inspect_channels",
-    "leg_periods",
     "prepare_signals",
     "proposed_campaign",
     "read_channels",

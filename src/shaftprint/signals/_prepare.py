@@ -14,10 +14,11 @@ from shaftprint.signals._channel_signals import ChannelSignal
 from shaftprint.signals._channels import find_channel
 from shaftprint.signals._clock import Mode, clock_of
 from shaftprint.signals._gaps import Coverage
-from shaftprint.signals._leg_signals import samples_of_legs, steady_state_of_legs
+from shaftprint.signals._leg_steady_state import samples_of_legs, steady_state_of_legs
 from shaftprint.signals._rates import expect_one_rate
 from shaftprint.signals._readings import Readings, usable_readings
-from shaftprint.signals._signals import LegState, SetPointCalibration, Signals
+from shaftprint.signals._signals import SetPointCalibration, Signals
+from shaftprint.signals._working_points import LegState
 from shaftprint.signals.excitation import FoundTest, expect_campaign, find_step_delays, found_tests, left_out
 from shaftprint.signals.kinds import (
     Source,

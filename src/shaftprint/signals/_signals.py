@@ -7,10 +7,13 @@ from typing import Any, Literal
 import numpy as np
 
 from shaftprint.arrays import FloatArray
+from shaftprint.errors import SignalError
 from shaftprint.notebook import Labelled, LabelledData, Shown, Summary, Variable, shortened
 from shaftprint.reasons import Reason
 from shaftprint.signals._channel_signals import ChannelSignal, ExcitationSignal, MessageSignal, SpeedSignal
 from shaftprint.signals._gaps import Coverage, Gap
+from shaftprint.signals._leg_channels import channels_about
+from shaftprint.signals._working_points import LegState, WorkingPoint
 
 _UNITS = {
     "n_set": ("rev/s", "set point of the engine speed"),
@@ -33,38 +36,6 @@ class Repair:
     """When it starts, in seconds of the recording."""
     count: int
     """How many samples or pulses it concerns."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class WorkingPoint:
-    """The steady state around which the responses are normalised."""
-
-    engine_speed_rev_s: float
-    """Mean engine speed ``n_0`` [rev/s]."""
-    shaft_torque_nm: float
-    """Shaft torque ``M_s0`` [N m] that the gauge shows at ``n_0`` under the mean load of the recording."""
-    engine_speed_std_rev_s: float
-    """Standard deviation of ``n_0`` [rev/s]."""
-    shaft_torque_std_nm: float
-    """Standard deviation of ``M_s0`` [N m], without the gauge's scale error: ``load_std`` and twice that of ``n_0``."""
-    set_point_v: float
-    """Mean set-point voltage [V] of the stretches that were used."""
-    load_std: float
-    """Standard deviation of the mean load ``M_s0 / n_0^2`` over its value [-]: the load of a propeller wanders."""
-
-
-@dataclass(frozen=True, kw_only=True, slots=True)
-class LegState:
-    """The steady state about which a leg of the campaign moves."""
-
-    name: str
-    """Name of the leg."""
-    start_s: float
-    """When its whole periods begin, in seconds of the recording."""
-    stop_s: float
-    """When they end [s]."""
-    working_point: WorkingPoint
-    """Mean speed, and the torque that a propeller has there whose mean torque was measured."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -227,6 +198,32 @@ class Signals(Shown, Labelled):
     def coverage(self) -> Coverage:
         """What the signals cover: ask it before a window of the recording is used."""
         return Coverage.of_grid(start_s=self.start_s, samples=self.samples, rate_hz=self.rate_hz, gaps=self.gaps)
+
+    def about(self, leg: str) -> "Signals":
+        """Return the signals with the working point of one leg as what everything is divided by.
+
+        Channels on clocks of their own are left out: a leg has no response of them yet. The scale of the set point
+        carries no deviation: what its line is off, it is off at all lines of all legs alike, which is a parameter of
+        the structures.
+
+        Parameters
+        ----------
+        leg
+            Name of a leg that the recording holds.
+
+        Raises
+        ------
+        SignalError
+            If it holds no such leg.
+        """
+        states = {state.name: state for state in self.legs}
+        if leg not in states:
+            raise SignalError(f"leg {leg}: expected one of {', '.join(states) or 'none'}, found no such leg.")
+        return replace(
+            self,
+            working_point=states[leg].working_point,
+            channels=channels_about(states[leg], self.channels, rate_hz=self.rate_hz, start_s=self.start_s),
+        )
 
     @property
     def samples(self) -> int:

@@ -7,7 +7,6 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ResponseError
-from shaftprint.signals import about_leg, leg_periods
 from shaftprint.spectra._line_responses import response_of_lines
 from shaftprint.spectra._shift_check import shift_reasons
 from shaftprint.spectra._spectra import Spectra
@@ -16,8 +15,11 @@ from shaftprint.spectra.lines import LoadDrift, collect_harmonics, signal_to_noi
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign, Leg
-    from shaftprint.signals import Signals, SpeedSignal
+    from shaftprint.signals import LegState, Signals, SpeedSignal
     from shaftprint.spectra.legs import LegLines
+
+# A line this close to half the rate of the grid is bent by the anti-alias filter.
+_HIGHEST_SHARE_OF_RATE = 0.45
 
 
 @refusing_none(ResponseError)
@@ -44,19 +46,19 @@ def estimate_legs(signals: "Signals", campaign: "Campaign") -> dict[str, Spectra
         If a channel holds values that are not numbers or does not move, or the set point of a leg stands still.
     """
     by_name = {leg.name: leg for leg in campaign.legs}
-    return {state.name: _leg(about_leg(signals, state.name), by_name[state.name]) for state in signals.legs}
+    return {state.name: _leg(signals.about(state.name), by_name[state.name], state) for state in signals.legs}
 
 
-def _leg(signals: "Signals", leg: "Leg") -> Spectra:
+def _leg(signals: "Signals", leg: "Leg", state: "LegState") -> Spectra:
     sensor, moved = signals.engine_speed, signals.excitations["n_set"]
-    measured = _measured(signals, leg, sensor)
+    measured = _measured(signals, leg, state, sensor)
     expected = np.array([leg.lines[harmonic] for harmonic in measured.harmonics]) * abs(moved.per_volt)
     finding = check_leg(measured, expected=expected / moved.reference, moved=moved)
     lines = [line for line in measured.lines if line.window.line not in finding.silent]
     if not lines:
         raise ResponseError(
             f"{leg.name}: expected a set point that moves at the lines of the campaign, found none of them between "
-            f"{measured.window.periods.start_s:g} and {measured.window.periods.stop_s:g} s: check that campaign and "
+            f"{measured.window.state.start_s:g} and {measured.window.state.stop_s:g} s: check that campaign and "
             "recording belong together."
         )
     remarks, used = dict(finding.remarks), np.ones(len(lines), dtype=np.bool_)
@@ -67,9 +69,9 @@ def _leg(signals: "Signals", leg: "Leg") -> Spectra:
             alias = f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased"
             remarks[name] = "; ".join(part for part in (remarks.get(name), alias) if part)
         used[row] = not aliased and name not in finding.unusable
-    missing = leg.periods - measured.window.periods.periods
+    missing = leg.periods - measured.window.state.periods
     if missing > 0:
-        remarks[leg.name] = f"{measured.window.periods.periods} of {leg.periods} periods are in the recording"
+        remarks[leg.name] = f"{measured.window.state.periods} of {leg.periods} periods are in the recording"
     load = np.ones(len(lines))
     response = replace(
         response_of_lines(signals, lines, excitation=moved, sensor=sensor, load=load),
@@ -95,18 +97,17 @@ def _leg(signals: "Signals", leg: "Leg") -> Spectra:
     )
 
 
-def _measured(signals: "Signals", leg: "Leg", sensor: "SpeedSignal") -> "LegLines":
+def _measured(signals: "Signals", leg: "Leg", state: "LegState", sensor: "SpeedSignal") -> "LegLines":
     """Return the lines of a leg in every channel on the grid but further set points."""
-    periods = leg_periods(leg, signals.coverage)
-    if periods is None:
-        raise ResponseError(f"{leg.name}: expected two whole periods in the recording, found fewer.")
+    highest = _HIGHEST_SHARE_OF_RATE * signals.rate_hz * leg.length_of_period_s
+    harmonics = [harmonic for harmonic in leg.lines if harmonic <= highest]
     apart = {*signals.excitations, *signals.messages} - {"n_set"}
     channels = {name: signal for name, signal in signals.channels.items() if name not in apart}
     window = cut_leg(
         {name: signal.values for name, signal in channels.items()},
         {name: signal.reference for name, signal in channels.items()},
-        periods,
-        tuple(leg.lines),
+        state,
+        harmonics,
         excitation="n_set",
         rate_hz=signals.rate_hz,
         start_s=signals.start_s,
@@ -117,7 +118,7 @@ def _measured(signals: "Signals", leg: "Leg", sensor: "SpeedSignal") -> "LegLine
             raise ResponseError(f"{leg.name}: expected numbers in {name}, found some that are not: repair the signal.")
         if name != "n_set" and np.ptp(values) == 0.0:
             raise ResponseError(
-                f"{leg.name}: expected {name} to move, found a constant from {periods.start_s:g} to {periods.stop_s:g} "
+                f"{leg.name}: expected {name} to move, found a constant from {state.start_s:g} to {state.stop_s:g} "
                 "s: the sensor or its channel is dead."
             )
-    return measure_leg(leg, window, excitation="n_set", speed=sensor.name)
+    return measure_leg(window, harmonics, excitation="n_set", speed=sensor.name)

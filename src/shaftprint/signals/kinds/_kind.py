@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
     from shaftprint.recording import Channel, Recording
     from shaftprint.signals._clock import Clock
-    from shaftprint.signals._signals import SetPointCalibration, WorkingPoint
+    from shaftprint.signals._signals import SetPointCalibration
+    from shaftprint.signals._working_points import WorkingPoint
     from shaftprint.signals.conditioning import FaultLimits
     from shaftprint.signals.levels import DcScale, SteadyStretch
     from shaftprint.vessel import Vessel

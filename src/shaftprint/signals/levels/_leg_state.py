@@ -16,7 +16,8 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
-from shaftprint.signals._signals import LegState, SetPointCalibration, WorkingPoint
+from shaftprint.signals._signals import SetPointCalibration
+from shaftprint.signals._working_points import LegState, WorkingPoint
 from shaftprint.signals.levels._dc_scale import LowLines, zero_frequency_ratio
 from shaftprint.signals.levels._leg_periods import LegPeriods, between_lines
 from shaftprint.signals.levels._steady import SteadyStretch
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
 # Means nearer to each other than this are one level [V].
 _SAME_LEVEL_V = 0.05
 # At lines whose speed departs further from the set point the low-order form does not hold (see _dc_scale.py).
-_LARGEST_DEPARTURE, _MOST_LINES, _FEWEST_LINES = 0.2, 9, 4
+_LARGEST_DEPARTURE, _MOST_LINES, _FEWEST_LINES = 0.2, 9, 3
 # Deviation of a slope that rests on the slowest line alone, at which the speed may lag already.
 _ROUGH_STD = 0.05
 
@@ -70,7 +71,13 @@ def leg_state(samples: LegSamples) -> LegState:
         set_point_v=float(samples.set_point_v.mean()),
         load_std=load_std,
     )
-    return LegState(name=samples.leg.name, start_s=periods.start_s, stop_s=periods.stop_s, working_point=point)
+    return LegState(
+        name=samples.leg.name,
+        start_s=periods.start_s,
+        period_s=periods.period_s,
+        periods=periods.periods,
+        working_point=point,
+    )
 
 
 def stretch_of(state: LegState) -> SteadyStretch:

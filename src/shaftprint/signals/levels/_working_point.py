@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
-from shaftprint.signals._signals import WorkingPoint
+from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.signals.levels._load import torque_of_mean_load
 
 if TYPE_CHECKING:

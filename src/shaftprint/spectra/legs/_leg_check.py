@@ -73,9 +73,9 @@ def leg_clock_reasons(measured: LegLines) -> tuple[Reason, ...]:
     return (
         Reason(
             kind="recording clock",
-            where=measured.window.periods.leg,
+            where=measured.window.state.name,
             sentence=(
-                f"The clock of the recording is in doubt: the periods of {measured.window.periods.leg} are "
+                f"The clock of the recording is in doubt: the periods of {measured.window.state.name} are "
                 f"{_PERCENT * ratio:+.2f} % longer than the campaign file says; check the sample rate that the file "
                 "declares, or period_s of the campaign file."
             ),
@@ -88,15 +88,13 @@ def leg_shape_reasons(measured: LegLines) -> tuple[Reason, ...]:
     excitation = measured.lines[0].excitation
     window = measured.window
     spectrum = window.spectrum()[window.channels.index(excitation)]
-    highest = min(_SHAPE_REACH * measured.harmonics[-1], (spectrum.size - 1) // window.periods.periods)
-    power = (
-        np.abs(spectrum[window.periods.periods : highest * window.periods.periods + 1 : window.periods.periods]) ** 2
-    )
+    highest = min(_SHAPE_REACH * measured.harmonics[-1], (spectrum.size - 1) // window.state.periods)
+    power = np.abs(spectrum[window.state.periods : highest * window.state.periods + 1 : window.state.periods]) ** 2
     is_line = np.isin(np.arange(1, power.size + 1), measured.harmonics)
     share = float(np.sqrt(power[~is_line].sum() / max(power[is_line].sum(), np.finfo(np.float64).tiny)))
     if share <= _SHAPE_LIMIT:
         return ()
-    name = window.periods.leg
+    name = window.state.name
     return (
         Reason(
             kind="set-point shape",

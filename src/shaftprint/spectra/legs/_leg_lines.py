@@ -11,18 +11,22 @@ nearest to a line are averaged as a matrix: the factor by which an estimated cov
 ``n / (n - 2)``, is 1.06 then, and 1.2 with 12.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray, IntArray
 from shaftprint.spectra.legs._leg_window import LegWindow
-from shaftprint.spectra.lines import LineMeasurement, LineNoise, LineVariances, Window
-from shaftprint.spectra.records import pooled_noise
-
-if TYPE_CHECKING:
-    from shaftprint.campaign import Leg
+from shaftprint.spectra.lines import (
+    LineMeasurement,
+    LineNoise,
+    LineVariances,
+    Neighbours,
+    ShaftRelation,
+    Window,
+    noise_from_neighbours,
+)
 
 _NOISE_BINS = 36
 # As many bins beside a line as the thesis' local ratio takes on both sides together.
@@ -42,32 +46,30 @@ class LegLines:
     """What each of them tells."""
 
 
-def measure_leg(leg: "Leg", window: LegWindow, *, excitation: str, speed: str) -> LegLines:
+def measure_leg(window: LegWindow, harmonics: Sequence[int], *, excitation: str, speed: str) -> LegLines:
     """Measure every line of a leg in all channels.
 
     Parameters
     ----------
-    leg
-        The leg of the campaign.
     window
         Its whole periods.
+    harmonics
+        Its lines, ascending and below half of the rate.
     excitation
         Name of the channel that is moved.
     speed
         Name of the speed whose square is in the torque.
     """
+    speed_row, torque_row = (window.channels.index(name) for name in (speed, "M_s"))
     values = window.values.copy()
-    values[window.channels.index("M_s")] -= (window.of(speed) - 1.0) ** 2
+    values[torque_row] = _linear_torque(window.of(speed), window.of("M_s"))
     values -= _drift(values)
-    linear = LegWindow(periods=window.periods, clock_ratio=window.clock_ratio, channels=window.channels, values=values)
-    harmonics = tuple(harmonic for harmonic in leg.lines if 2 * harmonic < values.shape[2])
+    linear = LegWindow(state=window.state, clock_ratio=window.clock_ratio, channels=window.channels, values=values)
     spectrum, by_period = linear.spectrum(), linear.by_period()
-    periods = window.periods.periods
-    frequency = np.array(harmonics) / window.periods.period_s
+    periods = window.state.periods
+    frequency = np.array(harmonics) / window.state.period_s
     number = np.arange(spectrum.shape[1])
     beside = np.flatnonzero(number % periods != 0).astype(np.int64)
-    beside_hz = beside / (periods * window.periods.period_s)
-    noise, samples = pooled_noise(spectrum[:, beside], beside_hz, frequency, fewest=_NOISE_BINS)
     overall = values.reshape(len(values), -1).var(axis=1) / len(harmonics)
     lines = []
     for row, harmonic in enumerate(harmonics):
@@ -75,9 +77,9 @@ def measure_leg(leg: "Leg", window: LegWindow, *, excitation: str, speed: str) -
         lines.append(
             LineMeasurement(
                 window=Window(
-                    line=f"{leg.name}/{harmonic}",
+                    line=f"{window.state.name}/{harmonic}",
                     frequency_hz=float(frequency[row]),
-                    start_s=window.periods.start_s,
+                    start_s=window.state.start_s,
                     periods=harmonic * periods,
                 ),
                 channels=window.channels,
@@ -86,7 +88,7 @@ def measure_leg(leg: "Leg", window: LegWindow, *, excitation: str, speed: str) -
                 harmonic=np.full((_NOT_FITTED, len(values)), np.nan + 0j),
                 harmonic_variance=np.full((_NOT_FITTED, len(values)), np.nan),
                 mean=window.values.mean(axis=(1, 2)),
-                noise=LineNoise(covariance=noise[row], complex_samples=float(samples[row])),
+                noise=_noise(spectrum, beside, harmonic * periods, speed=speed_row, torque=torque_row),
                 variances=LineVariances(
                     signal=0.5 * np.abs(amplitude) ** 2,
                     local=_local(spectrum, beside, harmonic * periods),
@@ -97,7 +99,29 @@ def measure_leg(leg: "Leg", window: LegWindow, *, excitation: str, speed: str) -
                 excitation_frequency_hz=float(frequency[row]),
             )
         )
-    return LegLines(window=linear, harmonics=harmonics, lines=tuple(lines))
+    return LegLines(window=linear, harmonics=tuple(harmonics), lines=tuple(lines))
+
+
+def _linear_torque(speed: FloatArray, torque: FloatArray) -> FloatArray:
+    """Return the torque without what the square of the speed and the wander of the load add to it.
+
+    With ``M_s = (1 + w) u^2`` and the speed ``u = 1 + n``, ``n^2`` is taken out, and of the wander ``w`` what it makes
+    of the lines: ``w (u^2 - 1)``, which stands beside each of them and is no noise under it. The wander itself stays.
+    It is what the coefficients below the first line show.
+
+    Parameters
+    ----------
+    speed, torque
+        Over the working point, shape (periods, samples a period).
+    """
+    periods = len(speed)
+    square = speed**2
+    spectrum = np.fft.rfft((torque - square).ravel())
+    spectrum[0] = 0.0
+    spectrum[periods:] = 0.0
+    wander = np.fft.irfft(spectrum, torque.size).reshape(torque.shape)
+    linear: FloatArray = torque - (speed - 1.0) ** 2 - wander * (square - 1.0)
+    return linear
 
 
 def _drift(values: FloatArray) -> FloatArray:
@@ -110,10 +134,22 @@ def _drift(values: FloatArray) -> FloatArray:
     return drift
 
 
+def _noise(spectrum: ComplexArray, beside: IntArray, line: int, *, speed: int, torque: int) -> LineNoise:
+    """Return the noise at a line from the bins nearest to it that are no lines."""
+    near = _nearest(beside, line, _NOISE_BINS)
+    neighbours = Neighbours(bins=near.astype(np.float64), log_ratio=np.log(near / line), weight=np.ones(near.size))
+    relation = ShaftRelation(speed=speed, torque=torque, ratio=complex(spectrum[torque, line] / spectrum[speed, line]))
+    return noise_from_neighbours(spectrum[:, near], neighbours, relation)
+
+
+def _nearest(beside: IntArray, line: int, count: int) -> IntArray:
+    middle = int(np.searchsorted(beside, line))
+    first = min(max(middle - count // 2, 0), max(beside.size - count, 0))
+    return beside[first : first + count]
+
+
 def _local(spectrum: ComplexArray, beside: IntArray, line: int) -> FloatArray:
     """Return the variance in the bins beside a line, shape (channels,)."""
-    middle = int(np.searchsorted(beside, line))
-    first = min(max(middle - _LOCAL_BINS // 2, 0), max(beside.size - _LOCAL_BINS, 0))
-    near = spectrum[:, beside[first : first + _LOCAL_BINS]]
+    near = spectrum[:, _nearest(beside, line, _LOCAL_BINS)]
     variance: FloatArray = 0.5 * (np.abs(near) ** 2).sum(axis=1)
     return variance

@@ -11,25 +11,24 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from shaftprint.arrays import ComplexArray, FloatArray, frozen_float
 
 if TYPE_CHECKING:
-    from shaftprint.signals import LegPeriods
+    from shaftprint.signals import LegState
 
 # Periods together may miss whole samples by this: the fastest lines then turn by less than 1e-3 rad.
 _SAME_SAMPLES = 1e-3
-# Samples beside the window that a spline needs.
-_MARGIN = 4
+# Points of the polynomial through neighbouring samples: it shows a sine of a tenth of the rate to 1e-4.
+_POINTS = 8
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class LegWindow:
     """Whole periods of a leg, each of a whole number of samples."""
 
-    periods: "LegPeriods"
-    """Name, begin, length and number of the periods, as they are in the recording."""
+    state: "LegState"
+    """Name, begin, length and number of the periods, as they are in the recording, and the working point."""
     clock_ratio: float
     """Length of a period over that of the campaign, minus 1."""
     channels: tuple[str, ...]
@@ -60,7 +59,7 @@ class LegWindow:
 def cut_leg(
     channels: Mapping[str, FloatArray],
     references: Mapping[str, float],
-    periods: "LegPeriods",
+    state: "LegState",
     harmonics: Sequence[int],
     *,
     excitation: str,
@@ -75,7 +74,7 @@ def cut_leg(
         Channels on one grid by name, each of shape (samples,).
     references
         Value of each at the working point of the leg.
-    periods
+    state
         Which part of the recording, with the period of the campaign.
     harmonics
         Lines of the leg.
@@ -84,9 +83,9 @@ def cut_leg(
     rate_hz, start_s
         The grid.
     """
-    moved = _cut({excitation: channels[excitation]}, references, periods, rate_hz=rate_hz, start_s=start_s)
+    moved = _cut({excitation: channels[excitation]}, references, state, rate_hz=rate_hz, start_s=start_s)
     ratio = _clock_ratio(moved.by_period()[0][:, list(harmonics)], harmonics)
-    measured = replace(periods, period_s=periods.period_s * (1.0 + ratio))
+    measured = replace(state, period_s=state.period_s * (1.0 + ratio))
     # the last period must still be inside
     longest = (start_s + channels[excitation].size / rate_hz - measured.start_s) / measured.period_s
     measured = replace(measured, periods=min(measured.periods, int(np.floor(longest + _SAME_SAMPLES))))
@@ -119,27 +118,27 @@ def _clock_ratio(amplitude: ComplexArray, harmonics: Sequence[int]) -> float:
 def _cut(
     channels: Mapping[str, FloatArray],
     references: Mapping[str, float],
-    periods: "LegPeriods",
+    state: "LegState",
     *,
     rate_hz: float,
     start_s: float,
 ) -> LegWindow:
     """Return the channels in whole periods of so many samples each, over their values at the working point."""
-    exact = periods.period_s * rate_hz
+    exact = state.period_s * rate_hz
     length = round(exact)
-    count = length * periods.periods
-    first = max(round((periods.start_s - start_s) * rate_hz), 0)
-    is_whole = abs(exact - length) * periods.periods < _SAME_SAMPLES and first + count <= _size(channels)
+    count = length * state.periods
+    first = max(round((state.start_s - start_s) * rate_hz), 0)
+    is_whole = abs(exact - length) * state.periods < _SAME_SAMPLES and first + count <= _size(channels)
     places = first + (exact / length) * np.arange(count, dtype=np.float64)
     rows = [
         (values[first : first + count] if is_whole else _at(values, places)) / references[name]
         for name, values in channels.items()
     ]
     return LegWindow(
-        periods=replace(periods, start_s=start_s + first / rate_hz),
+        state=replace(state, start_s=start_s + first / rate_hz),
         clock_ratio=0.0,
         channels=tuple(channels),
-        values=frozen_float(np.stack(rows).reshape(len(rows), periods.periods, length)),
+        values=frozen_float(np.stack(rows).reshape(len(rows), state.periods, length)),
     )
 
 
@@ -148,9 +147,12 @@ def _size(channels: Mapping[str, FloatArray]) -> int:
 
 
 def _at(values: FloatArray, places: FloatArray) -> FloatArray:
-    """Return the values between samples; beyond the last one its value goes on."""
-    first = max(int(places[0]) - _MARGIN, 0)
-    stop = min(int(places[-1]) + _MARGIN + 1, values.size)
-    spline = CubicSpline(np.arange(first, stop), values[first:stop])
-    between: FloatArray = spline(np.minimum(places, values.size - 1.0))
+    """Return the values between samples, by the polynomial of Lagrange through the eight around each place."""
+    base = np.clip(np.floor(places).astype(np.int64) - (_POINTS // 2 - 1), 0, values.size - _POINTS)
+    offset = places - base
+    between = np.zeros(places.size)
+    for point in range(_POINTS):
+        others = [other for other in range(_POINTS) if other != point]
+        weight = np.prod([(offset - other) / (point - other) for other in others], axis=0)
+        between += weight * values[base + point]
     return between

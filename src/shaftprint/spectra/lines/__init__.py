@@ -15,6 +15,7 @@ from shaftprint.spectra.lines._noise import (
     ShaftRelation,
     equivalent_samples,
     local_slope,
+    noise_from_neighbours,
     residual_spectrum,
 )
 from shaftprint.spectra.lines._set_point_check import (
@@ -54,6 +55,7 @@ __all__ = [
     "load_drift",
     "local_slope",
     "measure_line",
+    "noise_from_neighbours",
     "plan_windows",
     "residual_spectrum",
     "shape_reasons",

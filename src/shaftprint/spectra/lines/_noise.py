@@ -121,13 +121,41 @@ def line_noise(
     The covariance with the number of complex samples behind it.
     """
     neighbours = _neighbours(spectrum.shape[1], periods, order)
-    chosen = spectrum[:, neighbours.bins.astype(np.int64)]
-    mixing = np.eye(len(chosen), dtype=np.complex128)
-    if relation is not None and neighbours.bins.size >= _FEWEST_TO_SEPARATE:
-        chosen[relation.torque], mixing[relation.torque, relation.speed] = _own_torque(chosen, relation, neighbours)
-    levelled = _levelled(chosen, neighbours)
     # what the drift in the fit takes from the neighbours, it adds to the uncertainty of the line
     kept = _kept_by_drift(neighbours.bins) * _kept_by_drift(np.array([float(order * periods)]))
+    return noise_from_neighbours(spectrum[:, neighbours.bins.astype(np.int64)], neighbours, relation, kept=kept)
+
+
+def noise_from_neighbours(
+    values: ComplexArray,
+    neighbours: Neighbours,
+    relation: ShaftRelation | None = None,
+    *,
+    kept: FloatArray | float = 1.0,
+) -> LineNoise:
+    """Estimate the covariance of the noise under a line from amplitudes beside it.
+
+    Parameters
+    ----------
+    values
+        Fourier amplitudes where there is noise alone, shape (channels, bins).
+    neighbours
+        Where they stand, with their weights.
+    relation
+        How the torque goes with the speed at the line; taken as unrelated when not given.
+    kept
+        Share of the power of each bin that is left in the amplitudes, shape (bins,).
+
+    Returns
+    -------
+    The covariance with the number of complex samples behind it.
+    """
+    chosen = values
+    mixing = np.eye(len(chosen), dtype=np.complex128)
+    if relation is not None and neighbours.bins.size >= _FEWEST_TO_SEPARATE:
+        chosen = values.copy()
+        chosen[relation.torque], mixing[relation.torque, relation.speed] = _own_torque(chosen, relation, neighbours)
+    levelled = _levelled(chosen, neighbours)
     weight = neighbours.weight / neighbours.weight.sum() / kept
     covariance = mixing @ (levelled * weight) @ levelled.conj().T @ mixing.conj().T
     return LineNoise(covariance=covariance, complex_samples=equivalent_samples(neighbours))

@@ -5,7 +5,6 @@ from shaftprint.spectra.records._excitation import Excitation
 from shaftprint.spectra.records._from_arrays import response_from_arrays
 from shaftprint.spectra.records._local_polynomial import Bands, Transform, is_smooth
 from shaftprint.spectra.records._periodic import Periodic
-from shaftprint.spectra.records._pooled_noise import pooled_noise
 from shaftprint.spectra.records._records import read_records
 
 __all__ = [
@@ -15,7 +14,6 @@ __all__ = [
     "Periodic",
     "Transform",
     "is_smooth",
-    "pooled_noise",
     "read_records",
     "response_from_arrays",
 ]

@@ -1,12 +1,8 @@
-"""Signals of a campaign with legs: the steady state of each, and the signals about the working point of one of them."""
+"""The steady state of a campaign with legs, and of each leg."""
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from shaftprint.errors import SignalError
-from shaftprint.signals._channel_signals import ChannelSignal, ExcitationSignal, SpeedSignal
 from shaftprint.signals.kinds import SteadyState
 from shaftprint.signals.levels import (
     DcScale,
@@ -16,12 +12,11 @@ from shaftprint.signals.levels import (
     leg_state,
     stretch_of,
 )
-from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
     from shaftprint.signals._readings import Readings
-    from shaftprint.signals._signals import LegState, Signals
+    from shaftprint.signals._working_points import LegState
 
 
 def samples_of_legs(campaign: "Campaign", readings: "Readings") -> tuple[LegSamples, ...]:
@@ -89,65 +84,3 @@ def steady_state_of_legs(
         scale=DcScale(value=1.0, std=slope_std, findings=()),
     )
     return steady, states
-
-
-def about_leg(signals: "Signals", name: str) -> "Signals":
-    """Return the signals with the working point of one leg as what everything is divided by.
-
-    Channels with a clock of their own are left out: a leg has no response of them yet. The scale of the set point
-    carries no deviation: what the line of the set point is off, it is off at every line of every leg alike, which
-    the structures have as a parameter.
-
-    Parameters
-    ----------
-    signals
-        Signals of a campaign with legs.
-    name
-        Name of the leg.
-
-    Raises
-    ------
-    SignalError
-        If the recording holds no such leg.
-    """
-    states = {state.name: state for state in signals.legs}
-    if name not in states:
-        raise SignalError(
-            f"leg {name}: expected one of {', '.join(states) or 'none'}, found no such leg in the signals."
-        )
-    state = states[name]
-    channels = {
-        symbol: _about(signal, state, signals)
-        for symbol, signal in signals.channels.items()
-        if symbol not in signals.messages
-    }
-    return replace(signals, working_point=state.working_point, channels=channels)
-
-
-def _about(signal: ChannelSignal, state: "LegState", signals: "Signals") -> ChannelSignal:
-    point = state.working_point
-    speed_rev_s, speed_std = point.engine_speed_rev_s, point.engine_speed_std_rev_s
-    if isinstance(signal, SpeedSignal):
-        # a pick-up gives so many pulses a revolution, whatever the speed
-        faster = speed_rev_s / float(signal.values.mean())
-        return replace(
-            signal,
-            reference=speed_rev_s,
-            reference_std=speed_std,
-            pulse_rate_hz=signal.pulse_rate_hz * faster,
-            averaging_s=signal.averaging_s / faster,
-            hold_s=signal.hold_s / faster,
-            delay_s=signal.delay_s / faster,
-        )
-    if isinstance(signal, ExcitationSignal) and signal.name == "n_set":
-        return replace(
-            signal,
-            reference=speed_rev_s,
-            reference_std=speed_std,
-            scale_std=0.0,
-            shown_reference=rpm_from_rev_s(speed_rev_s),
-        )
-    if signal.name == "M_s":
-        return replace(signal, reference=point.shaft_torque_nm, reference_std=point.shaft_torque_std_nm)
-    first, stop = (round((instant - signals.start_s) * signals.rate_hz) for instant in (state.start_s, state.stop_s))
-    return replace(signal, reference=float(np.mean(signal.values[first:stop])))
