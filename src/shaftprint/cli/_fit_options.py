@@ -122,7 +122,7 @@ def settings_of(structures: Sequence[Structure], options: FitOptions) -> Setting
 
     def settings(chosen: Structure, measurement: Measurement, trial: Trial) -> Settings:
         # refused before anything is fitted, if the recording does not give what the structure describes
-        pairs_of(chosen, measurement.responses)
+        pairs_of(chosen, measurement)
         stated = _stated(chosen, structures, dict(options.priors))
         priors = priors_of(chosen, trial.vessel, measurement.signals, stated)
         return Settings(

@@ -72,7 +72,9 @@ def print_paths(output: Path) -> None:
 
 
 def _line_selection(survey: Survey) -> dict[str, FrequencyResponse]:
-    """Return the response as other ways to measure a sine would have it."""
+    """Return the response as other ways to measure a sine would have it; nothing where there are no sines."""
+    if not survey.campaign.sines:
+        return {}
     others = {"bin of the line": ExactBin(), "highest peak": HighestPeak()}
     selection = {"whole periods": survey.spectra.response}
     for name, method in others.items():

@@ -26,6 +26,11 @@ def limit_hints(harmonics: Harmonics, failed_steps: Sequence[str] | None = None)
     failed_steps
         Steps that a model identified from the sines does not predict; None where no model was held against them.
     """
+    if failed_steps is None and not np.isfinite(harmonics.amplitude).any():
+        return (
+            "The lines of a leg have no harmonics of their own by which a limit would be seen: one that acts makes the "
+            "fit fail.",
+        )
     sentences = _third_harmonics(harmonics)
     hints = []
     if sentences:

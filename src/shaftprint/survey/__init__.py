@@ -6,6 +6,7 @@ rooms that they come from.
 """
 
 from shaftprint.survey._fits import comparisons_of, fit, priors_of
+from shaftprint.survey._legs import LegMeasurement, LegTest, leg_tests, legs_of, structure_at
 from shaftprint.survey._measurement import Measurement, measure, pairs_of, response_of, responses_of
 from shaftprint.survey._progress import SILENT, Progress, Silent
 from shaftprint.survey._survey import SettingsOf, Survey, fingerprint_of, judged, run, settings_by_name, survey_of
@@ -18,6 +19,8 @@ __all__ = [
     "GAUGE",
     "SET_POINT_OFF",
     "SILENT",
+    "LegMeasurement",
+    "LegTest",
     "Measurement",
     "Progress",
     "SettingsOf",
@@ -30,6 +33,8 @@ __all__ = [
     "fingerprint_of",
     "fit",
     "judged",
+    "leg_tests",
+    "legs_of",
     "load_trial",
     "measure",
     "pairs_of",
@@ -40,6 +45,7 @@ __all__ = [
     "set_point_scaled",
     "settings_by_name",
     "settings_text",
+    "structure_at",
     "survey_of",
     "thesis_way",
     "validations_of",

@@ -52,7 +52,7 @@ def fit(
     progress.begin("Fitting the structures", total=float(len(structures)))
     fits = []
     for structure in structures:
-        pairs, how = pairs_of(structure, measurement.responses), settings[structure.name]
+        pairs, how = pairs_of(structure, measurement), settings[structure.name]
         if len(pairs) == 1:
             fits.append(identify(*pairs[0], rng=copy.deepcopy(rng), settings=how))
         else:

@@ -23,6 +23,7 @@ from shaftprint.spectra import (
     open_loop,
     plant_from_closed_loop,
 )
+from shaftprint.survey._legs import LegMeasurement, legs_of, structure_at
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._trial import Trial
 
@@ -37,6 +38,8 @@ class Measurement(Shown):
     """Responses and signal-to-noise ratios."""
     responses: tuple[FrequencyResponse, ...]
     """What structures are fitted to: the measured response, what follows from it, and that to further excitations."""
+    legs: tuple[LegMeasurement, ...] = ()
+    """Every leg of the campaign, that of the working point of the signals first."""
     further: Mapping[str, Spectra] = field(default_factory=dict)
     """Spectra of what was moved beside the set point of the speed, by its symbol."""
     began: datetime | None = None
@@ -59,7 +62,9 @@ def measure(
         signals = prepare_signals(opened, trial.vessel, trial.campaign, mode=mode, progress=progress.reach)
     progress.begin("Measuring the test lines")
     method = ExactBin() if mode == "thesis" else WholePeriodSine()
-    spectra = estimate_spectra(signals, trial.campaign, method=method)
+    legs = legs_of(signals, trial.campaign)
+    # without sines the leg of the working point is what everything is told of
+    spectra = estimate_spectra(signals, trial.campaign, method=method) if trial.campaign.sines else legs[0].spectra
     influences = clock_influences(clocks, spectra=spectra, signals=signals)
     signals = replace(signals, findings=(*signals.findings, *clock_findings(influences)))
     latency = trial.vessel.sensors.set_point.latency_s or 0.0
@@ -73,6 +78,7 @@ def measure(
         signals=signals,
         spectra=spectra,
         responses=(*responses, *(one.response for one in further.values())),
+        legs=legs,
         further=further,
         began=began,
     )
@@ -96,21 +102,32 @@ def responses_of(response: FrequencyResponse, *, set_point_latency_s: float = 0.
     return (*responses, governor, plant_from_closed_loop(response, input="X", output=("n", "M_s")))
 
 
-def pairs_of(
-    structure: Structure, responses: Sequence[FrequencyResponse]
-) -> tuple[tuple[Structure, FrequencyResponse], ...]:
+def pairs_of(structure: Structure, measurement: Measurement) -> tuple[tuple[Structure, FrequencyResponse], ...]:
     """Return what is fitted to what: a structure and its response, or for each excited input its part and response.
+
+    Legs at other working points follow, each with the structure at its own.
 
     Raises
     ------
     StructureError
         If the recording does not give the response that a structure describes.
     """
-    answers = {*structure.outputs}
+    responses, answers = measurement.responses, {*structure.outputs}
     excited = {response.inputs[0]: response for response in responses if answers <= {*response.outputs}}
     if len(structure.inputs) > 1 and {*structure.inputs} <= {*excited}:
         return tuple((structure.of_input(name), excited[name]) for name in structure.inputs)
-    return ((structure, response_of(structure, responses)),)
+    main = measurement.signals.working_point
+    further = (leg for leg in measurement.legs if leg.working_point != main)
+    return (
+        (structure, response_of(structure, responses)),
+        *(
+            (
+                structure_at(structure, leg.working_point, main=main),
+                response_of(structure, responses_of(leg.spectra.response)),
+            )
+            for leg in further
+        ),
+    )
 
 
 def response_of(structure: Structure, responses: Sequence[FrequencyResponse]) -> FrequencyResponse:

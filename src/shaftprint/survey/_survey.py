@@ -22,6 +22,7 @@ from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.signals import Mode, Signals
 from shaftprint.spectra import Spectra
 from shaftprint.survey._fits import comparisons_of, fit, priors_of
+from shaftprint.survey._legs import LegTest, leg_tests
 from shaftprint.survey._measurement import Measurement, measure
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._trial import Trial, load_trial
@@ -47,6 +48,8 @@ class Survey(Shown):
     """What is kept."""
     comparisons: tuple[StructureComparison, ...] = ()
     """Which of several structures the data want."""
+    leg_tests: tuple[LegTest, ...] = ()
+    """How well the first structure explains each leg of the campaign."""
     validations: tuple[Validation, ...] = ()
     """The first structure held against records that it has not seen."""
     remarks: tuple[str, ...] = ()
@@ -206,7 +209,8 @@ def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SIL
     validations, remarks = validations_of(
         survey.identification, survey.measurement, survey.trial, rng=copy.deepcopy(rng), progress=progress
     )
-    return replace(survey, comparisons=comparisons, validations=validations, remarks=remarks)
+    tests = leg_tests(survey.identification, survey.measurement.legs)
+    return replace(survey, comparisons=comparisons, leg_tests=tests, validations=validations, remarks=remarks)
 
 
 def settings_by_name(

@@ -36,6 +36,7 @@ from shaftprint.tables._inertia import (
     two_mass_sentence,
     water_table,
 )
+from shaftprint.tables._legs import leg_table, leg_test_table
 from shaftprint.tables._recording import clock_deviations, clock_map_table, clock_table, level_table
 from shaftprint.tables._signals import (
     calibration_table,
@@ -70,6 +71,8 @@ __all__ = [
     "fits_table",
     "inertia_budget_table",
     "interval",
+    "leg_table",
+    "leg_test_table",
     "level_table",
     "limits",
     "local_ratio_table",

@@ -14,7 +14,7 @@ from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._terminal import print_findings, say
 from shaftprint.cli.output import force_option, no_progress_option, output_folder, print_table, progress
 from shaftprint.survey import Survey, judged, load_trial, run
-from shaftprint.tables import fits_table
+from shaftprint.tables import fits_table, leg_test_table
 
 
 @click.command("identify")
@@ -87,6 +87,8 @@ def _print_judgement(survey: Survey) -> None:
     """Print what speaks for a limit, what was not validated, and which structure the data want."""
     for remark in survey.remarks:
         say(remark)
+    if survey.leg_tests:
+        print_table(leg_test_table(survey.leg_tests, p_value=survey.identification.p_value))
     print_findings("Limits", survey.limit_hints)
     if len(survey.fits) > 1:
         print_table(fits_table("All structures", survey.fits))

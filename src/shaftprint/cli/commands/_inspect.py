@@ -31,7 +31,8 @@ from shaftprint.signals import (
     read_channels,
 )
 from shaftprint.spectra import Spectra, estimate_spectra
-from shaftprint.tables import Table, clock_map_table, numbers, texts
+from shaftprint.survey import LegMeasurement, legs_of
+from shaftprint.tables import Table, clock_map_table, leg_table, numbers, texts
 from shaftprint.vessel import Vessel, load_vessel
 
 # Noise as strong as the response: a weaker line adds little.
@@ -91,6 +92,8 @@ class _Test:
     """The prepared signals; None where they are refused."""
     spectra: Spectra | None
     """The test lines; None where they are refused."""
+    legs: tuple[LegMeasurement, ...]
+    """The legs; empty where there are none."""
     refusal: ShaftprintError | None
     """Why they are refused."""
 
@@ -103,11 +106,12 @@ def _tested(opened: Recording, ship: Vessel, asked: Campaign, readings: ChannelR
             tests = find_tests(opened, ship, asked, readings=readings)
             signals = prepare_signals(opened, ship, asked, readings=readings)
             steps.begin("Measuring the test lines")
-            spectra = estimate_spectra(signals, asked)
+            legs = legs_of(signals, asked)
+            spectra = estimate_spectra(signals, asked) if asked.sines else legs[0].spectra
         except ShaftprintError as error:
             # told below the tables, which show what the campaign should be
-            return _Test(planned=asked, tests=tests, signals=None, spectra=None, refusal=error)
-    return _Test(planned=asked, tests=tests, signals=signals, spectra=spectra, refusal=None)
+            return _Test(planned=asked, tests=tests, signals=None, spectra=None, legs=(), refusal=error)
+    return _Test(planned=asked, tests=tests, signals=signals, spectra=spectra, legs=legs, refusal=None)
 
 
 def _print_proposal(opened: Recording, seen: Sequence[Seen], clocks: Sequence[LoggerClock]) -> None:
@@ -200,7 +204,13 @@ def _print_test(test: _Test, clocks: Sequence[LoggerClock]) -> None:
             raise test.refusal
         return
     print_signals(test.signals)
+    if test.legs:
+        print_table(leg_table(test.legs))
     print_lines(test.spectra)
+    for leg in test.legs:
+        if leg.spectra is not test.spectra:
+            say(f"Leg {leg.name}")
+            print_lines(leg.spectra)
     influences = clock_influences(clocks, spectra=test.spectra, signals=test.signals)
     print_findings("Findings on the signals", [*test.signals.findings, *clock_findings(influences)])
     print_findings("Limits", limit_hints(test.spectra.harmonics))

@@ -6,6 +6,7 @@ from shaftprint.identify.fit._identification import Cluster, Estimate, Identific
 from shaftprint.identify.fit._identify import identify, identify_jointly
 from shaftprint.identify.fit._measured_inputs import has_measured_inputs
 from shaftprint.identify.fit._optima import SAME_COST, SAME_PLACE, WITHIN, Optimum, is_passed_over, is_rival, optima_of
+from shaftprint.identify.fit._part_tests import part_tests
 from shaftprint.identify.fit._pseudo_inverse import LOST_SHARE, PseudoInverse
 from shaftprint.identify.fit._refit import Refits, refit, refit_redrawn
 from shaftprint.identify.fit._scan import Minimum, Scan, scan, scan_response
@@ -34,6 +35,7 @@ __all__ = [
     "is_rival",
     "known_covariance",
     "optima_of",
+    "part_tests",
     "pick_up_values",
     "refit",
     "refit_redrawn",

@@ -65,6 +65,8 @@ def _range_v(campaign: "Campaign") -> tuple[float, float]:
         volts += [campaign.offset_v - amplitude, campaign.offset_v + amplitude]
     for stairs in campaign.staircases:
         volts += stairs.levels_v
+    for leg in campaign.legs:
+        volts += leg.extremes_v
     room = BEYOND * (max(volts) - min(volts))
     return min(volts) - room, max(volts) + room
 

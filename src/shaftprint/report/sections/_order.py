@@ -3,6 +3,7 @@
 from shaftprint.report.sections._changes import change_section
 from shaftprint.report.sections._engineer import budget_section, folded, number_section, verdict_section
 from shaftprint.report.sections._inertia import inertia_section
+from shaftprint.report.sections._legs import leg_section
 from shaftprint.report.sections._measurement import response_section, signal_section, time_section
 from shaftprint.report.sections._models import (
     explanation_section,
@@ -52,6 +53,7 @@ def _appendix_sections(inputs: Inputs) -> list[Section]:
         *comparison_section(inputs),
         quality_section(inputs),
         response_section(inputs),
+        *leg_section(inputs),
         signal_section(inputs),
         *time_section(inputs),
         *(structure_section(inputs) if inputs.thesis is None else []),

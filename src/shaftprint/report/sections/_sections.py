@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from shaftprint.report.charts import Chart
     from shaftprint.signals import Signals
     from shaftprint.spectra import FrequencyResponse, Spectra
-    from shaftprint.survey import ThesisMode
+    from shaftprint.survey import LegMeasurement, LegTest, ThesisMode
     from shaftprint.validation import Validation
     from shaftprint.vessel import Vessel
 
@@ -43,6 +43,8 @@ class Inputs:
     validations: Sequence["Validation"] = ()
     clocks: Sequence["LoggerClock"] = ()
     previous: "Fingerprint | None" = None
+    legs: Sequence["LegMeasurement"] = ()
+    leg_tests: Sequence["LegTest"] = ()
 
     @property
     def aliasing_limit_hz(self) -> float:

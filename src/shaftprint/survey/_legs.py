@@ -1,0 +1,83 @@
+"""Legs of a campaign: one line at several working points, fitted to all of their responses at once."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from shaftprint.identify import Identification
+from shaftprint.identify.fit import FitTest, part_tests
+from shaftprint.models import Structure
+from shaftprint.normalisation import inertia_time_s
+from shaftprint.spectra import Spectra, estimate_legs
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign
+    from shaftprint.signals import Signals, WorkingPoint
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class LegMeasurement:
+    """What a recording gives of one leg before any model is fitted."""
+
+    name: str
+    """Name of the leg."""
+    working_point: "WorkingPoint"
+    """Mean speed and torque of its whole periods."""
+    spectra: Spectra
+    """Response about that working point."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class LegTest:
+    """Whether the model of all legs explains one of them."""
+
+    leg: LegMeasurement
+    """The leg."""
+    test: FitTest
+    """Its share of the test of fit."""
+
+
+def legs_of(signals: "Signals", campaign: "Campaign") -> tuple[LegMeasurement, ...]:
+    """Return every leg of a campaign that the recording holds, that of the recording's working point first."""
+    spectra = estimate_legs(signals, campaign)
+    legs = (
+        LegMeasurement(name=state.name, working_point=state.working_point, spectra=spectra[state.name])
+        for state in signals.legs
+    )
+    return tuple(sorted(legs, key=lambda leg: leg.working_point != signals.working_point))
+
+
+def structure_at(structure: Structure, point: "WorkingPoint", *, main: "WorkingPoint") -> Structure:
+    """Return a structure at another working point, with its parameters still those of the first.
+
+    What is a physical value over the torque and times the speed goes with ``n_0 / M_0`` (thesis eqs 2.14-2.25), with
+    both as they were measured: the load of a propeller is not the same from leg to leg.
+
+    Parameters
+    ----------
+    structure
+        A structure whose parameters have roles.
+    point, main
+        The other working point, and that of the parameters.
+    """
+    at_point, at_main = (
+        inertia_time_s(1.0, shaft_speed_rev_s=one.engine_speed_rev_s, shaft_torque_nm=one.shaft_torque_nm)
+        for one in (point, main)
+    )
+    moved = [name for name, role in structure.roles.items() if role.over_torque]
+    return structure.scaled(**dict.fromkeys(moved, at_point / at_main)) if moved else structure
+
+
+def leg_tests(identification: Identification, legs: Sequence[LegMeasurement]) -> tuple[LegTest, ...]:
+    """Return how well a joint fit explains each leg; empty where it was not fitted to all of them.
+
+    Parameters
+    ----------
+    identification
+        A fit to the legs, in their order.
+    legs
+        The legs.
+    """
+    if not legs or len(identification.parts) != len(legs) or not identification.is_likelihood:
+        return ()
+    return tuple(LegTest(leg=leg, test=test) for leg, test in zip(legs, part_tests(identification), strict=True))

@@ -1,0 +1,63 @@
+"""The legs of a campaign: their working points, and how well one model explains each of them."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from shaftprint.digits import p_value_text, plain, with_deviation
+from shaftprint.tables._table import Table, numbers, texts
+from shaftprint.units import rpm_from_rev_s
+
+if TYPE_CHECKING:
+    from shaftprint.survey import LegMeasurement, LegTest
+
+
+def leg_table(legs: Sequence["LegMeasurement"]) -> Table:
+    """Return the working point of each leg and how much of it was measured."""
+    return Table(
+        title="Legs: working points from whole periods",
+        columns=(*texts("leg"), *numbers("n_0 [rpm]", "M_0 [N m]", "set point [V]", "lines", "used")),
+        rows=tuple(_cells(leg) for leg in legs),
+        note="n_0 is the mean speed of the leg, M_0 the torque of its propeller there; its load is 1 by definition.",
+    )
+
+
+def leg_test_table(tests: Sequence["LegTest"], *, p_value: float | None) -> Table:
+    """Return how well one model explains each leg.
+
+    Parameters
+    ----------
+    tests
+        The legs with their shares of the test of fit.
+    p_value
+        That of the fit to all of them.
+    """
+    together = f" All legs together: p = {p_value_text(p_value)}."
+    return Table(
+        title="One model for all legs",
+        columns=(*texts("leg"), *numbers("n_0 [rpm]", "M_0 [N m]", "chi-square", "freedom", "p")),
+        rows=tuple(
+            (
+                *_cells(one.leg)[:3],
+                plain(one.test.chi_square, 1),
+                plain(one.test.mean, 1),
+                p_value_text(one.test.p_value),
+            )
+            for one in tests
+        ),
+        note=(
+            "p is the probability of misfits that large or larger if one line with one governor made all legs."
+            f"{together if len(tests) > 1 else ''}"
+        ),
+    )
+
+
+def _cells(leg: "LegMeasurement") -> tuple[str, ...]:
+    point, response = leg.working_point, leg.spectra.response
+    return (
+        leg.name,
+        with_deviation(rpm_from_rev_s(point.engine_speed_rev_s), rpm_from_rev_s(point.engine_speed_std_rev_s)),
+        with_deviation(point.shaft_torque_nm, point.shaft_torque_std_nm),
+        plain(point.set_point_v, 3),
+        str(len(response.lines)),
+        str(int(response.used.sum())),
+    )
