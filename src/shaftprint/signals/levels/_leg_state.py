@@ -27,8 +27,10 @@ if TYPE_CHECKING:
 
 # Means nearer to each other than this are one level [V].
 _SAME_LEVEL_V = 0.05
-# At lines whose speed departs further from the set point the low-order form does not hold (see _dc_scale.py).
-_LARGEST_DEPARTURE, _MOST_LINES, _FEWEST_LINES = 0.2, 9, 3
+# At lines whose speed departs further from the set point the low-order form does not hold; up to here it errs by 2e-3
+# (see _dc_scale.py), which the structures find as the scale of the set point.
+_LARGEST_DEPARTURE, _MOST_LINES, _FEWEST_LINES = 0.4, 9, 3
+_LEAST_STD = 2e-3
 # Deviation of a slope that rests on the slowest line alone, at which the speed may lag already.
 _ROUGH_STD = 0.05
 
@@ -170,7 +172,7 @@ def _slope_of_slow_lines(samples: LegSamples, channel: str) -> tuple[float, floa
         std=np.maximum(std[:count], 1e-7),
     )
     value, value_std = zero_frequency_ratio(lines)
-    return rough * value, abs(rough) * value_std
+    return rough * value, abs(rough) * float(np.hypot(value_std, _LEAST_STD))
 
 
 def _amplitudes(

@@ -1,0 +1,114 @@
+"""Working points and the set-point line from whole periods of legs."""
+
+import numpy as np
+import pytest
+
+from shaftprint.campaign import Multisine
+from shaftprint.errors import SignalError
+from shaftprint.signals import Coverage, Gap
+from shaftprint.signals.levels import LegSamples, calibration_of_legs, leg_periods, leg_state
+
+RATE_HZ = 50.0
+LEG = Multisine(
+    name="M1",
+    level_v=-5.0,
+    period_s=20.0,
+    harmonics=(1, 3, 5, 7),
+    amplitudes_v=(0.3, 0.2, 0.2, 0.2),
+    phases_rad=(0.0, 2.0, 4.0, 1.0),
+    start_s=10.0,
+    settled_s=30.0,
+    stop_s=130.0,
+)
+
+
+def _samples(level_v=-5.0, *, noise=0.0, wander=0.0, rng=None):
+    """A governor that follows with 1 / (1 + 0.2 s); 240 rpm/V, M_s = 2 n^2 N m."""
+    time_s = 30.0 + np.arange(round(100.0 * RATE_HZ)) / RATE_HZ
+    volts, speed = np.full(time_s.size, level_v), np.full(time_s.size, -4.0 * level_v - 1.0)
+    for harmonic, amplitude_v, phase_rad in zip(LEG.harmonics, LEG.amplitudes_v, LEG.phases_rad, strict=True):
+        omega = 2.0 * np.pi * harmonic / LEG.period_s
+        wave = amplitude_v * np.exp(1j * (omega * (time_s - LEG.start_s) + phase_rad))
+        volts += wave.imag
+        speed += (-4.0 * wave / (1.0 + 0.2j * omega)).imag
+    torque = 2.0 * speed**2
+    if noise:
+        # a demand that wanders slowly: the level of 100 s is known no better than this noise below 0.05 Hz
+        speed = speed + noise * rng.standard_normal(time_s.size)
+        torque *= 1.0 + wander * rng.standard_normal(time_s.size)
+    return LegSamples(
+        leg=LEG,
+        periods=leg_periods(LEG, Coverage()),
+        set_point_v=volts,
+        speed_rev_s=speed,
+        torque_nm=torque,
+    )
+
+
+def test_the_working_point_is_the_mean_speed_with_the_torque_of_the_propeller_there():
+    state = leg_state(_samples())
+    point = state.working_point
+    # the line gives 4 * 5 - 1 = 19 rev/s at -5 V, and the propeller 2 * 19^2 N m there, however the speed swings
+    assert point.engine_speed_rev_s == pytest.approx(19.0, rel=1e-12)
+    assert point.shaft_torque_nm == pytest.approx(722.0, rel=1e-12)
+    assert point.set_point_v == pytest.approx(-5.0, abs=1e-12)
+    assert (state.start_s, state.period_s, state.periods) == (30.0, 20.0, 5)
+
+
+@pytest.mark.slow
+def test_the_stated_deviations_of_the_working_point_are_the_scatter_over_repeats():
+    rng = np.random.default_rng(3)
+    points = [leg_state(_samples(noise=0.3, wander=0.02, rng=rng)).working_point for _ in range(400)]
+    speed = np.array([point.engine_speed_rev_s for point in points])
+    torque = np.array([point.shaft_torque_nm for point in points])
+    # white noise of 0.3 rev/s in 5000 samples
+    assert np.std(speed) == pytest.approx(0.3 / np.sqrt(5000.0), rel=0.1)
+    stated = np.sqrt(np.mean([point.engine_speed_std_rev_s**2 for point in points]))
+    assert stated == pytest.approx(np.std(speed), rel=0.1)
+    stated = np.sqrt(np.mean([point.shaft_torque_std_nm**2 for point in points]))
+    # what the load and the speed have of a mean error are counted, one of them twice
+    assert np.std(torque) < 1.05 * stated < 3.0 * np.std(torque)
+
+
+def test_two_levels_give_the_line_of_the_set_point():
+    legs = [_samples(-5.0), _samples(-3.0)]
+    line = calibration_of_legs(legs, [leg_state(one) for one in legs], channel="U")
+    assert line.slope_rev_s_per_v == pytest.approx(-4.0, rel=1e-9)
+    assert line.intercept_rev_s == pytest.approx(-1.0, rel=1e-8)
+    assert line.level_v.tolist() == pytest.approx([-5.0, -3.0])
+
+
+def test_one_level_gives_the_line_by_its_slow_lines():
+    legs = [_samples(-5.0)]
+    line = calibration_of_legs(legs, [leg_state(legs[0])], channel="U")
+    assert line.slope_rev_s_per_v == pytest.approx(-4.0, rel=2e-3)
+    assert line.slope_rev_s_per_v * -5.0 + line.intercept_rev_s == pytest.approx(19.0, rel=1e-9)
+
+
+def test_a_set_point_that_stands_still_is_refused():
+    leg = _samples(-5.0)
+    still = LegSamples(
+        leg=LEG,
+        periods=leg.periods,
+        set_point_v=np.full(leg.set_point_v.size, -5.0),
+        speed_rev_s=leg.speed_rev_s,
+        torque_nm=leg.torque_nm,
+    )
+    with pytest.raises(SignalError, match="channel U: expected a set point that moves in M1, found one that stands"):
+        calibration_of_legs([still], [leg_state(leg)], channel="U")
+
+
+@pytest.mark.parametrize(
+    ("coverage", "expected"),
+    [
+        (Coverage(), (30.0, 5)),
+        # cut off at 100 s: three periods of 20 s fit into 70 s
+        (Coverage(start_s=0.0, stop_s=100.0), (30.0, 3)),
+        # a gap in the first period: the rest from 42 s on holds four
+        (Coverage(gaps=(Gap(channel="M", start_s=41.0, stop_s=42.0, reason="has no values"),)), (42.0, 4)),
+        (Coverage(start_s=0.0, stop_s=65.0), None),
+    ],
+)
+def test_the_longest_run_of_whole_periods_is_used(coverage, expected):
+    periods = leg_periods(LEG, coverage)
+    assert (periods if periods is None else (periods.start_s, periods.periods)) == expected

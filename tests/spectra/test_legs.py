@@ -1,0 +1,212 @@
+"""Legs of known content: a line with an inertia and a quadratic propeller, moved by all lines at once."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.made_signals import made_channels
+
+from shaftprint.campaign import Campaign, Multisine
+from shaftprint.signals import LegState, SetPointCalibration, Signals, WorkingPoint
+from shaftprint.spectra import estimate_legs
+
+SPEED_REV_S, TORQUE_NM, RATE_HZ = 14.0, 830.0, 100.0
+INERTIA_S = 0.27
+HARMONICS = (1, 3, 5, 9, 15, 21)
+PERIOD_S, PERIODS = 8.0, 9
+LEG = Multisine(
+    name="M1",
+    level_v=-3.6,
+    period_s=PERIOD_S,
+    harmonics=HARMONICS,
+    amplitudes_v=(0.2, 0.15, 0.15, 0.1, 0.1, 0.2),
+    phases_rad=(0.1, 1.3, 2.9, 0.4, 4.0, 5.5),
+    start_s=2.0,
+    settled_s=10.0,
+    stop_s=10.0 + PERIOD_S * PERIODS,
+)
+CAMPAIGN = Campaign(name="made", duration_s=90.0, offset_v=-3.6, ramp_s=1.0, multisines=(LEG,))
+PER_VOLT = -4.0
+
+
+def _speed_over_set_point(omega_rad_s):
+    return np.exp(-0.12j * omega_rad_s) / (1.0 + 0.3j * omega_rad_s)
+
+
+def _made(
+    *,
+    clock_ratio=0.0,
+    wander=0.0,
+    noise=0.0,
+    cut_v=None,
+    leg=LEG,
+    size=1.0,
+    pulse_rate_hz=1e6,
+    rng=None,
+    periods=PERIODS,
+):
+    """Signals of the leg: u = sum of its lines, n = H u, M_s = (1 + wander) (1 + n)^2 + inertia, and noise."""
+    time_s = np.arange(round(90.0 * RATE_HZ)) / RATE_HZ
+    set_point, speed, change = (np.zeros(time_s.size) for _ in range(3))
+    for harmonic, amplitude_v, phase_rad in zip(leg.harmonics, leg.amplitudes_v, leg.phases_rad, strict=True):
+        omega = 2.0 * np.pi * harmonic / (leg.period_s * (1.0 + clock_ratio))
+        wave = amplitude_v * np.exp(1j * (omega * (time_s - leg.start_s) + phase_rad - 0.5 * np.pi))
+        set_point += size * wave.real * PER_VOLT / SPEED_REV_S
+        answer = size * _speed_over_set_point(omega) * wave * PER_VOLT / SPEED_REV_S
+        speed += answer.real
+        change += (1j * omega * answer).real
+    if cut_v is not None:
+        set_point = np.minimum(set_point, cut_v)
+    load = 1.0 + wander * np.cos(2.0 * np.pi * time_s / 37.0 + 1.0)
+    torque = load * (1.0 + speed) ** 2 + INERTIA_S * change
+    if noise:
+        torque += noise * rng.standard_normal(time_s.size)
+        speed = speed + 0.1 * noise * rng.standard_normal(time_s.size)
+    inside = slice(round(10.0 * RATE_HZ), round((10.0 + PERIOD_S * periods) * RATE_HZ))
+    mean = float(np.mean(torque[inside]) / np.mean((1.0 + speed[inside]) ** 2))
+    point = WorkingPoint(
+        engine_speed_rev_s=SPEED_REV_S,
+        shaft_torque_nm=TORQUE_NM * mean,
+        engine_speed_std_rev_s=0.001,
+        shaft_torque_std_nm=1.0,
+        set_point_v=-3.6,
+        load_std=0.001,
+    )
+    channels = made_channels(
+        point,
+        SPEED_REV_S * (1.0 + set_point),
+        TORQUE_NM * torque,
+        {"n_e": {"values": SPEED_REV_S * (1.0 + speed), "channel": "P", "pulse_rate_hz": pulse_rate_hz}},
+        per_volt=PER_VOLT,
+        scale_std=0.01,
+    )
+    line = SetPointCalibration(
+        slope_rev_s_per_v=PER_VOLT,
+        intercept_rev_s=-0.4,
+        covariance=np.eye(2),
+        level_v=np.array([-3.6]),
+        level_rev_s=np.array([SPEED_REV_S]),
+        level_std_rev_s=np.array([0.001]),
+    )
+    return Signals(
+        rate_hz=RATE_HZ,
+        start_s=0.0,
+        channels=channels,
+        working_point=point,
+        calibration=line,
+        dc_scale=1.0,
+        dc_scale_std=0.01,
+        strips=(),
+        step_delays=(),
+        repairs=(),
+        legs=(LegState(name="M1", start_s=10.0, period_s=PERIOD_S, periods=periods, working_point=point),),
+        mode="shaftprint",
+        recording_sha256="",
+        recording_name="made",
+    )
+
+
+def _expected(response):
+    omega = response.omega_rad_s
+    speed = _speed_over_set_point(omega)
+    return np.stack([speed, (2.0 + 1j * omega * INERTIA_S) * speed])
+
+
+@pytest.mark.parametrize("clock_ratio", [0.0, 5e-5, -3e-4])
+def test_each_line_has_the_response_of_the_line_with_a_linear_propeller(clock_ratio):
+    signals = _made(clock_ratio=clock_ratio)
+    # so far that its square is as large as the slowest line
+    assert np.ptp(signals.engine_speed.values) > 0.15 * SPEED_REV_S
+    response = estimate_legs(signals, CAMPAIGN)["M1"].response
+    assert response.lines == tuple(f"M1/{harmonic}" for harmonic in HARMONICS)
+    assert response.frequency_hz == pytest.approx(np.array(HARMONICS) / (PERIOD_S * (1.0 + clock_ratio)), rel=1e-7)
+    assert np.abs(response.response[:, 0] - _expected(response)).max() < 2e-5
+    assert response.used.all()
+    assert response.reasons == ()
+
+
+@pytest.mark.slow
+def test_the_stated_covariance_is_the_scatter_over_repeats():
+    rng = np.random.default_rng(5)
+    distances = []
+    for _ in range(60):
+        response = estimate_legs(_made(noise=0.02, rng=rng), CAMPAIGN)["M1"].response
+        error = response.response[:, 0] - _expected(response)
+        real = np.concatenate([error.real, error.imag]).T
+        distances.append(np.einsum("ka,kab,kb->k", real, np.linalg.inv(response.covariance), real))
+    # r^T C^-1 r has the mean 4 at every line; 60 repeats know the mean of six lines to 0.15
+    assert np.mean(distances) == pytest.approx(4.0, abs=0.5)
+    # 36 complex samples; at the slowest line, whose neighbours reach far in octaves, they count less
+    assert response.degrees_of_freedom[1:].min() > 65.0
+
+
+def test_the_wander_of_the_load_is_no_noise_under_the_lines():
+    rng = np.random.default_rng(6)
+    calm, wandering = (
+        estimate_legs(_made(noise=0.002, wander=wander, rng=rng), CAMPAIGN)["M1"].response for wander in (0.0, 0.02)
+    )
+    calm_std, std = (np.sqrt(np.diagonal(one.covariance, axis1=1, axis2=2))[:, 1] for one in (calm, wandering))
+    # the sidebands of a wander of 2 % would be ten times the noise of the torque
+    assert np.all(std[2:] < 2.0 * calm_std[2:])
+
+
+def test_what_the_pick_up_takes_from_fast_lines_is_given_back():
+    # the cardinal cubic spline shows a quarter of the pulse rate 0.9809 times too small: sinc^4 over its images
+    signals = _made(pulse_rate_hz=4.0 * HARMONICS[-1] / PERIOD_S)
+    response = estimate_legs(signals, CAMPAIGN)["M1"].response
+    images = np.sinc(0.25 + np.arange(-60, 61)) ** 4
+    seen = _expected(response)[0, -1] / (images[60] / images.sum())
+    assert response.response[0, 0, -1] == pytest.approx(seen, rel=1e-4)
+
+
+def test_lines_above_half_the_pulse_rate_are_not_used():
+    spectra = estimate_legs(_made(pulse_rate_hz=4.0), CAMPAIGN)["M1"]
+    assert spectra.response.used.tolist() == [True] * 5 + [False]
+    assert "half the pulse rate of n_e: aliased" in spectra.remarks["M1/21"]
+
+
+def test_a_set_point_that_is_smaller_than_asked_is_remarked_and_used():
+    spectra = estimate_legs(_made(size=0.8), CAMPAIGN)["M1"]
+    assert spectra.response.used.all()
+    # 0.2 V of 240 rpm/V
+    assert "set point has an amplitude of 38.4 rpm where the campaign asks for 48 rpm" in spectra.remarks["M1/1"]
+
+
+def test_a_line_that_was_not_put_out_is_left_out():
+    asked = LEG.model_copy(
+        update={"harmonics": (1, 3, 5, 7, 9, 15, 21), "amplitudes_v": (0.2, 0.15, 0.15, 0.1, 0.1, 0.1, 0.2)}
+    )
+    asked = asked.model_copy(update={"phases_rad": (0.0,) * 7})
+    spectra = estimate_legs(_made(), CAMPAIGN.model_copy(update={"multisines": (asked,)}))["M1"]
+    assert "M1/7" not in spectra.response.lines
+    assert spectra.remarks["M1/7"].startswith("left out: set point has an amplitude of")
+
+
+def test_a_set_point_that_is_cut_off_is_named():
+    signals = _made()
+    cut_v = 0.5 * float(signals.channels["n_set"].values.max() / SPEED_REV_S - 1.0)
+    (reason,) = (
+        one
+        for one in estimate_legs(_made(cut_v=cut_v), CAMPAIGN)["M1"].response.reasons
+        if one.kind == "set-point shape"
+    )
+    assert "check whether its channel is cut off" in reason.sentence
+
+
+def test_a_clock_that_is_a_thousandth_off_is_named():
+    reasons = estimate_legs(_made(clock_ratio=1e-3), CAMPAIGN)["M1"].response.reasons
+    assert [reason.kind for reason in reasons] == ["recording clock"]
+    assert "periods of M1 are +0.10 % longer than the campaign file says" in reasons[0].sentence
+
+
+def test_a_leg_that_was_cut_off_gives_a_response_of_its_whole_periods():
+    spectra = estimate_legs(_made(periods=4), CAMPAIGN)["M1"]
+    assert spectra.remarks["M1"] == "4 of 9 periods are in the recording"
+    assert np.abs(spectra.response.response[:, 0] - _expected(spectra.response)).max() < 2e-5
+
+
+def test_a_dead_gauge_is_refused():
+    signals = _made()
+    dead = signals.with_channel("M_s", values=np.full(signals.samples, TORQUE_NM))
+    with pytest.raises(Exception, match="M1: expected M_s to move, found a constant from 10 to 82 s"):
+        estimate_legs(replace(dead), CAMPAIGN)
