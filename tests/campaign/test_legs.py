@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from shaftprint.campaign import Campaign, Multisine, setpoint
+from shaftprint.campaign import BinarySequence, Campaign, Multisine, setpoint
 
 MULTISINE = {
     "name": "M1",
@@ -88,3 +88,33 @@ def test_no_set_point_jumps_by_more_than_its_own_motion():
 def test_ramps_without_time_or_rate_are_refused(changed, expected):
     with pytest.raises(ValidationError, match=expected):
         _two_legs(**changed)
+
+
+def _sequence(order, **changed):
+    settings = {"name": "B1", "level_v": -4.0, "amplitude_v": 0.3, "clock_s": 0.5, "order": order, "start_s": 7.0}
+    return BinarySequence(**(settings | {"settled_s": 7.0, "stop_s": 7.0 + 3 * (2**order)} | changed))
+
+
+@pytest.mark.parametrize("order", range(3, 13))
+def test_a_binary_sequence_has_the_autocorrelation_of_one_of_maximal_length(order):
+    leg = _sequence(order)
+    length = 2**order - 1
+    values = (leg.value_at(7.0 + 0.5 * np.arange(2 * length) + 0.25) + 4.0) / 0.3
+    # every second value is turned over: turned back it is a sequence whose shifted products sum to -1
+    turned = values * np.where(np.arange(2 * length) % 2, -1.0, 1.0)
+    sequence = turned[:length]
+    correlation = np.fft.ifft(np.abs(np.fft.fft(sequence)) ** 2).real
+    assert correlation[0] == pytest.approx(length)
+    assert correlation[1:] == pytest.approx(-np.ones(length - 1))
+    # and the second half is the first one turned over, which leaves no even harmonic
+    assert values[length:] == pytest.approx(-values[:length])
+    assert all(harmonic % 2 for harmonic in leg.lines)
+
+
+def test_the_lines_of_a_binary_sequence_are_those_of_its_held_values():
+    leg = _sequence(5)
+    times = 7.0 + leg.length_of_period_s * (np.arange(200 * 62) + 0.5) / (200 * 62)
+    spectrum = np.abs(np.fft.rfft(leg.value_at(times))) * 2.0 / times.size
+    assert leg.lines.keys() == set(range(1, 28, 2))
+    for harmonic, amplitude_v in leg.lines.items():
+        assert spectrum[harmonic] == pytest.approx(amplitude_v, rel=1e-3)

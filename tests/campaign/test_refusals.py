@@ -75,7 +75,9 @@ def test_several_faults_are_told_together():
 
 
 def test_a_campaign_without_excitation_is_refused():
-    with pytest.raises(ValidationError, match="at least one sine, multisine, chirp or staircase, found none"):
+    with pytest.raises(
+        ValidationError, match="at least one sine, multisine, binary sequence, chirp or staircase, found none"
+    ):
         _campaign(sines=())
 
 

@@ -75,3 +75,14 @@ def test_shapes_are_kept():
     assert setpoint(ALL, 5.0).shape == ()
     assert setpoint(ALL, []).shape == (0,)
     assert setpoint(ALL, np.zeros((2, 3))).shape == (2, 3)
+
+
+def test_the_frequency_of_a_linear_chirp_runs_straight():
+    chirp = UP.model_copy(update={"sweep": "linear"})
+    time = np.linspace(100.0, 300.0, 2_000_001)[:-1]
+    value = (setpoint(_campaign(chirps=(chirp,)), time) + 5.0) / 0.5
+    rising = time[1:][(value[:-1] < 0.0) & (value[1:] >= 0.0)] - 100.0
+    # f(t) = 0.01 + 0.99 t / 200: its integral is the number of cycles
+    assert 0.01 * rising + 0.5 * 0.99 / 200.0 * rising**2 == pytest.approx(np.arange(1, rising.size + 1), abs=2e-4)
+    # 101 cycles, of which the last one ends with the chirp
+    assert rising.size == 100

@@ -16,6 +16,7 @@ A sine and a chirp start at phase zero, ``U = offset + amplitude sin(phase)``. A
 Every excitation holds in the half-open interval from its start to its stop.
 """
 
+from shaftprint.campaign._binary_sequence import BinarySequence
 from shaftprint.campaign._campaign import Campaign, Excitation, load_campaign
 from shaftprint.campaign._excitations import Chirp, Sine, Staircase
 from shaftprint.campaign._leg import Leg
@@ -23,6 +24,7 @@ from shaftprint.campaign._multisine import Multisine
 from shaftprint.campaign._setpoint import setpoint
 
 __all__ = [
+    "BinarySequence",
     "Campaign",
     "Chirp",
     "Excitation",

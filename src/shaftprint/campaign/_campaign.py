@@ -9,6 +9,7 @@ from typing import Self, TypeAlias
 from pydantic import Field, model_validator
 
 from shaftprint.arguments import refusing_none
+from shaftprint.campaign._binary_sequence import BinarySequence
 from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
 from shaftprint.campaign._leg import Leg
 from shaftprint.campaign._moves import faults_of
@@ -17,7 +18,7 @@ from shaftprint.errors import SettingsError
 from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.settings import Name, Number, PositiveNumber, Settings, load_settings
 
-Excitation: TypeAlias = Sine | Multisine | Chirp | Staircase
+Excitation: TypeAlias = Sine | Multisine | BinarySequence | Chirp | Staircase
 
 
 class Campaign(Shown, Settings):
@@ -43,8 +44,10 @@ class Campaign(Shown, Settings):
     """Sines of constant frequency."""
     multisines: tuple[Multisine, ...] = ()
     """Sums of sines, each at a level of its own: one level, one working point."""
+    binary_sequences: tuple[BinarySequence, ...] = ()
+    """Pseudo-random binary sequences, each at a level of its own."""
     chirps: tuple[Chirp, ...] = ()
-    """Logarithmic sweeps."""
+    """Sweeps."""
     staircases: tuple[Staircase, ...] = ()
     """Steps between constant levels."""
 
@@ -57,6 +60,7 @@ class Campaign(Shown, Settings):
             if hertz
             else "",
             "multisines": shortened(one.name for one in self.multisines),
+            "binary sequences": shortened(one.name for one in self.binary_sequences),
             "chirps": shortened(chirp.name for chirp in self.chirps),
             "staircases": shortened(staircase.name for staircase in self.staircases),
             "set point": f"{self.offset_v:g} V in the middle",
@@ -66,7 +70,13 @@ class Campaign(Shown, Settings):
     @property
     def excitations(self) -> tuple[Excitation, ...]:
         """Every excitation in the order of time."""
-        every: tuple[Excitation, ...] = (*self.sines, *self.multisines, *self.chirps, *self.staircases)
+        every: tuple[Excitation, ...] = (
+            *self.sines,
+            *self.multisines,
+            *self.binary_sequences,
+            *self.chirps,
+            *self.staircases,
+        )
         return tuple(sorted(every, key=lambda excitation: excitation.start_s))
 
     @property
@@ -88,7 +98,8 @@ class Campaign(Shown, Settings):
         sines = tuple(sine for sine in self.sines if sine.input == name)
         if name == SPEED_SET_POINT:
             return self.model_copy(update={"sines": sines})
-        return self.model_copy(update={"sines": sines, "multisines": (), "chirps": (), "staircases": ()})
+        nothing = dict.fromkeys(("multisines", "binary_sequences", "chirps", "staircases"), ())
+        return self.model_copy(update={"sines": sines} | nothing)
 
     @model_validator(mode="after")
     def _can_be_sailed(self) -> Self:
@@ -101,7 +112,7 @@ class Campaign(Shown, Settings):
             *faults_of(self),
         ]
         if not self.excitations:
-            errors.append("expected at least one sine, multisine, chirp or staircase, found none.")
+            errors.append("expected at least one sine, multisine, binary sequence, chirp or staircase, found none.")
         if errors:
             raise ValueError(" ".join(errors))
         return self

@@ -1,7 +1,7 @@
 """The three kinds of excitation and what makes each of them possible."""
 
 import math
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -63,7 +63,7 @@ class Sine(Settings):
 
 
 class Chirp(Settings):
-    """A sine whose frequency grows or falls exponentially with time (logarithmic sweep)."""
+    """A sine whose frequency grows or falls, exponentially with time (logarithmic sweep) or linearly."""
 
     name: Name
     """Name of the chirp, such as ``C11``."""
@@ -73,6 +73,8 @@ class Chirp(Settings):
     """Frequency at its end [Hz]."""
     amplitude_v: PositiveNumber
     """Amplitude [V], half of peak to peak."""
+    sweep: Literal["logarithmic", "linear"] = "logarithmic"
+    """How the frequency goes with time: a linear one stays as long in each hertz, a logarithmic one in each octave."""
     start_s: NotNegativeNumber
     """When it begins, at phase zero [s]."""
     stop_s: PositiveNumber

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
+from shaftprint.campaign._binary_sequence import BinarySequence
 from shaftprint.campaign._campaign import Campaign, Excitation
 from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
 from shaftprint.campaign._moves import moves_of
@@ -55,12 +56,13 @@ def _voltage(excitation: Excitation, time_s: FloatArray, offset_v: float) -> Flo
     elapsed_s = time_s - excitation.start_s
     match excitation:
         case Sine():
-            phase = 2.0 * math.pi * excitation.frequency_hz * elapsed_s
-            return offset_v + excitation.amplitude_v * np.sin(phase)
-        case Multisine():
+            turns = excitation.frequency_hz * elapsed_s
+            return offset_v + excitation.amplitude_v * np.sin(2.0 * math.pi * turns)
+        case Multisine() | BinarySequence():
             return excitation.value_at(time_s)
         case Chirp():
-            return offset_v + excitation.amplitude_v * np.sin(_chirp_phase(excitation, elapsed_s))
+            phase = _linear_phase if excitation.sweep == "linear" else _chirp_phase
+            return offset_v + excitation.amplitude_v * np.sin(phase(excitation, elapsed_s))
         case Staircase():
             step = np.floor(elapsed_s / excitation.dwell_s).astype(np.intp)
             # the quotient may round up to the number of levels just before the end
@@ -80,3 +82,9 @@ def _chirp_phase(chirp: Chirp, elapsed_s: FloatArray) -> FloatArray:
     log_ratio = math.log(chirp.stop_frequency_hz / chirp.start_frequency_hz)
     scale = 2.0 * math.pi * chirp.start_frequency_hz * duration / log_ratio
     return scale * np.expm1(log_ratio * elapsed_s / duration)
+
+
+def _linear_phase(chirp: Chirp, elapsed_s: FloatArray) -> FloatArray:
+    """Return the phase [rad] of a linear sweep: the integral of ``2 pi (f_0 + (f_1 - f_0) t / T)``."""
+    rate_hz_per_s = (chirp.stop_frequency_hz - chirp.start_frequency_hz) / (chirp.stop_s - chirp.start_s)
+    return 2.0 * math.pi * (chirp.start_frequency_hz + 0.5 * rate_hz_per_s * elapsed_s) * elapsed_s

@@ -3,7 +3,7 @@
 import math
 from typing import Any
 
-from shaftprint.campaign import Campaign, Chirp, Leg, Sine, Staircase
+from shaftprint.campaign import Campaign, Chirp, Leg, Multisine, Sine, Staircase
 from shaftprint.errors import SignalError
 from shaftprint.signals.excitation._found_test import FoundTest
 
@@ -31,7 +31,13 @@ def proposed_campaign(found: tuple[FoundTest, ...], campaign: Campaign) -> Campa
     SignalError
         If none was found.
     """
-    tests: dict[str, list[dict[str, Any]]] = {"sines": [], "multisines": [], "chirps": [], "staircases": []}
+    tests: dict[str, list[dict[str, Any]]] = {
+        "sines": [],
+        "multisines": [],
+        "binary_sequences": [],
+        "chirps": [],
+        "staircases": [],
+    }
     last_s = 0.0
     for test in found:
         if not test.is_found:
@@ -46,7 +52,9 @@ def proposed_campaign(found: tuple[FoundTest, ...], campaign: Campaign) -> Campa
             case Leg() as leg:
                 later_s = max(_rounded(test.begin_s), last_s) - leg.start_s
                 times = {name: _rounded(getattr(leg, name) + later_s) for name in ("start_s", "settled_s", "stop_s")}
-                tests["multisines"].append(leg.model_dump() | times)
+                tests["multisines" if isinstance(leg, Multisine) else "binary_sequences"].append(
+                    leg.model_dump() | times
+                )
                 last_s = times["stop_s"]
             case Chirp() as chirp:
                 length_s = chirp.stop_s - chirp.start_s

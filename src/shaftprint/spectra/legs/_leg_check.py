@@ -21,7 +21,6 @@ _PERIOD_TOLERANCE, _PERIOD_LIMIT = 0.25, 0.5
 _CLOCK_TOLERANCE = 5e-4
 # Held steps and the resolution of a generator stay far below this share of the lines.
 _SHAPE_LIMIT = 0.03
-_SHAPE_REACH = 3
 _PERCENT = 100.0
 
 
@@ -88,8 +87,9 @@ def leg_shape_reasons(measured: LegLines) -> tuple[Reason, ...]:
     excitation = measured.lines[0].excitation
     window = measured.window
     spectrum = window.spectrum()[window.channels.index(excitation)]
-    highest = min(_SHAPE_REACH * measured.harmonics[-1], (spectrum.size - 1) // window.state.periods)
-    power = np.abs(spectrum[window.state.periods : highest * window.state.periods + 1 : window.state.periods]) ** 2
+    periods, highest = window.state.periods, measured.harmonics[-1]
+    # above the fastest line a binary sequence has harmonics that are not measured
+    power = np.abs(spectrum[periods : highest * periods + 1 : periods]) ** 2
     is_line = np.isin(np.arange(1, power.size + 1), measured.harmonics)
     share = float(np.sqrt(power[~is_line].sum() / max(power[is_line].sum(), np.finfo(np.float64).tiny)))
     if share <= _SHAPE_LIMIT:
