@@ -86,3 +86,10 @@ def test_the_frequency_of_a_linear_chirp_runs_straight():
     assert 0.01 * rising + 0.5 * 0.99 / 200.0 * rising**2 == pytest.approx(np.arange(1, rising.size + 1), abs=2e-4)
     # 101 cycles, of which the last one ends with the chirp
     assert rising.size == 100
+
+
+@pytest.mark.parametrize(("sweep", "halfway_hz"), [("linear", 0.505), ("logarithmic", 0.1)])
+def test_a_chirp_passes_the_mean_of_its_ends_half_way(sweep, halfway_hz):
+    chirp = DOWN.model_copy(update={"sweep": sweep})
+    assert chirp.passes_s(halfway_hz) == pytest.approx(500.0)
+    assert [chirp.passes_s(hertz) for hertz in (2.0, 0.005)] == [400.0, 600.0]

@@ -94,6 +94,15 @@ class Chirp(Settings):
             raise ValueError(" ".join(errors))
         return self
 
+    def passes_s(self, frequency_hz: float) -> float:
+        """Return when it passes a frequency [s], not before its start or after its end."""
+        first_hz, last_hz = self.start_frequency_hz, self.stop_frequency_hz
+        if self.sweep == "linear":
+            share = (frequency_hz - first_hz) / (last_hz - first_hz)
+        else:
+            share = math.log(frequency_hz / first_hz) / math.log(last_hz / first_hz)
+        return self.start_s + min(max(share, 0.0), 1.0) * (self.stop_s - self.start_s)
+
 
 class Staircase(Settings):
     """Constant set points, one after the other, with sudden jumps between them."""

@@ -136,13 +136,6 @@ def _sweep(chirp: Chirp) -> float:
     return abs(math.log(chirp.stop_frequency_hz / chirp.start_frequency_hz))
 
 
-def _passes(chirp: Chirp, omega_rad_s: float) -> float:
-    """Return when a chirp passes a frequency [s], not before its start or after its end."""
-    ratio = chirp.stop_frequency_hz / chirp.start_frequency_hz
-    share = math.log(omega_rad_s / (2.0 * math.pi * chirp.start_frequency_hz)) / math.log(ratio)
-    return chirp.start_s + min(max(share, 0.0), 1.0) * (chirp.stop_s - chirp.start_s)
-
-
 def _chirp(chirp: Chirp, settings: ValidationSettings) -> list[Excerpt]:
     """Return the bands of a chirp that it holds, and the stretch in which phases can be seen."""
     edges = settings.band_edges_rad_s
@@ -157,7 +150,7 @@ def _chirp(chirp: Chirp, settings: ValidationSettings) -> list[Excerpt]:
     for lower, upper, title in bands:
         a, b = max(lower, slowest), min(upper, fastest)
         if a < b:
-            start, stop = sorted((_passes(chirp, a), _passes(chirp, b)))
+            start, stop = sorted(chirp.passes_s(omega / (2.0 * math.pi)) for omega in (a, b))
             excerpts.append(Excerpt(record=chirp.name, kind="chirp band", title=title, start_s=start, stop_s=stop))
     return excerpts
 
