@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from shaftprint.campaign import Campaign, Sine, load_campaign
+from shaftprint.campaign import Campaign, Multisine, Sine, load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import IdentificationError
 from shaftprint.identify import STAN_TUG_NOISE, NoiseLevels, expected_response, identify, noise_levels, planned_response
-from shaftprint.identify.prediction import planned_lines
+from shaftprint.identify.prediction import planned_legs, planned_lines
 from shaftprint.spectra import FrequencyResponse
 
 TRUTH = {"K_p": 5.7, "K_i": 4.27, "t_d": 0.0703, "omega_n": 10.3, "zeta": 0.47, "tau_dn": 0.32, "tau_up": 1.016}
@@ -161,7 +161,7 @@ def test_levels_that_make_no_sense(changed, message):
 
 def test_levels_of_another_campaign():
     planned = planned_response(two_sines(), white(1e-5))
-    with pytest.raises(IdentificationError, match="has no sine slow, fast; give the campaign that the recording"):
+    with pytest.raises(IdentificationError, match="has no line slow, fast; give the campaign that the recording"):
         noise_levels(planned, load_campaign("thesis"), set_point_per_v=0.2)
 
 
@@ -191,3 +191,36 @@ def test_outputs_can_be_chosen():
 
 def test_plain_response_keeps_its_type():
     assert isinstance(planned_response(two_sines(), white(1e-5)), FrequencyResponse)
+
+
+def two_legs():
+    leg = {"period_s": 20.0, "harmonics": (1, 5), "amplitudes_v": (0.4, 0.2), "phases_rad": (0.0, 0.0)}
+    slow = Multisine(name="slow", level_v=-3.5, start_s=10.0, settled_s=20.0, stop_s=105.0, **leg)
+    fast = Multisine(name="fast", level_v=-5.2, start_s=110.0, settled_s=120.0, stop_s=220.0, **leg)
+    return Campaign(name="legs", duration_s=240.0, offset_v=-5.0, ramp_s=5.0, multisines=(slow, fast))
+
+
+@pytest.mark.parametrize(("rises", "ratio"), [(False, 1.0 - 0.2 * 1.7), (True, 1.0 + 0.2 * 1.7)])
+def test_each_leg_is_planned_at_its_own_speed(rises, ratio):
+    """Of 0.2 of the speed a volt, 1.7 V apart; two lines of 100 and 80 s in white noise of 1e-6 1/Hz."""
+    fast, slow = planned_legs(two_legs(), white(1e-6), rises=rises)
+    assert (fast.name, fast.speed_ratio, slow.name) == ("fast", 1.0, "slow")
+    assert slow.speed_ratio == pytest.approx(ratio)
+    assert slow.response.lines == ("slow/1", "slow/5")
+    assert slow.response.frequency_hz == pytest.approx([0.05, 0.25])
+    # 2 S / (T A^2) of both parts together, with the amplitude over the speed of the leg
+    for leg, seconds in ((fast, 100.0), (slow, 80.0)):
+        for row, amplitude_v in enumerate((0.4, 0.2)):
+            amplitude = 0.2 * amplitude_v / leg.speed_ratio
+            assert leg.response.covariance[row, 0, 0] == pytest.approx(1e-6 / (seconds * amplitude**2))
+    gauge = structure("GAUGE-CLOSED")
+    assert slow.structure(gauge).factors["tau_dn"] == pytest.approx(1.0 / ratio)
+    assert fast.structure(gauge) == gauge
+
+
+def test_the_noise_of_a_leg_plans_the_same_leg_again():
+    """The levels of a recorded leg give back its covariance at the lines that it had."""
+    levels = white(3e-6)
+    fast, _ = planned_legs(two_legs(), levels, rises=False)
+    again = noise_levels(fast.response, two_legs(), set_point_per_v=0.2)
+    assert again.density == pytest.approx(levels.density)

@@ -17,7 +17,8 @@ Every excitation holds in the half-open interval from its start to its stop.
 """
 
 from shaftprint.campaign._binary_sequence import BinarySequence
-from shaftprint.campaign._campaign import Campaign, Excitation, load_campaign
+from shaftprint.campaign._campaign import Campaign, load_campaign
+from shaftprint.campaign._excitation import Excitation
 from shaftprint.campaign._excitations import Chirp, Sine, Staircase
 from shaftprint.campaign._leg import Leg
 from shaftprint.campaign._multisine import Multisine

@@ -4,21 +4,20 @@ from collections.abc import Mapping
 from importlib.resources import files
 from itertools import pairwise
 from pathlib import Path
-from typing import Self, TypeAlias
+from typing import Self
 
 from pydantic import Field, model_validator
 
 from shaftprint.arguments import refusing_none
 from shaftprint.campaign._binary_sequence import BinarySequence
+from shaftprint.campaign._excitation import Excitation
 from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
 from shaftprint.campaign._leg import Leg
-from shaftprint.campaign._moves import faults_of
+from shaftprint.campaign._moves import Move, faults_of, moves_of
 from shaftprint.campaign._multisine import Multisine
 from shaftprint.errors import SettingsError
 from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.settings import Name, Number, PositiveNumber, Settings, load_settings
-
-Excitation: TypeAlias = Sine | Multisine | BinarySequence | Chirp | Staircase
 
 
 class Campaign(Shown, Settings):
@@ -85,6 +84,17 @@ class Campaign(Shown, Settings):
         return tuple(excitation for excitation in self.excitations if isinstance(excitation, Leg))
 
     @property
+    def moves(self) -> tuple[Move, ...]:
+        """How the set point of the speed goes to the legs, between them and back, in order of time."""
+        return moves_of(
+            self.of_input().excitations,
+            offset_v=self.offset_v,
+            duration_s=self.duration_s,
+            ramp_s=self.ramp_s,
+            ramp_v_per_s=self.ramp_v_per_s,
+        )
+
+    @property
     def inputs(self) -> tuple[str, ...]:
         """What is moved, the set point of the speed first."""
         return tuple(dict.fromkeys((SPEED_SET_POINT, *(sine.input for sine in self.sines))))
@@ -109,7 +119,7 @@ class Campaign(Shown, Settings):
             *self._overlaps(),
             *self._too_late(),
             *self._too_fast(),
-            *faults_of(self),
+            *faults_of(self.moves, ramp_s=self.ramp_s, ramp_v_per_s=self.ramp_v_per_s),
         ]
         if not self.excitations:
             errors.append("expected at least one sine, multisine, binary sequence, chirp or staircase, found none.")

@@ -11,7 +11,7 @@ from shaftprint.campaign._leg import Leg
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
-    from shaftprint.campaign._campaign import Campaign, Excitation
+    from shaftprint.campaign._excitation import Excitation
 
 # A move smaller than this is the rounding of a voltage [V].
 _NOTHING_V = 1e-9
@@ -48,58 +48,67 @@ class Move:
         return self.start_s >= self.free_s[0] - _ROUNDING_S and self.stop_s <= self.free_s[1] + _ROUNDING_S
 
 
-def moves_of(campaign: "Campaign") -> tuple[Move, ...]:
+def moves_of(
+    tests: "Sequence[Excitation]",
+    *,
+    offset_v: float,
+    duration_s: float,
+    ramp_s: float | None,
+    ramp_v_per_s: float | None,
+) -> tuple[Move, ...]:
     """Return the moves of a campaign in order of time.
 
     A ramp to a leg ends where the leg starts, with the value with which that begins; the ramp back to the offset begins
     where a leg stops. Between two legs the set point waits at the last value of the first.
+
+    Parameters
+    ----------
+    tests
+        What moves the set point of the speed, in order of time.
+    offset_v, duration_s
+        Set point outside of every test [V], and length of the campaign [s].
+    ramp_s, ramp_v_per_s
+        Time [s] or rate [V/s] of every ramp; without both they jump.
     """
-    tests = campaign.of_input().excitations
-    if not any(isinstance(test, Leg) for test in tests):
-        return ()
-    stations: Sequence[Excitation | None] = (None, *tests, None)
-    moves = (_move(campaign, before, after) for before, after in pairwise(stations))
-    return tuple(move for move in moves if move is not None)
+    moves = []
+    for before, after in pairwise((None, *tests, None)):
+        if not isinstance(before, Leg) and not isinstance(after, Leg):
+            continue
+        from_v = _value(before, before.stop_s) if isinstance(before, Leg) else offset_v
+        to_v = _value(after, after.start_s) if isinstance(after, Leg) else offset_v
+        volts = abs(to_v - from_v)
+        length_s = 0.0
+        if volts >= _NOTHING_V and (ramp_s is not None or ramp_v_per_s is not None):
+            length_s = ramp_s if ramp_s is not None else volts / (ramp_v_per_s or 1.0)
+        begin_s = 0.0 if before is None else before.stop_s
+        end_s = duration_s if after is None else after.start_s
+        start_s = end_s - length_s if isinstance(after, Leg) else begin_s
+        moves.append(
+            Move(
+                free_s=(begin_s, end_s),
+                start_s=start_s,
+                stop_s=start_s + length_s,
+                from_v=from_v,
+                to_v=to_v,
+                where=_where(before, after),
+            )
+        )
+    return tuple(moves)
 
 
-def _move(campaign: "Campaign", before: "Excitation | None", after: "Excitation | None") -> Move | None:
-    from_v = _value(before, before.stop_s) if isinstance(before, Leg) else campaign.offset_v
-    to_v = _value(after, after.start_s) if isinstance(after, Leg) else campaign.offset_v
-    if not isinstance(before, Leg) and not isinstance(after, Leg):
-        return None
-    free_s = (0.0 if before is None else before.stop_s, campaign.duration_s if after is None else after.start_s)
-    length_s = _length_s(campaign, abs(to_v - from_v))
-    start_s, stop_s = (free_s[1] - length_s, free_s[1]) if isinstance(after, Leg) else (free_s[0], free_s[0] + length_s)
-    words = f"between {before.name} and {after.name}" if before and after else ""
-    return Move(
-        free_s=free_s,
-        start_s=start_s,
-        stop_s=stop_s,
-        from_v=from_v,
-        to_v=to_v,
-        where=words or (f"before {after.name}" if after else f"after {before.name}" if before else ""),
-    )
+def faults_of(moves: "Sequence[Move]", *, ramp_s: float | None, ramp_v_per_s: float | None) -> list[str]:
+    """Return what is wrong with the ramps of a campaign, one sentence each.
 
-
-def _value(leg: Leg, time_s: float) -> float:
-    return float(leg.value_at(np.array([time_s]))[0])
-
-
-def _length_s(campaign: "Campaign", volts: float) -> float:
-    """Return how long a move of so many volts takes [s]; 0 where no ramp is stated."""
-    if volts < _NOTHING_V:
-        return 0.0
-    if campaign.ramp_s is not None:
-        return campaign.ramp_s
-    return 0.0 if campaign.ramp_v_per_s is None else volts / campaign.ramp_v_per_s
-
-
-def faults_of(campaign: "Campaign") -> list[str]:
-    """Return what is wrong with the ramps of a campaign, one sentence each."""
-    moves = moves_of(campaign)
-    if campaign.ramp_s is not None and campaign.ramp_v_per_s is not None:
+    Parameters
+    ----------
+    moves
+        From `moves_of`.
+    ramp_s, ramp_v_per_s
+        What the campaign states of them.
+    """
+    if ramp_s is not None and ramp_v_per_s is not None:
         return ["expected one of ramp_s and ramp_v_per_s, found both."]
-    if campaign.ramp_s is None and campaign.ramp_v_per_s is None:
+    if ramp_s is None and ramp_v_per_s is None:
         jumps = [move for move in moves if abs(move.to_v - move.from_v) >= _NOTHING_V]
         return [
             f"expected ramp_s or ramp_v_per_s, how the set point goes from {move.from_v:g} to {move.to_v:g} V "
@@ -112,3 +121,14 @@ def faults_of(campaign: "Campaign") -> list[str]:
         for move in moves
         if not move.fits
     ]
+
+
+def _value(leg: Leg, time_s: float) -> float:
+    return float(leg.value_at(np.array([time_s]))[0])
+
+
+def _where(before: "Excitation | None", after: "Excitation | None") -> str:
+    """Return between which excitations a move is, in words."""
+    if before is None:
+        return "" if after is None else f"before {after.name}"
+    return f"after {before.name}" if after is None else f"between {before.name} and {after.name}"

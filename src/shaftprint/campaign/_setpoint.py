@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._binary_sequence import BinarySequence
-from shaftprint.campaign._campaign import Campaign, Excitation
+from shaftprint.campaign._campaign import Campaign
+from shaftprint.campaign._excitation import Excitation
 from shaftprint.campaign._excitations import SPEED_SET_POINT, Chirp, Sine, Staircase
-from shaftprint.campaign._moves import moves_of
 from shaftprint.campaign._multisine import Multisine
 from shaftprint.errors import SettingsError
 
@@ -42,7 +42,7 @@ def setpoint(campaign: Campaign, time_s: ArrayLike, *, input: str = SPEED_SET_PO
     if time.size == 0:
         return voltage
     first, last = float(time.min()), float(time.max())
-    for move in moves_of(campaign) if input == SPEED_SET_POINT else ():
+    for move in campaign.moves if input == SPEED_SET_POINT else ():
         inside = (time >= move.free_s[0]) & (time < move.free_s[1])
         voltage[inside] = move.value_at(time[inside])
     for excitation in campaign.of_input(input).excitations:

@@ -1,7 +1,7 @@
 """The predicted accuracy of a test on the terminal."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from shaftprint.campaign import Campaign
 from shaftprint.cli._fingerprint_tables import print_assumed
@@ -17,7 +17,7 @@ from shaftprint.tables import MEANING, Symbol, Table, interval, numbers, texts, 
 
 def print_prediction(
     campaign: Campaign,
-    response: FrequencyResponse,
+    responses: Sequence[FrequencyResponse],
     noise: str,
     possible: Identifiability,
     accuracy: Accuracy,
@@ -27,8 +27,8 @@ def print_prediction(
 
     Parameters
     ----------
-    campaign, response, noise
-        The test, its lines, and where its noise comes from.
+    campaign, responses, noise
+        The test, its lines at each working point, and where their noise comes from.
     possible
         What the equations allow.
     accuracy, intervals
@@ -37,19 +37,22 @@ def print_prediction(
     structure = possible.structure
     print_findings("What the test will find", accuracy.sentences, is_answer=True)
     print_table(_accuracy_table(possible, accuracy, intervals))
-    print_findings("What these outputs can tell at all", possible.sentences)
+    at_all = "at all" if len(responses) == 1 else "at one speed, however long"
+    print_findings(f"What these outputs can tell {at_all}", possible.sentences)
     say(f"{campaign.name}; {structure.name}: {structure.title}")
-    _print_conditions(response, noise, accuracy)
+    _print_conditions(responses, noise, accuracy)
     give("parameters", accuracy.parameters)
     give("combinations", accuracy.combinations)
     give("intervals_95", {name: (ends.lower, ends.upper) for name, ends in intervals.items()})
 
 
-def _print_conditions(response: FrequencyResponse, noise: str, accuracy: Accuracy) -> None:
-    used = [name for name, is_used in zip(response.lines, response.used, strict=True) if is_used]
+def _print_conditions(responses: Sequence[FrequencyResponse], noise: str, accuracy: Accuracy) -> None:
+    used = [
+        name for response in responses for name, is_used in zip(response.lines, response.used, strict=True) if is_used
+    ]
     say(noise, indent="  ")
     say(f"lines used: {', '.join(used)}", indent="  ")
-    for name, remark in response.remarks.items():
+    for name, remark in (item for response in responses for item in response.remarks.items()):
         say(f"{name} not used: {remark}", indent="  ")
     priors = {name: (prior.mean, prior.std) for name, prior in accuracy.priors.items()}
     held = {p.name: p.value for p in accuracy.objective.parameters if p.held}

@@ -49,6 +49,7 @@ from shaftprint.models._step_response import step_response
 from shaftprint.models._structure import Structure
 from shaftprint.models._tabulated import Tabulated
 from shaftprint.models._tied_parameter import Tie
+from shaftprint.models._working_point import at_working_point
 from shaftprint.models.equations import (
     Flow,
     Formula,
@@ -123,6 +124,7 @@ __all__ = [
     "TorqueBalance",
     "ZeroOrderHold",
     "as_formula",
+    "at_working_point",
     "boosted",
     "check_structure",
     "choose",

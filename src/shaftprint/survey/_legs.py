@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 
 from shaftprint.identify import Identification
 from shaftprint.identify.fit import FitTest, part_tests
-from shaftprint.models import Structure
-from shaftprint.normalisation import inertia_time_s
+from shaftprint.models import Structure, at_working_point
 from shaftprint.spectra import Spectra, estimate_legs
 
 if TYPE_CHECKING:
@@ -48,10 +47,9 @@ def legs_of(signals: "Signals", campaign: "Campaign") -> tuple[LegMeasurement, .
 
 
 def structure_at(structure: Structure, point: "WorkingPoint", *, main: "WorkingPoint") -> Structure:
-    """Return a structure at another working point, with its parameters still those of the first.
+    """Return a structure at another working point, with speed and torque as they were measured there.
 
-    What is a physical value over the torque and times the speed goes with ``n_0 / M_0`` (thesis eqs 2.14-2.25), with
-    both as they were measured: the load of a propeller is not the same from leg to leg.
+    The load of a propeller is not the same from leg to leg; its parameters are still those of the first.
 
     Parameters
     ----------
@@ -60,12 +58,11 @@ def structure_at(structure: Structure, point: "WorkingPoint", *, main: "WorkingP
     point, main
         The other working point, and that of the parameters.
     """
-    at_point, at_main = (
-        inertia_time_s(1.0, shaft_speed_rev_s=one.engine_speed_rev_s, shaft_torque_nm=one.shaft_torque_nm)
-        for one in (point, main)
+    return at_working_point(
+        structure,
+        speed_ratio=point.engine_speed_rev_s / main.engine_speed_rev_s,
+        torque_ratio=point.shaft_torque_nm / main.shaft_torque_nm,
     )
-    moved = [name for name, role in structure.roles.items() if role.over_torque]
-    return structure.scaled(**dict.fromkeys(moved, at_point / at_main)) if moved else structure
 
 
 def leg_tests(identification: Identification, legs: Sequence[LegMeasurement]) -> tuple[LegTest, ...]:

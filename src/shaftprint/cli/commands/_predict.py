@@ -23,10 +23,9 @@ from shaftprint.identify import (
     identifiability,
     noise_levels,
     planned_response,
-    predict_accuracy,
     priors_from_vessel,
 )
-from shaftprint.identify.prediction import predict_intervals
+from shaftprint.identify.prediction import planned_legs, predict_joint_accuracy, predict_joint_intervals
 from shaftprint.models import Structure
 from shaftprint.signals import WorkingPoint
 from shaftprint.spectra import FrequencyResponse, open_loop
@@ -46,6 +45,7 @@ class _Ship:
 
     priors: Mapping[str, Prior]
     noise: NoiseLevels
+    rises: bool
     words: str
 
 
@@ -109,15 +109,15 @@ def command(
         parameter: prior for parameter, prior in (dict(ship.priors) | dict(priors)).items() if parameter not in freed
     }
     assumed = _values_of(chosen, assumed_priors) | dict(values)
-    response = _planned(chosen, planned, ship.noise)
+    pairs = _planned(chosen, planned, ship)
     possible = identifiability(chosen, rng=np.random.default_rng(SEED))
     print_prediction(
         planned,
-        response,
+        [response for _, response in pairs],
         ship.words,
         possible,
-        predict_accuracy(chosen, response, values=assumed, priors=assumed_priors, combinations=possible.combinations),
-        predict_intervals(chosen, response, values=assumed, priors=assumed_priors),
+        predict_joint_accuracy(pairs, values=assumed, priors=assumed_priors, combinations=possible.combinations),
+        predict_joint_intervals(pairs, values=assumed, priors=assumed_priors),
     )
 
 
@@ -142,7 +142,8 @@ def _recorded(path: Path, vessel: str, campaign: str, chosen: Structure, *, no_p
         set_point_per_v=slope / signals.working_point.engine_speed_rev_s,
     )
     priors = priors_of(chosen, trial.vessel, signals)
-    return _Ship(priors=priors, noise=noise, words=f"noise of {path.name}")
+    rises = signals.calibration.slope_rev_s_per_v > 0.0
+    return _Ship(priors=priors, noise=noise, rises=rises, words=f"noise of {path.name}")
 
 
 def _assumed(vessel: str | None, rpm_per_volt: float | None, chosen: Structure) -> _Ship:
@@ -150,13 +151,14 @@ def _assumed(vessel: str | None, rpm_per_volt: float | None, chosen: Structure) 
     if vessel is None:
         if rpm_per_volt is not None:
             raise click.UsageError("--rpm-per-volt needs --vessel, which says at what speed.")
-        return _Ship(priors={}, noise=STAN_TUG_NOISE, words="noise of the Stan Tug 1205 assumed")
+        return _Ship(priors={}, noise=STAN_TUG_NOISE, rises=False, words="noise of the Stan Tug 1205 assumed")
     ship = load_vessel(vessel)
     noise = STAN_TUG_NOISE
     if rpm_per_volt is not None:
         noise = replace(noise, set_point_per_v=abs(rpm_per_volt) / ship.working_point.engine_speed_rpm)
     priors = priors_from_vessel(chosen, ship, _working_point(ship))
-    return _Ship(priors=priors, noise=noise, words=f"noise of the Stan Tug 1205 assumed for {ship.name}")
+    words = f"noise of the Stan Tug 1205 assumed for {ship.name}"
+    return _Ship(priors=priors, noise=noise, rises=rpm_per_volt is not None and rpm_per_volt > 0.0, words=words)
 
 
 def _working_point(vessel: Vessel) -> WorkingPoint:
@@ -176,25 +178,34 @@ def _values_of(chosen: Structure, priors: Mapping[str, Prior]) -> dict[str, floa
     return {name: float(np.clip(prior.mean, *bounds[name])) for name, prior in priors.items() if name in bounds}
 
 
-def _planned(chosen: Structure, campaign: Campaign, noise: NoiseLevels) -> FrequencyResponse:
-    """Return the planned lines from the structure's input to its outputs.
+def _planned(chosen: Structure, campaign: Campaign, ship: _Ship) -> list[tuple[Structure, FrequencyResponse]]:
+    """Return the structure with the planned lines from its input to its outputs, at each working point.
 
     Raises
     ------
     StructureError
         If the lines of a campaign do not give these.
     """
-    closed = planned_response(campaign, noise)
+    loop = structure(CLOSED_LOOP)
+    tests = [(chosen, loop, planned_response(campaign, ship.noise))] if campaign.sines or not campaign.legs else []
+    tests += [
+        (leg.structure(chosen), leg.structure(loop), leg.response)
+        for leg in planned_legs(campaign, ship.noise, rises=ship.rises)
+    ]
+    return [(at_leg, _from_input(at_leg, loop_there, closed)) for at_leg, loop_there, closed in tests]
+
+
+def _from_input(chosen: Structure, loop: Structure, closed: FrequencyResponse) -> FrequencyResponse:
+    """Return planned lines from a structure's input to its outputs, of those from the set point."""
     responses = {"n_set": closed}
     if chosen.inputs in (("e",), ("M_s",)):
-        speed_and_torque = closed.of_outputs("n", "M_s")
-        governor, core = open_loop(expected_response(speed_and_torque, structure(CLOSED_LOOP)))
+        governor, core = open_loop(expected_response(closed.of_outputs("n", "M_s"), loop))
         responses |= {"e": governor, "M_s": core}
     response = responses.get(chosen.input) if len(chosen.inputs) == 1 else None
     if response is None or not set(chosen.outputs) <= set(response.outputs):
         raise StructureError(
             f"structure {chosen.name} goes from {', '.join(chosen.inputs)} to {', '.join(chosen.outputs)}; the noise "
-            f"is known of {', '.join(noise.outputs)} under the set point only. Give a recording of the other channels "
+            f"is known of {', '.join(closed.outputs)} under the set point only. Give a recording of the other channels "
             "with --from."
         )
     return response

@@ -6,8 +6,9 @@ from shaftprint.identify.prediction._identifiability import Identifiability, ide
 from shaftprint.identify.prediction._inseparable_groups import Group
 from shaftprint.identify.prediction._lost_directions import Direction
 from shaftprint.identify.prediction._noise_levels import NoiseLevels, noise_levels, stated_noise
+from shaftprint.identify.prediction._planned_legs import PlannedLeg, planned_legs
 from shaftprint.identify.prediction._planned_response import expected_response, planned_lines, planned_response
-from shaftprint.identify.prediction._predicted_intervals import predict_intervals
+from shaftprint.identify.prediction._predicted_intervals import predict_intervals, predict_joint_intervals
 from shaftprint.identify.prediction._stan_tug_noise import STAN_TUG_NOISE
 
 __all__ = [
@@ -17,14 +18,17 @@ __all__ = [
     "Group",
     "Identifiability",
     "NoiseLevels",
+    "PlannedLeg",
     "expected_response",
     "identifiability",
     "noise_levels",
+    "planned_legs",
     "planned_lines",
     "planned_response",
     "predict_accuracy",
     "predict_intervals",
     "predict_joint_accuracy",
+    "predict_joint_intervals",
     "stated_noise",
     "unit_of",
 ]

@@ -118,29 +118,40 @@ def noise_levels(response: FrequencyResponse, campaign: "Campaign", *, set_point
             f"noise levels: expected a response from one input with used lines, found {len(response.inputs)} inputs "
             f"and {int(response.used.sum())} used lines."
         )
-    sines = {sine.name: sine for sine in campaign.sines}
+    tested = _tested_lines(campaign)
     places = np.flatnonzero(response.used)
-    unknown = [response.lines[index] for index in places if response.lines[index] not in sines]
+    unknown = [response.lines[index] for index in places if response.lines[index] not in tested]
     if unknown:
         raise IdentificationError(
-            f"noise levels: campaign {campaign.name} has no sine {', '.join(unknown)}; give the campaign that the "
+            f"noise levels: campaign {campaign.name} has no line {', '.join(unknown)}; give the campaign that the "
             "recording was made with."
         )
     size = len(response.outputs)
     density = np.empty((places.size, size, size), dtype=np.complex128)
     for row, index in enumerate(places):
-        sine = sines[response.lines[index]]
-        amplitude = set_point_per_v * sine.amplitude_v
+        amplitude_v, seconds = tested[response.lines[index]]
+        amplitude = set_point_per_v * amplitude_v
         spread = response.covariance[index]
         same = spread[:size, :size] + spread[size:, size:]
         crossed = spread[size:, :size] - spread[:size, size:]
-        density[row] = (same + 1j * crossed) * (0.5 * sine.window_s * amplitude**2)
+        density[row] = (same + 1j * crossed) * (0.5 * seconds * amplitude**2)
     return NoiseLevels(
         frequency_hz=response.frequency_hz[places],
         density=density,
         outputs=response.outputs,
         set_point_per_v=set_point_per_v,
     )
+
+
+def _tested_lines(campaign: "Campaign") -> dict[str, tuple[float, float]]:
+    """Return amplitude [V] and length [s] of every line of a campaign by its name."""
+    sines = {sine.name: (sine.amplitude_v, sine.window_s) for sine in campaign.sines}
+    of_legs = {
+        f"{leg.name}/{harmonic}": (amplitude_v, leg.window_s)
+        for leg in campaign.legs
+        for harmonic, amplitude_v in leg.lines.items()
+    }
+    return sines | of_legs
 
 
 def stated_noise(

@@ -1,12 +1,12 @@
 """Intervals that a test would find, before it is made: profiles of a test without noise."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.identify.fit import identify
+from shaftprint.identify.fit import identify, identify_jointly
 from shaftprint.identify.likelihood import Prior
 from shaftprint.identify.prediction._planned_response import expected_response
 from shaftprint.identify.search import Draw, Settings
@@ -56,12 +56,50 @@ def predict_intervals(
     IdentificationError
         If structure and response do not fit together, or a prior names no free parameter.
     """
-    outputs = tuple(structure.outputs)
-    lines = response if response.outputs == outputs else response.of_outputs(*outputs)
-    assumed = structure.vector(values or {})
-    free = np.array([value for p, value in zip(structure.parameters, assumed, strict=True) if not p.held])
-    settings = Settings(priors=dict(priors or {}), starts=1, draw=_At(free), stability="ignored")
+    lines = _of_structure(structure, response)
     fit = identify(
-        structure, expected_response(lines, structure, values), rng=np.random.default_rng(0), settings=settings
+        structure,
+        expected_response(lines, structure, values),
+        rng=np.random.default_rng(0),
+        settings=_settings(structure, values, priors),
     )
     return dict(profile(fit).intervals)
+
+
+def predict_joint_intervals(
+    pairs: Sequence[tuple[Structure, FrequencyResponse]],
+    *,
+    values: Mapping[str, float] | None = None,
+    priors: Mapping[str, Prior] | None = None,
+) -> dict[str, Interval]:
+    """Return the intervals that several tests of the same parameters would give together, by name.
+
+    Parameters
+    ----------
+    pairs
+        Each structure with its lines; for another working point it is ``at_working_point``.
+    values, priors
+        See ``predict_intervals``.
+
+    Raises
+    ------
+    StructureError
+        If a value names no parameter of the structures.
+    IdentificationError
+        As ``predict_intervals``, or if two structures describe a parameter differently.
+    """
+    exact = [(one, expected_response(_of_structure(one, response), one, values)) for one, response in pairs]
+    settings = _settings(pairs[0][0], values, priors)
+    return dict(profile(identify_jointly(exact, rng=np.random.default_rng(0), settings=settings)).intervals)
+
+
+def _of_structure(structure: Structure, response: FrequencyResponse) -> FrequencyResponse:
+    outputs = tuple(structure.outputs)
+    return response if response.outputs == outputs else response.of_outputs(*outputs)
+
+
+def _settings(structure: Structure, values: Mapping[str, float] | None, priors: Mapping[str, Prior] | None) -> Settings:
+    """Return the settings of a fit that begins at the assumed values."""
+    assumed = structure.vector(values or {})
+    free = np.array([value for p, value in zip(structure.parameters, assumed, strict=True) if not p.held])
+    return Settings(priors=dict(priors or {}), starts=1, draw=_At(free), stability="ignored")
