@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from pages import PAGES, ROOT, blocks, python_of
 
+from shaftprint.campaign import Campaign
 from shaftprint.export import exported_model, write_matlab
 from shaftprint.fingerprint import read_fingerprint
 from shaftprint.recording import read_recording
@@ -80,7 +81,15 @@ def test_a_reader_that_a_package_names_so_is_used(acme):
 
 
 def test_toml_is_of_a_page_with_a_check_of_its_own():
-    assert {page.values[0] for page in of("toml")} == {"docs/formats.md"}
+    assert {page.values[0] for page in of("toml")} == {"docs/formats.md", "docs/legs.md"}
+
+
+def test_the_campaign_of_the_page_on_legs_is_one():
+    ((_, text),) = (block for block in blocks("docs/legs.md") if block[0] == "toml")
+    campaign = Campaign.model_validate(tomllib.loads(text))
+    # as its comments say
+    multisine, binary = campaign.legs
+    assert (multisine.periods, binary.length_of_period_s) == (4, 126 * 0.25)
 
 
 def test_json_loads():

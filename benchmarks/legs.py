@@ -1,0 +1,136 @@
+"""Does a campaign of legs find the truth, and are its intervals right? Raw recordings of the simulated Stan Tug.
+
+Every recording goes through the steps of ``shaftprint identify``: channels, working point of each leg, responses, and a
+joint fit of GAUGE-CLOSED from 50 starts, with nothing known beforehand. Errors are against the truth as the measured
+working point normalises it. Run ``python benchmarks/legs.py --tests 20``, with ``--campaign FILE`` for another plan; a
+test of eleven minutes takes about six seconds of one core.
+"""
+
+import argparse
+import sys
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parent.parent
+# Run as a file, the folder of the benchmarks is on the path, not the one above.
+sys.path.insert(0, str(ROOT))
+
+from shaftprint.catalogue import structure  # noqa: E402
+from shaftprint.distributions import NORMAL_95  # noqa: E402
+from shaftprint.identify import Identification, Settings  # noqa: E402
+from shaftprint.signals import Signals  # noqa: E402
+from shaftprint.survey import Trial, fit, leg_tests, load_trial, measure  # noqa: E402
+from shaftprint.tug import Truth, sail  # noqa: E402
+
+NAME = "GAUGE-CLOSED"
+LOWEST_P_VALUE = 0.05
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """What one recording gave."""
+
+    error: Mapping[str, float]
+    """Estimate minus truth of each number."""
+    std: Mapping[str, float]
+    """Stated standard deviation of each number."""
+    truth: Mapping[str, float]
+    """True value of each number."""
+    p_value: float
+    """Of the fit to all legs."""
+    leg_p_values: tuple[float, ...]
+    """Of each leg."""
+    limited: float
+    """Largest share of a leg in which a limit of torque or rack acted."""
+
+
+def true_values(truth: Truth, signals: Signals) -> dict[str, float]:
+    """Return the true parameters as the signals are normalised: by measured speed, torque and set-point line."""
+    point, true = signals.working_point, truth.normalised
+    torque = truth.shaft_torque_nm / point.shaft_torque_nm
+    both = torque * point.engine_speed_rev_s * 60.0 / truth.engine_speed_rpm
+    return {
+        **{name: both * true[name] for name in ("K_p", "K_i", "tau_dn", "tau_up", "g")},
+        **{name: true[name] for name in ("t_d", "omega_n", "zeta", "k_q", "t_sp")},
+        "c_set": truth.set_point_slope_rpm_per_v / (60.0 * signals.calibration.slope_rev_s_per_v),
+        "t_gauge": 0.0,
+        "v": 1.0,
+    }
+
+
+def outcome(trial: Trial, seed: int, folder: Path) -> Outcome:
+    """Sail and identify one recording."""
+    path = folder / f"{seed}.nc"
+    truth = sail(trial.vessel, trial.campaign, path, seed=seed)
+    measurement = measure(path, trial)
+    path.unlink()
+    gauge = structure(NAME)
+    (found,) = fit([gauge], measurement, settings={NAME: Settings()}, rng=np.random.default_rng(1))
+    true = true_values(truth, measurement.signals)
+    values = true | {c.name: float(c.of(true)) for c in gauge.combinations}
+    estimates = (*found.parameters, *found.combinations)
+    return Outcome(
+        error={one.name: one.value - values[one.name] for one in estimates},
+        std={one.name: one.std for one in estimates},
+        truth={one.name: values[one.name] for one in estimates},
+        p_value=_p_value(found),
+        leg_p_values=tuple(one.test.p_value or 0.0 for one in leg_tests(found, measurement.legs)),
+        limited=max(truth.limited.values()),
+    )
+
+
+def _p_value(found: Identification) -> float:
+    return 0.0 if found.p_value is None else found.p_value
+
+
+def lines_of(outcomes: Sequence[Outcome]) -> list[str]:
+    """Return the table of all numbers: error, stated deviation, bias, coverage; and the p-values."""
+    rows = [f"{'number':28s} {'rms error':>10s} {'stated':>10s} {'rms z':>6s} {'mean z':>7s} {'covers':>7s}"]
+    every = []
+    for name in outcomes[0].error:
+        error, std, truth = (
+            np.array([getattr(one, field)[name] for one in outcomes]) for field in ("error", "std", "truth")
+        )
+        z = error / std
+        every += list(np.abs(z) < NORMAL_95)
+        size = 100.0 / np.abs(truth).mean() if np.abs(truth).min() > 1e-6 else 1.0
+        unit = "%" if size != 1.0 else " "
+        root, stated = np.sqrt(np.mean(error**2)) * size, np.sqrt(np.mean(std**2)) * size
+        rows.append(
+            f"{name:28s} {root:9.3g}{unit} {stated:9.3g}{unit} {np.sqrt(np.mean(z**2)):6.2f} {z.mean():7.2f} "
+            f"{100.0 * np.mean(np.abs(z) < NORMAL_95):6.0f} %"
+        )
+    p_values = np.array([one.p_value for one in outcomes])
+    rows.append(f"all intervals of 95 %: {100.0 * np.mean(every):.1f} %")
+    rows.append(
+        f"p of the joint fit: mean {p_values.mean():.2f}, below {LOWEST_P_VALUE:g} in "
+        f"{100.0 * np.mean(p_values < LOWEST_P_VALUE):.0f} %; of the legs: mean "
+        f"{np.mean([one.leg_p_values for one in outcomes]):.2f}"
+    )
+    rows.append(
+        f"limits of torque or rack acted for at most {100.0 * max(one.limited for one in outcomes):.2f} % of a leg"
+    )
+    return rows
+
+
+def main() -> None:
+    """Run the tests and print the table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--tests", type=int, default=20, help="number of recordings")
+    parser.add_argument("--first-seed", type=int, default=1, help="seed of the first")
+    parser.add_argument("--campaign", default="two-speeds", help="campaign file or shipped campaign")
+    chosen = parser.parse_args()
+    trial = load_trial("stan-tug-1205", chosen.campaign)
+    with tempfile.TemporaryDirectory() as folder:
+        outcomes = [
+            outcome(trial, seed, Path(folder)) for seed in range(chosen.first_seed, chosen.first_seed + chosen.tests)
+        ]
+    print("\n".join(lines_of(outcomes)))
+
+
+if __name__ == "__main__":
+    main()
