@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
-from shaftprint.campaign import Campaign, Staircase
+from shaftprint.campaign import BinarySequence, Campaign, Staircase
 from shaftprint.catalogue import GovernorSymbol
 from shaftprint.limits._candidates import Kind
 from shaftprint.limits._governor_fit import GOVERNOR, Fitted, values_without_limits
@@ -129,7 +129,7 @@ class _Rounding:
         )
         set_point = record.set_point_at(rate) if limited else np.asarray(record.drive["n_set"])
         time = record.start_s - record.margin / record.drive_rate_hz + record.drive_time_s
-        waves = [one for one in campaign.excitations if not isinstance(one, Staircase)]
+        waves = [one for one in campaign.excitations if not isinstance(one, Staircase | BinarySequence)]
         moved = [(time >= one.start_s) & (time < one.stop_s) for one in waves]
         smooth = np.any(moved, axis=0) if moved else np.zeros(time.size, dtype=np.bool_)
         rows, now = best.term.rows(best.own), best.term.innovations(best.own)

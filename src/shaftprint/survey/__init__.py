@@ -7,7 +7,8 @@ rooms that they come from.
 
 from shaftprint.survey._fits import comparisons_of, fit, priors_of
 from shaftprint.survey._legs import LegMeasurement, LegTest, leg_tests, legs_of, structure_at
-from shaftprint.survey._measurement import Measurement, measure, pairs_of, response_of, responses_of
+from shaftprint.survey._legs_apart import LegAlone, apart_sentences, legs_alone
+from shaftprint.survey._measurement import Measurement, measure, of_legs, pairs_of, response_of, responses_of
 from shaftprint.survey._progress import SILENT, Progress, Silent
 from shaftprint.survey._survey import SettingsOf, Survey, fingerprint_of, judged, run, settings_by_name, survey_of
 from shaftprint.survey._thesis_mode import SET_POINT_OFF, ThesisMode
@@ -19,6 +20,7 @@ __all__ = [
     "GAUGE",
     "SET_POINT_OFF",
     "SILENT",
+    "LegAlone",
     "LegMeasurement",
     "LegTest",
     "Measurement",
@@ -28,15 +30,18 @@ __all__ = [
     "Survey",
     "ThesisMode",
     "Trial",
+    "apart_sentences",
     "comparisons_of",
     "failed_steps",
     "fingerprint_of",
     "fit",
     "judged",
     "leg_tests",
+    "legs_alone",
     "legs_of",
     "load_trial",
     "measure",
+    "of_legs",
     "pairs_of",
     "priors_of",
     "response_of",

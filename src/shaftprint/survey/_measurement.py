@@ -102,6 +102,41 @@ def responses_of(response: FrequencyResponse, *, set_point_latency_s: float = 0.
     return (*responses, governor, plant_from_closed_loop(response, input="X", output=("n", "M_s")))
 
 
+def of_legs(measurement: Measurement, names: Sequence[str]) -> Measurement:
+    """Return a measurement with some of its legs alone; the first of them is the working point then.
+
+    Parameters
+    ----------
+    measurement
+        Of a campaign with legs.
+    names
+        Which to keep; all when none is given.
+
+    Raises
+    ------
+    StructureError
+        If the recording holds no leg of a name.
+    """
+    if not names:
+        return measurement
+    there = {leg.name: leg for leg in measurement.legs}
+    unknown = [name for name in names if name not in there]
+    if unknown:
+        raise StructureError(
+            f"leg {', '.join(unknown)}: expected one of {', '.join(there) or 'none'}, found no such leg in the "
+            "recording."
+        )
+    kept = tuple(leg for leg in measurement.legs if leg.name in names)
+    first = kept[0]
+    return replace(
+        measurement,
+        signals=measurement.signals.about(first.name),
+        spectra=first.spectra,
+        legs=kept,
+        responses=responses_of(first.spectra.response),
+    )
+
+
 def pairs_of(structure: Structure, measurement: Measurement) -> tuple[tuple[Structure, FrequencyResponse], ...]:
     """Return what is fitted to what: a structure and its response, or for each excited input its part and response.
 

@@ -23,7 +23,8 @@ from shaftprint.signals import Mode, Signals
 from shaftprint.spectra import Spectra
 from shaftprint.survey._fits import comparisons_of, fit, priors_of
 from shaftprint.survey._legs import LegTest, leg_tests
-from shaftprint.survey._measurement import Measurement, measure
+from shaftprint.survey._legs_apart import LegAlone, apart_sentences, legs_alone
+from shaftprint.survey._measurement import Measurement, measure, of_legs
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._trial import Trial, load_trial
 from shaftprint.survey._validations import failed_steps, validations_of
@@ -50,6 +51,8 @@ class Survey(Shown):
     """Which of several structures the data want."""
     leg_tests: tuple[LegTest, ...] = ()
     """How well the first structure explains each leg of the campaign."""
+    legs_alone: tuple[LegAlone, ...] = ()
+    """Each leg with a model of its own, where one model does not explain all."""
     validations: tuple[Validation, ...] = ()
     """The first structure held against records that it has not seen."""
     remarks: tuple[str, ...] = ()
@@ -113,6 +116,7 @@ def run(
     rng: np.random.Generator | None = None,
     now: datetime | None = None,
     tested_at: datetime | None = None,
+    legs: Sequence[str] = (),
     judge: bool = True,
     progress: Progress = SILENT,
 ) -> Survey:
@@ -138,6 +142,8 @@ def run(
         When the fingerprint is made.
     tested_at
         When the recording began; where it is not given, by the logger's clock if its file says so.
+    legs
+        Names of the legs of the campaign to use; all when not given.
     judge
         Whether structures are compared and the model is held against records that it has not seen; ``judged`` does it
         later, for who wants the fingerprint first.
@@ -151,12 +157,14 @@ def run(
     trial = load_trial(vessel, campaign)
     trial = replace(trial, sources=(*trial.sources, *sources))
     chosen = tuple(one if isinstance(one, Structure) else shipped_structure(one) for one in structures)
-    measurement = measure(recording, trial, mode=mode, progress=progress)
+    measurement = of_legs(measure(recording, trial, mode=mode, progress=progress), legs)
     if tested_at is not None:
         measurement = replace(measurement, began=tested_at)
     by_name = settings_by_name(chosen, measurement, trial, settings or _with_priors)
     fits = fit(chosen, measurement, settings=by_name, rng=rng, progress=progress)
     survey = _of_fits(fits, measurement, trial, now=now, progress=progress)
+    alone = legs_alone(fits[0], measurement, settings=by_name, rng=rng)
+    survey = replace(survey, legs_alone=alone, remarks=apart_sentences(fits[0], alone))
     return judged(survey, rng=rng, progress=progress) if judge else survey
 
 
@@ -210,7 +218,7 @@ def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SIL
         survey.identification, survey.measurement, survey.trial, rng=copy.deepcopy(rng), progress=progress
     )
     tests = leg_tests(survey.identification, survey.measurement.legs)
-    return replace(survey, comparisons=comparisons, leg_tests=tests, validations=validations, remarks=remarks)
+    return replace(survey, comparisons=comparisons, leg_tests=tests, validations=validations, remarks=(*survey.remarks, *remarks))
 
 
 def settings_by_name(

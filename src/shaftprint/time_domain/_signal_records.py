@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
-from shaftprint.campaign import Campaign, Excitation, Sine
+from shaftprint.campaign import Campaign, Excitation, Leg, Sine
 from shaftprint.errors import SignalError
 from shaftprint.signals import Signals, SpeedSignal, deviation
 from shaftprint.time_domain._decimator import Decimator
@@ -136,11 +136,11 @@ def _record(
 
 
 def _settled(time_s: FloatArray, excitations: Sequence[Excitation]) -> BoolArray:
-    """Return which samples lie in the settled whole periods of sines, or in other excitations."""
+    """Return which samples lie in the settled whole periods of sines and legs, or in other excitations."""
     settled = np.zeros(time_s.size, dtype=np.bool_)
     for excitation in excitations:
         begin, end = excitation.start_s, excitation.stop_s
-        if isinstance(excitation, Sine):
+        if isinstance(excitation, Sine | Leg):
             begin, end = excitation.settled_s, excitation.window_stop_s
         settled |= (time_s >= begin) & (time_s < end)
     return settled

@@ -31,6 +31,7 @@ from shaftprint.tables import fits_table, leg_test_table
     help=f"Model structure: {OWN_FILE_HELP}. The fingerprint is of the first, others are fitted beside it.",
 )
 @click.option("--figures", is_flag=True, help="Write every chart as SVG, PDF and PNG, too: half a minute more.")
+@click.option("--leg", "legs", multiple=True, metavar="NAME", help="Leg of the campaign to use; all when not given.")
 @fit_options
 @click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the results.")
 @report_options
@@ -42,6 +43,7 @@ def command(
     campaign: str,
     names: tuple[TypedName, ...],
     figures: bool,
+    legs: tuple[str, ...],
     options: FitOptions,
     output: Path,
     about: ReportOptions,
@@ -51,7 +53,7 @@ def command(
     """Identify the fingerprint from a recording.
 
     Writes the fingerprint as JSON, the figures and a report into a folder, and prints the tables.
-    --structure, --prior, --free and --hold may be repeated.
+    --structure, --leg, --prior, --free and --hold may be repeated.
     """
     structures = structures_of(names, options)
     # before the folder is made: a mistake in a settings file leaves none
@@ -68,6 +70,7 @@ def command(
                 sources=(*trial.sources, *structure_sources(names)),
                 rng=rng,
                 tested_at=about.tested_at,
+                legs=legs,
                 judge=False,
                 progress=steps,
             )

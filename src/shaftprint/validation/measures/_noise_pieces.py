@@ -169,12 +169,13 @@ def quiet_noise(
 def _still(campaign: Campaign, end_s: float) -> Iterator[tuple[float, float, bool]]:
     """Yield where the set point stands still [s], and whether that is between the tests."""
     last = 0.0
+    ramps = [move.free_s for move in campaign.moves]
     for test in campaign.excitations:
-        if test.start_s > last:
+        if test.start_s > last and (last, test.start_s) not in ramps:
             yield last, test.start_s, True
         if isinstance(test, Staircase):
             edges = [test.start_s + step * test.dwell_s for step in range(len(test.levels_v) + 1)]
             yield from ((begin, stop, False) for begin, stop in pairwise(edges))
         last = test.stop_s
-    if end_s > last:
+    if end_s > last and not any(begin == last for begin, _ in ramps):
         yield last, end_s, True
