@@ -1,15 +1,27 @@
 """Two legs at two speeds, from the raw recording on, with nothing known beforehand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from tests.measured_truth import as_measured
 
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
+from shaftprint.errors import StructureError
 from shaftprint.identify import Settings
 from shaftprint.recording import cut, read_recording, write_recording
-from shaftprint.survey import fit, leg_tests, load_trial, measure
-from shaftprint.tug import sail
+from shaftprint.survey import (
+    apart_sentences,
+    fit,
+    leg_tests,
+    legs_alone,
+    load_trial,
+    measure,
+    of_legs,
+    priors_of,
+)
+from shaftprint.tug import Tug, sail
 from shaftprint.vessel import load_vessel
 
 pytestmark = pytest.mark.slow
@@ -66,3 +78,40 @@ def test_a_recording_that_ends_in_the_second_leg_still_gives_a_result(trial, voy
     true = as_measured(truth, measurement.signals)
     assert max(abs(one.value - true[one.name]) / one.std for one in found.parameters) < 3.5
     assert found.p_value > 0.01
+
+
+@pytest.mark.parametrize(
+    "changed", [{"proportional_gain": 1.1 * 5.7, "integral_gain_per_s": 1.1 * 4.27}, {"governor_delay_s": 1.1 * 0.0703}]
+)
+def test_a_governor_that_is_another_at_the_other_speed_is_refused(trial, voyage, tmp_path, changed):
+    path, _ = voyage
+    other = tmp_path / "other.nc"
+    sail(trial.vessel, trial.campaign, other, tug=Tug(**changed), seed=13)
+    first, second = measure(path, trial), measure(other, trial)
+    # the upper leg of one ship and the lower leg of the other: gains or delay 10 % larger there
+    mixed = replace(first, legs=(first.legs[0], second.legs[1]))
+    settings = {GAUGE.name: Settings(priors=priors_of(GAUGE, trial.vessel, first.signals))}
+    (found,) = fit([GAUGE], mixed, settings=settings, rng=np.random.default_rng(1))
+    assert found.p_value < 1e-3
+    alone = legs_alone(found, mixed, settings=settings, rng=np.random.default_rng(1))
+    assert all(one.fit.p_value > 0.01 for one in alone)
+    (sentence,) = apart_sentences(found, alone)
+    assert sentence.startswith("One model does not explain all legs: p = ")
+    if "governor_delay_s" in changed:
+        assert "What differs most: " in sentence
+        assert "t_d" in sentence
+    assert sentence.endswith("The result of one speed is had with --leg M1 or --leg M2.")
+
+
+def test_one_leg_can_be_chosen(trial, voyage):
+    path, truth = voyage
+    both = measure(path, trial)
+    lower = of_legs(both, ["M2"])
+    assert [leg.name for leg in lower.legs] == ["M2"]
+    assert lower.signals.working_point == both.legs[1].working_point
+    settings = {GAUGE.name: Settings(priors=priors_of(GAUGE, trial.vessel, lower.signals))}
+    (found,) = fit([GAUGE], lower, settings=settings, rng=np.random.default_rng(1))
+    true = as_measured(truth, lower.signals)
+    assert found.value("tau_dn") == pytest.approx(true["tau_dn"], rel=3e-3)
+    with pytest.raises(StructureError, match="leg M3: expected one of M1, M2"):
+        of_legs(both, ["M3"])

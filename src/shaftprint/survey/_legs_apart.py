@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from shaftprint.digits import p_value_text, plain, with_deviation
+from shaftprint.digits import p_value_text, plain, plain_letters, with_deviation
 from shaftprint.identify import Identification, Requirements, Settings, identify
 from shaftprint.survey._legs import LegMeasurement
 from shaftprint.survey._measurement import Measurement, pairs_of
@@ -81,7 +81,7 @@ def apart_sentences(joint: Identification, alone: Sequence[LegAlone]) -> tuple[s
     differences = _differences(alone)
     told = f" What differs most: {'; '.join(differences)}." if differences else ""
     way_out = f" The result of one speed is had with {names}." if names else ""
-    return (f"{sentence}{told}{way_out}",)
+    return (plain_letters(f"{sentence}{told}{way_out}"),)
 
 
 def _differences(alone: Sequence[LegAlone]) -> list[str]:
