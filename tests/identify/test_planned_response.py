@@ -204,14 +204,14 @@ def two_legs():
 def test_each_leg_is_planned_at_its_own_speed(rises, ratio):
     """Of 0.2 of the speed a volt, 1.7 V apart; two lines of 100 and 80 s in white noise of 1e-6 1/Hz."""
     fast, slow = planned_legs(two_legs(), white(1e-6), rises=rises)
-    assert (fast.name, fast.speed_ratio, slow.name) == ("fast", 1.0, "slow")
-    assert slow.speed_ratio == pytest.approx(ratio)
+    assert (fast.name, fast.speed_share, slow.name) == ("fast", 1.0, "slow")
+    assert slow.speed_share == pytest.approx(ratio)
     assert slow.response.lines == ("slow/1", "slow/5")
     assert slow.response.frequency_hz == pytest.approx([0.05, 0.25])
     # 2 S / (T A^2) of both parts together, with the amplitude over the speed of the leg
     for leg, seconds in ((fast, 100.0), (slow, 80.0)):
         for row, amplitude_v in enumerate((0.4, 0.2)):
-            amplitude = 0.2 * amplitude_v / leg.speed_ratio
+            amplitude = 0.2 * amplitude_v / leg.speed_share
             assert leg.response.covariance[row, 0, 0] == pytest.approx(1e-6 / (seconds * amplitude**2))
     gauge = structure("GAUGE-CLOSED")
     assert slow.structure(gauge).factors["tau_dn"] == pytest.approx(1.0 / ratio)

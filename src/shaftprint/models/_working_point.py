@@ -1,25 +1,32 @@
-"""One line at several working points: what its parameters are at another one."""
+"""The same line at another working point."""
 
+from shaftprint.errors import StructureError
 from shaftprint.models._structure import Structure
-from shaftprint.normalisation import inertia_time_s
 
 
-def at_working_point(structure: Structure, *, speed_ratio: float, torque_ratio: float) -> Structure:
-    """Return a structure at another working point, with its parameters still those of the first.
+def at_working_point(structure: Structure, *, speed_share: float, torque_share: float | None = None) -> Structure:
+    """Return a structure as it is normalised at another working point; its parameters keep their values at the first.
 
-    What is a physical value over the torque and times the speed, as an inertia time is, goes with ``n_0 / M_0`` (thesis
-    eqs 2.14-2.25). For a line whose governor and engine are the same there, and whose torque follows a power of the
-    speed.
+    A parameter whose role is ``over_torque`` is a physical value times the speed over the torque, so it goes with
+    ``speed_share / torque_share`` (thesis eqs 2.14-2.25); delays and lags stay.
 
     Parameters
     ----------
-    structure
-        A structure whose parameters have roles.
-    speed_ratio, torque_ratio
-        Speed and shaft torque of the other working point over those of the first.
+    speed_share
+        Speed of the other working point over that of the first.
+    torque_share
+        The same of the torque; the square of the speed's in bollard pull, where it is not given.
+
+    Raises
+    ------
+    StructureError
+        If a share is not positive.
     """
-    factor = inertia_time_s(1.0, shaft_speed_rev_s=speed_ratio, shaft_torque_nm=torque_ratio) / inertia_time_s(
-        1.0, shaft_speed_rev_s=1.0, shaft_torque_nm=1.0
-    )
-    moved = [name for name, role in structure.roles.items() if role.over_torque]
-    return structure.scaled(**dict.fromkeys(moved, factor)) if moved else structure
+    torque = speed_share**2 if torque_share is None else torque_share
+    if not (speed_share > 0.0 and torque > 0.0):
+        raise StructureError(
+            f"structure {structure.name} at another working point: expected positive shares of speed and torque, "
+            f"found {speed_share:g} and {torque:g}."
+        )
+    factor = speed_share / torque
+    return structure.scaled(**{name: factor for name, role in structure.roles.items() if role.over_torque})

@@ -47,9 +47,10 @@ def legs_of(signals: "Signals", campaign: "Campaign") -> tuple[LegMeasurement, .
 
 
 def structure_at(structure: Structure, point: "WorkingPoint", *, main: "WorkingPoint") -> Structure:
-    """Return a structure at another working point, with speed and torque as they were measured there.
+    """Return a structure at another working point, with its parameters still those of the first.
 
-    The load of a propeller is not the same from leg to leg; its parameters are still those of the first.
+    What is a physical value over the torque and times the speed goes with ``n_0 / M_0`` (thesis eqs 2.14-2.25), with
+    both as they were measured: the load of a propeller is not the same from leg to leg.
 
     Parameters
     ----------
@@ -60,8 +61,8 @@ def structure_at(structure: Structure, point: "WorkingPoint", *, main: "WorkingP
     """
     return at_working_point(
         structure,
-        speed_ratio=point.engine_speed_rev_s / main.engine_speed_rev_s,
-        torque_ratio=point.shaft_torque_nm / main.shaft_torque_nm,
+        speed_share=point.engine_speed_rev_s / main.engine_speed_rev_s,
+        torque_share=point.shaft_torque_nm / main.shaft_torque_nm,
     )
 
 

@@ -18,16 +18,16 @@ class PlannedLeg:
 
     name: str
     """Name of the leg."""
-    speed_ratio: float
+    speed_share: float
     """Its speed over that of the first working point."""
     response: FrequencyResponse
     """Its lines with the covariance that their length and the noise give them; the values are zero."""
 
     def structure(self, at_first: Structure) -> Structure:
         """Return a structure at this leg, its torque with the square of the speed as in bollard pull."""
-        if self.speed_ratio == 1.0:
+        if self.speed_share == 1.0:
             return at_first
-        return at_working_point(at_first, speed_ratio=self.speed_ratio, torque_ratio=self.speed_ratio**2)
+        return at_working_point(at_first, speed_share=self.speed_share)
 
 
 def planned_legs(campaign: "Campaign", noise: NoiseLevels, *, rises: bool) -> tuple[PlannedLeg, ...]:
@@ -53,7 +53,7 @@ def _planned(leg: "Leg", first: "Leg", noise: NoiseLevels, sign: float) -> Plann
     lines = leg.lines
     return PlannedLeg(
         name=leg.name,
-        speed_ratio=ratio,
+        speed_share=ratio,
         response=planned_lines(
             [harmonic / leg.length_of_period_s for harmonic in lines],
             noise=noise,

@@ -1,0 +1,40 @@
+"""The same line at another working point, against equations of motion in physical units."""
+
+import numpy as np
+import pytest
+
+from shaftprint.catalogue import structure
+from shaftprint.errors import StructureError
+from shaftprint.models import at_working_point
+
+
+def test_bollard_pull_from_physical_constants():
+    """``2 pi I dn/dt``, ``K_p`` in N m/(rev/s) and ``A_1`` stay; torque goes with the square of the speed.
+
+    Normalised, ``tau = 2 pi I n_0 / M_0`` and the like are then larger by one over the speed (thesis eqs 2.14-2.25).
+    """
+    gauge = structure("GAUGE-CLOSED")
+    values = gauge.vector({"K_p": 5.7, "K_i": 4.27, "tau_dn": 0.32, "tau_up": 1.016, "g": -0.2})
+    s = 2j * np.pi * np.geomspace(0.03, 3.0, 20)
+    speed_rev_s, torque_nm = 0.7 * 5.165, 0.7**2 * 1725.0
+
+    def normalised(physical):
+        return physical * speed_rev_s / torque_nm
+
+    physical = {
+        name: values[gauge.names.index(name)] * 1725.0 / 5.165 for name in ("K_p", "K_i", "tau_dn", "tau_up", "g")
+    }
+    other = gauge.vector({"t_d": 0.1} | {name: normalised(value) for name, value in physical.items()})
+    expected = gauge.response(other, s)
+    assert at_working_point(gauge, speed_share=0.7).response(values, s) == pytest.approx(expected, rel=1e-12)
+
+
+def test_torque_that_does_not_go_with_the_square():
+    gauge = structure("GAUGE-CLOSED")
+    moved = at_working_point(gauge, speed_share=0.8, torque_share=0.6)
+    assert moved.factors == pytest.approx(dict.fromkeys(("tau_dn", "tau_up", "K_p", "K_i", "g"), 0.8 / 0.6))
+
+
+def test_shares_that_are_not_positive():
+    with pytest.raises(StructureError, match="expected positive shares of speed and torque, found 0 and 0"):
+        at_working_point(structure("GAUGE-CLOSED"), speed_share=0.0)
