@@ -2,8 +2,7 @@
 
 from functools import partial
 
-from shaftprint.report.figures import plot_closed_loop_response
-from shaftprint.report.plots import bode_plot
+from shaftprint.report.figures import bode_chart
 from shaftprint.report.sections._sections import Inputs, Picture, Section, picture_name
 from shaftprint.tables import leg_table, leg_test_table
 
@@ -21,8 +20,7 @@ def leg_section(inputs: Inputs) -> list[Section]:
                 name=picture_name("leg", leg.name),
                 caption=f"Leg {leg.name}: response of speed and torque about its working point, 95 % intervals.",
                 alt=f"Bode diagram of measured engine speed and shaft torque over set point, leg {leg.name}.",
-                draw=partial(plot_closed_loop_response, response, aliasing_limit_hz=limit),
-                plot=partial(bode_plot, data={"data": response}, aliasing_limit_hz=limit),
+                chart=partial(bode_chart, data=response, aliasing_limit_hz=limit),
             )
         )
     return [Section(key="legs", title="Legs", tables=(leg_table(inputs.legs), *tests), pictures=pictures)]
