@@ -78,7 +78,7 @@ def excerpts_of(
     if not records:
         raise ValidationError(
             f"campaign {campaign.name}: expected a chirp or staircase that the model was not identified from, found "
-            f"none; it has {', '.join(there) or 'sines only'}."
+            f"none; it has {', '.join(there) or ('legs only' if campaign.legs else 'sines only')}."
         )
     in_sample = [name for name in records if name in used]
     if in_sample and not allow_in_sample:

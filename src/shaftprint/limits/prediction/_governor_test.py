@@ -158,6 +158,12 @@ def governor_test(signals: Signals, campaign: Campaign, vessel: Vessel) -> Gover
         If the signals do not hold the tests of the campaign.
     """
     tests = campaign.excitations
+    if campaign.legs and not campaign.sines:
+        raise SignalError(
+            f"campaign {campaign.name}: expected sines and steps about one working point, in which limits are told "
+            f"apart, found legs ({', '.join(leg.name for leg in campaign.legs)}): a limit that acts in a leg makes the "
+            "fit of `shaftprint identify` fail; add sines and a staircase to find which it is."
+        )
     time = signals.start_s + np.arange(signals.samples) / signals.rate_hz
     begin = max(tests[0].start_s - BEFORE_S, float(time[0]) + 1.0)
     end = min(max(test.stop_s for test in tests) + AFTER_S, float(time[-1]) - 1.0)
