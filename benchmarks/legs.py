@@ -78,7 +78,7 @@ def outcome(trial: Trial, seed: int, folder: Path) -> Outcome:
         std={one.name: one.std for one in estimates},
         truth={one.name: values[one.name] for one in estimates},
         p_value=_p_value(found),
-        leg_p_values=tuple(one.test.p_value or 0.0 for one in leg_tests(found, measurement.legs)),
+        leg_p_values=tuple(one.test.p_value or 0.0 for one in leg_tests(found, measurement.working_points)),
         limited=max(truth.limited.values()),
     )
 

@@ -59,7 +59,7 @@ def test_two_speeds_find_the_truth_with_nothing_known_beforehand(trial, voyage):
     share = {one.name: one.std / one.value for one in found.parameters}
     assert [name for name, most in KNOWN.items() if share[name] > most] == []
     assert found.p_value > 0.01
-    assert all(one.test.p_value > 0.01 for one in leg_tests(found, measurement.legs))
+    assert all(one.test.p_value > 0.01 for one in leg_tests(found, measurement.working_points))
     slow = measurement.legs[1].working_point
     # 0.70 of the working speed, and the torque with its square: 1725 N m at 1183.8 rpm
     assert slow.engine_speed_rev_s * 60.0 == pytest.approx(0.70 * 1183.8, rel=2e-3)

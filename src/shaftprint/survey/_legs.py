@@ -1,6 +1,6 @@
 """Legs of a campaign: one line at several working points, fitted to all of their responses at once."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -28,10 +28,12 @@ class LegMeasurement:
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class LegTest:
-    """Whether the model of all legs explains one of them."""
+    """Whether one model of all working points explains what was measured at one of them."""
 
-    leg: LegMeasurement
-    """The leg."""
+    name: str
+    """Name of the leg, or ``sines``."""
+    working_point: "WorkingPoint"
+    """Speed and torque there."""
     test: FitTest
     """Its share of the test of fit."""
 
@@ -66,16 +68,19 @@ def structure_at(structure: Structure, point: "WorkingPoint", *, main: "WorkingP
     )
 
 
-def leg_tests(identification: Identification, legs: Sequence[LegMeasurement]) -> tuple[LegTest, ...]:
-    """Return how well a joint fit explains each leg; empty where it was not fitted to all of them.
+def leg_tests(identification: Identification, working_points: Mapping[str, "WorkingPoint"]) -> tuple[LegTest, ...]:
+    """Return how well a joint fit explains each leg; empty where it was not fitted to all of them, or to one alone.
 
     Parameters
     ----------
     identification
-        A fit to the legs, in their order.
-    legs
-        The legs.
+        A fit to several legs.
+    working_points
+        Those of its parts by name, in their order.
     """
-    if not legs or len(identification.parts) != len(legs) or not identification.is_likelihood:
+    if len(working_points) < 2 or len(identification.parts) != len(working_points) or not identification.is_likelihood:
         return ()
-    return tuple(LegTest(leg=leg, test=test) for leg, test in zip(legs, part_tests(identification), strict=True))
+    return tuple(
+        LegTest(name=name, working_point=point, test=test)
+        for (name, point), test in zip(working_points.items(), part_tests(identification), strict=True)
+    )

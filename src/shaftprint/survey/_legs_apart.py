@@ -4,14 +4,17 @@ import copy
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shaftprint.digits import p_value_text, plain, plain_letters, with_deviation
 from shaftprint.identify import Identification, Requirements, Settings, identify
-from shaftprint.survey._legs import LegMeasurement
-from shaftprint.survey._measurement import Measurement, pairs_of
+from shaftprint.survey._measurement import SINES, Measurement, pairs_of
 from shaftprint.units import rpm_from_rev_s
+
+if TYPE_CHECKING:
+    from shaftprint.signals import WorkingPoint
 
 # A number differs between two legs where the difference is so many of its standard deviations.
 _APART = 3.0
@@ -22,8 +25,10 @@ _MOST_NAMED = 3
 class LegAlone:
     """One leg with a model of its own."""
 
-    leg: LegMeasurement
-    """The leg."""
+    name: str
+    """Name of the leg, or ``sines``."""
+    working_point: "WorkingPoint"
+    """Speed and torque there."""
     fit: Identification
     """Its fit; the parameters are normalised with the working point of the recording, as those of all legs are."""
 
@@ -48,8 +53,8 @@ def legs_alone(
     rng
         For the starts; each fit begins with its state.
     """
-    legs, p_value = measurement.legs, joint.p_value
-    if len(legs) < 2 or len(joint.parts) != len(legs) or p_value is None:
+    points, p_value = measurement.working_points, joint.p_value
+    if len(points) < 2 or len(joint.parts) != len(points) or p_value is None:
         return ()
     if p_value >= Requirements().lowest_p_value:
         return ()
@@ -57,8 +62,8 @@ def legs_alone(
     pairs = pairs_of(structure, measurement)
     how = settings[structure.name]
     return tuple(
-        LegAlone(leg=leg, fit=identify(*pair, rng=copy.deepcopy(rng), settings=how))
-        for leg, pair in zip(legs, pairs, strict=True)
+        LegAlone(name=name, working_point=point, fit=identify(*pair, rng=copy.deepcopy(rng), settings=how))
+        for (name, point), pair in zip(points.items(), pairs, strict=True)
     )
 
 
@@ -67,12 +72,12 @@ def apart_sentences(joint: Identification, alone: Sequence[LegAlone]) -> tuple[s
     if not alone:
         return ()
     each = ", ".join(
-        f"{one.leg.name} ({plain(rpm_from_rev_s(one.leg.working_point.engine_speed_rev_s), 0)} rpm) "
+        f"{one.name} ({plain(rpm_from_rev_s(one.working_point.engine_speed_rev_s), 0)} rpm) "
         f"p = {p_value_text(one.fit.p_value)}"
         for one in alone
     )
-    explained = [one for one in alone if (one.fit.p_value or 0.0) >= Requirements().lowest_p_value]
-    names = " or ".join(f"--leg {one.leg.name}" for one in explained)
+    explained = [one.name for one in alone if (one.fit.p_value or 0.0) >= Requirements().lowest_p_value]
+    names = " or ".join(f"--leg {name}" for name in explained if name != SINES)
     sentence = (
         f"One model does not explain all legs: p = {p_value_text(joint.p_value)}; each alone: {each}. Something of "
         "governor, engine or gauge is not the same at these speeds, such as gains that a governor takes from a table "
@@ -94,7 +99,7 @@ def _differences(alone: Sequence[LegAlone]) -> list[str]:
             spread = float(np.hypot(one.std, other.std))
             distance = abs(one.value - other.value) / spread if np.isfinite(spread) and spread > 0.0 else 0.0
             if distance > _APART:
-                values = f"{with_deviation(one.value, one.std)} in {first.leg.name}"
-                values += f", {with_deviation(other.value, other.std)} in {second.leg.name}"
+                values = f"{with_deviation(one.value, one.std)} in {first.name}"
+                values += f", {with_deviation(other.value, other.std)} in {second.name}"
                 differences.append((distance, f"{one.name} {values}"))
     return [words for _, words in sorted(differences, reverse=True)[:_MOST_NAMED]]

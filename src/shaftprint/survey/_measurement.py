@@ -12,7 +12,7 @@ from shaftprint.identify.fit import has_measured_inputs
 from shaftprint.models import Structure
 from shaftprint.notebook import Shown
 from shaftprint.recording import read_recording
-from shaftprint.signals import Mode, Signals, prepare_signals
+from shaftprint.signals import Mode, Signals, WorkingPoint, prepare_signals
 from shaftprint.spectra import (
     ExactBin,
     FrequencyResponse,
@@ -26,6 +26,9 @@ from shaftprint.spectra import (
 from shaftprint.survey._legs import LegMeasurement, legs_of, structure_at
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._trial import Trial
+
+SINES = "sines"
+"""What the working point of sines is called beside those of legs."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -44,6 +47,13 @@ class Measurement(Shown):
     """Spectra of what was moved beside the set point of the speed, by its symbol."""
     began: datetime | None = None
     """When the recording began, where its file or its user says so."""
+
+    @property
+    def working_points(self) -> dict[str, WorkingPoint]:
+        """Where the line was tested, by the name of the leg or ``sines``, that of the signals first."""
+        main = self.signals.working_point
+        of_legs = {leg.name: leg.working_point for leg in self.legs}
+        return of_legs if main in of_legs.values() else {SINES: main} | of_legs
 
 
 def measure(

@@ -217,8 +217,13 @@ def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SIL
     validations, remarks = validations_of(
         survey.identification, survey.measurement, survey.trial, rng=copy.deepcopy(rng), progress=progress
     )
-    tests = leg_tests(survey.identification, survey.measurement.legs)
-    return replace(survey, comparisons=comparisons, leg_tests=tests, validations=validations, remarks=(*survey.remarks, *remarks))
+    return replace(
+        survey,
+        comparisons=comparisons,
+        leg_tests=leg_tests(survey.identification, survey.measurement.working_points),
+        validations=validations,
+        remarks=(*survey.remarks, *remarks),
+    )
 
 
 def settings_by_name(

@@ -8,6 +8,7 @@ from shaftprint.tables._table import Table, numbers, texts
 from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
+    from shaftprint.signals import WorkingPoint
     from shaftprint.survey import LegMeasurement, LegTest
 
 
@@ -31,13 +32,13 @@ def leg_test_table(tests: Sequence["LegTest"], *, p_value: float | None) -> Tabl
     p_value
         That of the fit to all of them.
     """
-    together = f" All legs together: p = {p_value_text(p_value)}."
     return Table(
         title="One model for all legs",
         columns=(*texts("leg"), *numbers("n_0 [rpm]", "M_0 [N m]", "chi-square", "freedom", "p")),
         rows=tuple(
             (
-                *_cells(one.leg)[:3],
+                one.name,
+                *_speed_and_torque(one.working_point),
                 plain(one.test.chi_square, 1),
                 plain(one.test.mean, 1),
                 p_value_text(one.test.p_value),
@@ -45,8 +46,8 @@ def leg_test_table(tests: Sequence["LegTest"], *, p_value: float | None) -> Tabl
             for one in tests
         ),
         note=(
-            "p is the probability of misfits that large or larger if one line with one governor made all legs."
-            f"{together if len(tests) > 1 else ''}"
+            "p is the probability of misfits that large or larger if one line with one governor made all legs. All "
+            f"together: p = {p_value_text(p_value)}."
         ),
     )
 
@@ -55,9 +56,15 @@ def _cells(leg: "LegMeasurement") -> tuple[str, ...]:
     point, response = leg.working_point, leg.spectra.response
     return (
         leg.name,
-        with_deviation(rpm_from_rev_s(point.engine_speed_rev_s), rpm_from_rev_s(point.engine_speed_std_rev_s)),
-        with_deviation(point.shaft_torque_nm, point.shaft_torque_std_nm),
+        *_speed_and_torque(point),
         plain(point.set_point_v, 3),
         str(len(response.lines)),
         str(int(response.used.sum())),
+    )
+
+
+def _speed_and_torque(point: "WorkingPoint") -> tuple[str, str]:
+    return (
+        with_deviation(rpm_from_rev_s(point.engine_speed_rev_s), rpm_from_rev_s(point.engine_speed_std_rev_s)),
+        with_deviation(point.shaft_torque_nm, point.shaft_torque_std_nm),
     )
