@@ -14,9 +14,13 @@ from shaftprint.spectra.legs import check_leg, cut_leg, leg_clock_reasons, leg_s
 from shaftprint.spectra.lines import LoadDrift, collect_harmonics, signal_to_noise
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from shaftprint.arrays import BoolArray
     from shaftprint.campaign import Campaign, Leg
     from shaftprint.signals import LegState, Signals, SpeedSignal
-    from shaftprint.spectra.legs import LegLines
+    from shaftprint.spectra.legs import LegFinding, LegLines
+    from shaftprint.spectra.lines import LineMeasurement
 
 # A line this close to half the rate of the grid is bent by the anti-alias filter.
 _HIGHEST_SHARE_OF_RATE = 0.45
@@ -61,14 +65,7 @@ def _leg(signals: "Signals", leg: "Leg", state: "LegState") -> Spectra:
             f"{measured.window.state.start_s:g} and {measured.window.state.stop_s:g} s: check that campaign and "
             "recording belong together."
         )
-    remarks, used = dict(finding.remarks), np.ones(len(lines), dtype=np.bool_)
-    for row, line in enumerate(lines):
-        name = line.window.line
-        aliased = line.window.frequency_hz > sensor.nyquist_hz
-        if aliased:
-            alias = f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased"
-            remarks[name] = "; ".join(part for part in (remarks.get(name), alias) if part)
-        used[row] = not aliased and name not in finding.unusable
+    remarks, used = _judged(lines, finding, sensor)
     missing = leg.periods - measured.window.state.periods
     if missing > 0:
         remarks[leg.name] = f"{measured.window.state.periods} of {leg.periods} periods are in the recording"
@@ -95,6 +92,21 @@ def _leg(signals: "Signals", leg: "Leg", state: "LegState") -> Spectra:
         speed=sensor.name,
         remarks=remarks | finding.silent,
     )
+
+
+def _judged(
+    lines: "Sequence[LineMeasurement]", finding: "LegFinding", sensor: "SpeedSignal"
+) -> tuple[dict[str, str], "BoolArray"]:
+    """Return remarks on lines, and which of them have a clean set point and a speed without aliasing."""
+    remarks, used = dict(finding.remarks), np.ones(len(lines), dtype=np.bool_)
+    for row, line in enumerate(lines):
+        name = line.window.line
+        aliased = line.window.frequency_hz > sensor.nyquist_hz
+        if aliased:
+            alias = f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased"
+            remarks[name] = "; ".join(part for part in (remarks.get(name), alias) if part)
+        used[row] = not aliased and name not in finding.unusable
+    return remarks, used
 
 
 def _measured(signals: "Signals", leg: "Leg", state: "LegState", sensor: "SpeedSignal") -> "LegLines":

@@ -12,7 +12,7 @@ nearest to a line are averaged as a matrix: the factor by which an estimated cov
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -64,24 +64,20 @@ def measure_leg(window: LegWindow, harmonics: Sequence[int], *, excitation: str,
     values = window.values.copy()
     values[torque_row] = _linear_torque(window.of(speed), window.of("M_s"))
     values -= _drift(values)
-    linear = LegWindow(state=window.state, clock_ratio=window.clock_ratio, channels=window.channels, values=values)
+    linear = replace(window, values=values)
     spectrum, by_period = linear.spectrum(), linear.by_period()
     periods = window.state.periods
-    frequency = np.array(harmonics) / window.state.period_s
     number = np.arange(spectrum.shape[1])
     beside = np.flatnonzero(number % periods != 0).astype(np.int64)
+    # of a sum of lines each answers for its share of the variance, so that all together answer for the whole
     overall = values.reshape(len(values), -1).var(axis=1) / len(harmonics)
     lines = []
-    for row, harmonic in enumerate(harmonics):
+    for harmonic in harmonics:
         amplitude = spectrum[:, harmonic * periods]
+        local = _local(spectrum, beside, harmonic * periods)
         lines.append(
             LineMeasurement(
-                window=Window(
-                    line=f"{window.state.name}/{harmonic}",
-                    frequency_hz=float(frequency[row]),
-                    start_s=window.state.start_s,
-                    periods=harmonic * periods,
-                ),
+                window=_window(window, harmonic),
                 channels=window.channels,
                 excitation=excitation,
                 amplitude=amplitude,
@@ -89,17 +85,23 @@ def measure_leg(window: LegWindow, harmonics: Sequence[int], *, excitation: str,
                 harmonic_variance=np.full((_NOT_FITTED, len(values)), np.nan),
                 mean=window.values.mean(axis=(1, 2)),
                 noise=_noise(spectrum, beside, harmonic * periods, speed=speed_row, torque=torque_row),
-                variances=LineVariances(
-                    signal=0.5 * np.abs(amplitude) ** 2,
-                    local=_local(spectrum, beside, harmonic * periods),
-                    # of a sum of lines each answers for its share, so that all together answer for the whole
-                    overall=overall,
-                ),
+                variances=LineVariances(signal=0.5 * np.abs(amplitude) ** 2, local=local, overall=overall),
                 stretches=by_period[:, :, harmonic],
-                excitation_frequency_hz=float(frequency[row]),
+                excitation_frequency_hz=harmonic / window.state.period_s,
             )
         )
     return LegLines(window=linear, harmonics=tuple(harmonics), lines=tuple(lines))
+
+
+def _window(window: LegWindow, harmonic: int) -> Window:
+    """Return the window of one line: that of the leg, counted in periods of the line."""
+    state = window.state
+    return Window(
+        line=f"{state.name}/{harmonic}",
+        frequency_hz=harmonic / state.period_s,
+        start_s=state.start_s,
+        periods=harmonic * state.periods,
+    )
 
 
 def _linear_torque(speed: FloatArray, torque: FloatArray) -> FloatArray:
