@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
+from shaftprint.campaign import Campaign  # noqa: E402
 from shaftprint.catalogue import structure  # noqa: E402
 from shaftprint.distributions import NORMAL_95  # noqa: E402
 from shaftprint.identify import Identification, Settings  # noqa: E402
@@ -62,10 +63,24 @@ def true_values(truth: Truth, signals: Signals) -> dict[str, float]:
     }
 
 
-def outcome(trial: Trial, seed: int, folder: Path) -> Outcome:
-    """Sail and identify one recording."""
+def put_out(campaign: Campaign, *, clock_ppm: float, amplitude: float) -> Campaign:
+    """Return what a generator puts out whose clock is slow and whose amplitude is off."""
+    legs = [
+        leg.model_copy(
+            update={
+                "period_s": leg.period_s * (1.0 + 1e-6 * clock_ppm),
+                "amplitudes_v": tuple(amplitude * size for size in leg.amplitudes_v),
+            }
+        )
+        for leg in campaign.multisines
+    ]
+    return campaign.model_copy(update={"multisines": tuple(legs)})
+
+
+def outcome(trial: Trial, sailed: Campaign, seed: int, folder: Path) -> Outcome:
+    """Sail what was put out, and identify it as what was planned."""
     path = folder / f"{seed}.nc"
-    truth = sail(trial.vessel, trial.campaign, path, seed=seed)
+    truth = sail(trial.vessel, sailed, path, seed=seed)
     measurement = measure(path, trial)
     path.unlink()
     gauge = structure(NAME)
@@ -123,11 +138,15 @@ def main() -> None:
     parser.add_argument("--tests", type=int, default=20, help="number of recordings")
     parser.add_argument("--first-seed", type=int, default=1, help="seed of the first")
     parser.add_argument("--campaign", default="two-speeds", help="campaign file or shipped campaign")
+    parser.add_argument("--clock-ppm", type=float, default=0.0, help="by how much the generator's periods are longer")
+    parser.add_argument("--amplitude", type=float, default=1.0, help="what the generator puts out of an amplitude")
     chosen = parser.parse_args()
     trial = load_trial("stan-tug-1205", chosen.campaign)
+    sailed = put_out(trial.campaign, clock_ppm=chosen.clock_ppm, amplitude=chosen.amplitude)
     with tempfile.TemporaryDirectory() as folder:
         outcomes = [
-            outcome(trial, seed, Path(folder)) for seed in range(chosen.first_seed, chosen.first_seed + chosen.tests)
+            outcome(trial, sailed, seed, Path(folder))
+            for seed in range(chosen.first_seed, chosen.first_seed + chosen.tests)
         ]
     print("\n".join(lines_of(outcomes)))
 
