@@ -4,6 +4,7 @@ from shaftprint import arrays as arrays
 from shaftprint import campaign as campaign
 from shaftprint import catalogue as catalogue
 from shaftprint import clocks as clocks
+from shaftprint import design as design
 from shaftprint import digits as digits
 from shaftprint import distributions as distributions
 from shaftprint import errors as errors

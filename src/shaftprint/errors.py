@@ -12,6 +12,7 @@
     ├── StructureError        a model structure or parameter that makes no sense
     │   └── ExactStepsError   a structure or an input whose jumps cannot all be followed
     ├── IdentificationError   a fit that cannot be set up or has no acceptable result
+    ├── DesignError           a test that cannot be planned within its limits
     ├── ValidationError       a model that cannot be held against a record
     ├── FingerprintError      a fingerprint file that cannot be read or compared
     ├── PublicationError      a folder into which results cannot be put, or not as a whole
@@ -60,6 +61,10 @@ class ExactStepsError(StructureError):
 
 class IdentificationError(ShaftprintError):
     """A fit cannot be set up or has no acceptable result."""
+
+
+class DesignError(ShaftprintError):
+    """A test cannot be planned within its limits."""
 
 
 class ValidationError(ShaftprintError):

@@ -25,6 +25,7 @@ The torque gauge sits on the propeller shaft: *upstream* of it is what lies towa
 
 from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
+from shaftprint.vessel._limits import OperatingLimits
 from shaftprint.vessel._links import ShaftLink
 from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, RackMap, WorkingPoint
 from shaftprint.vessel._sensors import (
@@ -45,6 +46,7 @@ __all__ = [
     "Hull",
     "InertiaRow",
     "Logger",
+    "OperatingLimits",
     "PitchSetPointSensor",
     "Propeller",
     "RackMap",

@@ -13,6 +13,7 @@ from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.settings import Name, PositiveNumber, Settings, load_settings
 from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
+from shaftprint.vessel._limits import OperatingLimits
 from shaftprint.vessel._links import ShaftLink, wrong_links
 from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, WorkingPoint
 from shaftprint.vessel._sensors import Logger, Sensors
@@ -40,6 +41,8 @@ class Vessel(Shown, Settings):
     """What joins them, for torsional vibration; none where only the sums are wanted."""
     sensors: Sensors
     """What was measured."""
+    limits: OperatingLimits = OperatingLimits()
+    """What must not be passed during a test."""
     hull: Hull | None = None
     """The ship around the shaft lines, for tests underway."""
     logger: Logger | None = None

@@ -4,6 +4,7 @@ from shaftprint.identify.prediction._accuracy import Accuracy, predict_accuracy,
 from shaftprint.identify.prediction._formulas import unit_of
 from shaftprint.identify.prediction._identifiability import Identifiability, identifiability
 from shaftprint.identify.prediction._inseparable_groups import Group
+from shaftprint.identify.prediction._line_information import LineInformation, line_information
 from shaftprint.identify.prediction._lost_directions import Direction
 from shaftprint.identify.prediction._noise_levels import NoiseLevels, noise_levels, stated_noise
 from shaftprint.identify.prediction._planned_legs import PlannedLeg, planned_legs
@@ -17,10 +18,12 @@ __all__ = [
     "Direction",
     "Group",
     "Identifiability",
+    "LineInformation",
     "NoiseLevels",
     "PlannedLeg",
     "expected_response",
     "identifiability",
+    "line_information",
     "noise_levels",
     "planned_legs",
     "planned_lines",

@@ -14,9 +14,10 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.digits import stated
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import Estimate, estimate_covariance, variance_along, with_sensor
-from shaftprint.identify.likelihood import MaximumLikelihood, Objective, Prior, build_joint_objective
+from shaftprint.identify.fit import Estimate, estimate_covariance, variance_along
+from shaftprint.identify.likelihood import Objective, Prior
 from shaftprint.identify.prediction._inseparable_groups import Group, inseparable_groups
+from shaftprint.identify.prediction._planned_objective import assumed_values, planned_objective, value_and_slopes
 from shaftprint.models import Combination, Structure
 from shaftprint.notebook import Shown
 from shaftprint.spectra import FrequencyResponse
@@ -25,8 +26,6 @@ from shaftprint.spectra import FrequencyResponse
 LEVELS = (0.01, 0.05, 0.2)
 # A parameter is no better known than before where the test leaves more than this share of the prior's deviation.
 NOTHING_NEW = 0.8
-# Share of a parameter's range over which slopes are taken.
-STEP = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
@@ -193,14 +192,8 @@ def _predicted(
     combinations: Sequence[Combination],
     lines: Sequence[str] | None,
 ) -> Accuracy:
-    objective = build_joint_objective(
-        [(with_sensor(structure, response), response) for structure, response in pairs],
-        weighting=MaximumLikelihood(),
-        priors=priors,
-        regularisation={},
-        lines=lines,
-    )
-    assumed = _assumed(objective, values)
+    objective = planned_objective(pairs, priors, lines)
+    assumed = assumed_values(objective, values)
     theta = assumed[list(objective.free)]
     covariance = estimate_covariance(objective, theta, expected=True)
     parameters = tuple(
@@ -223,33 +216,9 @@ def _predicted(
     )
 
 
-def _assumed(objective: Objective, values: Mapping[str, float]) -> FloatArray:
-    unknown = [name for name in values if name not in objective.names]
-    if unknown:
-        raise IdentificationError(
-            f"accuracy of {objective.name}: {', '.join(unknown)} is no parameter of it; it has "
-            f"{', '.join(objective.names)}."
-        )
-    for parameter in objective.parameters:
-        value = values.get(parameter.name, parameter.value)
-        if not parameter.lower <= value <= parameter.upper:
-            raise IdentificationError(
-                f"accuracy of {objective.name}: expected {parameter.name} from {parameter.lower:g} to "
-                f"{parameter.upper:g} {parameter.unit}, found {value:g}."
-            )
-    return np.array([values.get(p.name, held) for p, held in zip(objective.parameters, objective.held, strict=True)])
-
-
 def _derived(objective: Objective, theta: FloatArray, combination: Combination) -> Estimate:
     """Return a combination with its standard deviation to first order; infinite where it cannot be formed."""
-    step = STEP * (objective.upper - objective.lower)
-    moves = np.diag(step)
-    table = np.concatenate([theta[None, :], theta + moves, theta - moves])
-    with np.errstate(all="ignore"):
-        values_of_rows = np.broadcast_to(combination.of(objective.named(objective.complete(table))), table.shape[:1])
-        slopes = (values_of_rows[1 : 1 + theta.size] - values_of_rows[1 + theta.size :]) / (2.0 * step)
-    finite = np.isfinite(values_of_rows[0]) and bool(np.all(np.isfinite(slopes)))
+    value, slopes = value_and_slopes(objective, theta, combination)
+    finite = np.isfinite(value) and bool(np.all(np.isfinite(slopes)))
     variance = variance_along(objective, theta, slopes, expected=True) if finite else np.inf
-    return Estimate(
-        name=combination.name, unit=combination.unit, value=float(values_of_rows[0]), std=float(np.sqrt(variance))
-    )
+    return Estimate(name=combination.name, unit=combination.unit, value=value, std=float(np.sqrt(variance)))

@@ -1,0 +1,40 @@
+"""The shortest test: multisines that tell most of a line within the limits of ship and engine.
+
+=================== ======= ==========================================================================================
+quantity            unit    meaning and sign
+=================== ======= ==========================================================================================
+speed share         -       mean speed of a leg over that of the first working point
+amplitudes ``c_k``  -       complex amplitudes of the set point over the leg's mean speed:
+                            ``Re sum_k c_k exp(j 2 pi h_k t / T)``
+use                 -       peak over what a limit leaves at the working point, the margin for noise taken off
+brake torque        N m     of the engine, positive when it drives; down to the negative of the motoring torque
+=================== ======= ==========================================================================================
+
+A plan is made of what is assumed of the line (``AssumedLine``), what is wanted (``Wish``), what ship and engine allow
+(``Limits``) and the noise. Its accuracy is that of ``predict_joint_accuracy``, and a prediction until it is rehearsed.
+"""
+
+from shaftprint.design._assumed_line import AssumedLine, assumed_line, line_of_fit
+from shaftprint.design._design import design_campaign
+from shaftprint.design._leg import Leg
+from shaftprint.design._limits import Limits, limits_from_vessel
+from shaftprint.design._plan import Peaks, Plan
+from shaftprint.design._timetable import Timetable
+from shaftprint.design._wish import Wish, no_worse_than
+from shaftprint.design.search import Effort
+
+__all__ = [
+    "AssumedLine",
+    "Effort",
+    "Leg",
+    "Limits",
+    "Peaks",
+    "Plan",
+    "Timetable",
+    "Wish",
+    "assumed_line",
+    "design_campaign",
+    "limits_from_vessel",
+    "line_of_fit",
+    "no_worse_than",
+]

@@ -1,0 +1,151 @@
+"""The noun ``AssumedLine``: what is taken for granted of the line while its test is planned, and how well.
+
+The information of a test depends on the line that it is to find. Accuracy hardly moves with the assumed numbers, but
+the peaks of speed and torque do, most of all near the resonance of the loop: so a plan holds its limits for nearly all
+lines that are possible.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.catalogue import ShipRole
+from shaftprint.errors import DesignError
+from shaftprint.models import Role, Structure, stable_rows
+from shaftprint.notebook import Shown
+from shaftprint.spelling import meant
+
+if TYPE_CHECKING:
+    from shaftprint.identify import Identification
+
+# Of so many draws for one that is wanted nearly all lines would have to be unstable for too few to be left.
+_DRAWN_FOR_ONE = 4
+
+RELATIVE_SPREAD: Mapping[Role, float] = {
+    ShipRole.PROPORTIONAL_GAIN: 0.3,
+    ShipRole.INTEGRAL_GAIN: 0.3,
+    ShipRole.DERIVATIVE_GAIN: 0.3,
+    ShipRole.LOOP_DELAY: 0.3,
+    ShipRole.ACTUATOR_FREQUENCY: 0.2,
+    ShipRole.ACTUATOR_DAMPING: 0.3,
+    ShipRole.INERTIA_DOWNSTREAM: 0.2,
+    ShipRole.INERTIA_UPSTREAM: 0.2,
+    ShipRole.INERTIA: 0.2,
+}
+"""Standard deviation over the value, before any test, by role: governors differ more than masses do."""
+SPREAD: Mapping[Role, float] = {ShipRole.ENGINE_SPEED_SLOPE: 0.1, ShipRole.LOAD_SLOPE: 0.05}
+"""Standard deviation in the parameter's unit, before any test, by role."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class AssumedLine(Shown):
+    """A structure with the values that are assumed for a plan, and their uncertainty as a normal distribution."""
+
+    structure: Structure
+    """The structure that the test is to find."""
+    values: FloatArray
+    """Assumed values of all parameters, shape (parameters,)."""
+    covariance: FloatArray
+    """Their covariance; zero for what is taken as exact, shape (parameters, parameters)."""
+
+    @property
+    def by_name(self) -> dict[str, float]:
+        """The assumed values by name."""
+        return dict(zip(self.structure.names, self.values.tolist(), strict=True))
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether nothing is uncertain."""
+        return not self.covariance.any()
+
+    def draws(self, count: int, rng: np.random.Generator) -> FloatArray:
+        """Return lines that may be, with a stable loop and within the bounds, the assumed one first.
+
+        A ship whose loop is unstable is not tested.
+
+        Returns
+        -------
+            Parameter values, shape (rows, parameters); one row where nothing is uncertain.
+
+        Raises
+        ------
+        DesignError
+            If hardly any line is stable, or the assumed one is not.
+        """
+        if not stable_rows(self.structure, self.values[None, :]).all():
+            raise DesignError(
+                f"assumed line {self.structure.name}: expected a stable loop, found an unstable one; give other values."
+            )
+        if self.is_exact:
+            return self.values[None, :]
+        lower = np.array([p.lower for p in self.structure.parameters])
+        upper = np.array([p.upper for p in self.structure.parameters])
+        drawn = rng.multivariate_normal(self.values, self.covariance, size=_DRAWN_FOR_ONE * count, method="eigh")
+        inside = np.clip(drawn, lower, upper)
+        rows = inside[stable_rows(self.structure, inside)][: count - 1]
+        if rows.shape[0] < count - 1:
+            raise DesignError(
+                f"assumed line {self.structure.name}: expected mostly stable loops within the stated uncertainty, "
+                f"found {rows.shape[0]} of {drawn.shape[0]}; state it more narrowly, or sail a short test first."
+            )
+        return np.concatenate([self.values[None, :], rows])
+
+
+def assumed_line(
+    structure: Structure, values: Mapping[str, float] | None = None, *, std: Mapping[str, float] | None = None
+) -> AssumedLine:
+    """Return a line of which something is assumed before any test.
+
+    Parameters
+    ----------
+    structure
+        The structure that the test is to find.
+    values
+        Assumed values by name; the structure's own where not given.
+    std
+        Standard deviations by name, in the parameters' units, those left out are exact; by their roles where not given
+        (``RELATIVE_SPREAD``, ``SPREAD``).
+
+    Raises
+    ------
+    StructureError
+        If a value names no parameter.
+    DesignError
+        If a standard deviation names none.
+    """
+    vector = structure.vector(values or {})
+    spread = _usual_std(structure, vector) if std is None else dict(std)
+    unknown = [name for name in spread if name not in structure.names]
+    if unknown:
+        raise DesignError(
+            f"assumed line: structure {structure.name} has no parameter {', '.join(unknown)}; it has "
+            f"{', '.join(structure.names)}.{meant(unknown[0], structure.names)}"
+        )
+    deviations = np.array([spread.get(name, 0.0) for name in structure.names])
+    return AssumedLine(
+        structure=structure, values=frozen_float(vector), covariance=frozen_float(np.diag(deviations**2))
+    )
+
+
+def line_of_fit(fit: "Identification") -> AssumedLine:
+    """Return what a first test found, with its covariance, for the plan of the next."""
+    structure = fit.structure
+    places = [structure.names.index(parameter.name) for parameter in fit.parameters]
+    covariance = np.zeros((len(structure.names),) * 2)
+    covariance[np.ix_(places, places)] = fit.covariance
+    return AssumedLine(structure=structure, values=frozen_float(fit.values), covariance=frozen_float(covariance))
+
+
+def _usual_std(structure: Structure, values: FloatArray) -> dict[str, float]:
+    spread = {}
+    for parameter, value in zip(structure.parameters, values.tolist(), strict=True):
+        if parameter.held or parameter.role is None:
+            continue
+        if parameter.role in RELATIVE_SPREAD:
+            spread[parameter.name] = RELATIVE_SPREAD[parameter.role] * abs(value)
+        elif parameter.role in SPREAD:
+            spread[parameter.name] = SPREAD[parameter.role]
+    return spread

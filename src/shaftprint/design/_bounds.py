@@ -1,0 +1,95 @@
+"""Limits of the ship as bounds of one leg: straight lines in the deviations of ``SIGNALS`` about its working point."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.design._limits import Curve, Limits
+from shaftprint.design._motion import SIGNALS
+from shaftprint.errors import DesignError
+
+# A leg reaches speeds so many times as far from its level as its set point does.
+_OVERSHOOT = 1.3
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Bound:
+    """``weights . signals <= room``."""
+
+    name: str
+    """Limit that it stands for."""
+    weights: FloatArray
+    """What it weighs, in the order of ``SIGNALS``, shape (signals,)."""
+    room: float
+    """What is left at the working point, the margin for noise taken off, positive."""
+
+
+def bounds_of_leg(limits: Limits, speed_share: float, noise: FloatArray) -> tuple[Bound, ...]:
+    """Return the bounds about a working point in bollard pull, where torque goes with the square of the speed.
+
+    Parameters
+    ----------
+    limits
+        What ship and engine allow.
+    speed_share
+        Mean speed of the leg over that of the first working point.
+    noise
+        Covariance of the noise of ``SIGNALS``, shape (signals, signals).
+
+    Raises
+    ------
+    DesignError
+        If nothing is left of a limit.
+    """
+    speed_rpm = speed_share * limits.engine_speed_rpm
+    torque_nm = speed_share**2 * limits.brake_torque_nm
+    low, high = limits.free_speeds(speed_rpm)
+    step = limits.set_point_rpm / speed_rpm
+    stated: list[tuple[str, dict[str, float], float]] = [
+        ("set point", {"set point": 1.0}, step),
+        ("set point", {"set point": -1.0}, step),
+        ("highest speed", {"speed": 1.0}, high / speed_rpm - 1.0),
+        ("lowest speed", {"speed": -1.0}, 1.0 - low / speed_rpm),
+    ]
+    if limits.demand_rate_limit_rpm_per_s is not None:
+        rate = limits.demand_rate_limit_rpm_per_s / speed_rpm
+        stated += [("rate of the set point", {"rate": sign}, rate) for sign in (1.0, -1.0)]
+    reach = (max(low, speed_rpm * (1.0 - _OVERSHOOT * step)), min(high, speed_rpm * (1.0 + _OVERSHOOT * step)))
+    for name, curve, sign in (("full load", limits.full_load, 1.0), ("motoring torque", limits.motoring, -1.0)):
+        for slope, at_mean_nm in _pieces(curve, reach, speed_rpm):
+            # the torque stays below the curve, or above its negative: sign M_b <= curve(n)
+            weights = {"brake torque": sign, "speed": -slope * speed_rpm / torque_nm}
+            stated.append((name, weights, at_mean_nm / torque_nm - sign))
+    return tuple(_bound(name, weights, room, limits, noise, speed_rpm) for name, weights, room in stated)
+
+
+def _bound(
+    name: str, weights: dict[str, float], room: float, limits: Limits, noise: FloatArray, speed_rpm: float
+) -> Bound:
+    row = np.array([weights.get(signal, 0.0) for signal in SIGNALS])
+    margin = limits.noise_sigmas * float(np.sqrt(row @ noise @ row))
+    if not room - margin > 0.0:
+        raise DesignError(
+            f"leg at {speed_rpm:g} rpm: expected room below the limit {name}, found {room:.2g} of the working point "
+            f"and noise of {margin:.2g} ({limits.noise_sigmas:g} standard deviations); choose another speed."
+        )
+    return Bound(name=name, weights=frozen_float(row), room=room - margin)
+
+
+def _pieces(curve: Curve, reach: tuple[float, float], speed_rpm: float) -> list[tuple[float, float]]:
+    """Return slope [N m/rpm] and torque at a speed [N m] of the straight pieces of a curve within a range of speeds.
+
+    The least of all pieces, each prolonged, is the curve where that is concave and below it elsewhere. Beyond its ends
+    a curve is flat.
+    """
+    low, high = reach
+    speeds = [speed for speed, _ in curve]
+    points = [(min(low, speeds[0]) - 1.0, curve[0][1]), *curve, (max(high, speeds[-1]) + 1.0, curve[-1][1])]
+    pieces = []
+    for (first_rpm, first_nm), (second_rpm, second_nm) in pairwise(points):
+        if second_rpm > low and first_rpm < high:
+            slope = (second_nm - first_nm) / (second_rpm - first_rpm)
+            pieces.append((slope, first_nm + slope * (speed_rpm - first_rpm)))
+    return list(dict.fromkeys(pieces))

@@ -1,0 +1,106 @@
+"""Everything that is laid down before the search: legs without their amplitudes, and what binds them."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.design._assumed_line import AssumedLine
+from shaftprint.design._bounds import Bound, bounds_of_leg
+from shaftprint.design._leg import odd_harmonics
+from shaftprint.design._limits import Limits
+from shaftprint.design._motion import expect_motion, motion, motion_noise
+from shaftprint.design._timetable import Timetable
+from shaftprint.design._wish import Wish
+from shaftprint.design.search import Uses
+from shaftprint.errors import DesignError
+from shaftprint.identify import NoiseLevels, Prior
+from shaftprint.identify.prediction import LineInformation, line_information, planned_lines
+from shaftprint.models import Structure, at_working_point
+
+# Odd harmonics of a leg.
+MOST_LINES = 70
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Brief:
+    """Everything that is laid down before the search: legs without their amplitudes, and what binds them."""
+
+    line: AssumedLine
+    """What is assumed of the line."""
+    wish: Wish
+    """What is wanted."""
+    limits: Limits
+    """What ship and engine allow."""
+    priors: Mapping[str, Prior]
+    """What the fit will know besides."""
+    timetable: Timetable
+    """How the time is divided."""
+    speeds: tuple[float, ...]
+    """Mean speed of each leg over that of the first working point."""
+    noise: tuple[NoiseLevels, ...]
+    """Noise at each leg."""
+    structures: tuple[Structure, ...]
+    """The structure as it is normalised at each leg."""
+    bounds: tuple[tuple[Bound, ...], ...]
+    """Bounds of each leg."""
+    harmonics: tuple[tuple[int, ...], ...]
+    """Harmonics that each leg may have."""
+    periods: int
+    """Whole periods of each leg."""
+    period_s: float
+    """Their length [s]."""
+
+    @classmethod
+    def of(
+        cls,
+        line: AssumedLine,
+        wish: Wish,
+        limits: Limits,
+        noise: NoiseLevels | Mapping[float, NoiseLevels],
+        *,
+        speeds: Sequence[float],
+        within_s: float,
+        priors: Mapping[str, Prior],
+        timetable: Timetable,
+    ) -> "Brief":
+        """Return what follows from the wishes of the user; see ``design_campaign``."""
+        expect_motion(line.structure)
+        if not speeds or not all(share > 0.0 for share in speeds):
+            stated = ", ".join(f"{share:g}" for share in speeds) or "none"
+            raise DesignError(f"plan: expected positive speeds over that of the working point, found {stated}.")
+        periods, period_s = timetable.periods(within_s, [share * limits.engine_speed_rpm for share in speeds])
+        levels = tuple(noise[share] if isinstance(noise, Mapping) else noise for share in speeds)
+        structures = tuple(at_working_point(line.structure, speed_share=share) for share in speeds)
+        spread = (motion_noise(one, line.values, level) for one, level in zip(structures, levels, strict=True))
+        return cls(
+            line=line, wish=wish, limits=limits, priors=priors, timetable=timetable, speeds=tuple(speeds),
+            noise=levels, structures=structures,
+            bounds=tuple(bounds_of_leg(limits, share, one) for share, one in zip(speeds, spread, strict=True)),
+            harmonics=tuple(
+                odd_harmonics(period_s, min(limits.last_frequency_hz, float(level.frequency_hz[-1])), MOST_LINES)
+                for level in levels
+            ),
+            periods=periods, period_s=period_s,
+        )  # fmt: skip
+
+    def information(self, values: FloatArray) -> LineInformation:
+        """Return what every line would tell for a unit of amplitude over a second."""
+        pairs = [
+            (structure, planned_lines(np.array(lines) / self.period_s, noise=level, amplitude=1.0, duration_s=1.0))
+            for structure, lines, level in zip(self.structures, self.harmonics, self.noise, strict=True)
+        ]
+        named = dict(zip(self.line.structure.names, values.tolist(), strict=True))
+        return line_information(pairs, values=named, priors=self.priors)
+
+    def uses(self, leg: int, table: FloatArray, harmonics: tuple[int, ...] | None = None, fold: int = 1) -> Uses:
+        """Return the uses of the bounds of a leg, for lines that may be, shape (rows, parameters)."""
+        lines = harmonics or self.harmonics[leg]
+        omega = 2.0 * np.pi * np.array(lines) / self.period_s
+        return Uses.of(motion(self.structures[leg], table, omega), self.bounds[leg], lines, fold)
+
+    @property
+    def seconds(self) -> tuple[float, ...]:
+        """Length of the window of each leg [s]."""
+        return (self.periods * self.period_s,) * len(self.speeds)

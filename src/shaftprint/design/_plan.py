@@ -1,0 +1,162 @@
+"""The noun ``Plan``: a test that is designed, with what it would tell and what it asks of ship and engine."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.design._assumed_line import AssumedLine
+from shaftprint.design._leg import Leg
+from shaftprint.design._limits import Limits
+from shaftprint.design._timetable import Timetable
+from shaftprint.design._wish import Wish
+from shaftprint.identify import NoiseLevels, Prior
+from shaftprint.identify.prediction import Accuracy, planned_lines, predict_joint_accuracy
+from shaftprint.models import Structure
+from shaftprint.notebook import Shown, Summary
+from shaftprint.units import SECONDS_PER_MINUTE
+
+# A limit binds when a leg uses so much of it.
+BINDS = 0.98
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Peaks(Shown):
+    """The most that a leg asks for, among the lines for which its limits hold; noise comes on top."""
+
+    set_point_rpm: float
+    """Largest deviation of the set point from its level [rpm]."""
+    rate_rpm_per_s: float
+    """Fastest change of the set point [rpm/s]."""
+    speed_rpm: tuple[float, float]
+    """Lowest and highest engine speed [rpm]."""
+    brake_torque_nm: tuple[float, float]
+    """Lowest and highest brake torque [N m]."""
+    uses: Mapping[str, float]
+    """Largest use of each limit, by its name: peak over what the limit leaves, noise taken off; at most 1."""
+
+    @property
+    def binding(self) -> tuple[str, ...]:
+        """Names of the limits that keep the leg from being stronger."""
+        return tuple(name for name, use in self.uses.items() if use > BINDS)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Plan(Shown):
+    """A test that is designed but not rehearsed: its numbers are predicted."""
+
+    line: AssumedLine
+    """What was assumed of the line."""
+    wish: Wish
+    """What was wanted."""
+    limits: Limits
+    """What ship and engine allow."""
+    priors: Mapping[str, Prior]
+    """What the fit will know besides."""
+    timetable: Timetable
+    """How the time is divided."""
+    noise: tuple[NoiseLevels, ...]
+    """Noise at each leg."""
+    structures: tuple[Structure, ...]
+    """The structure as it is normalised at each leg."""
+    legs: tuple[Leg, ...]
+    """The legs, in the order in which they are sailed."""
+    peaks: tuple[Peaks, ...]
+    """The most that each leg asks for."""
+    predicted: Accuracy
+    """How well the numbers would be known, at the assumed values."""
+
+    def summary(self) -> Summary:
+        """Return length, legs, and each wish with what is predicted."""
+        numbers = {
+            name: f"{self.predicted.estimate(name).std:.3g} predicted, {target:.3g} wished"
+            for name, target in self.targets.items()
+        }
+        facts = {
+            "length": f"{self.duration_s / SECONDS_PER_MINUTE:.3g} min, not rehearsed",
+            "legs": ", ".join(f"{leg.level_rpm:.0f} rpm +/- {leg.peak_rpm:.0f}" for leg in self.legs),
+            **numbers,
+            "limits that bind": ", ".join(dict.fromkeys(name for peaks in self.peaks for name in peaks.binding)),
+        }
+        return Summary(title=f"Plan for {self.line.structure.name}", facts=facts)
+
+    @property
+    def duration_s(self) -> float:
+        """Length of the test [s]."""
+        return self.starts_s[-1] + self.legs[-1].duration_s
+
+    @property
+    def starts_s(self) -> tuple[float, ...]:
+        """When the multisine of each leg begins, after the ramp to its level [s]."""
+        starts = [self.timetable.lead_s]
+        for before, leg in pairwise(self.legs):
+            ramp_s = abs(leg.level_rpm - before.level_rpm) / self.timetable.ramp_rpm_per_s
+            starts.append(starts[-1] + before.duration_s + ramp_s)
+        return tuple(starts)
+
+    @property
+    def targets(self) -> dict[str, float]:
+        """Wished standard deviations in the numbers' units, by name."""
+        values = {e.name: e.value for e in (*self.predicted.parameters, *self.predicted.combinations)}
+        return self.wish.targets(values)
+
+    @property
+    def ratios(self) -> dict[str, float]:
+        """Predicted standard deviation over the wish, by name; the slack is what is missing to 1."""
+        return {name: self.predicted.estimate(name).std / target for name, target in self.targets.items()}
+
+    @property
+    def is_enough(self) -> bool:
+        """Whether every wish is met, as predicted."""
+        return all(ratio <= 1.0 for ratio in self.ratios.values())
+
+    @property
+    def seconds_per_wish(self) -> dict[str, float]:
+        """Length of a test like this one in which each wish alone would be met [s], priors counted as data.
+
+        Deviations fall with the root of the time in the windows; infinite for what such a test does not show.
+        """
+        window_s = sum(leg.window_s for leg in self.legs)
+        return {name: self.duration_s + window_s * (ratio**2 - 1.0) for name, ratio in self.ratios.items()}
+
+
+def predicted_accuracy(
+    structures: Sequence[Structure],
+    legs: Sequence[Leg],
+    noise: Sequence[NoiseLevels],
+    *,
+    values: Mapping[str, float],
+    priors: Mapping[str, Prior],
+) -> Accuracy:
+    """Return how well the legs together would find the parameters."""
+    pairs = [
+        (
+            structure,
+            planned_lines(leg.frequency_hz, noise=level, amplitude=np.abs(leg.amplitudes), duration_s=leg.window_s),
+        )
+        for structure, leg, level in zip(structures, legs, noise, strict=True)
+    ]
+    return predict_joint_accuracy(pairs, values=values, priors=priors)
+
+
+def peaks_of(leg: Leg, extremes: FloatArray, uses: Mapping[str, float], limits: Limits) -> Peaks:
+    """Return the peaks of a leg in the units of the ship.
+
+    Parameters
+    ----------
+    extremes
+        Lowest and highest deviation of each of ``SIGNALS``, shape (signals, 2).
+    uses
+        Largest use of each limit.
+    """
+    speed, torque = leg.level_rpm, leg.speed_share**2 * limits.brake_torque_nm
+    low, high = extremes.T.tolist()
+    return Peaks(
+        set_point_rpm=speed * max(-low[0], high[0]),
+        rate_rpm_per_s=speed * max(-low[1], high[1]),
+        speed_rpm=(speed * (1.0 + low[2]), speed * (1.0 + high[2])),
+        brake_torque_nm=(torque * (1.0 + low[3]), torque * (1.0 + high[3])),
+        uses=dict(uses),
+    )

@@ -1,0 +1,69 @@
+"""The search for the amplitudes that make a problem's criterion small."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import minimize
+
+from shaftprint.arrays import FloatArray
+from shaftprint.design.search._problem import Problem
+from shaftprint.notebook import Shown
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class Effort(Shown):
+    """How much a plan may cost."""
+
+    powers: tuple[float, ...] = (10.0, 30.0, 100.0)
+    """Powers of the norm of the uses, one stage each: the first are smooth, the last is near the largest use."""
+    steps: int = 200
+    """Most steps of a stage."""
+    restarts: int = 2
+    """Starts from random phases; the best plan is taken."""
+    accuracy_draws: int = 6
+    """Lines that may be over which the criterion is averaged."""
+    peak_draws: int = 200
+    """Lines that may be whose peaks are looked at."""
+    active_draws: int = 8
+    """Those of them with the highest peaks that are allowed for, which a stage holds."""
+
+
+def random_start(problem: Problem, rng: np.random.Generator) -> FloatArray:
+    """Return unknowns of random phases and of amplitudes that fall with the root of the frequency."""
+    parts = []
+    for use in problem.uses:
+        harmonics = np.array(use.harmonics)
+        size = 1.0 / np.sqrt(harmonics)
+        phase = rng.uniform(0.0, 2.0 * np.pi, size=harmonics.size)
+        parts += [size * np.cos(phase), size * np.sin(phase)]
+    return np.concatenate(parts)
+
+
+def search(problem: Problem, start: FloatArray, effort: Effort, *, share_held: float) -> tuple[float, FloatArray]:
+    """Return the criterion and the unknowns after all stages from one start.
+
+    Parameters
+    ----------
+    problem
+        What is made small, with the uses of all lines that may be.
+    start
+        Unknowns of the start.
+    effort
+        Stages and steps.
+    share_held
+        Share of the lines that may be for which a leg keeps its limits. Each stage holds those among them whose peaks
+        were highest at the end of the stage before.
+    """
+    unknowns, value = start, np.inf
+    for power in effort.powers:
+        active = tuple(
+            use.of_draws(use.held(leg, share_held)[-effort.active_draws :])
+            for use, leg in zip(problem.uses, problem.split(unknowns), strict=True)
+        )
+        stage = replace(problem, uses=active, power=power)
+        result = minimize(
+            stage.value_and_gradient, unknowns, jac=True, method="L-BFGS-B",
+            options={"maxiter": effort.steps, "maxcor": 20},
+        )  # fmt: skip
+        unknowns, value = result.x, float(result.fun)
+    return value, unknowns

@@ -1,0 +1,93 @@
+"""Lines of a period and what they do to the bounds of a leg, in time, with the gradient of a smooth largest use."""
+
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from shaftprint.arrays import ComplexArray, FloatArray, IntArray
+from shaftprint.design._bounds import Bound
+
+# Samples a period of the fastest line.
+SAMPLES_PER_PERIOD = 8
+# Powers of uses that are smaller than this against the largest one are left out of a sum of powers.
+_NEGLIGIBLE = 1e-9
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Uses:
+    """Uses of bounds over one period: signal over room, linear in the complex amplitudes of the lines."""
+
+    transfer: ComplexArray
+    """Use of each row for a unit of amplitude of each line, shape (rows, lines)."""
+    harmonics: tuple[int, ...]
+    """Harmonics of the period that the lines are."""
+    samples: int
+    """Samples a period."""
+    draws: int
+    """Number of lines that may be; rows are bound by bound, and these in each."""
+
+    @classmethod
+    def of(cls, responses: ComplexArray, bounds: tuple[Bound, ...], harmonics: tuple[int, ...], fold: int = 1) -> Self:
+        """Return the uses of every bound by every line that may be, rows bound by bound.
+
+        Parameters
+        ----------
+        responses
+            Responses of ``SIGNALS`` to the set point, shape (possible lines, signals, lines).
+        bounds
+            The bounds.
+        harmonics
+            Harmonics of the lines.
+        fold
+            How many times more samples than usual are taken.
+        """
+        weights = np.array([bound.weights / bound.room for bound in bounds])
+        transfer = np.einsum("bs,dsk->bdk", weights, responses).reshape(-1, len(harmonics))
+        samples = 2 ** int(np.ceil(np.log2(fold * SAMPLES_PER_PERIOD * harmonics[-1])))
+        return cls(transfer=transfer, harmonics=harmonics, samples=samples, draws=responses.shape[0])
+
+    def in_time(self, amplitudes: ComplexArray) -> FloatArray:
+        """Return the uses ``Re sum_k H_k c_k exp(j 2 pi h_k t / T)`` over one period, shape (rows, samples)."""
+        spectrum = np.zeros((self.transfer.shape[0], self.samples // 2 + 1), dtype=np.complex128)
+        spectrum[:, self.harmonics] = 0.5 * self.samples * self.transfer * amplitudes
+        return np.fft.irfft(spectrum, n=self.samples, axis=1)
+
+    def largest(self, amplitudes: ComplexArray) -> FloatArray:
+        """Return the largest use of each bound by each line that may be, shape (bounds, draws)."""
+        return np.asarray(self.in_time(amplitudes).max(axis=1).reshape(-1, self.draws))
+
+    def norm(self, amplitudes: ComplexArray, power: float) -> tuple[float, ComplexArray]:
+        """Return the p-norm of all positive uses over one period, and its gradient.
+
+        ``P = (sum_rows mean_t u_+^p)^(1/p)``: near the largest use for a large ``p``, and smooth.
+
+        Returns
+        -------
+            ``P``, and ``dP/dRe c + j dP/dIm c``, shape (lines,).
+        """
+        use = self.in_time(amplitudes)
+        highest = float(use.max())
+        share = use / highest
+        counted = share > _NEGLIGIBLE ** (1.0 / power)
+        near = share[counted]
+        slope = near ** (power - 1.0)
+        total = float(np.sum(slope * near)) / self.samples
+        norm = highest * total ** (1.0 / power)
+        weights = np.zeros_like(use)
+        weights[counted] = slope * (total ** (1.0 / power - 1.0) / self.samples)
+        back = np.fft.rfft(weights, axis=1)[:, self.harmonics]
+        return norm, np.asarray(np.sum(self.transfer.conj() * back, axis=0))
+
+    def of_draws(self, places: IntArray) -> "Uses":
+        """Return the uses by some of the lines that may be."""
+        table = self.transfer.reshape(-1, self.draws, len(self.harmonics))[:, places]
+        return Uses(
+            transfer=table.reshape(-1, len(self.harmonics)), harmonics=self.harmonics, samples=self.samples,
+            draws=len(places),
+        )  # fmt: skip
+
+    def held(self, amplitudes: ComplexArray, share: float) -> IntArray:
+        """Return that share of the lines that may be whose largest use is least, ascending in it."""
+        order = np.argsort(self.largest(amplitudes).max(axis=0), kind="stable")
+        return np.asarray(order[: int(np.ceil(share * self.draws))])
