@@ -19,7 +19,10 @@ from shaftprint.design._design import design_campaign
 from shaftprint.design._leg import Leg
 from shaftprint.design._limits import Limits, limits_from_vessel
 from shaftprint.design._plan import Peaks, Plan
+from shaftprint.design._remedies import Remedy, remedies
+from shaftprint.design._shortest import shortest
 from shaftprint.design._timetable import Timetable
+from shaftprint.design._verdict import plan_sentences
 from shaftprint.design._wish import Wish, no_worse_than
 from shaftprint.design.search import Effort
 
@@ -30,6 +33,7 @@ __all__ = [
     "Limits",
     "Peaks",
     "Plan",
+    "Remedy",
     "Timetable",
     "Wish",
     "assumed_line",
@@ -37,4 +41,7 @@ __all__ = [
     "limits_from_vessel",
     "line_of_fit",
     "no_worse_than",
+    "plan_sentences",
+    "remedies",
+    "shortest",
 ]

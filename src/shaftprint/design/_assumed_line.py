@@ -83,15 +83,19 @@ class AssumedLine(Shown):
             return self.values[None, :]
         lower = np.array([p.lower for p in self.structure.parameters])
         upper = np.array([p.upper for p in self.structure.parameters])
-        drawn = rng.multivariate_normal(self.values, self.covariance, size=_DRAWN_FOR_ONE * count, method="eigh")
-        inside = np.clip(drawn, lower, upper)
-        rows = inside[stable_rows(self.structure, inside)][: count - 1]
-        if rows.shape[0] < count - 1:
+        rows, drawn = self.values[None, :], 0
+        while rows.shape[0] < count and drawn < _DRAWN_FOR_ONE * count:
+            more = count - rows.shape[0]
+            inside = np.clip(
+                rng.multivariate_normal(self.values, self.covariance, size=more, method="eigh"), lower, upper
+            )
+            rows, drawn = np.concatenate([rows, inside[stable_rows(self.structure, inside)]]), drawn + more
+        if rows.shape[0] < count:
             raise DesignError(
                 f"assumed line {self.structure.name}: expected mostly stable loops within the stated uncertainty, "
-                f"found {rows.shape[0]} of {drawn.shape[0]}; state it more narrowly, or sail a short test first."
+                f"found {rows.shape[0] - 1} of {drawn}; state it more narrowly, or sail a short test first."
             )
-        return np.concatenate([self.values[None, :], rows])
+        return rows
 
 
 def assumed_line(

@@ -21,6 +21,7 @@ from shaftprint.design.search import (
     Problem,
     Uses,
     WorstWish,
+    held_draws,
     random_start,
     search,
 )
@@ -100,14 +101,9 @@ def best_plan(brief: Brief, effort: Effort, rng: np.random.Generator, start: Flo
         power=effort.powers[-1],
     )
     starts = [random_start(problem, rng) for _ in range(effort.restarts)] if start is None else [start]
-    results = [search(problem, one, effort, share_held=share_of_leg(brief)) for one in starts]
+    results = [search(problem, one, effort, share_held=SHARE_HELD) for one in starts]
     _, unknowns = min(results, key=lambda result: result[0])
     return finished(brief, problem.split(unknowns), table)
-
-
-def share_of_leg(brief: Brief) -> float:
-    """Return the share of lines for which one leg keeps its limits, so that all legs together keep theirs for 98 %."""
-    return 1.0 - (1.0 - SHARE_HELD) / len(brief.speeds)
 
 
 def finished(brief: Brief, amplitudes: Sequence[ComplexArray], table: FloatArray) -> Plan:
@@ -120,19 +116,20 @@ def finished(brief: Brief, amplitudes: Sequence[ComplexArray], table: FloatArray
     table
         Lines that may be, the assumed one first, shape (rows, parameters).
     """
+    strong = [strong_lines(lines, leg) for lines, leg in zip(brief.harmonics, amplitudes, strict=True)]
+    uses = [brief.uses(number, table, harmonics, _FINE) for number, (harmonics, _) in enumerate(strong)]
+    held = held_draws(uses, [leg for _, leg in strong], SHARE_HELD)
     legs, peaks = [], []
-    for number, (share, every, lines) in enumerate(zip(brief.speeds, amplitudes, brief.harmonics, strict=True)):
-        harmonics, strong = strong_lines(lines, every)
-        uses = brief.uses(number, table, harmonics, _FINE)
-        held = uses.held(strong, share_of_leg(brief))
-        scaled = strong / uses.of_draws(held).largest(strong).max()
+    for number, (share, (harmonics, leg), use) in enumerate(zip(brief.speeds, strong, uses, strict=True)):
+        allowed = use.of_draws(held)
         legs.append(
             Leg(
                 speed_share=share, level_rpm=share * brief.limits.engine_speed_rpm, period_s=brief.period_s,
-                harmonics=harmonics, amplitudes=scaled, periods=brief.periods, settle_s=brief.timetable.settle_s,
+                harmonics=harmonics, amplitudes=leg / allowed.largest(leg).max(), periods=brief.periods,
+                settle_s=brief.timetable.settle_s,
             )
         )  # fmt: skip
-        peaks.append(_peaks(brief, number, legs[-1], uses.of_draws(held), table[held]))
+        peaks.append(_peaks(brief, number, legs[-1], allowed, table[held]))
     return Plan(
         line=brief.line, wish=brief.wish, limits=brief.limits, priors=brief.priors, timetable=brief.timetable,
         noise=brief.noise, structures=brief.structures, legs=tuple(legs), peaks=tuple(peaks),

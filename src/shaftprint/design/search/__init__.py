@@ -3,7 +3,7 @@
 from shaftprint.design.search._criterion import Criterion, DeterminantWithFloor, WorstWish
 from shaftprint.design.search._problem import Possibility, Problem
 from shaftprint.design.search._search import Effort, random_start, search
-from shaftprint.design.search._uses import Uses
+from shaftprint.design.search._uses import Uses, held_draws
 
 __all__ = [
     "Criterion",
@@ -13,6 +13,7 @@ __all__ = [
     "Problem",
     "Uses",
     "WorstWish",
+    "held_draws",
     "random_start",
     "search",
 ]

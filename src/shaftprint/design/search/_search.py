@@ -7,6 +7,7 @@ from scipy.optimize import minimize
 
 from shaftprint.arrays import FloatArray
 from shaftprint.design.search._problem import Problem
+from shaftprint.design.search._uses import held_draws
 from shaftprint.notebook import Shown
 
 
@@ -51,15 +52,14 @@ def search(problem: Problem, start: FloatArray, effort: Effort, *, share_held: f
     effort
         Stages and steps.
     share_held
-        Share of the lines that may be for which a leg keeps its limits. Each stage holds those among them whose peaks
-        were highest at the end of the stage before.
+        Share of the lines that may be for which all legs keep their limits. Each stage holds those among them whose
+        peaks were highest at the end of the stage before.
     """
     unknowns, value = start, np.inf
     for power in effort.powers:
-        active = tuple(
-            use.of_draws(use.held(leg, share_held)[-effort.active_draws :])
-            for use, leg in zip(problem.uses, problem.split(unknowns), strict=True)
-        )
+        legs = problem.split(unknowns)
+        held = held_draws(problem.uses, legs, share_held)
+        active = tuple(use.highest(leg, held, effort.active_draws) for use, leg in zip(problem.uses, legs, strict=True))
         stage = replace(problem, uses=active, power=power)
         result = minimize(
             stage.value_and_gradient, unknowns, jac=True, method="L-BFGS-B",

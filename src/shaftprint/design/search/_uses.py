@@ -1,5 +1,6 @@
 """Lines of a period and what they do to the bounds of a leg, in time, with the gradient of a smooth largest use."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -87,7 +88,18 @@ class Uses:
             draws=len(places),
         )  # fmt: skip
 
-    def held(self, amplitudes: ComplexArray, share: float) -> IntArray:
-        """Return that share of the lines that may be whose largest use is least, ascending in it."""
-        order = np.argsort(self.largest(amplitudes).max(axis=0), kind="stable")
-        return np.asarray(order[: int(np.ceil(share * self.draws))])
+    def highest(self, amplitudes: ComplexArray, places: IntArray, count: int) -> "Uses":
+        """Return the uses by those lines, among some, whose largest use is highest."""
+        worst = self.largest(amplitudes)[:, places].max(axis=0)
+        return self.of_draws(places[np.argsort(worst, kind="stable")[-count:]])
+
+
+def held_draws(uses: Sequence[Uses], amplitudes: Sequence[ComplexArray], share: float) -> IntArray:
+    """Return that share of the lines that may be for which the legs ask least, as places of draws, ascending.
+
+    A ship that asks for much in one leg does so in the others: where the limits of all legs hold for the same ships,
+    fewer have to be allowed for than if each leg left out its own.
+    """
+    worst = [use.largest(leg).max(axis=0) for use, leg in zip(uses, amplitudes, strict=True)]
+    relative = np.max([one / np.median(one) for one in worst], axis=0)
+    return np.sort(np.argsort(relative, kind="stable")[: int(np.ceil(share * relative.size))])

@@ -1,0 +1,78 @@
+"""Limits of the ship, and what is left of them about a speed, by hand."""
+
+from dataclasses import replace
+
+import pytest
+
+from shaftprint.design import limits_from_vessel
+from shaftprint.errors import DesignError, SettingsError
+from shaftprint.settings import write_template
+from shaftprint.vessel import load_vessel
+
+
+def test_of_a_vessel_file_without_operating_limits():
+    limits = limits_from_vessel(load_vessel("stan-tug-1205"), set_point_rpm=100.0)
+    assert (limits.lowest_speed_rpm, limits.highest_speed_rpm) == (600.0, 1800.0)
+    assert limits.brake_torque_nm == pytest.approx(465.54, abs=0.01)
+    assert limits.full_load[4] == (1227.6, 1325.0)
+    assert limits.motoring == ((0.0, 0.0),)
+    assert limits.demand_delay_s == 0.0
+
+
+def test_of_the_template_with_its_limits_switched_on(tmp_path):
+    path = tmp_path / "vessel.toml"
+    write_template("vessel", path)
+    text = path.read_text(encoding="utf-8")
+    start = text.index("# [limits]")
+    stop = text.index("\n\n", start)
+    path.write_text(text[:start] + text[start:stop].replace("\n# ", "\n")[2:] + text[stop:], encoding="utf-8")
+    limits = limits_from_vessel(load_vessel(path), set_point_rpm=100.0)
+    assert (limits.lowest_speed_rpm, limits.highest_speed_rpm) == (650.0, 1800.0)
+    assert limits.motoring == ((600.0, 220.0), (1800.0, 380.0))
+    assert limits.barred_rpm == ((900.0, 960.0),)
+    # half a cycle of 20 ms, and half of a step of 4.8 rpm at 600 rpm/s
+    assert limits.demand_delay_s == pytest.approx(0.010 + 0.004)
+    # four messages a period
+    assert limits.last_frequency_hz == 3.4
+    assert replace(limits, demand_cycle_s=0.1).last_frequency_hz == pytest.approx(2.5)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("lowest_speed_rpm = 650.0", "lowest_speed_rpm = 2000.0", "expected lowest_speed_rpm below highest_speed_rpm"),
+        ("motoring_torque_nm = [220.0, 380.0]", "motoring_torque_nm = [220.0]", "of equal length, found 2 and 1"),
+        ("[[900.0, 960.0]]", "[[960.0, 900.0]]", "from a lower to a higher speed, found 960 to 900"),
+    ],
+)
+def test_what_cannot_be_in_a_vessel_file(tmp_path, old, new, words):
+    path = tmp_path / "vessel.toml"
+    write_template("vessel", path)
+    text = path.read_text(encoding="utf-8")
+    start = text.index("# [limits]")
+    stop = text.index("\n\n", start)
+    switched = text[start:stop].replace("\n# ", "\n")[2:]
+    path.write_text(text[:start] + switched.replace(old, new) + text[stop:], encoding="utf-8")
+    with pytest.raises(SettingsError, match=words):
+        load_vessel(path)
+
+
+def test_barred_ranges_narrow_the_free_speeds(limits):
+    barred = replace(limits, barred_rpm=((700.0, 760.0), (1000.0, 1060.0)))
+    assert barred.free_speeds(850.0) == (760.0, 1000.0)
+    assert barred.free_speeds(1200.0) == (1060.0, 1800.0)
+    with pytest.raises(DesignError, match=r"leg at 1020 rpm: expected .* outside of the barred 1000 to 1060 rpm"):
+        barred.free_speeds(1020.0)
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"set_point_rpm": 0.0}, "a positive set_point_rpm, found 0"),
+        ({"lowest_speed_rpm": 1900.0}, "speeds from lower to higher, found 1900 to 1800 rpm"),
+        ({"full_load": ((800.0, 1.0), (700.0, 1.0))}, "full_load with ascending speeds, found 800, 700"),
+    ],
+)
+def test_limits_that_contradict_each_other(limits, changed, words):
+    with pytest.raises(DesignError, match=words):
+        replace(limits, **changed)
