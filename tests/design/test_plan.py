@@ -51,13 +51,20 @@ def test_predicted_deviations_are_those_of_the_same_lines(plan, truth):
 
 
 def test_time_table_of_the_legs(plan):
-    """10 s at rest, a ramp of 30 rpm/s over 0.45 of 1183.8 rpm, 10 s to settle in each leg: the rest are windows."""
+    """10 s at rest, a ramp of 30 rpm/s over 0.45 of 1183.8 rpm, up to 10 s to settle in each leg: the rest are windows.
+
+    The time to settle ends when the set point passes its level, so that ramps go from level to level.
+    """
     ramp = 0.45 * 1183.8 / 30.0
-    assert plan.duration_s == pytest.approx(360.0)
+    first, second = plan.legs
     assert sum(leg.window_s for leg in plan.legs) == pytest.approx(360.0 - 10.0 - 20.0 - ramp)
-    assert plan.starts_s == pytest.approx((10.0, 20.0 + plan.legs[0].window_s + ramp))
+    assert plan.starts_s == pytest.approx((10.0, 10.0 + first.settle_s + first.window_s + ramp))
+    assert plan.duration_s == pytest.approx(plan.starts_s[1] + second.settle_s + second.window_s)
     assert [leg.level_rpm for leg in plan.legs] == pytest.approx([1361.37, 828.66])
-    assert all(harmonic % 2 == 1 for leg in plan.legs for harmonic in leg.harmonics)
+    for leg in plan.legs:
+        assert 5.0 < leg.settle_s <= 10.0
+        assert leg.set_point_rpm([0.0, leg.settle_s]) == pytest.approx([leg.level_rpm] * 2, abs=0.1)
+        assert all(harmonic % 2 == 1 for harmonic in leg.harmonics)
 
 
 def test_a_prior_of_the_fit_counts(tug, limits, quick, plan):
@@ -80,7 +87,7 @@ def test_wishes_and_what_they_cost(tug, limits, quick):
     assert not plan.is_enough
     window = sum(leg.window_s for leg in plan.legs)
     std = plan.predicted.estimate("K_p").std
-    needed = plan.seconds_per_wish["K_p"] - (360.0 - window)
+    needed = plan.seconds_per_wish["K_p"] - (plan.duration_s - window)
     assert std * np.sqrt(window / needed) == pytest.approx(0.001 * 5.7)
 
 

@@ -15,6 +15,7 @@ A plan is made of what is assumed of the line (``AssumedLine``), what is wanted 
 """
 
 from shaftprint.design._assumed_line import AssumedLine, assumed_line, line_of_fit
+from shaftprint.design._campaign import campaign_of
 from shaftprint.design._design import design_campaign
 from shaftprint.design._leg import Leg
 from shaftprint.design._limits import Limits, limits_from_vessel
@@ -37,6 +38,7 @@ __all__ = [
     "Timetable",
     "Wish",
     "assumed_line",
+    "campaign_of",
     "design_campaign",
     "limits_from_vessel",
     "line_of_fit",

@@ -1,13 +1,14 @@
 """The verb ``design_campaign``: lines, amplitudes and phases of every leg that tell most within limits and time."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.design._assumed_line import AssumedLine
 from shaftprint.design._brief import Brief
-from shaftprint.design._leg import Leg, strong_lines
+from shaftprint.design._leg import Leg, started_at_rest, strong_lines
 from shaftprint.design._limits import Limits
 from shaftprint.design._motion import motion
 from shaftprint.design._plan import Peaks, Plan, peaks_of, predicted_accuracy
@@ -122,13 +123,18 @@ def finished(brief: Brief, amplitudes: Sequence[ComplexArray], table: FloatArray
     legs, peaks = [], []
     for number, (share, (harmonics, leg), use) in enumerate(zip(brief.speeds, strong, uses, strict=True)):
         allowed = use.of_draws(held)
-        legs.append(
-            Leg(
-                speed_share=share, level_rpm=share * brief.limits.engine_speed_rpm, period_s=brief.period_s,
-                harmonics=harmonics, amplitudes=leg / allowed.largest(leg).max(), periods=brief.periods,
-                settle_s=brief.timetable.settle_s,
-            )
-        )  # fmt: skip
+        about = Leg(
+            speed_share=share,
+            level_rpm=share * brief.limits.engine_speed_rpm,
+            period_s=brief.period_s,
+            harmonics=harmonics,
+            amplitudes=leg,
+            periods=brief.periods,
+            settle_s=brief.timetable.settle_s,
+        )
+        turned = started_at_rest(about)
+        largest = allowed.largest(turned.amplitudes).max()
+        legs.append(replace(turned, amplitudes=turned.amplitudes / largest))
         peaks.append(_peaks(brief, number, legs[-1], allowed, table[held]))
     return Plan(
         line=brief.line, wish=brief.wish, limits=brief.limits, priors=brief.priors, timetable=brief.timetable,

@@ -33,11 +33,7 @@ class Remedy(Shown):
     def sentence(self) -> str:
         """Say what it would bring."""
         number = max(self.ratios, key=lambda name: self.ratios[name])
-        enough = (
-            "every wish would be met"
-            if self.worst <= 1.0
-            else f"{number} would still be {self.worst:.2g} times its wish"
-        )
+        rest = f"{number} would still be {self.worst:.2g} times its wish"
         return f"With {self.name} {'every wish would be met' if self.worst <= 1.0 else rest}."
 
 
