@@ -15,8 +15,9 @@ A plan is made of what is assumed of the line (``AssumedLine``), what is wanted 
 """
 
 from shaftprint.design._assumed_line import AssumedLine, assumed_line, line_of_fit
+from shaftprint.design._brief import Brief
 from shaftprint.design._campaign import campaign_of
-from shaftprint.design._design import design_campaign
+from shaftprint.design._design import best_plan, design_campaign, plan_of_lines
 from shaftprint.design._leg import Leg
 from shaftprint.design._limits import Limits, limits_from_vessel
 from shaftprint.design._plan import Peaks, Plan
@@ -29,6 +30,7 @@ from shaftprint.design.search import Effort
 
 __all__ = [
     "AssumedLine",
+    "Brief",
     "Effort",
     "Leg",
     "Limits",
@@ -38,11 +40,13 @@ __all__ = [
     "Timetable",
     "Wish",
     "assumed_line",
+    "best_plan",
     "campaign_of",
     "design_campaign",
     "limits_from_vessel",
     "line_of_fit",
     "no_worse_than",
+    "plan_of_lines",
     "plan_sentences",
     "remedies",
     "shortest",

@@ -104,10 +104,10 @@ def best_plan(brief: Brief, effort: Effort, rng: np.random.Generator, start: Flo
     starts = [random_start(problem, rng) for _ in range(effort.restarts)] if start is None else [start]
     results = [search(problem, one, effort, share_held=SHARE_HELD) for one in starts]
     _, unknowns = min(results, key=lambda result: result[0])
-    return finished(brief, problem.split(unknowns), table)
+    return plan_of_lines(brief, problem.split(unknowns), table)
 
 
-def finished(brief: Brief, amplitudes: Sequence[ComplexArray], table: FloatArray) -> Plan:
+def plan_of_lines(brief: Brief, amplitudes: Sequence[ComplexArray], table: FloatArray) -> Plan:
     """Return the plan of given amplitudes, each leg scaled until its limits hold for as many lines as they must.
 
     Parameters
