@@ -20,8 +20,10 @@ from shaftprint.design._campaign import campaign_of
 from shaftprint.design._design import best_plan, design_campaign, plan_of_lines
 from shaftprint.design._leg import Leg
 from shaftprint.design._limits import Limits, limits_from_vessel
-from shaftprint.design._plan import Peaks, Plan
+from shaftprint.design._plan import Peaks, Plan, SailedTest
+from shaftprint.design._rehearsal import Rehearsal, Sailing, rehearse
 from shaftprint.design._remedies import Remedy, remedies
+from shaftprint.design._replan import replan
 from shaftprint.design._shortest import shortest
 from shaftprint.design._timetable import Timetable
 from shaftprint.design._verdict import plan_sentences
@@ -36,7 +38,10 @@ __all__ = [
     "Limits",
     "Peaks",
     "Plan",
+    "Rehearsal",
     "Remedy",
+    "SailedTest",
+    "Sailing",
     "Timetable",
     "Wish",
     "assumed_line",
@@ -48,6 +53,8 @@ __all__ = [
     "no_worse_than",
     "plan_of_lines",
     "plan_sentences",
+    "rehearse",
     "remedies",
+    "replan",
     "shortest",
 ]

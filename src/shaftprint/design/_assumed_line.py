@@ -134,13 +134,35 @@ def assumed_line(
     )
 
 
-def line_of_fit(fit: "Identification") -> AssumedLine:
-    """Return what a first test found, with its covariance, for the plan of the next."""
-    structure = fit.structure
-    places = [structure.names.index(parameter.name) for parameter in fit.parameters]
+def line_of_fit(structure: Structure, fit: "Identification") -> AssumedLine:
+    """Return what a first test found, with its covariance, for the plan of the next.
+
+    Parameters
+    ----------
+    structure
+        The structure as it is normalised at the first working point, its sensors ideal.
+    fit
+        A fit of it to one response or to several at their working points; what it held keeps the structure's value.
+
+    Raises
+    ------
+    DesignError
+        If the fit does not have all free parameters of the structure.
+    """
+    estimates = {estimate.name: estimate.value for estimate in fit.parameters}
+    missing = [p.name for p in structure.free if p.name not in estimates]
+    if missing:
+        raise DesignError(
+            f"assumed line {structure.name}: expected a fit with {', '.join(missing)}, found one of "
+            f"{fit.objective.name}."
+        )
+    names = [p.name for p in structure.free]
+    places = [structure.names.index(name) for name in names]
+    rows = [list(estimates).index(name) for name in names]
     covariance = np.zeros((len(structure.names),) * 2)
-    covariance[np.ix_(places, places)] = fit.covariance
-    return AssumedLine(structure=structure, values=frozen_float(fit.values), covariance=frozen_float(covariance))
+    covariance[np.ix_(places, places)] = fit.covariance[np.ix_(rows, rows)]
+    values = structure.vector({name: estimates[name] for name in names})
+    return AssumedLine(structure=structure, values=frozen_float(values), covariance=frozen_float(covariance))
 
 
 def _usual_std(structure: Structure, values: FloatArray) -> dict[str, float]:

@@ -1,7 +1,7 @@
 """Everything that is laid down before the search: legs without their amplitudes, and what binds them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from shaftprint.design._bounds import Bound, bounds_of_leg
 from shaftprint.design._leg import odd_harmonics
 from shaftprint.design._limits import Limits
 from shaftprint.design._motion import expect_motion, motion, motion_noise
+from shaftprint.design._plan import SailedTest
 from shaftprint.design._timetable import Timetable
 from shaftprint.design._wish import Wish
 from shaftprint.design.search import Uses
@@ -51,6 +52,8 @@ class Brief:
     """Whole periods of each leg."""
     period_s: float
     """Their length [s]."""
+    earlier: tuple[SailedTest, ...] = ()
+    """Responses of tests that were sailed before, which will be fitted together with this one."""
 
     @classmethod
     def of(
@@ -64,6 +67,7 @@ class Brief:
         within_s: float,
         priors: Mapping[str, Prior],
         timetable: Timetable,
+        earlier: Sequence[SailedTest] = (),
     ) -> "Brief":
         """Return what follows from the wishes of the user; see ``design_campaign``."""
         expect_motion(line.structure)
@@ -82,17 +86,19 @@ class Brief:
                 odd_harmonics(period_s, min(limits.last_frequency_hz, float(level.frequency_hz[-1])), MOST_LINES)
                 for level in levels
             ),
-            periods=periods, period_s=period_s,
+            periods=periods, period_s=period_s, earlier=tuple(earlier),
         )  # fmt: skip
 
     def information(self, values: FloatArray) -> LineInformation:
-        """Return what every line would tell for a unit of amplitude over a second."""
+        """Return what every line would tell for a unit of amplitude over a second; earlier tests count as priors."""
         pairs = [
             (structure, planned_lines(np.array(lines) / self.period_s, noise=level, amplitude=1.0, duration_s=1.0))
             for structure, lines, level in zip(self.structures, self.harmonics, self.noise, strict=True)
         ]
         named = dict(zip(self.line.structure.names, values.tolist(), strict=True))
-        return line_information(pairs, values=named, priors=self.priors)
+        every = line_information([*pairs, *self.earlier], values=named, priors=self.priors)
+        before = sum((lines.sum(axis=0) for lines in every.of_lines[len(pairs) :]), every.of_priors)
+        return replace(every, of_lines=every.of_lines[: len(pairs)], of_priors=before)
 
     def uses(self, leg: int, table: FloatArray, harmonics: tuple[int, ...] | None = None, fold: int = 1) -> Uses:
         """Return the uses of the bounds of a leg, for lines that may be, shape (rows, parameters)."""

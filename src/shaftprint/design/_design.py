@@ -11,7 +11,7 @@ from shaftprint.design._brief import Brief
 from shaftprint.design._leg import Leg, started_at_rest, strong_lines
 from shaftprint.design._limits import Limits
 from shaftprint.design._motion import motion
-from shaftprint.design._plan import Peaks, Plan, peaks_of, predicted_accuracy
+from shaftprint.design._plan import Peaks, Plan, SailedTest, peaks_of, predicted_accuracy
 from shaftprint.design._timetable import Timetable
 from shaftprint.design._wish import Wish, numbers_of_line
 from shaftprint.design.search import (
@@ -45,6 +45,7 @@ def design_campaign(
     within_s: float,
     rng: np.random.Generator,
     priors: Mapping[str, Prior] | None = None,
+    earlier: Sequence[SailedTest] = (),
     timetable: Timetable | None = None,
     effort: Effort | None = None,
 ) -> Plan:
@@ -73,6 +74,8 @@ def design_campaign(
         Draws the lines that may be, and the starts of the search.
     priors
         What the fit will know besides, by name of the parameter.
+    earlier
+        Tests that were sailed before and will be fitted together with this one.
     timetable
         What is spent on other things than windows, and the period.
     effort
@@ -85,7 +88,7 @@ def design_campaign(
     """
     brief = Brief.of(
         line, wish, limits, noise, speeds=speeds, within_s=within_s, priors=priors or {},
-        timetable=timetable or Timetable(),
+        timetable=timetable or Timetable(), earlier=earlier,
     )  # fmt: skip
     return best_plan(brief, effort or Effort(), rng)
 
@@ -138,9 +141,9 @@ def plan_of_lines(brief: Brief, amplitudes: Sequence[ComplexArray], table: Float
         peaks.append(_peaks(brief, number, legs[-1], allowed, table[held]))
     return Plan(
         line=brief.line, wish=brief.wish, limits=brief.limits, priors=brief.priors, timetable=brief.timetable,
-        noise=brief.noise, structures=brief.structures, legs=tuple(legs), peaks=tuple(peaks),
+        noise=brief.noise, structures=brief.structures, legs=tuple(legs), peaks=tuple(peaks), earlier=brief.earlier,
         predicted=predicted_accuracy(
-            brief.structures, legs, brief.noise, values=brief.line.by_name, priors=brief.priors
+            brief.structures, legs, brief.noise, values=brief.line.by_name, priors=brief.priors, earlier=brief.earlier
         ),
     )  # fmt: skip
 

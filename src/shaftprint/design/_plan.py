@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TypeAlias
 
 import numpy as np
 
@@ -16,7 +17,11 @@ from shaftprint.identify import NoiseLevels, Prior
 from shaftprint.identify.prediction import Accuracy, planned_lines, predict_joint_accuracy
 from shaftprint.models import Structure
 from shaftprint.notebook import Shown, Summary
+from shaftprint.spectra import FrequencyResponse
 from shaftprint.units import SECONDS_PER_MINUTE
+
+SailedTest: TypeAlias = tuple[Structure, FrequencyResponse]
+"""A structure as it is normalised where a test was sailed, and the response that was measured."""
 
 # A limit binds when a leg uses so much of it.
 BINDS = 0.98
@@ -65,6 +70,8 @@ class Plan(Shown):
     """The legs, in the order in which they are sailed."""
     peaks: tuple[Peaks, ...]
     """The most that each leg asks for."""
+    earlier: tuple[SailedTest, ...] = ()
+    """Tests that were sailed before and are fitted together with this one."""
     predicted: Accuracy
     """How well the numbers would be known, at the assumed values."""
 
@@ -129,8 +136,9 @@ def predicted_accuracy(
     *,
     values: Mapping[str, float],
     priors: Mapping[str, Prior],
+    earlier: Sequence[SailedTest] = (),
 ) -> Accuracy:
-    """Return how well the legs together would find the parameters."""
+    """Return how well the legs and earlier tests together would find the parameters."""
     pairs = [
         (
             structure,
@@ -138,7 +146,7 @@ def predicted_accuracy(
         )
         for structure, leg, level in zip(structures, legs, noise, strict=True)
     ]
-    return predict_joint_accuracy(pairs, values=values, priors=priors)
+    return predict_joint_accuracy([*pairs, *earlier], values=values, priors=priors)
 
 
 def peaks_of(leg: Leg, extremes: FloatArray, uses: Mapping[str, float], limits: Limits) -> Peaks:

@@ -75,7 +75,12 @@ def _knowledge(plan: Plan) -> dict[str, tuple[str, Prior]]:
 def _known_besides(plan: Plan, parameter: str, known: tuple[str, Prior]) -> Remedy:
     words, prior = known
     accuracy = predicted_accuracy(
-        plan.structures, plan.legs, plan.noise, values=plan.line.by_name, priors={**plan.priors, parameter: prior}
+        plan.structures,
+        plan.legs,
+        plan.noise,
+        values=plan.line.by_name,
+        priors={**plan.priors, parameter: prior},
+        earlier=plan.earlier,
     )
     ratios = {name: accuracy.estimate(name).std / target for name, target in plan.targets.items()}
     return Remedy(name=words, worst=max(ratios.values()), ratios=ratios)

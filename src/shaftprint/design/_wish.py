@@ -89,11 +89,13 @@ def no_worse_than(numbers: Sequence[_Stated], *, but: Sequence[str] = ()) -> Wis
     Parameters
     ----------
     numbers
-        Parameters and combinations with their standard deviations, as an ``Accuracy``, a fit or a fingerprint has them.
+        Parameters and combinations with their standard deviations, as an ``Accuracy``, a fit or a fingerprint has them;
+        those of which nothing is known are passed over.
     but
         Names of those of which nothing is wished.
     """
-    return Wish(absolute={number.name: number.std for number in numbers if number.name not in but})
+    known = {number.name: number.std for number in numbers if 0.0 < number.std < float("inf")}
+    return Wish(absolute={name: std for name, std in known.items() if name not in but})
 
 
 def numbers_of_line(structure: Structure) -> tuple[str, ...]:

@@ -1,0 +1,62 @@
+"""The verb ``replan``: the next test, with what a first one has found."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from shaftprint.design._assumed_line import line_of_fit
+from shaftprint.design._design import design_campaign
+from shaftprint.design._plan import Plan
+from shaftprint.design.search import Effort
+from shaftprint.identify import Identification, NoiseLevels
+from shaftprint.identify.likelihood import FittedResponse
+
+
+def replan(
+    plan: Plan,
+    fit: Identification,
+    *,
+    within_s: float,
+    rng: np.random.Generator,
+    noise: NoiseLevels | Mapping[float, NoiseLevels] | None = None,
+    effort: Effort | None = None,
+) -> Plan:
+    """Return the plan of a further test with the same wishes, limits and speeds, after a first one was fitted.
+
+    The line is assumed as the fit found it, within its covariance; the responses of the first test count as data that
+    will be fitted together with the next.
+
+    Parameters
+    ----------
+    plan
+        The plan of the first test.
+    fit
+        The fit of its legs, each at its working point.
+    within_s
+        Length of the further test [s].
+    rng
+        Draws the lines that may be, and the starts of the search.
+    noise
+        Noise that the first test has shown; that of its plan where not given.
+    effort
+        What the search may cost.
+
+    Raises
+    ------
+    DesignError
+        As ``design_campaign``, or if the fit is one of another structure.
+    """
+    speeds = tuple(leg.speed_share for leg in plan.legs)
+    return design_campaign(
+        line_of_fit(plan.line.structure, fit),
+        plan.wish,
+        plan.limits,
+        dict(zip(speeds, plan.noise, strict=True)) if noise is None else noise,
+        speeds=speeds,
+        within_s=within_s,
+        rng=rng,
+        priors=plan.priors,
+        earlier=[(part.structure, part.response) for part in fit.parts if isinstance(part, FittedResponse)],
+        timetable=plan.timetable,
+        effort=effort,
+    )
