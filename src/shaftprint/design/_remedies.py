@@ -1,5 +1,6 @@
 """What would help where a plan does not meet its wishes: knowledge from elsewhere, another speed."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
@@ -7,7 +8,7 @@ from shaftprint.catalogue import ShipRole
 from shaftprint.design._plan import Plan, predicted_accuracy
 from shaftprint.errors import DesignError
 from shaftprint.identify import Prior
-from shaftprint.models import Role
+from shaftprint.identify.prediction import Accuracy
 from shaftprint.notebook import Shown
 
 LATENCY_STD_S = 0.005
@@ -32,9 +33,11 @@ class Remedy(Shown):
     @property
     def sentence(self) -> str:
         """Say what it would bring."""
+        if self.worst <= 1.0:
+            return f"With {self.name} every wish would be met."
         number = max(self.ratios, key=lambda name: self.ratios[name])
-        rest = f"{number} would still be {self.worst:.2g} times its wish"
-        return f"With {self.name} {'every wish would be met' if self.worst <= 1.0 else rest}."
+        rest = f"be {self.worst:.2g} times its wish" if math.isfinite(self.worst) else "not be known"
+        return f"With {self.name} {number} would still {rest}."
 
 
 def remedies(plan: Plan, design: Callable[[tuple[float, ...]], Plan] | None = None) -> tuple[Remedy, ...]:
@@ -47,54 +50,57 @@ def remedies(plan: Plan, design: Callable[[tuple[float, ...]], Plan] | None = No
     design
         The plan at other speeds, for the effect of a second leg; not asked where the plan has two already.
     """
-    found = [_known_besides(plan, name, prior) for name, prior in _knowledge(plan).items()]
-    if design is not None and len(plan.legs) == 1:
-        found += _second_leg(plan, design)
-    return tuple(sorted(found, key=lambda remedy: remedy.worst))
+    knowledge = _knowledge(plan)
+    every = [_known_besides(plan, *known) for known in knowledge]
+    other = None if design is None or len(plan.legs) > 1 else _at_second_speed(plan, design)
+    if other is not None:
+        every.append(_remedy(f"half of the time at {other.legs[-1].level_rpm:.0f} rpm", other, other.predicted))
+    if len(every) > 1 and knowledge:
+        priors = {name: prior for _, more in knowledge for name, prior in more.items()}
+        words = " and ".join(remedy.name for remedy in every)
+        every.append(_known_besides(other or plan, words, priors))
+    return tuple(sorted(every, key=lambda remedy: remedy.worst))
 
 
-def _knowledge(plan: Plan) -> dict[str, tuple[str, Prior]]:
+def _knowledge(plan: Plan) -> list[tuple[str, dict[str, Prior]]]:
     """Return what could be known besides: in words, and as a prior of a parameter."""
     structure, values = plan.line.structure, plan.line.by_name
     free = {p.name for p in structure.free} - set(plan.priors)
-
-    def name_of(role: Role) -> str | None:
-        name = structure.named_as(role)
-        return name if name in free else None
-
-    knowledge = {}
-    if (name := name_of(ShipRole.SET_POINT_LATENCY)) is not None:
+    latency, inertia = (structure.named_as(role) for role in (ShipRole.SET_POINT_LATENCY, ShipRole.INERTIA_UPSTREAM))
+    knowledge = []
+    if latency in free:
         words = f"the latency of the set point known to {1000.0 * LATENCY_STD_S:g} ms"
-        knowledge[name] = words, Prior(values[name], LATENCY_STD_S)
-    if (name := name_of(ShipRole.INERTIA_UPSTREAM)) is not None:
+        knowledge.append((words, {latency: Prior(values[latency], LATENCY_STD_S)}))
+    if inertia in free:
         words = f"the inertia upstream of the gauge known from the builder to {100.0 * INERTIA_SHARE:g} %"
-        knowledge[name] = words, Prior(values[name], INERTIA_SHARE * values[name])
+        knowledge.append((words, {inertia: Prior(values[inertia], INERTIA_SHARE * values[inertia])}))
     return knowledge
 
 
-def _known_besides(plan: Plan, parameter: str, known: tuple[str, Prior]) -> Remedy:
-    words, prior = known
+def _known_besides(plan: Plan, words: str, more: Mapping[str, Prior]) -> Remedy:
     accuracy = predicted_accuracy(
         plan.structures,
         plan.legs,
         plan.noise,
         values=plan.line.by_name,
-        priors={**plan.priors, parameter: prior},
+        priors={**plan.priors, **more},
         earlier=plan.earlier,
     )
+    return _remedy(words, plan, accuracy)
+
+
+def _remedy(words: str, plan: Plan, accuracy: Accuracy) -> Remedy:
     ratios = {name: accuracy.estimate(name).std / target for name, target in plan.targets.items()}
     return Remedy(name=words, worst=max(ratios.values()), ratios=ratios)
 
 
-def _second_leg(plan: Plan, design: Callable[[tuple[float, ...]], Plan]) -> list[Remedy]:
-    """Return what half of the time would bring at the speed farthest off that leaves room for the set point."""
-    limits, share = plan.limits, plan.legs[0].speed_share
+def _at_second_speed(plan: Plan, design: Callable[[tuple[float, ...]], Plan]) -> Plan | None:
+    """Return the plan with a second leg at the speed farthest off that leaves room for the set point."""
+    limits, leg = plan.limits, plan.legs[0]
     clear = _CLEAR * limits.set_point_rpm
     lowest, highest = limits.lowest_speed_rpm + clear, limits.highest_speed_rpm - clear
-    level = plan.legs[0].level_rpm
-    other = lowest if level / lowest > highest / level else highest
+    other = lowest if leg.level_rpm / lowest > highest / leg.level_rpm else highest
     try:
-        both = design((share, other / limits.engine_speed_rpm))
+        return design((leg.speed_share, other / limits.engine_speed_rpm))
     except DesignError:
-        return []
-    return [Remedy(name=f"half of the time at {other:.0f} rpm", worst=max(both.ratios.values()), ratios=both.ratios)]
+        return None

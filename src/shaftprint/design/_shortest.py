@@ -36,21 +36,20 @@ def shortest(design: Callable[[float], Plan], *, longest_s: float) -> Plan:
             f"shortest test within {longest_s / SECONDS_PER_MINUTE:g} min: expected a wish, found none; every longer "
             "test knows more."
         )
-    too_short_s = 0.0
+    too_short_s, latest = 0.0, best
     for _ in range(_MOST_PLANS):
-        worst = max(best.ratios.values())
-        if worst > 1.0 or worst > _NEAR or best.duration_s - too_short_s < _SHARE * best.duration_s:
+        if max(best.ratios.values()) > _NEAR or best.duration_s - too_short_s < _SHARE * best.duration_s:
             break
-        trial_s = max(best.seconds_per_wish.values())
-        if not too_short_s < trial_s < (1.0 - 0.5 * _SHARE) * best.duration_s:
+        trial_s = (1.0 + 0.5 * _SHARE) * max(latest.seconds_per_wish.values())
+        if not too_short_s < trial_s < best.duration_s:
             trial_s = 0.5 * (too_short_s + best.duration_s)
         try:
-            plan = design(trial_s)
+            latest = design(trial_s)
         except DesignError:
             too_short_s = trial_s
             continue
-        if plan.is_enough:
-            best = plan
+        if latest.is_enough:
+            best = latest
         else:
-            too_short_s = plan.duration_s
+            too_short_s = trial_s
     return best

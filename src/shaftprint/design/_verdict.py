@@ -1,5 +1,6 @@
 """A plan in sentences: what is met, what is not, by how much, and what binds."""
 
+import math
 from collections.abc import Sequence
 
 from shaftprint.design._plan import Plan
@@ -7,12 +8,14 @@ from shaftprint.design._remedies import Remedy
 from shaftprint.digits import stated
 from shaftprint.units import SECONDS_PER_MINUTE
 
+# A longer test is stated in hours.
+_LONGEST_IN_MINUTES = 200.0
+
 
 def plan_sentences(plan: Plan, remedies: Sequence[Remedy] = ()) -> tuple[str, ...]:
     """Return what a plan reaches, the answer first."""
-    minutes = plan.duration_s / SECONDS_PER_MINUTE
     missed = {name: ratio for name, ratio in plan.ratios.items() if not ratio <= 1.0}
-    length = f"{minutes:.3g} min at {_speeds(plan)}"
+    length = f"{_length(plan.duration_s)} at {_speeds(plan)}"
     if not plan.wish.names:
         answer = f"{length} make the numbers of the line known as well as its limits allow."
     elif missed:
@@ -34,19 +37,24 @@ def _speeds(plan: Plan) -> str:
 
 def _miss(plan: Plan, name: str) -> str:
     number, target = plan.predicted.estimate(name), plan.targets[name]
+    if not math.isfinite(number.std):
+        return f"{name}: such a test does not show it, however long."
     best = stated(number.value, number.std, number.unit)
-    needed_s = plan.seconds_per_wish[name]
-    longer = "no such test shows it"
-    if needed_s < float("inf"):
-        longer = f"such a test of {needed_s / SECONDS_PER_MINUTE:.3g} min would reach it"
-    return f"{name}: the best that can be reached is {best}, {number.std / target:.3g} times the wish; {longer}."
+    return (
+        f"{name}: the best that can be reached is {best}, {number.std / target:.3g} times the wish; such a test of "
+        f"{_length(plan.seconds_per_wish[name])} would reach it."
+    )
+
+
+def _length(seconds: float) -> str:
+    minutes = seconds / SECONDS_PER_MINUTE
+    return f"{minutes:.3g} min" if minutes < _LONGEST_IN_MINUTES else f"{minutes / 60.0:,.0f} h"
 
 
 def _binding(plan: Plan) -> list[str]:
     sentences = []
     for leg, peaks in zip(plan.legs, plan.peaks, strict=True):
-        keeps = "keeps" if len(peaks.binding) == 1 else "keep"
-        sentences.append(
-            f"At {leg.level_rpm:.0f} rpm {' and '.join(peaks.binding)} {keeps} the lines from being stronger."
-        )
+        *others, last = peaks.binding
+        names = f"{', '.join(others)} and {last} keep" if others else f"{last} keeps"
+        sentences.append(f"At {leg.level_rpm:.0f} rpm {names} the lines from being stronger.")
     return sentences

@@ -1,0 +1,57 @@
+"""A rehearsal with results that are made up, so that bias, scatter and coverage are known."""
+
+import numpy as np
+import pytest
+
+from shaftprint.design import Sailing, rehearse
+from shaftprint.errors import DesignError, IdentificationError
+from shaftprint.identify.fit import Estimate
+
+
+def sailing(plan, truth, *, errors, stated=1.0, limited=0.0):
+    """A sailing whose errors and deviations are multiples of what was planned, by name."""
+    numbers = []
+    for name, error in errors.items():
+        std = plan.predicted.estimate(name).std
+        numbers.append(Estimate(name=name, unit="-", value=truth[name] + error * std, std=stated * std))
+    return Sailing(numbers=numbers, limited_share=limited)
+
+
+def test_errors_of_known_size(plan, truth):
+    """Errors of +2 and -1 planned deviations, stated twice as large: z of 1 and -1/2."""
+    shift = {1: 2.0, 2: -1.0}
+    rehearsal = rehearse(
+        plan,
+        lambda seed: sailing(plan, truth, errors={"K_p": shift[seed]}, stated=2.0),
+        truth={"K_p": truth["K_p"]},
+        seeds=(1, 2),
+    )
+    assert rehearsal.mean_z["K_p"] == pytest.approx(0.25)
+    assert rehearsal.rms_z["K_p"] == pytest.approx(np.sqrt((1.0 + 0.25) / 2.0))
+    assert rehearsal.over_planned["K_p"] == pytest.approx(np.sqrt((4.0 + 1.0) / 2.0))
+    assert rehearsal.coverage["K_p"] == 1.0
+    assert rehearsal.sentences == (
+        "Rehearsed with 2 simulated tests; 100 % of the 95 % intervals hold the truth.",
+        "Error over the planned deviation: K_p 1.6.",
+    )
+
+
+def test_coverage_limits_and_failures_are_told(plan, truth):
+    def sail(seed):
+        if seed == 3:
+            raise IdentificationError("no start reached an acceptable optimum.")
+        return sailing(plan, truth, errors={"t_d": 3.0 if seed else 0.9}, limited=0.02 * seed)
+
+    rehearsal = rehearse(plan, sail, truth={"t_d": truth["t_d"], "g": 0.0}, seeds=(0, 1, 3))
+    assert rehearsal.names == ("t_d",)
+    assert rehearsal.coverage == {"t_d": 0.5}
+    assert rehearsal.sentences[2].startswith("A limit acted for up to 2 % of the time in the windows")
+    assert rehearsal.sentences[3] == "1 of 3 gave no result: no start reached an acceptable optimum."
+
+
+def test_without_any_result(plan):
+    def sail(seed):
+        raise IdentificationError("nothing.")
+
+    with pytest.raises(DesignError, match=r"rehearsal with 2 seeds: expected a result of at least one, .* nothing\."):
+        rehearse(plan, sail, truth={"K_p": 1.0}, seeds=(1, 2))
