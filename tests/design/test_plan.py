@@ -120,6 +120,24 @@ def test_peaks_are_those_of_a_simulation_in_time(plan, truth, number):
     assert peaks.brake_torque_nm[1] - brake_nm == pytest.approx(swing.max(), rel=1e-2)
 
 
+@pytest.mark.parametrize("number", [0, 1])
+def test_start_from_rest_asks_for_little_more(plan, truth, limits, number):
+    """The settling of each leg from steady running, simulated: torque against the full-load curve and the motoring."""
+    leg, share = plan.legs[number], SPEEDS[number]
+    line = at_speed(share)
+    step = leg.period_s / 8192.0
+    time = step * np.arange(-200, int(leg.settle_s / step))
+    deviation = np.where(time < 0.0, 0.0, leg.set_point_rpm(time) / leg.level_rpm - 1.0)
+    trace = simulate(line, line.vector(truth), time - time[0], {"n_set": deviation})
+    speed = trace.outputs["n"]
+    brake = 1.0 + trace.outputs["M_s"] + truth["tau_up"] / share * np.gradient(speed, step)
+    brake_nm = 465.54 * share**2 * brake
+    speed_rpm = leg.level_rpm * (1.0 + speed)
+    assert np.all(brake_nm < np.interp(speed_rpm, *np.array(limits.full_load).T))
+    assert np.all(brake_nm > -np.interp(speed_rpm, *np.array(limits.motoring).T))
+    assert plan.peaks[number].start_use < 1.1
+
+
 def test_every_limit_is_kept_and_one_is_reached(plan, limits):
     for peaks in plan.peaks:
         assert max(peaks.uses.values()) == pytest.approx(1.0, abs=1e-9)

@@ -69,7 +69,13 @@ class Brief:
         timetable: Timetable,
         earlier: Sequence[SailedTest] = (),
     ) -> "Brief":
-        """Return what follows from the wishes of the user; see ``design_campaign``."""
+        """Return what follows from the wishes of the user; see ``design_campaign``.
+
+        Raises
+        ------
+        DesignError
+            If there is no speed, no room below a limit or too little time.
+        """
         expect_motion(line.structure)
         if not speeds or not all(share > 0.0 for share in speeds):
             stated = ", ".join(f"{share:g}" for share in speeds) or "none"

@@ -8,10 +8,11 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.design._assumed_line import AssumedLine
 from shaftprint.design._brief import Brief
-from shaftprint.design._leg import Leg, started_at_rest, strong_lines
+from shaftprint.design._leg import Leg, strong_lines
 from shaftprint.design._limits import Limits
 from shaftprint.design._motion import motion
 from shaftprint.design._plan import Peaks, Plan, SailedTest, peaks_of, predicted_accuracy
+from shaftprint.design._start import gentle_start
 from shaftprint.design._timetable import Timetable
 from shaftprint.design._wish import Wish, numbers_of_line
 from shaftprint.design.search import (
@@ -135,10 +136,10 @@ def plan_of_lines(brief: Brief, amplitudes: Sequence[ComplexArray], table: Float
             periods=brief.periods,
             settle_s=brief.timetable.settle_s,
         )
-        turned = started_at_rest(about)
+        turned, start_use = gentle_start(about, brief.structures[number], table[0], brief.bounds[number])
         largest = allowed.largest(turned.amplitudes).max()
         legs.append(replace(turned, amplitudes=turned.amplitudes / largest))
-        peaks.append(_peaks(brief, number, legs[-1], allowed, table[held]))
+        peaks.append(_peaks(brief, number, legs[-1], allowed, table[held], start_use / largest))
     return Plan(
         line=brief.line, wish=brief.wish, limits=brief.limits, priors=brief.priors, timetable=brief.timetable,
         noise=brief.noise, structures=brief.structures, legs=tuple(legs), peaks=tuple(peaks), earlier=brief.earlier,
@@ -148,7 +149,7 @@ def plan_of_lines(brief: Brief, amplitudes: Sequence[ComplexArray], table: Float
     )  # fmt: skip
 
 
-def _peaks(brief: Brief, number: int, leg: Leg, uses: Uses, table: FloatArray) -> Peaks:
+def _peaks(brief: Brief, number: int, leg: Leg, uses: Uses, table: FloatArray, start_use: float) -> Peaks:
     """Return what a leg asks for, among the lines for which its limits hold."""
     largest: dict[str, float] = {}
     for bound, use in zip(brief.bounds[number], uses.largest(leg.amplitudes).max(axis=1).tolist(), strict=True):
@@ -158,7 +159,7 @@ def _peaks(brief: Brief, number: int, leg: Leg, uses: Uses, table: FloatArray) -
         transfer=responses.swapaxes(0, 1).reshape(-1, len(leg.harmonics)), harmonics=leg.harmonics,
         samples=uses.samples, draws=table.shape[0],
     ).in_time(leg.amplitudes).reshape(responses.shape[1], -1)  # fmt: skip
-    return peaks_of(leg, np.stack([signals.min(axis=1), signals.max(axis=1)], axis=1), largest, brief.limits)
+    return peaks_of(leg, np.stack([signals.min(axis=1), signals.max(axis=1)], axis=1), largest, start_use, brief.limits)
 
 
 def _wanted(brief: Brief, table: FloatArray) -> tuple[tuple[Possibility, ...], Criterion]:

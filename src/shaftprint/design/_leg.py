@@ -1,18 +1,16 @@
 """The noun ``Leg``: one multisine about one speed."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, frozen_complex
+from shaftprint.arrays import ComplexArray, FloatArray, frozen_complex
 from shaftprint.notebook import Shown, Summary
 
 # Lines weaker than this share of the strongest one of their leg are left out.
 WEAKEST = 1e-3
-# Samples a period of the fastest line, between which the set point is straight where it passes its level.
-_CROSSING_SAMPLES = 64
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -89,32 +87,6 @@ class Leg(Shown):
         for harmonic, amplitude, phase in zip(self.harmonics, self.amplitudes_rpm, self.phases_rad, strict=True):
             value += amplitude * np.sin(harmonic * turn + phase)
         return value
-
-
-def started_at_rest(leg: Leg) -> Leg:
-    """Return a leg that starts where its set point rises through its level, and whose window ends where it is there.
-
-    So ramps go from level to level. The time to settle becomes a little shorter for it.
-    """
-    turn_s, rising = _crossings(leg)
-    start_s = float(turn_s[rising][0])
-    harmonics = np.array(leg.harmonics)
-    turned = leg.amplitudes * np.exp(2j * np.pi * harmonics * start_s / leg.period_s)
-    after_s = np.sort(np.mod(turn_s - start_s, leg.period_s))
-    settle_s = leg.settle_s % leg.period_s
-    earlier = after_s[after_s <= settle_s]
-    return replace(leg, amplitudes=turned, settle_s=leg.settle_s - settle_s + float(earlier[-1]))
-
-
-def _crossings(leg: Leg) -> tuple[FloatArray, BoolArray]:
-    """Return when the set point passes its level in one period [s], and whether it rises."""
-    step_s = leg.period_s / (_CROSSING_SAMPLES * leg.harmonics[-1])
-    time = step_s * np.arange(_CROSSING_SAMPLES * leg.harmonics[-1])
-    before = leg.set_point_rpm(time) - leg.level_rpm
-    after = np.roll(before, -1)
-    places = np.flatnonzero((before <= 0.0) != (after <= 0.0))
-    share = before[places] / (before[places] - after[places])
-    return time[places] + step_s * share, before[places] <= 0.0
 
 
 def strong_lines(harmonics: tuple[int, ...], amplitudes: ComplexArray) -> tuple[tuple[int, ...], ComplexArray]:

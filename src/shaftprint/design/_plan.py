@@ -42,6 +42,9 @@ class Peaks(Shown):
     uses: Mapping[str, float]
     """Largest use of each limit, by its name: peak over what the limit leaves, noise taken off; at most 1."""
 
+    start_use: float
+    """Largest use of the limits by the assumed line from the start of the leg to its window, at most about 1."""
+
     @property
     def binding(self) -> tuple[str, ...]:
         """Names of the limits that keep the leg from being stronger."""
@@ -149,7 +152,7 @@ def predicted_accuracy(
     return predict_joint_accuracy([*pairs, *earlier], values=values, priors=priors)
 
 
-def peaks_of(leg: Leg, extremes: FloatArray, uses: Mapping[str, float], limits: Limits) -> Peaks:
+def peaks_of(leg: Leg, extremes: FloatArray, uses: Mapping[str, float], start_use: float, limits: Limits) -> Peaks:
     """Return the peaks of a leg in the units of the ship.
 
     Parameters
@@ -167,4 +170,5 @@ def peaks_of(leg: Leg, extremes: FloatArray, uses: Mapping[str, float], limits: 
         speed_rpm=(speed * (1.0 + low[2]), speed * (1.0 + high[2])),
         brake_torque_nm=(torque * (1.0 + low[3]), torque * (1.0 + high[3])),
         uses=dict(uses),
+        start_use=start_use,
     )

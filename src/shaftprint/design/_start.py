@@ -1,0 +1,89 @@
+"""How a leg begins: where its set point passes its level, at that phase at which the start stirs up least.
+
+Before its first period the set point stands still, so that the line is not yet in the periodic motion whose peaks the
+plan holds. The difference dies out before the window, but it may meet a limit of the torque.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.design._bounds import Bound
+from shaftprint.design._leg import Leg
+from shaftprint.design._motion import motion
+from shaftprint.models import Structure
+
+# Samples a period of the fastest line, between which the set point is straight where it passes its level.
+_CROSSING_SAMPLES = 64
+# Samples a period of the fastest line in which the motion after a start is computed.
+_START_SAMPLES = 16
+
+
+def gentle_start(leg: Leg, structure: Structure, values: FloatArray, bounds: tuple[Bound, ...]) -> tuple[Leg, float]:
+    """Return a leg whose first period begins where its set point passes its level and the start asks for least.
+
+    Its window begins at the last such passage within the time to settle, so that ramps go from level to level.
+
+    Parameters
+    ----------
+    leg
+        The leg, beginning at any phase.
+    structure
+        The structure as it is normalised at the leg.
+    values
+        Assumed values of its parameters, shape (parameters,).
+    bounds
+        Bounds of the leg.
+
+    Returns
+    -------
+        The leg, and the largest use of its bounds from the start to the window.
+    """
+    crossings_s = _crossings(leg)
+    start_use = _start_uses(leg, crossings_s, structure, values, bounds)
+    gentlest = int(np.argmin(start_use))
+    start_s = crossings_s[gentlest]
+    turned = leg.amplitudes * np.exp(2j * np.pi * np.array(leg.harmonics) * start_s / leg.period_s)
+    after_s = np.sort(np.mod(crossings_s - start_s, leg.period_s))
+    rest_s = leg.settle_s % leg.period_s
+    settle_s = leg.settle_s - rest_s + float(after_s[after_s <= rest_s][-1])
+    return replace(leg, amplitudes=turned, settle_s=settle_s), float(start_use[gentlest])
+
+
+def _crossings(leg: Leg) -> FloatArray:
+    """Return when the set point passes its level in one period [s], ascending."""
+    count = _CROSSING_SAMPLES * leg.harmonics[-1]
+    time = leg.period_s / count * np.arange(count)
+    before = leg.set_point_rpm(time) - leg.level_rpm
+    after = np.roll(before, -1)
+    places = np.flatnonzero((before <= 0.0) != (after <= 0.0))
+    share = before[places] / (before[places] - after[places])
+    return np.asarray(time[places] + leg.period_s / count * share)
+
+
+def _start_uses(
+    leg: Leg, starts_s: FloatArray, structure: Structure, values: FloatArray, bounds: tuple[Bound, ...]
+) -> FloatArray:
+    """Return the largest use of the bounds while the leg settles after each of several starts, shape (starts,).
+
+    One period of rest and one of the leg, repeated: what the end of the leg stirs up has died out after the rest.
+    """
+    count = 2 ** int(np.ceil(np.log2(_START_SAMPLES * leg.harmonics[-1])))
+    time = leg.period_s / count * np.arange(count)
+    about = leg.set_point_rpm(starts_s[:, None] + time) / leg.level_rpm - 1.0
+    spectrum = np.fft.rfft(np.concatenate([np.zeros_like(about), about], axis=1), axis=1)
+    weights = np.array([bound.weights / bound.room for bound in bounds])
+    transfer = weights @ _responses(leg, structure, values, spectrum.shape[1])
+    settling = slice(count, count + max(1, int(count * min(leg.settle_s / leg.period_s, 1.0))))
+    largest = [np.fft.irfft(spectrum * row, n=2 * count, axis=1)[:, settling].max(axis=1) for row in transfer]
+    return np.asarray(np.max(largest, axis=0))
+
+
+def _responses(leg: Leg, structure: Structure, values: FloatArray, count: int) -> ComplexArray:
+    """Return the responses of ``SIGNALS`` at multiples of half of the leg's first frequency, shape (signals, count)."""
+    omega = np.pi / leg.period_s * np.arange(count, dtype=np.float64)
+    # an integrator has no value at zero, its loop has
+    omega[0] = 1e-3 * omega[1]
+    responses: ComplexArray = motion(structure, values[None, :], omega)[0]
+    return responses
