@@ -61,7 +61,7 @@ class Case:
     """Speeds of the legs over that of the working point."""
     minutes: float
     """Length of the test [min]."""
-    tug: Tug = field(default_factory=Tug)
+    tug: Tug = field(default_factory=Tug.stan_tug_1205)
     """The simulated ship."""
 
 
@@ -81,7 +81,7 @@ CASES: Mapping[str, Case] = {
         limits=SLOW,
         speeds=(1.15, 0.70),
         minutes=12.0,
-        tug=Tug(demand_rate_limit_rpm_per_s=600.0, demand_resolution_rpm=4.8),
+        tug=replace(Tug.stan_tug_1205(), demand_rate_limit_rpm_per_s=600.0, demand_resolution_rpm=4.8),
     ),
 }
 

@@ -121,6 +121,26 @@ def test_peaks_are_those_of_a_simulation_in_time(plan, truth, number):
 
 
 @pytest.mark.parametrize("number", [0, 1])
+def test_demand_is_the_rack_of_the_governor(plan, truth, number):
+    """The structure with the rack logged, which shows the governor before the delay and the lag of the engine."""
+    leg, peaks, share = plan.legs[number], plan.peaks[number], SPEEDS[number]
+    logged = structure("GAUGE-ECU").scaled(**dict.fromkeys(("tau_dn", "tau_up", "K_p", "K_i", "g"), 1.0 / share))
+    rack = logged.of_outputs("X")
+    step = leg.period_s / 8192.0
+    time = step * np.arange(3 * 8192)
+    ramp = np.minimum(time / leg.period_s, 1.0)
+    inputs = {"n_set": ramp * (leg.set_point_rpm(time) / leg.level_rpm - 1.0)}
+    swing = simulate(rack, rack.vector(truth_of(rack, truth)), time, inputs).outputs["X"][2 * 8192 :]
+    brake_nm = 465.54 * share**2
+    assert peaks.torque_demand_nm[0] == pytest.approx(brake_nm * (1.0 + swing.min()), rel=1e-2, abs=2.0)
+    assert peaks.torque_demand_nm[1] == pytest.approx(brake_nm * (1.0 + swing.max()), rel=1e-2, abs=2.0)
+
+
+def truth_of(chosen, truth):
+    return {name: value for name, value in truth.items() if name in chosen.names}
+
+
+@pytest.mark.parametrize("number", [0, 1])
 def test_start_from_rest_asks_for_little_more(plan, truth, limits, number):
     """The settling of each leg from steady running, simulated: torque against the full-load curve and the motoring."""
     leg, share = plan.legs[number], SPEEDS[number]

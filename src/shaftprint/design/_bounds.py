@@ -57,10 +57,15 @@ def bounds_of_leg(limits: Limits, speed_share: float, noise: FloatArray) -> tupl
         rate = limits.demand_rate_limit_rpm_per_s / speed_rpm
         stated += [("rate of the set point", {"rate": sign}, rate) for sign in (1.0, -1.0)]
     reach = (max(low, speed_rpm * (1.0 - _OVERSHOOT * step)), min(high, speed_rpm * (1.0 + _OVERSHOOT * step)))
-    for name, curve, sign in (("full load", limits.full_load, 1.0), ("motoring torque", limits.motoring, -1.0)):
+    for name, signal, curve, sign in (
+        ("full load", "brake torque", limits.full_load, 1.0),
+        ("motoring torque", "brake torque", limits.motoring, -1.0),
+        ("full rack", "torque demand", limits.full_load, 1.0),
+        ("zero fuel", "torque demand", limits.motoring, -1.0),
+    ):
         for slope, at_mean_nm in _pieces(curve, reach, speed_rpm):
-            # the torque stays below the curve, or above its negative: sign M_b <= curve(n)
-            weights = {"brake torque": sign, "speed": -slope * speed_rpm / torque_nm}
+            # the torque stays below the curve, or above its negative: sign M <= curve(n)
+            weights = {signal: sign, "speed": -slope * speed_rpm / torque_nm}
             stated.append((name, weights, at_mean_nm / torque_nm - sign))
     return tuple(_bound(name, weights, room, limits, noise, speed_rpm) for name, weights, room in stated)
 

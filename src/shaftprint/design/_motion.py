@@ -1,21 +1,24 @@
-"""What line and engine do when the set point moves: speed, brake torque, and their noise, at one working point.
+"""What line and engine do when the set point moves: speed, torques, and their noise, at one working point.
 
 Upstream of the gauge ``M_b - M_s = tau_up s n``: brake torque follows from the speed and the shaft torque that a
-structure gives, whatever lies in its loop. All are deviations over their values at the working point.
+structure gives, whatever lies in its loop. The control unit limits what the governor asks for, ``v X + g n``, before
+the delay and lag of the engine have made it smoother. All are deviations over their values at the working point.
 """
 
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.catalogue import ShipRole
+from shaftprint.catalogue import structure as structure_of
 from shaftprint.errors import DesignError
 from shaftprint.identify import NoiseLevels
-from shaftprint.models import Structure
+from shaftprint.models import Role, Structure
 
-SIGNALS = ("set point", "rate", "speed", "brake torque")
+SIGNALS = ("set point", "rate", "speed", "brake torque", "torque demand")
 """What limits are stated of, in the order of ``motion``; the rate is the set point's, over the working point [1/s]."""
 
 _SPEED, _TORQUE = "n", "M_s"
+_GOVERNOR = structure_of("GOVERNOR")
 
 
 def expect_motion(structure: Structure) -> None:
@@ -48,33 +51,64 @@ def motion(structure: Structure, table: FloatArray, omega_rad_s: FloatArray) -> 
     omega_rad_s
         Angular frequencies of the lines [rad/s], shape (lines,).
     """
-    s = 1j * omega_rad_s
+    s = np.asarray(1j * omega_rad_s, dtype=np.complex128)
     outputs = [output for output, _ in structure.channels]
     response = structure.response(table, s)
     speed, shaft_torque = response[:, outputs.index(_SPEED)], response[:, outputs.index(_TORQUE)]
     one = np.ones_like(speed)
     brake_torque = shaft_torque + _upstream_time_s(structure, table) * s * speed
-    return np.stack([one, s * one, speed, brake_torque], axis=1)
+    demand = brake_torque
+    if structure.named_as(ShipRole.PROPORTIONAL_GAIN) is not None:
+        of_set_point, of_speed = _demand(structure, table, s)
+        demand = of_set_point + of_speed * speed
+    return np.stack([one, s * one, speed, brake_torque, demand], axis=1)
 
 
 def motion_noise(structure: Structure, values: FloatArray, noise: NoiseLevels) -> FloatArray:
     """Return the covariance of the noise of ``SIGNALS``, which a limit has to leave room for, shape (signals, signals).
 
     The integral of the stated densities of speed and shaft torque over their frequencies, by the trapezoidal rule; the
-    set point has none.
+    set point has none, and the governor asks for torque because of that of the speed.
     """
     hertz = noise.frequency_hz
+    s = np.asarray(2j * np.pi * hertz, dtype=np.complex128)
     density = noise.of_outputs(_SPEED, _TORQUE).density
-    upstream = float(_upstream_time_s(structure, values[None, :])[0, 0])
     rows = np.zeros((hertz.size, len(SIGNALS), 2), dtype=np.complex128)
     rows[:, 2, 0] = 1.0
-    rows[:, 3, 0] = upstream * 2j * np.pi * hertz
+    rows[:, 3, 0] = _upstream_time_s(structure, values[None, :])[0] * s
     rows[:, 3, 1] = 1.0
+    rows[:, 4] = rows[:, 3]
+    if structure.named_as(ShipRole.PROPORTIONAL_GAIN) is not None:
+        rows[:, 4] = 0.0
+        rows[:, 4, 0] = _demand(structure, values[None, :], s)[1][0]
     spread = rows @ density @ rows.conj().swapaxes(1, 2)
     return np.asarray(np.trapezoid(spread.real, hertz, axis=0))
 
 
 def _upstream_time_s(structure: Structure, table: FloatArray) -> FloatArray:
     """Return the inertia time upstream of the gauge [s], shape (rows, 1); zero for structures that know none."""
-    name = structure.named_as(ShipRole.INERTIA_UPSTREAM)
-    return np.zeros((table.shape[0], 1)) if name is None else np.asarray(structure.columns(table)[name])
+    return _values_of(structure, ShipRole.INERTIA_UPSTREAM, table, otherwise=0.0)
+
+
+def _demand(structure: Structure, table: FloatArray, s: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return the torque that the governor asks for, from the set point and from the speed, each (rows, lines).
+
+    The governor of the catalogue with the parameters of the same roles; what is not logged has no latency.
+    """
+    columns = [
+        _values_of(structure, p.role, table, otherwise=p.value)
+        if p.role is not None and p.role != ShipRole.RACK_LATENCY
+        else np.full((table.shape[0], 1), p.value)
+        for p in _GOVERNOR.parameters
+    ]
+    rack = _GOVERNOR.response(np.concatenate(columns, axis=1), s)
+    slope = _values_of(structure, ShipRole.ENGINE_RACK_SLOPE, table, otherwise=1.0)
+    with_speed = _values_of(structure, ShipRole.ENGINE_SPEED_SLOPE, table, otherwise=0.0)
+    return slope * rack[:, 0], slope * rack[:, 1] + with_speed
+
+
+def _values_of(structure: Structure, role: Role, table: FloatArray, *, otherwise: float) -> FloatArray:
+    """Return the parameter of a role as the blocks take it, shape (rows, 1); a number where there is none."""
+    name = structure.named_as(role)
+    values = np.full((table.shape[0], 1), otherwise)
+    return values if name is None else values * 0.0 + structure.columns(table)[name]

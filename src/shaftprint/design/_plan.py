@@ -39,6 +39,8 @@ class Peaks(Shown):
     """Lowest and highest engine speed [rpm]."""
     brake_torque_nm: tuple[float, float]
     """Lowest and highest brake torque [N m]."""
+    torque_demand_nm: tuple[float, float]
+    """Lowest and highest brake torque that the governor asks for, before delay and lag [N m]."""
     uses: Mapping[str, float]
     """Largest use of each limit, by its name: peak over what the limit leaves, noise taken off; at most 1."""
 
@@ -169,6 +171,7 @@ def peaks_of(leg: Leg, extremes: FloatArray, uses: Mapping[str, float], start_us
         rate_rpm_per_s=speed * max(-low[1], high[1]),
         speed_rpm=(speed * (1.0 + low[2]), speed * (1.0 + high[2])),
         brake_torque_nm=(torque * (1.0 + low[3]), torque * (1.0 + high[3])),
+        torque_demand_nm=(torque * (1.0 + low[4]), torque * (1.0 + high[4])),
         uses=dict(uses),
         start_use=start_use,
     )
