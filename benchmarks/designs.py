@@ -16,14 +16,14 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.design import (
-    AssumedLine,
+    AssumedShip,
     Brief,
     Effort,
     Limits,
     Plan,
     Timetable,
     Wish,
-    assumed_line,
+    assumed_ship,
     best_plan,
     limits_from_vessel,
     no_worse_than,
@@ -85,11 +85,11 @@ def ratios(accuracy: Accuracy, reference: Accuracy) -> FloatArray:
 # ---- one speed ----
 
 
-def brief_of(line: AssumedLine, wish: Wish) -> Brief:
+def brief_of(ship: AssumedShip, wish: Wish) -> Brief:
     """Return one leg at the working point with windows of 630 s."""
     timetable = Timetable(lead_s=0.0, settle_s=SETTLE_S)
     return Brief.of(
-        line, wish, SAME_LIMITS, STAN_TUG_NOISE, speeds=(1.0,), within_s=SIGNAL_S + SETTLE_S, priors={},
+        ship, wish, SAME_LIMITS, STAN_TUG_NOISE, speeds=(1.0,), within_s=SIGNAL_S + SETTLE_S, priors={},
         timetable=timetable,
     )  # fmt: skip
 
@@ -100,14 +100,14 @@ def periodic(brief: Brief, samples: FloatArray, period_s: float) -> Plan:
     highest = int(SAME_LIMITS.highest_frequency_hz * period_s)
     harmonics = tuple(range(1, min(highest, spectrum.size - 1) + 1))
     own = replace(brief, harmonics=(harmonics,), period_s=period_s, periods=round(SIGNAL_S / period_s))
-    return plan_of_lines(own, [spectrum[list(harmonics)]], brief.line.values[None, :])
+    return plan_of_lines(own, [spectrum[list(harmonics)]], brief.ship.values[None, :])
 
 
 def with_phases(plan: Plan, brief: Brief, phases: FloatArray) -> Plan:
     """Return the lines of a plan with other phases, as strong as the limits let them be."""
     (leg,) = plan.legs
     own = replace(brief, harmonics=(leg.harmonics,))
-    return plan_of_lines(own, [np.abs(leg.amplitudes) * np.exp(1j * phases)], brief.line.values[None, :])
+    return plan_of_lines(own, [np.abs(leg.amplitudes) * np.exp(1j * phases)], brief.ship.values[None, :])
 
 
 def schroeder(amplitudes: ComplexArray) -> FloatArray:
@@ -124,7 +124,7 @@ def multisine(brief: Brief, size: FloatArray, harmonics: Sequence[int]) -> Plan:
     """Return a multisine of given sizes with phases of Schroeder."""
     own = replace(brief, harmonics=(tuple(harmonics),))
     amplitudes = size * np.exp(1j * schroeder(size.astype(complex)))
-    return plan_of_lines(own, [amplitudes], brief.line.values[None, :])
+    return plan_of_lines(own, [amplitudes], brief.ship.values[None, :])
 
 
 def largest_amplitude(brief: Brief, frequency_hz: FloatArray) -> FloatArray:
@@ -133,17 +133,17 @@ def largest_amplitude(brief: Brief, frequency_hz: FloatArray) -> FloatArray:
     amplitudes = []
     for hertz in frequency_hz:
         single = replace(own, harmonics=((1,),), period_s=1.0 / hertz)
-        amplitudes.append(1.0 / single.uses(0, brief.line.values[None, :]).largest(np.array([1.0 + 0.0j])).max())
+        amplitudes.append(1.0 / single.uses(0, brief.ship.values[None, :]).largest(np.array([1.0 + 0.0j])).max())
     return np.array(amplitudes)
 
 
-def of_lines(line: AssumedLine, frequency_hz: FloatArray, amplitude: FloatArray, seconds: FloatArray) -> Accuracy:
+def of_lines(ship: AssumedShip, frequency_hz: FloatArray, amplitude: FloatArray, seconds: FloatArray) -> Accuracy:
     """Return what lines one after the other would tell."""
     lines = planned_lines(frequency_hz, noise=STAN_TUG_NOISE, amplitude=amplitude, duration_s=seconds)
-    return predict_accuracy(line.structure, lines, values=line.by_name)
+    return predict_accuracy(ship.structure, lines, values=ship.by_name)
 
 
-def sequential_sines(line: AssumedLine, brief: Brief, reference: Accuracy) -> Accuracy:
+def sequential_sines(ship: AssumedShip, brief: Brief, reference: Accuracy) -> Accuracy:
     """Return five sines, each as strong as it may be, their lengths chosen for the smallest worst ratio."""
     hertz = np.array([0.03, 0.2, 0.57, 1.75, 6.0])
     amplitude = largest_amplitude(brief, hertz)
@@ -153,18 +153,18 @@ def sequential_sines(line: AssumedLine, brief: Brief, reference: Accuracy) -> Ac
         return np.asarray((SIGNAL_S - SETTLE_S * hertz.size) * share / share.sum())
 
     def worst(unknowns: FloatArray) -> float:
-        return float(ratios(of_lines(line, hertz, amplitude, lengths(unknowns)), reference).max())
+        return float(ratios(of_lines(ship, hertz, amplitude, lengths(unknowns)), reference).max())
 
     best = minimize(worst, np.zeros(hertz.size), method="Nelder-Mead", options={"maxiter": 400})
-    return of_lines(line, hertz, amplitude, lengths(best.x))
+    return of_lines(ship, hertz, amplitude, lengths(best.x))
 
 
-def chirp(line: AssumedLine, brief: Brief, *, shaped: bool) -> Accuracy:
+def chirp(ship: AssumedShip, brief: Brief, *, shaped: bool) -> Accuracy:
     """Return a logarithmic sweep, its amplitude at each frequency as large as it may be or the same everywhere."""
     hertz = np.geomspace(0.03, 7.0, 150)
     amplitude = largest_amplitude(brief, hertz)
     amplitude = amplitude if shaped else np.full_like(amplitude, amplitude.min())
-    return of_lines(line, hertz, amplitude, np.full_like(hertz, SIGNAL_S / hertz.size))
+    return of_lines(ship, hertz, amplitude, np.full_like(hertz, SIGNAL_S / hertz.size))
 
 
 def binary_sequence(order: int, taps: tuple[int, ...]) -> FloatArray:
@@ -181,12 +181,12 @@ def binary_sequence(order: int, taps: tuple[int, ...]) -> FloatArray:
 
 def one_speed() -> list[Row]:
     """Return all excitations at one speed, 630 s of signal, +/- 1 V, judged by the data alone with ``g`` held."""
-    line = assumed_line(CLOSED.held_at(g=0.0), TRUTH, std={})
+    ship = assumed_ship(CLOSED.held_at(g=0.0), TRUTH, std={})
     reference = predict_accuracy(
-        line.structure, planned_response(load_campaign("thesis"), STAN_TUG_NOISE), values=TRUTH
+        ship.structure, planned_response(load_campaign("thesis"), STAN_TUG_NOISE), values=TRUTH
     )
     known = [e for e in (*reference.parameters, *reference.combinations) if np.isfinite(e.std)]
-    minimax, free = brief_of(line, no_worse_than(known)), brief_of(line, Wish())
+    minimax, free = brief_of(ship, no_worse_than(known)), brief_of(ship, Wish())
     rng = np.random.default_rng(1)
     best = best_plan(minimax, Effort(restarts=6), rng)
     (leg,) = best.legs
@@ -213,9 +213,9 @@ def one_speed() -> list[Row]:
     ]  # fmt: skip
     rows = [Row(name=name, accuracy=plan.predicted, prototype=prototype) for name, plan, prototype in plans]
     rows += [
-        Row(name="sequential sines", accuracy=sequential_sines(line, minimax, reference), prototype="1.36, -"),
-        Row(name="chirp, shaped", accuracy=chirp(line, minimax, shaped=True), prototype="1.98, 0.75"),
-        Row(name="chirp, constant", accuracy=chirp(line, minimax, shaped=False), prototype="5.7, 2.0"),
+        Row(name="sequential sines", accuracy=sequential_sines(ship, minimax, reference), prototype="1.36, -"),
+        Row(name="chirp, shaped", accuracy=chirp(ship, minimax, shaped=True), prototype="1.98, 0.75"),
+        Row(name="chirp, constant", accuracy=chirp(ship, minimax, shaped=False), prototype="5.7, 2.0"),
     ]
     print("| one speed, 630 s, +/- 1 V | worst | median | prototype: worst, median |\n|---|---|---|---|")
     for row in rows:
@@ -229,7 +229,7 @@ def one_speed() -> list[Row]:
 
 def two_speeds() -> None:
     """Print the worst ratio of two speeds without priors to the campaign with those of the builder, over the length."""
-    line = assumed_line(CLOSED, TRUTH, std={})
+    ship = assumed_ship(CLOSED, TRUTH, std={})
     priors = {"g": Prior(0.0, 0.1), "tau_up": Prior(1.016, 0.0285)}
     thesis = predict_accuracy(
         CLOSED, planned_response(load_campaign("thesis"), STAN_TUG_NOISE), values=TRUTH, priors=priors
@@ -250,7 +250,7 @@ def two_speeds() -> None:
     print("|---|---|---|---|" + "---|" * len(names))
     for name, limits, speeds, minutes, prototype in cases:
         brief = Brief.of(
-            line, wish, limits, STAN_TUG_NOISE, speeds=speeds, within_s=60.0 * minutes, priors={}, timetable=TWO_LEGS
+            ship, wish, limits, STAN_TUG_NOISE, speeds=speeds, within_s=60.0 * minutes, priors={}, timetable=TWO_LEGS
         )
         plan = best_plan(brief, Effort(), np.random.default_rng(1))
         shares = " | ".join(f"{plan.ratios[one]:.2f}" for one in names)

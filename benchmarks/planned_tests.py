@@ -20,7 +20,7 @@ from shaftprint.design import (
     Plan,
     Rehearsal,
     Sailing,
-    assumed_line,
+    assumed_ship,
     campaign_of,
     design_campaign,
     limits_from_vessel,
@@ -92,7 +92,7 @@ def planned(case: Case) -> Plan:
     lines = planned_response(load_campaign("thesis"), STAN_TUG_NOISE)
     thesis = predict_accuracy(CLOSED, lines, values=TRUTH, priors=priors)
     return design_campaign(
-        assumed_line(CLOSED, TRUTH, std={}),
+        assumed_ship(CLOSED, TRUTH, std={}),
         no_worse_than((*thesis.parameters, *thesis.combinations), but=("t_gauge",)),
         case.limits,
         STAN_TUG_NOISE,

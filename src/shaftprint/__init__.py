@@ -20,7 +20,7 @@ room            nouns                       verbs
 ``simulation``  ``Trace``                   ``simulate``, ``simulate_exactly``, ``equilibrium``, ``linearise``
 ``validation``  ``Validation``              ``validate``
 ``fingerprint`` ``Fingerprint``             ``take_fingerprint``, ``read_fingerprint``, ``write_fingerprint``
-``design``      ``Plan``, ``Wish``, ``Limits`` ``design_campaign``, ``assumed_line``, ``limits_from_vessel``
+``design``      ``Plan``, ``Wish``, ``Limits`` ``design_campaign``, ``assumed_ship``, ``limits_from_vessel``
 ``export``      ``ExportedModel``           ``exported_model``, ``write_fmu``, ``write_matlab``, ``write_modelica``
 ``survey``      ``Survey``                  ``run``, ``measure``, ``fit``, ``survey_of``
 ``tables``      ``Table``                   ``parameter_table``, ``physical_table``

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.design import Effort, Wish, assumed_line, design_campaign, limits_from_vessel
+from shaftprint.design import Effort, Wish, assumed_ship, design_campaign, limits_from_vessel
 from shaftprint.identify import STAN_TUG_NOISE
 from shaftprint.vessel import load_vessel
 
@@ -35,7 +35,7 @@ def limits():
 @pytest.fixture(scope="session")
 def tug():
     """The line of the tug, known exactly."""
-    return assumed_line(structure("GAUGE-CLOSED"), TRUTH, std={})
+    return assumed_ship(structure("GAUGE-CLOSED"), TRUTH, std={})
 
 
 @pytest.fixture(scope="session")

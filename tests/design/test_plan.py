@@ -1,4 +1,4 @@
-"""A plan against what it says of itself: accuracy, peaks in a simulation, limits for lines that may be."""
+"""A plan against what it says of itself: accuracy, peaks in a simulation, limits for possible ships."""
 
 from dataclasses import replace
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.design import Wish, assumed_line, design_campaign
+from shaftprint.design import Wish, assumed_ship, design_campaign
 from shaftprint.errors import DesignError
 from shaftprint.identify import STAN_TUG_NOISE, Prior
 from shaftprint.identify.prediction import planned_lines, predict_joint_accuracy
@@ -187,7 +187,7 @@ def test_rate_limit_is_kept(tug, limits, quick):
 @pytest.mark.slow
 def test_limits_hold_for_nearly_all_lines_that_may_be(limits, quick, truth):
     """Other lines than those that the plan was made for; their peaks as sums of cosines."""
-    line = assumed_line(
+    line = assumed_ship(
         structure("GAUGE-CLOSED"), truth, std={"K_p": 0.6, "K_i": 0.4, "t_d": 0.007, "omega_n": 1.0, "zeta": 0.05}
     )
     plan = designed(line, limits, replace(quick, peak_draws=400))
@@ -206,7 +206,7 @@ def test_limits_hold_for_nearly_all_lines_that_may_be(limits, quick, truth):
         motoring_nm = np.interp(speed_rpm, *np.array(limits.motoring).T)
         kept &= np.all((brake_nm < full_nm) & (brake_nm > -motoring_nm) & (speed_rpm > 540.0), axis=1)
     assert kept.mean() > 0.97
-    exact = designed(assumed_line(structure("GAUGE-CLOSED"), truth, std={}), limits, quick)
+    exact = designed(assumed_ship(structure("GAUGE-CLOSED"), truth, std={}), limits, quick)
     assert plan.predicted.estimate("K_p").std > exact.predicted.estimate("K_p").std
 
 
@@ -230,4 +230,4 @@ def test_what_cannot_be_planned_is_refused(tug, limits, quick, changed, words):
 
 def test_open_loop_is_refused(limits, quick):
     with pytest.raises(DesignError, match="structure OL1: expected n and M_s from one input, found n from M_s"):
-        designed(assumed_line(structure("OL1"), std={}), limits, quick)
+        designed(assumed_ship(structure("OL1"), std={}), limits, quick)

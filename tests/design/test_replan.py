@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.design import line_of_fit, replan
+from shaftprint.design import replan, ship_of_fit
 from shaftprint.errors import DesignError
 from shaftprint.identify import STAN_TUG_NOISE, Settings, expected_response, identify, identify_jointly
 from shaftprint.identify.prediction import planned_lines
@@ -34,12 +34,12 @@ def fit(plan, truth):
             leg.frequency_hz, noise=STAN_TUG_NOISE, amplitude=np.abs(leg.amplitudes), duration_s=leg.window_s
         )
         pairs.append((line, expected_response(lines, line, truth)))
-    start = At(np.array([truth[p.name] for p in plan.line.structure.free]))
+    start = At(np.array([truth[p.name] for p in plan.ship.structure.free]))
     return identify_jointly(pairs, rng=np.random.default_rng(1), settings=Settings(starts=1, draw=start))
 
 
 def test_line_of_a_fit_has_its_values_and_covariance(plan, fit, truth):
-    line = line_of_fit(structure("GAUGE-CLOSED"), fit)
+    line = ship_of_fit(structure("GAUGE-CLOSED"), fit)
     assert line.structure.factors == {}
     for name, value in truth.items():
         place = line.structure.names.index(name)
@@ -61,8 +61,8 @@ def test_both_tests_together_know_more_than_the_second_alone(plan, fit, quick):
 
 
 def test_fit_of_another_structure_is_refused(make_closed_fit):
-    with pytest.raises(DesignError, match="assumed line GAUGE-CLOSED: expected a fit with t_d"):
-        line_of_fit(structure("GAUGE-CLOSED"), make_closed_fit)
+    with pytest.raises(DesignError, match="assumed ship GAUGE-CLOSED: expected a fit with t_d"):
+        ship_of_fit(structure("GAUGE-CLOSED"), make_closed_fit)
 
 
 @pytest.fixture(scope="module")

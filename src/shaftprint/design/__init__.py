@@ -1,4 +1,4 @@
-"""The shortest test: multisines that tell most of a line within the limits of ship and engine.
+"""The shortest test: multisines that tell most of a ship's propulsion line within the limits of ship and engine.
 
 =================== ======= ==========================================================================================
 quantity            unit    meaning and sign
@@ -10,14 +10,15 @@ use                 -       peak over what a limit leaves at the working point, 
 brake torque        N m     of the engine, positive when it drives; down to the negative of the motoring torque
 =================== ======= ==========================================================================================
 
-A plan is made of what is assumed of the line (``AssumedLine``), what is wanted (``Wish``), what ship and engine allow
+A plan is made of what is assumed of the ship (``AssumedShip``), what is wanted (``Wish``), what ship and engine allow
 (``Limits``) and the noise. Its accuracy is that of ``predict_joint_accuracy``, and a prediction until it is rehearsed.
 """
 
-from shaftprint.design._assumed_line import AssumedLine, assumed_line, line_of_fit
+from shaftprint.design._assumed_ship import AssumedShip, assumed_ship, ship_of_fit
 from shaftprint.design._brief import Brief
 from shaftprint.design._campaign import campaign_of
-from shaftprint.design._design import best_plan, design_campaign, plan_of_lines
+from shaftprint.design._design import best_plan, design_campaign
+from shaftprint.design._finish import plan_of_lines
 from shaftprint.design._leg import Leg
 from shaftprint.design._limits import Limits, limits_from_vessel
 from shaftprint.design._plan import Peaks, Plan, SailedTest
@@ -31,7 +32,7 @@ from shaftprint.design._wish import Wish, no_worse_than
 from shaftprint.design.search import Effort
 
 __all__ = [
-    "AssumedLine",
+    "AssumedShip",
     "Brief",
     "Effort",
     "Leg",
@@ -44,17 +45,17 @@ __all__ = [
     "Sailing",
     "Timetable",
     "Wish",
-    "assumed_line",
+    "assumed_ship",
     "best_plan",
     "campaign_of",
     "design_campaign",
     "limits_from_vessel",
-    "line_of_fit",
     "no_worse_than",
     "plan_of_lines",
     "plan_sentences",
     "rehearse",
     "remedies",
     "replan",
+    "ship_of_fit",
     "shortest",
 ]

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.design._assumed_line import AssumedLine
+from shaftprint.design._assumed_ship import AssumedShip
 from shaftprint.design._bounds import Bound, bounds_of_leg
 from shaftprint.design._leg import odd_harmonics
 from shaftprint.design._limits import Limits
@@ -28,8 +28,8 @@ MOST_LINES = 70
 class Brief:
     """Everything that is laid down before the search: legs without their amplitudes, and what binds them."""
 
-    line: AssumedLine
-    """What is assumed of the line."""
+    ship: AssumedShip
+    """What is assumed of the ship."""
     wish: Wish
     """What is wanted."""
     limits: Limits
@@ -58,7 +58,7 @@ class Brief:
     @classmethod
     def of(
         cls,
-        line: AssumedLine,
+        ship: AssumedShip,
         wish: Wish,
         limits: Limits,
         noise: NoiseLevels | Mapping[float, NoiseLevels],
@@ -76,24 +76,32 @@ class Brief:
         DesignError
             If there is no speed, no room below a limit or too little time.
         """
-        expect_motion(line.structure)
+        expect_motion(ship.structure)
         if not speeds or not all(share > 0.0 for share in speeds):
             stated = ", ".join(f"{share:g}" for share in speeds) or "none"
             raise DesignError(f"plan: expected positive speeds over that of the working point, found {stated}.")
         periods, period_s = timetable.periods(within_s, [share * limits.engine_speed_rpm for share in speeds])
         levels = tuple(noise[share] if isinstance(noise, Mapping) else noise for share in speeds)
-        structures = tuple(at_working_point(line.structure, speed_share=share) for share in speeds)
-        spread = (motion_noise(one, line.values, level) for one, level in zip(structures, levels, strict=True))
+        structures = tuple(at_working_point(ship.structure, speed_share=share) for share in speeds)
+        spread = (motion_noise(one, ship.values, level) for one, level in zip(structures, levels, strict=True))
         return cls(
-            line=line, wish=wish, limits=limits, priors=priors, timetable=timetable, speeds=tuple(speeds),
-            noise=levels, structures=structures,
+            ship=ship,
+            wish=wish,
+            limits=limits,
+            priors=priors,
+            timetable=timetable,
+            speeds=tuple(speeds),
+            noise=levels,
+            structures=structures,
             bounds=tuple(bounds_of_leg(limits, share, one) for share, one in zip(speeds, spread, strict=True)),
             harmonics=tuple(
                 odd_harmonics(period_s, min(limits.last_frequency_hz, float(level.frequency_hz[-1])), MOST_LINES)
                 for level in levels
             ),
-            periods=periods, period_s=period_s, earlier=tuple(earlier),
-        )  # fmt: skip
+            periods=periods,
+            period_s=period_s,
+            earlier=tuple(earlier),
+        )
 
     def information(self, values: FloatArray) -> LineInformation:
         """Return what every line would tell for a unit of amplitude over a second; earlier tests count as priors."""
@@ -101,13 +109,13 @@ class Brief:
             (structure, planned_lines(np.array(lines) / self.period_s, noise=level, amplitude=1.0, duration_s=1.0))
             for structure, lines, level in zip(self.structures, self.harmonics, self.noise, strict=True)
         ]
-        named = dict(zip(self.line.structure.names, values.tolist(), strict=True))
+        named = dict(zip(self.ship.structure.names, values.tolist(), strict=True))
         every = line_information([*pairs, *self.earlier], values=named, priors=self.priors)
         before = sum((lines.sum(axis=0) for lines in every.of_lines[len(pairs) :]), every.of_priors)
         return replace(every, of_lines=every.of_lines[: len(pairs)], of_priors=before)
 
     def uses(self, leg: int, table: FloatArray, harmonics: tuple[int, ...] | None = None, fold: int = 1) -> Uses:
-        """Return the uses of the bounds of a leg, for lines that may be, shape (rows, parameters)."""
+        """Return the uses of the bounds of a leg, for possible ships, shape (rows, parameters)."""
         lines = harmonics or self.harmonics[leg]
         omega = 2.0 * np.pi * np.array(lines) / self.period_s
         return Uses.of(motion(self.structures[leg], table, omega), self.bounds[leg], lines, fold)

@@ -1,4 +1,4 @@
-"""What line and engine do when the set point moves: speed, torques, and their noise, at one working point.
+"""What shaft and engine do when the set point moves: speed, torques, and their noise, at one working point.
 
 Upstream of the gauge ``M_b - M_s = tau_up s n``: brake torque follows from the speed and the shaft torque that a
 structure gives, whatever lies in its loop. The control unit limits what the governor asks for, ``v X + g n``, before

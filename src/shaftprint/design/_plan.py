@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.design._assumed_line import AssumedLine
+from shaftprint.design._assumed_ship import AssumedShip
 from shaftprint.design._leg import Leg
 from shaftprint.design._limits import Limits
 from shaftprint.design._timetable import Timetable
@@ -29,7 +29,7 @@ BINDS = 0.98
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class Peaks(Shown):
-    """The most that a leg asks for, among the lines for which its limits hold; noise comes on top."""
+    """The most that a leg asks for, among the ships for which its limits hold; noise comes on top."""
 
     set_point_rpm: float
     """Largest deviation of the set point from its level [rpm]."""
@@ -45,7 +45,7 @@ class Peaks(Shown):
     """Largest use of each limit, by its name: peak over what the limit leaves, noise taken off; at most 1."""
 
     start_use: float
-    """Largest use of the limits by the assumed line from the start of the leg to its window, at most about 1."""
+    """Largest use of the limits by the assumed ship from the start of the leg to its window, at most about 1."""
 
     @property
     def binding(self) -> tuple[str, ...]:
@@ -57,8 +57,8 @@ class Peaks(Shown):
 class Plan(Shown):
     """A test that is designed but not rehearsed: its numbers are predicted."""
 
-    line: AssumedLine
-    """What was assumed of the line."""
+    ship: AssumedShip
+    """What was assumed of the ship."""
     wish: Wish
     """What was wanted."""
     limits: Limits
@@ -92,7 +92,7 @@ class Plan(Shown):
             **numbers,
             "limits that bind": ", ".join(dict.fromkeys(name for peaks in self.peaks for name in peaks.binding)),
         }
-        return Summary(title=f"Plan for {self.line.structure.name}", facts=facts)
+        return Summary(title=f"Plan for {self.ship.structure.name}", facts=facts)
 
     @property
     def duration_s(self) -> float:

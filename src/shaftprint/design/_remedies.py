@@ -64,7 +64,7 @@ def remedies(plan: Plan, design: Callable[[tuple[float, ...]], Plan] | None = No
 
 def _knowledge(plan: Plan) -> list[tuple[str, dict[str, Prior]]]:
     """Return what could be known besides: in words, and as a prior of a parameter."""
-    structure, values = plan.line.structure, plan.line.by_name
+    structure, values = plan.ship.structure, plan.ship.by_name
     free = {p.name for p in structure.free} - set(plan.priors)
     latency, inertia = (structure.named_as(role) for role in (ShipRole.SET_POINT_LATENCY, ShipRole.INERTIA_UPSTREAM))
     knowledge = []
@@ -82,7 +82,7 @@ def _known_besides(plan: Plan, words: str, more: Mapping[str, Prior]) -> Remedy:
         plan.structures,
         plan.legs,
         plan.noise,
-        values=plan.line.by_name,
+        values=plan.ship.by_name,
         priors={**plan.priors, **more},
         earlier=plan.earlier,
     )

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from shaftprint.design._assumed_line import line_of_fit
+from shaftprint.design._assumed_ship import ship_of_fit
 from shaftprint.design._design import design_campaign
 from shaftprint.design._plan import Plan
 from shaftprint.design.search import Effort
@@ -23,7 +23,7 @@ def replan(
 ) -> Plan:
     """Return the plan of a further test with the same wishes, limits and speeds, after a first one was fitted.
 
-    The line is assumed as the fit found it, within its covariance; the responses of the first test count as data that
+    The ship is assumed as the fit found it, within its covariance; the responses of the first test count as data that
     will be fitted together with the next.
 
     Parameters
@@ -35,7 +35,7 @@ def replan(
     within_s
         Length of the further test [s].
     rng
-        Draws the lines that may be, and the starts of the search.
+        Draws the possible ships, and the starts of the search.
     noise
         Noise that the first test has shown; that of its plan where not given.
     effort
@@ -48,7 +48,7 @@ def replan(
     """
     speeds = tuple(leg.speed_share for leg in plan.legs)
     return design_campaign(
-        line_of_fit(plan.line.structure, fit),
+        ship_of_fit(plan.ship.structure, fit),
         plan.wish,
         plan.limits,
         dict(zip(speeds, plan.noise, strict=True)) if noise is None else noise,

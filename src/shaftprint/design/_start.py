@@ -1,6 +1,6 @@
 """How a leg begins: where its set point passes its level, at that phase at which the start stirs up least.
 
-Before its first period the set point stands still, so that the line is not yet in the periodic motion whose peaks the
+Before its first period the set point stands still, so that the ship is not yet in the periodic motion whose peaks the
 plan holds. The difference dies out before the window, but it may meet a limit of the torque.
 """
 

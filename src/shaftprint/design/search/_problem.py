@@ -15,7 +15,7 @@ from shaftprint.design.search._uses import Uses
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Possibility:
-    """Information of the lines for one line that may be."""
+    """Information of the lines for one possible ship."""
 
     of_lines: tuple[FloatArray, ...]
     """Information of each line of each leg, for a unit of amplitude over a second, shape (lines, free, free)."""
@@ -30,7 +30,7 @@ class Problem:
     """What is made small over the amplitudes of all legs."""
 
     possibilities: tuple[Possibility, ...]
-    """Lines that may be; the criterion is their mean."""
+    """Possible ships; the criterion is their mean."""
     uses: tuple[Uses, ...]
     """Uses of the bounds, of each leg."""
     seconds: tuple[float, ...]

@@ -22,9 +22,9 @@ class Effort(Shown):
     restarts: int = 2
     """Starts from random phases; the best plan is taken."""
     accuracy_draws: int = 6
-    """Lines that may be over which the criterion is averaged."""
+    """Possible ships over which the criterion is averaged."""
     peak_draws: int = 200
-    """Lines that may be whose peaks are looked at."""
+    """Possible ships whose peaks are looked at."""
     active_draws: int = 8
     """Those of them with the highest peaks that are allowed for, which a stage holds."""
 
@@ -46,13 +46,13 @@ def search(problem: Problem, start: FloatArray, effort: Effort, *, share_held: f
     Parameters
     ----------
     problem
-        What is made small, with the uses of all lines that may be.
+        What is made small, with the uses of all possible ships.
     start
         Unknowns of the start.
     effort
         Stages and steps.
     share_held
-        Share of the lines that may be for which all legs keep their limits. Each stage holds those among them whose
+        Share of the possible ships for which all legs keep their limits. Each stage holds those among them whose
         peaks were highest at the end of the stage before.
     """
     unknowns, value = start, np.inf
@@ -62,8 +62,11 @@ def search(problem: Problem, start: FloatArray, effort: Effort, *, share_held: f
         active = tuple(use.highest(leg, held, effort.active_draws) for use, leg in zip(problem.uses, legs, strict=True))
         stage = replace(problem, uses=active, power=power)
         result = minimize(
-            stage.value_and_gradient, unknowns, jac=True, method="L-BFGS-B",
+            stage.value_and_gradient,
+            unknowns,
+            jac=True,
+            method="L-BFGS-B",
             options={"maxiter": effort.steps, "maxcor": 20},
-        )  # fmt: skip
+        )
         unknowns, value = result.x, float(result.fun)
     return value, unknowns

@@ -26,11 +26,11 @@ class Uses:
     samples: int
     """Samples a period."""
     draws: int
-    """Number of lines that may be; rows are bound by bound, and these in each."""
+    """Number of possible ships; rows are bound by bound, and these in each."""
 
     @classmethod
     def of(cls, responses: ComplexArray, bounds: tuple[Bound, ...], harmonics: tuple[int, ...], fold: int = 1) -> Self:
-        """Return the uses of every bound by every line that may be, rows bound by bound.
+        """Return the uses of every bound by every possible ship, rows bound by bound.
 
         Parameters
         ----------
@@ -55,7 +55,7 @@ class Uses:
         return np.fft.irfft(spectrum, n=self.samples, axis=1)
 
     def largest(self, amplitudes: ComplexArray) -> FloatArray:
-        """Return the largest use of each bound by each line that may be, shape (bounds, draws)."""
+        """Return the largest use of each bound by each possible ship, shape (bounds, draws)."""
         return np.asarray(self.in_time(amplitudes).max(axis=1).reshape(-1, self.draws))
 
     def norm(self, amplitudes: ComplexArray, power: float) -> tuple[float, ComplexArray]:
@@ -81,12 +81,14 @@ class Uses:
         return norm, np.asarray(np.sum(self.transfer.conj() * back, axis=0))
 
     def of_draws(self, places: IntArray) -> "Uses":
-        """Return the uses by some of the lines that may be."""
+        """Return the uses by some of the possible ships."""
         table = self.transfer.reshape(-1, self.draws, len(self.harmonics))[:, places]
         return Uses(
-            transfer=table.reshape(-1, len(self.harmonics)), harmonics=self.harmonics, samples=self.samples,
+            transfer=table.reshape(-1, len(self.harmonics)),
+            harmonics=self.harmonics,
+            samples=self.samples,
             draws=len(places),
-        )  # fmt: skip
+        )
 
     def highest(self, amplitudes: ComplexArray, places: IntArray, count: int) -> "Uses":
         """Return the uses by those lines, among some, whose largest use is highest."""
@@ -95,7 +97,7 @@ class Uses:
 
 
 def held_draws(uses: Sequence[Uses], amplitudes: Sequence[ComplexArray], share: float) -> IntArray:
-    """Return that share of the lines that may be for which the legs ask least, as places of draws, ascending.
+    """Return that share of the possible ships for which the legs ask least, as places of draws, ascending.
 
     A ship that asks for much in one leg does so in the others: where the limits of all legs hold for the same ships,
     fewer have to be allowed for than if each leg left out its own.

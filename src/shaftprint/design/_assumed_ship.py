@@ -1,8 +1,8 @@
-"""The noun ``AssumedLine``: what is taken for granted of the line while its test is planned, and how well.
+"""The noun ``AssumedShip``: what is taken for granted of a propulsion line while its test is planned, and how well.
 
-The information of a test depends on the line that it is to find. Accuracy hardly moves with the assumed numbers, but
+The information of a test depends on the ship that it is sailed on. Accuracy hardly moves with the assumed numbers, but
 the peaks of speed and torque do, most of all near the resonance of the loop: so a plan holds its limits for nearly all
-lines that are possible.
+ships that are possible.
 """
 
 from collections.abc import Mapping
@@ -41,7 +41,7 @@ SPREAD: Mapping[Role, float] = {ShipRole.ENGINE_SPEED_SLOPE: 0.1, ShipRole.LOAD_
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
-class AssumedLine(Shown):
+class AssumedShip(Shown):
     """A structure with the values that are assumed for a plan, and their uncertainty as a normal distribution."""
 
     structure: Structure
@@ -62,7 +62,7 @@ class AssumedLine(Shown):
         return not self.covariance.any()
 
     def draws(self, count: int, rng: np.random.Generator) -> FloatArray:
-        """Return lines that may be, with a stable loop and within the bounds, the assumed one first.
+        """Return possible ships, with a stable loop and within the bounds, the assumed one first.
 
         A ship whose loop is unstable is not tested.
 
@@ -73,11 +73,11 @@ class AssumedLine(Shown):
         Raises
         ------
         DesignError
-            If hardly any line is stable, or the assumed one is not.
+            If hardly any loop is stable, or the assumed one is not.
         """
         if not stable_rows(self.structure, self.values[None, :]).all():
             raise DesignError(
-                f"assumed line {self.structure.name}: expected a stable loop, found an unstable one; give other values."
+                f"assumed ship {self.structure.name}: expected a stable loop, found an unstable one; give other values."
             )
         if self.is_exact:
             return self.values[None, :]
@@ -92,16 +92,16 @@ class AssumedLine(Shown):
             rows, drawn = np.concatenate([rows, inside[stable_rows(self.structure, inside)]]), drawn + more
         if rows.shape[0] < count:
             raise DesignError(
-                f"assumed line {self.structure.name}: expected mostly stable loops within the stated uncertainty, "
+                f"assumed ship {self.structure.name}: expected mostly stable loops within the stated uncertainty, "
                 f"found {rows.shape[0] - 1} of {drawn}; state it more narrowly, or sail a short test first."
             )
         return rows
 
 
-def assumed_line(
+def assumed_ship(
     structure: Structure, values: Mapping[str, float] | None = None, *, std: Mapping[str, float] | None = None
-) -> AssumedLine:
-    """Return a line of which something is assumed before any test.
+) -> AssumedShip:
+    """Return a ship of which something is assumed before any test.
 
     Parameters
     ----------
@@ -125,16 +125,16 @@ def assumed_line(
     unknown = [name for name in spread if name not in structure.names]
     if unknown:
         raise DesignError(
-            f"assumed line: structure {structure.name} has no parameter {', '.join(unknown)}; it has "
+            f"assumed ship: structure {structure.name} has no parameter {', '.join(unknown)}; it has "
             f"{', '.join(structure.names)}.{meant(unknown[0], structure.names)}"
         )
     deviations = np.array([spread.get(name, 0.0) for name in structure.names])
-    return AssumedLine(
+    return AssumedShip(
         structure=structure, values=frozen_float(vector), covariance=frozen_float(np.diag(deviations**2))
     )
 
 
-def line_of_fit(structure: Structure, fit: "Identification") -> AssumedLine:
+def ship_of_fit(structure: Structure, fit: "Identification") -> AssumedShip:
     """Return what a first test found, with its covariance, for the plan of the next.
 
     Parameters
@@ -153,7 +153,7 @@ def line_of_fit(structure: Structure, fit: "Identification") -> AssumedLine:
     missing = [p.name for p in structure.free if p.name not in estimates]
     if missing:
         raise DesignError(
-            f"assumed line {structure.name}: expected a fit with {', '.join(missing)}, found one of "
+            f"assumed ship {structure.name}: expected a fit with {', '.join(missing)}, found one of "
             f"{fit.objective.name}."
         )
     names = [p.name for p in structure.free]
@@ -162,7 +162,7 @@ def line_of_fit(structure: Structure, fit: "Identification") -> AssumedLine:
     covariance = np.zeros((len(structure.names),) * 2)
     covariance[np.ix_(places, places)] = fit.covariance[np.ix_(rows, rows)]
     values = structure.vector({name: estimates[name] for name in names})
-    return AssumedLine(structure=structure, values=frozen_float(values), covariance=frozen_float(covariance))
+    return AssumedShip(structure=structure, values=frozen_float(values), covariance=frozen_float(covariance))
 
 
 def _usual_std(structure: Structure, values: FloatArray) -> dict[str, float]:
