@@ -20,6 +20,7 @@ from shaftprint.campaign._binary_sequence import BinarySequence
 from shaftprint.campaign._campaign import Campaign, load_campaign
 from shaftprint.campaign._excitation import Excitation
 from shaftprint.campaign._excitations import Chirp, Sine, Staircase
+from shaftprint.campaign._file_text import campaign_text, tests_text
 from shaftprint.campaign._leg import Leg
 from shaftprint.campaign._multisine import Multisine
 from shaftprint.campaign._setpoint import setpoint
@@ -33,6 +34,8 @@ __all__ = [
     "Multisine",
     "Sine",
     "Staircase",
+    "campaign_text",
     "load_campaign",
     "setpoint",
+    "tests_text",
 ]

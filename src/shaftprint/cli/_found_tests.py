@@ -1,14 +1,11 @@
 """Where the tests of a campaign are in the recorded set point, as a table and as lines of a campaign file."""
 
-from shaftprint.campaign import Campaign, Sine
+from shaftprint.campaign import Campaign, Sine, tests_text
 from shaftprint.cli._terminal import echo, say
 from shaftprint.cli.output import print_table
 from shaftprint.errors import SignalError
-from shaftprint.escape import toml_string
 from shaftprint.signals import FoundTest, common_shift_s, proposed_campaign
 from shaftprint.tables import Table, numbers, texts
-
-_SECTIONS = ("staircases", "sines", "chirps")
 
 
 def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign) -> None:
@@ -25,7 +22,7 @@ def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign) -> None:
     if shift_s:
         say(f"All tests are found {abs(shift_s):.3f} s {'later' if shift_s > 0.0 else 'earlier'} than planned.\n")
     try:
-        text = campaign_text(proposed_campaign(found, campaign))
+        text = tests_text(proposed_campaign(found, campaign))
     except SignalError as error:
         say(f"No proposal for the campaign file: {error}\n")
         return
@@ -33,25 +30,6 @@ def print_found_tests(found: tuple[FoundTest, ...], campaign: Campaign) -> None:
     for line in text.splitlines():
         echo(line)
     echo()
-
-
-def campaign_text(campaign: Campaign) -> str:
-    """Return the tests of a campaign as the lines of a campaign file."""
-    parts = []
-    for section in _SECTIONS:
-        for test in getattr(campaign, section):
-            lines = [f"{key} = {_toml(value)}" for key, value in test.model_dump().items()]
-            parts.append("\n".join([f"[[{section}]]", *lines]))
-    return "\n\n".join(parts) + "\n"
-
-
-def _toml(value: object) -> str:
-    if isinstance(value, str):
-        return toml_string(value)
-    if isinstance(value, tuple):
-        return f"[{', '.join(_toml(item) for item in value)}]"
-    # a float of TOML has a point; times are known to a millisecond, frequencies are whatever the file said
-    return f"{round(float(str(value)), 9)!r}"
 
 
 def _row(test: FoundTest) -> tuple[str, ...]:
