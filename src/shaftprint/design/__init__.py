@@ -22,40 +22,88 @@ from shaftprint.design._finish import plan_of_lines
 from shaftprint.design._leg import Leg
 from shaftprint.design._limits import Limits, limits_from_vessel
 from shaftprint.design._plan import Peaks, Plan, SailedTest
+from shaftprint.design._planned_test import PlannedTest, SailedLeg
 from shaftprint.design._rehearsal import Rehearsal, Sailing, rehearse
 from shaftprint.design._remedies import Remedy, remedies
 from shaftprint.design._replan import replan
+from shaftprint.design._set_point_line import SetPointLine, line_of_fingerprint
 from shaftprint.design._shortest import shortest
 from shaftprint.design._timetable import Timetable
 from shaftprint.design._verdict import plan_sentences
 from shaftprint.design._wish import Wish, no_worse_than
+from shaftprint.design.files import (
+    CAMPAIGN,
+    CSV,
+    GENERATOR,
+    MAT,
+    PLAN,
+    RATE_HZ,
+    SetPointSamples,
+    read_plan,
+    set_point_samples,
+    write_plan,
+    write_plan_files,
+)
 from shaftprint.design.search import Effort
+from shaftprint.design.views import (
+    AbortCard,
+    LengthCurve,
+    LineWorth,
+    PlannedMotion,
+    abort_card,
+    length_curve,
+    line_worths,
+    planned_motion,
+)
 
 __all__ = [
+    "CAMPAIGN",
+    "CSV",
+    "GENERATOR",
+    "MAT",
+    "PLAN",
+    "RATE_HZ",
+    "AbortCard",
     "AssumedShip",
     "Brief",
     "Effort",
     "Leg",
+    "LengthCurve",
     "Limits",
+    "LineWorth",
     "Peaks",
     "Plan",
+    "PlannedMotion",
+    "PlannedTest",
     "Rehearsal",
     "Remedy",
+    "SailedLeg",
     "SailedTest",
     "Sailing",
+    "SetPointLine",
+    "SetPointSamples",
     "Timetable",
     "Wish",
+    "abort_card",
     "assumed_ship",
     "best_plan",
     "campaign_of",
     "design_campaign",
+    "length_curve",
     "limits_from_vessel",
+    "line_of_fingerprint",
+    "line_worths",
     "no_worse_than",
     "plan_of_lines",
     "plan_sentences",
+    "planned_motion",
+    "read_plan",
     "rehearse",
     "remedies",
     "replan",
+    "set_point_samples",
     "ship_of_fit",
     "shortest",
+    "write_plan",
+    "write_plan_files",
 ]

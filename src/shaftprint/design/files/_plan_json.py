@@ -1,0 +1,112 @@
+"""``plan.json``: a planned test, to be read again when it goes on."""
+
+import json
+from pathlib import Path
+from typing import Final
+
+from pydantic import ValidationError
+
+from shaftprint.arguments import refusing_none
+from shaftprint.catalogue import shipped_structure
+from shaftprint.design._planned_test import PlannedTest
+from shaftprint.design.files._from_record import planned_test_of
+from shaftprint.design.files._records import SCHEMA_VERSION, PlanRecord
+from shaftprint.design.files._to_record import record_of
+from shaftprint.errors import DesignError, ShaftprintError
+from shaftprint.files import reason, written_whole
+from shaftprint.models import Structure
+from shaftprint.publication import complete
+
+PLAN: Final = "plan.json"
+"""Name of the file in a folder of ``shaftprint plan``."""
+_MOST_NAMED = 5
+
+
+def write_plan(test: PlannedTest, path: str | Path) -> None:
+    """Write a planned test as JSON, whole or not at all; an existing file is replaced.
+
+    Raises
+    ------
+    DesignError
+        If the file cannot be written.
+    """
+    json_path = Path(path)
+    try:
+        with written_whole(json_path, overwrite=True) as part:
+            part.write_bytes((record_of(test).model_dump_json(indent=1) + "\n").encode())
+    except OSError as error:
+        raise DesignError(f"{json_path}: the plan cannot be written: {reason(error)}.") from None
+
+
+@refusing_none(DesignError)
+def read_plan(path: str | Path, *, structure: Structure | None = None) -> PlannedTest:
+    """Read a planned test from its file, or from the folder with it.
+
+    Parameters
+    ----------
+    path
+        The file or the folder.
+    structure
+        The structure of the plan where it is none of the shipped ones: a name in a file is looked up, never run.
+
+    Raises
+    ------
+    DesignError
+        If the file is missing, is no plan, is of another schema, or has fields that are wrong; all of them are listed.
+    """
+    json_path = Path(path) / PLAN if Path(path).is_dir() else Path(path)
+    complete(json_path.parent)
+    content = _content(json_path)
+    try:
+        record = PlanRecord.model_validate_json(content)
+        return planned_test_of(record, _structure(record, structure))
+    except ValidationError as error:
+        faults = error.errors()
+        wrong = [f"{'.'.join(map(str, one['loc']))}: {one['msg']}" for one in faults[:_MOST_NAMED]]
+        more = f"; and {len(faults) - _MOST_NAMED} more" if len(faults) > _MOST_NAMED else ""
+        raise DesignError(f"{json_path} is not a plan of schema {SCHEMA_VERSION}: {'; '.join(wrong)}{more}.") from None
+    except (ValueError, TypeError, KeyError) as error:
+        raise DesignError(f"{json_path} is not a plan of schema {SCHEMA_VERSION}: {error}.") from None
+    except ShaftprintError as error:
+        # what other nouns ask of themselves, such as limits that contradict each other
+        raise DesignError(f"{json_path} is not a plan of schema {SCHEMA_VERSION}: {error}") from None
+
+
+def _structure(record: PlanRecord, own: Structure | None) -> Structure:
+    name = record.ship.structure
+    if own is None:
+        try:
+            structure = shipped_structure(name)
+        except ShaftprintError:
+            raise DesignError(
+                f"structure {name}: it is none of the shipped ones; name the file of your own with --structure."
+            ) from None
+    elif own.name != name:
+        raise DesignError(f"structure: expected {name}, which the plan was made for, found {own.name}.")
+    else:
+        structure = own
+    free = {p.name for p in structure.free}
+    held = {name: record.ship.values[name] for name in record.ship.held if name in free}
+    return structure.held_at(**held)
+
+
+def _content(json_path: Path) -> str:
+    """Return the content of a file that claims to be a plan of the schema that is known here."""
+    try:
+        text = json_path.read_text(encoding="utf-8")
+        content = json.loads(text)
+    except FileNotFoundError:
+        raise DesignError(
+            f"{json_path}: expected a plan, found nothing there; name the folder in which shaftprint plan has put it."
+        ) from None
+    except OSError as error:
+        raise DesignError(f"{json_path}: expected a plan, but it cannot be read: {reason(error)}.") from None
+    except (ValueError, RecursionError) as error:
+        raise DesignError(f"{json_path}: expected a plan in JSON, found something else: {error}.") from None
+    schema = content.get("schema_version") if isinstance(content, dict) else None
+    if schema != SCHEMA_VERSION:
+        raise DesignError(
+            f"{json_path}: expected a plan of schema {SCHEMA_VERSION}, found "
+            f"{'none' if schema is None else f'schema {schema}'}; read it with the version of shaftprint that wrote it."
+        )
+    return text

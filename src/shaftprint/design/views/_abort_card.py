@@ -1,0 +1,67 @@
+"""The noun ``AbortCard``: what the bridge may see during a test, and when it is to stop."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.design._motion import SIGNALS, motion_noise
+from shaftprint.notebook import Shown
+
+if TYPE_CHECKING:
+    from shaftprint.design._planned_test import PlannedTest
+
+_SPEED, _TORQUE = SIGNALS.index("speed"), SIGNALS.index("brake torque")
+_OWN = slice(_SPEED, _TORQUE + 1)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class AbortCard(Shown):
+    """The extremes of a test, with the noise that comes on top of what is planned."""
+
+    set_point_v: tuple[float, float]
+    """Lowest and highest voltage of the set point [V]."""
+    set_point_rpm: tuple[float, float]
+    """Lowest and highest engine speed that is asked for [rpm]."""
+    speed_rpm: tuple[float, float]
+    """Lowest and highest engine speed that may be seen [rpm]."""
+    brake_torque_nm: tuple[float, float]
+    """Lowest and highest brake torque that may be seen [N m]."""
+    rate_rpm_per_s: float
+    """Fastest change of the set point [rpm/s]."""
+    duration_s: float
+    """Length of the whole test with its ramps [s]."""
+    leave_rpm: tuple[float, float]
+    """Engine speeds that must not be passed: the limits of the ship [rpm]."""
+    level_v: float
+    """Voltage to which the set point is brought back when the test is broken off [V]."""
+    level_rpm: float
+    """The engine speed there [rpm]."""
+
+
+def abort_card(test: "PlannedTest") -> AbortCard:
+    """Return what the bridge may see.
+
+    Speed and torque are the peaks of the possible ships with as many standard deviations of the noise as the limits
+    keep free, so that a sample beyond them is a reason to stop.
+    """
+    plan, campaign = test.plan, test.campaign
+    speeds, torques = [], []
+    for leg, peaks, structure, noise in zip(plan.legs, plan.peaks, plan.structures, plan.noise, strict=True):
+        spread = np.sqrt(np.diag(motion_noise(structure, plan.ship.values, noise))[_OWN]) * plan.limits.noise_sigmas
+        speed, torque = leg.level_rpm * spread[0], leg.speed_share**2 * plan.limits.brake_torque_nm * spread[1]
+        speeds += [peaks.speed_rpm[0] - speed, peaks.speed_rpm[1] + speed]
+        torques += [peaks.brake_torque_nm[0] - torque, peaks.brake_torque_nm[1] + torque]
+    volts = [edge for leg in campaign.legs for edge in leg.extremes_v] + [campaign.offset_v]
+    asked = test.line.speed_rpm(np.array(volts), working_point_rpm=plan.limits.engine_speed_rpm)
+    return AbortCard(
+        set_point_v=(min(volts), max(volts)),
+        set_point_rpm=(float(asked.min()), float(asked.max())),
+        speed_rpm=(float(min(speeds)), float(max(speeds))),
+        brake_torque_nm=(float(min(torques)), float(max(torques))),
+        rate_rpm_per_s=max(*(peaks.rate_rpm_per_s for peaks in plan.peaks), plan.timetable.ramp_rpm_per_s),
+        duration_s=campaign.duration_s,
+        leave_rpm=(plan.limits.lowest_speed_rpm, plan.limits.highest_speed_rpm),
+        level_v=campaign.offset_v,
+        level_rpm=plan.legs[0].level_rpm,
+    )
