@@ -1,0 +1,99 @@
+"""The verb ``rehearse_on_tug``: raw recordings of the assumed ship, each identified as a real one would be."""
+
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.design import Rehearsal, Sailing, rehearse
+from shaftprint.errors import DesignError
+from shaftprint.identify import Identification, Settings, identify, identify_jointly
+from shaftprint.models import at_working_point
+from shaftprint.recording import read_recording
+from shaftprint.rehearsal._simulated_ship import simulated_truth, tug_of_plan
+from shaftprint.signals import prepare_signals
+from shaftprint.spectra import estimate_legs
+from shaftprint.survey import SILENT, Progress
+from shaftprint.tug import sail
+from shaftprint.units import rev_s_from_rpm
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign
+    from shaftprint.design import PlannedTest
+    from shaftprint.signals import Signals
+    from shaftprint.tug import Tug
+    from shaftprint.vessel import Vessel
+
+
+def rehearse_on_tug(
+    test: "PlannedTest", vessel: "Vessel", *, count: int, first_seed: int = 1, progress: Progress = SILENT
+) -> Rehearsal:
+    """Return what comes out when a planned test is sailed on the simulated ship and identified several times.
+
+    Parameters
+    ----------
+    test
+        What is sailed.
+    vessel
+        The installation: its sensors and logger make the raw recordings.
+    count
+        Number of recordings; each takes as long as its identification and some seconds.
+    first_seed
+        Seed of the first; the others follow.
+    progress
+        Is told after each.
+
+    Raises
+    ------
+    DesignError
+        If the structure cannot be simulated, or no recording gave a result.
+    """
+    if count < 1:
+        raise DesignError(f"rehearsal: expected at least one simulated test, found {count}.")
+    tug, campaign = tug_of_plan(test, vessel), test.campaign
+    progress.begin(f"Rehearsing {count} times", total=float(count))
+
+    def sailing(seed: int) -> Sailing:
+        result = _sailed(test, vessel, tug, campaign, seed)
+        progress.advance(1.0)
+        return result
+
+    truth = simulated_truth(test.plan)
+    return rehearse(test.plan, sailing, truth=truth, seeds=range(first_seed, first_seed + count))
+
+
+def _sailed(test: "PlannedTest", vessel: "Vessel", tug: "Tug", campaign: "Campaign", seed: int) -> Sailing:
+    with tempfile.TemporaryDirectory(prefix="shaftprint-") as folder:
+        path = Path(folder) / "recording.nc"
+        truth = sail(vessel, campaign, path, tug=tug, seed=seed)
+        with read_recording(path) as recording:
+            signals = prepare_signals(recording, vessel, campaign)
+    fit = _identified(test, vessel, signals, campaign, seed)
+    return Sailing(numbers=(*fit.parameters, *fit.combinations), limited_share=max(truth.limited.values()))
+
+
+def _identified(
+    test: "PlannedTest", vessel: "Vessel", signals: "Signals", campaign: "Campaign", seed: int
+) -> Identification:
+    """Return the fit to all legs, normalised at the working point of the plan as its numbers are."""
+    limits, structure = test.plan.limits, test.plan.ship.structure
+    torque_nm = limits.brake_torque_nm * vessel.gearbox.ratio * vessel.gearbox.efficiency
+    spectra = estimate_legs(signals, campaign)
+    pairs = [
+        (
+            at_working_point(
+                structure,
+                speed_share=state.working_point.engine_speed_rev_s / rev_s_from_rpm(limits.engine_speed_rpm),
+                torque_share=state.working_point.shaft_torque_nm / torque_nm,
+            ),
+            spectra[state.name].response.of_outputs(*structure.outputs),
+        )
+        for state in signals.legs
+    ]
+    how, rng = Settings(priors=dict(test.plan.priors)), np.random.default_rng(seed)
+    return (
+        identify(*pairs[0], rng=rng, settings=how)
+        if len(pairs) == 1
+        else identify_jointly(pairs, rng=rng, settings=how)
+    )

@@ -1,0 +1,110 @@
+"""The simulated tug that has the numbers which a plan assumes of its ship, and the limits that it was planned for."""
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.catalogue import ShipRole
+from shaftprint.errors import DesignError
+from shaftprint.tug import Tug
+from shaftprint.units import rev_s_from_rpm
+
+if TYPE_CHECKING:
+    from shaftprint.design import Plan, PlannedTest
+    from shaftprint.models import Role
+    from shaftprint.vessel import Vessel
+
+# The propeller of the simulated tug takes the square of its speed.
+_LOAD_SLOPE = 2.0
+_NEEDED = {
+    "proportional_gain": ShipRole.PROPORTIONAL_GAIN,
+    "integral_gain_per_s": ShipRole.INTEGRAL_GAIN,
+    "governor_delay_s": ShipRole.LOOP_DELAY,
+    "natural_frequency_rad_s": ShipRole.ACTUATOR_FREQUENCY,
+    "damping_ratio": ShipRole.ACTUATOR_DAMPING,
+}
+_OPTIONAL = {
+    "g": ShipRole.ENGINE_SPEED_SLOPE,
+    "v": ShipRole.ENGINE_RACK_SLOPE,
+    "set_point_latency_s": ShipRole.SET_POINT_LATENCY,
+}
+_INERTIAS = {
+    "inertia_upstream_kg_m2": ShipRole.INERTIA_UPSTREAM,
+    "inertia_downstream_kg_m2": ShipRole.INERTIA_DOWNSTREAM,
+}
+_IDEAL = {
+    ShipRole.SET_POINT_SCALE: 1.0,
+    ShipRole.TORQUE_LATENCY: 0.0,
+    ShipRole.LOAD_SLOPE: _LOAD_SLOPE,
+}
+
+
+def tug_of_plan(test: "PlannedTest", vessel: "Vessel") -> Tug:
+    """Return the simulated ship that a plan assumes, with its limits of demand and motoring.
+
+    Parameters
+    ----------
+    test
+        What is sailed.
+    vessel
+        The installation.
+
+    Raises
+    ------
+    DesignError
+        If the structure of the plan lacks a number that the simulated ship needs.
+    """
+    plan, limits = test.plan, test.plan.limits
+    values = {name: _value(plan, role) for name, role in (_NEEDED | _INERTIAS).items()}
+    missing = [(_NEEDED | _INERTIAS)[name].name for name, value in values.items() if value is None]
+    if missing:
+        raise DesignError(
+            f"rehearsal of {plan.ship.structure.name}: expected a closed loop such as GAUGE-CLOSED, which is what can "
+            f"be simulated, found one without {', '.join(missing)}; plan it without --rehearse."
+        )
+    speed_rev_s = rev_s_from_rpm(limits.engine_speed_rpm)
+    torque_nm = limits.brake_torque_nm * vessel.gearbox.ratio * vessel.gearbox.efficiency
+    # tau = 2 pi I n_s0 / M_s0 (thesis eq. 2.23)
+    per_second = torque_nm * vessel.gearbox.ratio / (2.0 * math.pi * speed_rev_s)
+    optional = {name: _value(plan, role) for name, role in _OPTIONAL.items()}
+    motoring_nm = float(np.interp(limits.engine_speed_rpm, *np.array(limits.motoring).T))
+    tug = Tug(
+        engine_speed_rpm=limits.engine_speed_rpm,
+        shaft_torque_nm=torque_nm,
+        set_point_slope_rpm_per_v=test.line.slope_rpm_per_v,
+        set_point_intercept_rpm=limits.engine_speed_rpm - test.line.slope_rpm_per_v * test.line.offset_v,
+        set_point_offset_v=0.0,
+        demand_resolution_rpm=limits.demand_resolution_rpm,
+        demand_cycle_s=limits.demand_cycle_s,
+        demand_rate_limit_rpm_per_s=limits.demand_rate_limit_rpm_per_s,
+    )
+    if motoring_nm > 0.0:
+        tug = replace(tug, motoring_torque_nm=motoring_nm)
+    stated = {name: value for name, value in (values | optional).items() if value is not None}
+    return replace(tug, **{name: value * per_second if name in _INERTIAS else value for name, value in stated.items()})
+
+
+def simulated_truth(plan: "Plan") -> dict[str, float]:
+    """Return what an identification of the simulated ship is to find: parameters and combinations by name.
+
+    Sensors are ideal, the propeller takes the square of its speed, and what holds and quantises the demand adds to the
+    latency of the set point.
+    """
+    structure, values = plan.ship.structure, plan.ship.by_name
+    for role, ideal in _IDEAL.items():
+        name = structure.named_as(role)
+        if name in values:
+            values[name] = ideal
+    latency = structure.named_as(ShipRole.SET_POINT_LATENCY)
+    if latency in values:
+        values[latency] += plan.limits.demand_delay_s
+    arrays = {name: np.array(value) for name, value in values.items()}
+    combinations = {one.name: float(one.of(arrays)) for one in structure.combinations if one.is_defined_by(arrays)}
+    return values | combinations
+
+
+def _value(plan: "Plan", role: "Role") -> float | None:
+    name = plan.ship.structure.named_as(role)
+    return None if name is None else plan.ship.by_name.get(name)
