@@ -19,8 +19,9 @@ from shaftprint.design._brief import Brief
 from shaftprint.design._campaign import campaign_of
 from shaftprint.design._design import best_plan, design_campaign
 from shaftprint.design._finish import plan_of_lines
+from shaftprint.design._known_ship import limits_of_fingerprint, ship_before_test, ship_of_fingerprint
 from shaftprint.design._leg import Leg
-from shaftprint.design._limits import Limits, limits_from_vessel
+from shaftprint.design._limits import Limits, limits_from_vessel, usual_speeds
 from shaftprint.design._plan import Peaks, Plan, SailedTest
 from shaftprint.design._planned_test import PlannedTest, SailedLeg
 from shaftprint.design._rehearsal import Rehearsal, Sailing, rehearse
@@ -91,6 +92,7 @@ __all__ = [
     "design_campaign",
     "length_curve",
     "limits_from_vessel",
+    "limits_of_fingerprint",
     "line_of_fingerprint",
     "line_worths",
     "no_worse_than",
@@ -102,8 +104,11 @@ __all__ = [
     "remedies",
     "replan",
     "set_point_samples",
+    "ship_before_test",
+    "ship_of_fingerprint",
     "ship_of_fit",
     "shortest",
+    "usual_speeds",
     "write_plan",
     "write_plan_files",
 ]

@@ -19,6 +19,10 @@ NO_MOTORING: Curve = ((0.0, 0.0),)
 NOISE_SIGMAS = 4.0
 # Above this frequency a test leaves out lines unless asked: shaft orders are there when the speed swings.
 HIGHEST_FREQUENCY_HZ = 3.4
+# Speeds of the legs over the working point where nobody says otherwise, and how many times the largest deviation of the
+# set point they keep away from the limits of the speed: a leg reaches farther than its set point does.
+USUAL_SHARES = (1.15, 0.78)
+_CLEAR = 1.3
 # Lines end where the demand has four messages a period.
 MESSAGES_PER_PERIOD = 4.0
 
@@ -129,6 +133,18 @@ def limits_from_vessel(vessel: "Vessel", *, set_point_rpm: float) -> Limits:
         demand_cycle_s=limits.demand_cycle_s,
         barred_rpm=limits.barred_speeds_rpm,
     )
+
+
+def usual_speeds(limits: Limits) -> tuple[float, ...]:
+    """Return two speeds as far apart as the limits leave room for, at most 1.15 and 0.78 of the working point.
+
+    A second speed separates what one alone cannot. Where there is no room for two it is the working point alone.
+    """
+    high, low = USUAL_SHARES
+    clear = _CLEAR * limits.set_point_rpm
+    high = min(high, (limits.highest_speed_rpm - clear) / limits.engine_speed_rpm)
+    low = max(low, (limits.lowest_speed_rpm + clear) / limits.engine_speed_rpm)
+    return (round(high, 3), round(low, 3)) if high > low else (1.0,)
 
 
 def _curve(speeds_rpm: Sequence[float], torques_nm: Sequence[float]) -> Curve:

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -83,7 +83,10 @@ def tug_of_plan(test: "PlannedTest", vessel: "Vessel") -> Tug:
     if motoring_nm > 0.0:
         tug = replace(tug, motoring_torque_nm=motoring_nm)
     stated = {name: value for name, value in (values | optional).items() if value is not None}
-    return replace(tug, **{name: value * per_second if name in _INERTIAS else value for name, value in stated.items()})
+    numbers: dict[str, Any] = {
+        name: value * per_second if name in _INERTIAS else value for name, value in stated.items()
+    }
+    return replace(tug, **numbers)
 
 
 def simulated_truth(plan: "Plan") -> dict[str, float]:

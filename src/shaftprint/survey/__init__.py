@@ -5,10 +5,11 @@ The single steps are verbs too: ``measure``, ``fit``, ``survey_of``. Numbers in 
 rooms that they come from.
 """
 
-from shaftprint.survey._fits import comparisons_of, fit, priors_of
+from shaftprint.survey._fits import comparisons_of, fit, priors_of, stated_working_point
 from shaftprint.survey._legs import LegMeasurement, LegTest, leg_tests, legs_of, structure_at
 from shaftprint.survey._legs_apart import LegAlone, apart_sentences, legs_alone
 from shaftprint.survey._measurement import Measurement, measure, of_legs, pairs_of, response_of, responses_of
+from shaftprint.survey._noise import nearest_noise, noise_at_speeds
 from shaftprint.survey._progress import SILENT, Progress, Silent
 from shaftprint.survey._survey import SettingsOf, Survey, fingerprint_of, judged, run, settings_by_name, survey_of
 from shaftprint.survey._thesis_mode import SET_POINT_OFF, ThesisMode
@@ -41,6 +42,8 @@ __all__ = [
     "legs_of",
     "load_trial",
     "measure",
+    "nearest_noise",
+    "noise_at_speeds",
     "of_legs",
     "pairs_of",
     "priors_of",
@@ -50,6 +53,7 @@ __all__ = [
     "set_point_scaled",
     "settings_by_name",
     "settings_text",
+    "stated_working_point",
     "structure_at",
     "survey_of",
     "thesis_way",

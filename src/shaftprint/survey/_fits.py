@@ -8,9 +8,10 @@ import numpy as np
 from shaftprint.identify import Identification, Prior, Settings, identify, identify_jointly, priors_from_vessel
 from shaftprint.identify.comparison import StructureComparison, compare_fits
 from shaftprint.models import Structure
-from shaftprint.signals import Signals
+from shaftprint.signals import Signals, WorkingPoint
 from shaftprint.survey._measurement import Measurement, pairs_of
 from shaftprint.survey._progress import SILENT, Progress
+from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel
 
 
@@ -19,6 +20,18 @@ def priors_of(
 ) -> dict[str, Prior]:
     """Return the priors of a structure: those of the vessel file, and what the user states instead or besides."""
     return priors_from_vessel(structure, vessel, signals.working_point, mode=signals.mode) | dict(stated or {})
+
+
+def stated_working_point(vessel: Vessel) -> WorkingPoint:
+    """Return the working point of a vessel file, for what is known before any recording."""
+    return WorkingPoint(
+        engine_speed_rev_s=rev_s_from_rpm(vessel.working_point.engine_speed_rpm),
+        shaft_torque_nm=vessel.working_point.shaft_torque_nm,
+        engine_speed_std_rev_s=0.0,
+        shaft_torque_std_nm=0.0,
+        set_point_v=0.0,
+        load_std=0.0,
+    )
 
 
 def fit(

@@ -27,12 +27,10 @@ from shaftprint.identify import (
 )
 from shaftprint.identify.prediction import planned_legs, predict_joint_accuracy, predict_joint_intervals
 from shaftprint.models import Structure
-from shaftprint.signals import WorkingPoint
 from shaftprint.spectra import FrequencyResponse, open_loop
 from shaftprint.spelling import meant
-from shaftprint.survey import load_trial, measure, priors_of
-from shaftprint.units import rev_s_from_rpm
-from shaftprint.vessel import Vessel, load_vessel
+from shaftprint.survey import load_trial, measure, priors_of, stated_working_point
+from shaftprint.vessel import load_vessel
 
 CLOSED_LOOP = "GAUGE-CLOSED"
 # Where the sensitivity of a structure is taken; what can be found does not depend on it.
@@ -156,20 +154,9 @@ def _assumed(vessel: str | None, rpm_per_volt: float | None, chosen: Structure) 
     noise = STAN_TUG_NOISE
     if rpm_per_volt is not None:
         noise = replace(noise, set_point_per_v=abs(rpm_per_volt) / ship.working_point.engine_speed_rpm)
-    priors = priors_from_vessel(chosen, ship, _working_point(ship))
+    priors = priors_from_vessel(chosen, ship, stated_working_point(ship))
     words = f"noise of the Stan Tug 1205 assumed for {ship.name}"
     return _Ship(priors=priors, noise=noise, rises=rpm_per_volt is not None and rpm_per_volt > 0.0, words=words)
-
-
-def _working_point(vessel: Vessel) -> WorkingPoint:
-    return WorkingPoint(
-        engine_speed_rev_s=rev_s_from_rpm(vessel.working_point.engine_speed_rpm),
-        shaft_torque_nm=vessel.working_point.shaft_torque_nm,
-        engine_speed_std_rev_s=0.0,
-        shaft_torque_std_nm=0.0,
-        set_point_v=0.0,
-        load_std=0.0,
-    )
 
 
 def _values_of(chosen: Structure, priors: Mapping[str, Prior]) -> dict[str, float]:

@@ -1,0 +1,62 @@
+"""The noise that a recording shows at each speed at which it was made, to plan or predict the next test with."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from shaftprint.identify import NoiseLevels, noise_levels
+from shaftprint.units import rpm_from_rev_s
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign
+    from shaftprint.signals import Signals, WorkingPoint
+    from shaftprint.spectra import FrequencyResponse
+    from shaftprint.survey._measurement import Measurement
+
+
+def noise_at_speeds(measurement: "Measurement", campaign: "Campaign") -> dict[float, NoiseLevels]:
+    """Return the noise levels by engine speed [rpm], over the working point of each speed.
+
+    Parameters
+    ----------
+    measurement
+        What a recording gives.
+    campaign
+        The campaign that was sailed.
+    """
+    signals = measurement.signals
+    if not measurement.legs:
+        point = signals.working_point
+        return {
+            rpm_from_rev_s(point.engine_speed_rev_s): _levels(measurement.spectra.response, campaign, signals, point)
+        }
+    states, planned = {state.name: state for state in signals.legs}, {leg.name: leg for leg in campaign.legs}
+    levels = {}
+    for leg in measurement.legs:
+        state = states[leg.name]
+        level = _levels(leg.spectra.response, campaign, signals, leg.working_point)
+        # a leg that was broken off has fewer periods than its campaign says
+        share = state.periods * state.period_s / planned[leg.name].window_s
+        speed_rpm = rpm_from_rev_s(leg.working_point.engine_speed_rev_s)
+        levels[speed_rpm] = replace(level, density=share * level.density)
+    return levels
+
+
+def nearest_noise(levels: Mapping[float, NoiseLevels], speeds_rpm: Mapping[float, float]) -> dict[float, NoiseLevels]:
+    """Return for each planned speed the noise of the nearest one that was sailed.
+
+    Parameters
+    ----------
+    levels
+        Noise by engine speed [rpm].
+    speeds_rpm
+        Engine speed [rpm] of each planned speed, by its share of the working point.
+    """
+    return {share: levels[min(levels, key=lambda rpm: abs(rpm - wanted))] for share, wanted in speeds_rpm.items()}
+
+
+def _levels(
+    response: "FrequencyResponse", campaign: "Campaign", signals: "Signals", point: "WorkingPoint"
+) -> NoiseLevels:
+    slope = abs(signals.calibration.slope_rev_s_per_v) * signals.dc_scale
+    return noise_levels(response, campaign, set_point_per_v=slope / point.engine_speed_rev_s)
