@@ -10,6 +10,7 @@ from shaftprint.design._plan import Plan
 from shaftprint.design._rehearsal import Rehearsal
 from shaftprint.design._remedies import Remedy
 from shaftprint.design._set_point_line import SetPointLine
+from shaftprint.design._verdict import plan_sentences
 from shaftprint.notebook import Shown, Summary
 from shaftprint.spectra import FrequencyResponse
 
@@ -62,6 +63,11 @@ class PlannedTest(Shown):
             "rehearsed": "no" if self.rehearsal is None else " ".join(self.rehearsal.sentences),
         }
         return Summary(title=f"PlannedTest {self.name}", facts=facts)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What the test reaches, the answer first, and whether it was rehearsed."""
+        return plan_sentences(self.plan, self.remedies, self.rehearsal)
 
     @property
     def campaign(self) -> Campaign:

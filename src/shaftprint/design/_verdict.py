@@ -4,16 +4,18 @@ import math
 from collections.abc import Sequence
 
 from shaftprint.design._plan import Plan
+from shaftprint.design._rehearsal import Rehearsal
 from shaftprint.design._remedies import Remedy
 from shaftprint.digits import stated
 from shaftprint.units import SECONDS_PER_MINUTE
 
+NOT_REHEARSED = ("The plan was not rehearsed.",)
 # A longer test is stated in hours.
 _LONGEST_IN_MINUTES = 200.0
 
 
-def plan_sentences(plan: Plan, remedies: Sequence[Remedy] = ()) -> tuple[str, ...]:
-    """Return what a plan reaches, the answer first."""
+def plan_sentences(plan: Plan, remedies: Sequence[Remedy] = (), rehearsal: Rehearsal | None = None) -> tuple[str, ...]:
+    """Return what a plan reaches, the answer first, and at the end what a rehearsal says of it."""
     missed = {name: ratio for name, ratio in plan.ratios.items() if not ratio <= 1.0}
     length = f"{_length(plan.duration_s)} at {_speeds(plan)}"
     if not plan.wish.names:
@@ -27,7 +29,7 @@ def plan_sentences(plan: Plan, remedies: Sequence[Remedy] = ()) -> tuple[str, ..
         *(_miss(plan, name) for name in sorted(missed, key=lambda name: -missed[name])),
         *_binding(plan),
         *(remedy.sentence for remedy in remedies if missed),
-        "The plan was not rehearsed.",
+        *(NOT_REHEARSED if rehearsal is None else rehearsal.sentences),
     )
 
 
@@ -54,6 +56,8 @@ def _length(seconds: float) -> str:
 def _binding(plan: Plan) -> list[str]:
     sentences = []
     for leg, peaks in zip(plan.legs, plan.peaks, strict=True):
+        if not peaks.binding:
+            continue
         *others, last = peaks.binding
         names = f"{', '.join(others)} and {last} keep" if others else f"{last} keeps"
         sentences.append(f"At {leg.level_rpm:.0f} rpm {names} the lines from being stronger.")
