@@ -21,6 +21,7 @@ room            nouns                       verbs
 ``validation``  ``Validation``              ``validate``
 ``fingerprint`` ``Fingerprint``             ``take_fingerprint``, ``read_fingerprint``, ``write_fingerprint``
 ``design``      ``Plan``, ``Wish``, ``Limits`` ``design_campaign``, ``assumed_ship``, ``limits_from_vessel``
+``rehearsal``                               ``rehearse_on_tug``
 ``export``      ``ExportedModel``           ``exported_model``, ``write_fmu``, ``write_matlab``, ``write_modelica``
 ``survey``      ``Survey``                  ``run``, ``measure``, ``fit``, ``survey_of``
 ``tables``      ``Table``                   ``parameter_table``, ``physical_table``
@@ -50,6 +51,7 @@ _ROOMS = (
     "models",
     "propeller",
     "recording",
+    "rehearsal",
     "report",
     "settings",
     "signals",

@@ -22,6 +22,7 @@ from shaftprint import propeller as propeller
 from shaftprint import publication as publication
 from shaftprint import reasons as reasons
 from shaftprint import recording as recording
+from shaftprint import rehearsal as rehearsal
 from shaftprint import report as report
 from shaftprint import settings as settings
 from shaftprint import signals as signals
