@@ -146,13 +146,18 @@ def load_settings(path_or_name: str | Path, model_class: type[_Model], *, shippe
     is_path = isinstance(path_or_name, Path) or text.endswith(".toml") or "/" in text or "\\" in text
     if is_path:
         return read_settings(path_or_name, model_class)
-    names = shipped_names(shipped)
-    if text not in names:
-        raise SettingsError(
-            f'"{text}": expected a path that ends in .toml or one of the shipped names {", ".join(names)}.'
-        )
-    with as_file(shipped / f"{text.replace('-', '_')}.toml") as path:
+    with as_file(_shipped_file(text, shipped)) as path:
         return read_settings(path, model_class)
+
+
+def _shipped_file(name: str, shipped: Traversable) -> Traversable:
+    """Return a file that comes with the package."""
+    names = shipped_names(shipped)
+    if name not in names:
+        raise SettingsError(
+            f'"{name}": expected a path that ends in .toml or one of the shipped names {", ".join(names)}.'
+        )
+    return shipped / f"{name.replace('-', '_')}.toml"
 
 
 def shipped_names(shipped: Traversable) -> tuple[str, ...]:
@@ -161,8 +166,8 @@ def shipped_names(shipped: Traversable) -> tuple[str, ...]:
     return tuple(sorted(name.removesuffix(".toml").replace("_", "-") for name in names))
 
 
-def write_template(kind: Literal["vessel", "campaign"], path: str | Path) -> None:
-    """Write a commented settings file that can be loaded as it stands, to be filled in.
+def write_template(kind: Literal["vessel", "campaign"], path: str | Path, *, shipped: str | None = None) -> None:
+    """Write a commented settings file that can be loaded as it stands, to be filled in or changed.
 
     Parameters
     ----------
@@ -170,13 +175,20 @@ def write_template(kind: Literal["vessel", "campaign"], path: str | Path) -> Non
         What to describe.
     path
         A file that does not exist yet.
+    shipped
+        Name of the shipped file to begin with; the template when not given.
 
     Raises
     ------
     SettingsError
-        If the file exists already or cannot be written; nothing is left half-written.
+        If there is no shipped file of that name, the file exists already or cannot be written; nothing is left
+        half-written.
     """
-    text = (files("shaftprint") / kind / "template.toml").read_text(encoding="utf-8")
+    folder = files("shaftprint") / kind
+    source = folder / "template.toml"
+    if shipped is not None:
+        source = _shipped_file(shipped, folder / "shipped")
+    text = source.read_text(encoding="utf-8")
     try:
         with written_whole(Path(path)) as part:
             part.write_text(text, encoding="utf-8")

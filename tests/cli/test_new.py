@@ -15,6 +15,27 @@ def test_template_can_be_loaded(run, tmp_path, kind, load):
     assert load(path).name
 
 
+@pytest.mark.parametrize(
+    ("name", "minutes", "speeds"), [("12min", 12.3, 2), ("5min", 5.4, 2), ("short", 14.3, 0), ("thesis", 190.8, 0)]
+)
+def test_tests_to_begin_with(run, tmp_path, name, minutes, speeds):
+    path = tmp_path / "test.toml"
+    result = run("new", "campaign", path, "--test", name)
+    assert result.exit_code == 0
+    assert result.output.startswith(f"{path}: ")
+    campaign = load_campaign(path)
+    assert campaign == load_campaign(name)
+    assert campaign.duration_s / 60.0 == pytest.approx(minutes, abs=0.05)
+    assert len({leg.level_v for leg in campaign.legs}) == speeds
+
+
+def test_a_vessel_begins_with_no_test(run, tmp_path):
+    result = run("new", "vessel", tmp_path / "mine.toml", "--test", "5min")
+    assert result.exit_code == 2
+    assert "write `shaftprint new campaign`" in result.stderr
+    assert not (tmp_path / "mine.toml").exists()
+
+
 def test_existing_file_is_kept(run, tmp_path):
     path = tmp_path / "mine.toml"
     path.write_text("mine")

@@ -7,6 +7,8 @@ import pytest
 from shaftprint.campaign import load_campaign
 
 GIVEN = ("--campaign", "thesis", "--no-progress")
+# The simulated tug.
+GOVERNOR = {"K_p": 5.7, "K_i": 4.27, "t_d": 0.0703, "omega_n": 10.3, "zeta": 0.47, "t_sp": 0.0518}
 
 
 def table(result):
@@ -83,7 +85,22 @@ def test_the_sign_of_the_slope_is_that_of_simulate(run):
     options = ("predict", *GIVEN, "--vessel", "stan-tug-1205", "--structure", "CL4", "--rpm-per-volt")
     falling, rising = (run(*options, rpm) for rpm in ("-250.9", "250.9"))
     assert falling.exit_code == 0, falling.stderr
-    assert falling.output == rising.output
+    # the limits know which way is up
+    told, limits = zip(*(one.output.split("The test would leave", 1) for one in (falling, rising)), strict=True)
+    assert told[0] == told[1]
+    assert limits[0] != limits[1]
+
+
+def test_where_the_test_would_leave_the_limits(run):
+    """The steps of the short campaign meet the limits of the engine, its sines do not; the simulated tug shows both."""
+    governor = [f"--value={name}={value}" for name, value in GOVERNOR.items()]
+    result = run("predict", "--campaign", "short", "--no-progress", "--vessel", "stan-tug-1205", *governor)
+    told = result.output.split("The test would leave limits of ship and engine", 1)[1]
+    assert "St1 leaves the limit zero fuel at 10.2 s" in told
+    assert not re.search(r"\* S\d+ leaves", told)
+    designed = run("predict", "--campaign", "12min", "--vessel", "stan-tug-1205", *governor)
+    assert "leaves the limit" not in designed.output
+    assert re.search(r"lowest speed +6\d\d +600 +rpm +M2", designed.output)
 
 
 def test_noise_of_a_recording(run, recording):

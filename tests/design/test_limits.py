@@ -2,21 +2,31 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from shaftprint.design import limits_from_vessel
 from shaftprint.errors import DesignError, SettingsError
 from shaftprint.settings import write_template
-from shaftprint.vessel import load_vessel
+from shaftprint.vessel import OperatingLimits, load_vessel
 
 
 def test_of_a_vessel_file_without_operating_limits():
-    limits = limits_from_vessel(load_vessel("stan-tug-1205"), set_point_rpm=100.0)
+    tug = load_vessel("stan-tug-1205").model_copy(update={"limits": OperatingLimits()})
+    limits = limits_from_vessel(tug, set_point_rpm=100.0)
     assert (limits.lowest_speed_rpm, limits.highest_speed_rpm) == (600.0, 1800.0)
     assert limits.brake_torque_nm == pytest.approx(465.54, abs=0.01)
     assert limits.full_load[4] == (1227.6, 1325.0)
     assert limits.motoring == ((0.0, 0.0),)
     assert limits.demand_delay_s == 0.0
+
+
+def test_of_the_shipped_tug():
+    # 300 N m at 1183.8 rpm, half of it independent of the speed and half proportional
+    limits = limits_from_vessel(load_vessel("stan-tug-1205"), set_point_rpm=100.0)
+    assert (limits.lowest_speed_rpm, limits.highest_speed_rpm) == (600.0, 1800.0)
+    speeds, torques = zip(*limits.motoring, strict=True)
+    assert np.interp([600.0, 1183.8, 1800.0], speeds, torques) == pytest.approx([226.03, 300.0, 378.08], abs=0.01)
 
 
 def test_of_the_template_with_its_limits_switched_on(tmp_path):

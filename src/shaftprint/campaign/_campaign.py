@@ -31,6 +31,8 @@ class Campaign(Shown, Settings):
     """Length of the recording that it needs [s]."""
     offset_v: Number
     """Set point outside of every excitation [V]."""
+    offset_rpm: PositiveNumber | None = None
+    """Engine speed for which that asks [rpm]; the working point's of the vessel file where it is not given."""
     further_offsets_v: Mapping[Name, Number] = Field(default_factory=dict)
     """Middle of the sines that move something else than the set point of the speed [V], by the name of that input."""
     sample_rate_hz: PositiveNumber | None = None

@@ -80,7 +80,11 @@ OPTIONS: Mapping[str, tuple[Parameter, ...]] = {
 
 
 def limited(
-    *limits: str, curve: tuple[tuple[float, float], ...] = (), period_s: float = 0.0, name: str = ""
+    *limits: str,
+    curve: tuple[tuple[float, float], ...] = (),
+    period_s: float = 0.0,
+    name: str = "",
+    with_rack: bool = False,
 ) -> Structure:
     """Return the gauge-aware closed loop with a quadratic propeller and some limits.
 
@@ -94,6 +98,8 @@ def limited(
         Period in which the governor moves a limited rack [s]; 0 for every step of the simulation.
     name
         What to call it; from the limits if not given.
+    with_rack
+        Whether the rack that the governor gives, ``X``, is an output too.
 
     Raises
     ------
@@ -109,6 +115,7 @@ def limited(
         of=(GAUGE_K_P, GAUGE_K_I, V_ONE, T_D, GAUGE_OMEGA_N, GAUGE_ZETA, TAU_DN, TAU_UP, K_Q, G, DROOP, *extra),
     )
     demand, ports = Gain(C_SET), loop.ports()
+    rack = {"X": demand * ports["X"] * Delay(T_SP)} if with_rack else {}
     return Structure(
         name=name or f"GAUGE-{'-'.join(limits).upper() or 'QUADRATIC'}",
         title=f"gauge-aware closed loop, quadratic propeller{''.join(f', {limit}' for limit in limits)}",
@@ -116,6 +123,7 @@ def limited(
         outputs={
             "n": demand * ports["n"] * Delay(T_SP) * AveragingSensor(T_AVERAGE, T_HOLD, T_PICKUP),
             "M_s": demand * ports["M_s"] * Delay(T_SP) * Delay(T_GAUGE) * FirstOrderLag(T_FILTER),
+            **rack,
         },
         combinations=gauge_combinations(),
     )

@@ -45,6 +45,14 @@ from shaftprint.design.files import (
     write_plan,
     write_plan_files,
 )
+from shaftprint.design.operation import (
+    LimitUse,
+    Operation,
+    expected_operation,
+    limit_uses,
+    recorded_operation,
+    stated_limits,
+)
 from shaftprint.design.search import Effort
 from shaftprint.design.views import (
     AbortCard,
@@ -70,8 +78,10 @@ __all__ = [
     "Effort",
     "Leg",
     "LengthCurve",
+    "LimitUse",
     "Limits",
     "LineWorth",
+    "Operation",
     "Peaks",
     "Plan",
     "PlannedMotion",
@@ -90,7 +100,9 @@ __all__ = [
     "best_plan",
     "campaign_of",
     "design_campaign",
+    "expected_operation",
     "length_curve",
+    "limit_uses",
     "limits_from_vessel",
     "limits_of_fingerprint",
     "line_of_fingerprint",
@@ -100,6 +112,7 @@ __all__ = [
     "plan_sentences",
     "planned_motion",
     "read_plan",
+    "recorded_operation",
     "rehearse",
     "remedies",
     "replan",
@@ -108,6 +121,7 @@ __all__ = [
     "ship_of_fingerprint",
     "ship_of_fit",
     "shortest",
+    "stated_limits",
     "usual_speeds",
     "write_plan",
     "write_plan_files",

@@ -37,6 +37,7 @@ from shaftprint.tables._inertia import (
     water_table,
 )
 from shaftprint.tables._legs import leg_table, leg_test_table
+from shaftprint.tables._limit_uses import limit_use_sentences, limit_use_table
 from shaftprint.tables._recording import clock_deviations, clock_map_table, clock_table, level_table
 from shaftprint.tables._signals import (
     calibration_table,
@@ -74,6 +75,8 @@ __all__ = [
     "leg_table",
     "leg_test_table",
     "level_table",
+    "limit_use_sentences",
+    "limit_use_table",
     "limits",
     "local_ratio_table",
     "margin_table",

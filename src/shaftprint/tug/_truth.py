@@ -5,12 +5,14 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+import numpy as np
+
 from shaftprint.campaign import Campaign
 from shaftprint.errors import RecordingError
 from shaftprint.notebook import Shown
 from shaftprint.tug._sailing import sailing_truth, way_of
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import build_plant, shaft_time_constant_s, working_point, working_point_rack
+from shaftprint.tug.plant import build_plant, demand_limits, shaft_time_constant_s, working_point, working_point_rack
 from shaftprint.tug.sensors import Fault
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import RackSensor, Vessel
@@ -117,6 +119,7 @@ def rack_latency_s(tug: Tug, sensor: RackSensor) -> float:
 def physical_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
     """Return the physical constants with their units in the names."""
     plant = build_plant(tug, vessel)
+    speed, _ = working_point(tug, vessel)
     rate = tug.rack_rate_limit_per_s
     limited = {} if rate is None else {"rack_rate_limit_per_s": rate}
     return {
@@ -130,14 +133,16 @@ def physical_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
         "governor_proportional_per_rev_s": plant.proportional_s,
         "governor_integral_per_rev": plant.integral,
         "anti_windup_s": plant.anti_windup_s,
-        "motoring_torque_nm": plant.motoring_torque_nm,
+        "motoring_torque_nm": float(np.interp(speed, plant.motoring_speed_rev_s, plant.motoring_torque_nm)),
         "deadband_rev_s": plant.deadband_rev_s,
         "unboosted_torque_share": plant.air_share,
         "turbocharger_lag_s": plant.turbocharger_lag_s,
         "gear_ratio": plant.gear_ratio,
         "transmission_efficiency": plant.efficiency,
         "torque_zero_offset_nm": tug.torque_zero_offset_nm,
-    } | limited
+        **limited,
+        **demand_limits(tug, vessel).stated,
+    }
 
 
 def tell_truth(

@@ -9,6 +9,14 @@ from shaftprint.tug._sailing import Sailing
 # Table 3.4 of the thesis, "Fingerprinting II": angles between the reflection strips [degree]; printed sum 360.02.
 STRIP_ANGLES_DEG = (90.40, 87.24, 90.74, 91.64)
 
+USUAL_MOTORING_NM = 300.0
+"""Motoring torque at the working point [N m] where neither the truth nor the vessel file states one.
+
+26 % of rated torque, on the high side for friction, compression and driven pumps: the sine S12 alone swings the brake
+torque down to -197 N m, with noise to -253 N m, and the sines shall stay unclipped so that they show a linear line. The
+chirps C11 and C23 still touch both limits where they pass the closed-loop peak near 1.2 Hz, and the staircases do.
+"""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Tug:
@@ -68,22 +76,21 @@ class Tug:
     set_point_offset_v: float = -0.04947603299199
     """What the potentiometer adds to the voltage of the campaign [V]: at -5 V the default line gives ``n_0``."""
     demand_resolution_rpm: float | None = None
-    """Step of the demand on its way to the ECU [rpm]; ``None``: not quantised."""
+    """Step of the demand on its way to the ECU [rpm]; ``None``: the vessel's, not quantised where it has none."""
     demand_cycle_s: float | None = None
-    """Time from one message with the demand to the next, which the ECU holds [s]; ``None``: it follows at once."""
+    """Time from one message with the demand to the next, which the ECU holds [s]; ``None``: the vessel's, at once where
+    it has none."""
     demand_rate_limit_rpm_per_s: float | None = None
-    """Fastest change of the demand that the ECU follows [rpm/s]; ``None``: no limit.
+    """Fastest change of the demand that the ECU follows [rpm/s]; ``None``: the vessel's, no limit where it has none.
 
-    None by default: a limit that high-speed engines have (100 to 600 rpm/s) would already bend the sine S10, and the
-    thesis sees no sign of that.
+    The shipped tug has none: a limit that high-speed engines have (100 to 600 rpm/s) would already bend the sine S10,
+    and the thesis sees no sign of that.
     """
-    motoring_torque_nm: float = 300.0
-    """Torque that the engine takes at the working point when no fuel is burnt [N m]: the lower torque limit.
+    motoring_torque_nm: float | None = None
+    """Torque that the engine takes at the working point when no fuel is burnt [N m]: the lower torque limit. ``None``:
+    the vessel's motoring curve, and 300 N m where it has none.
 
-    The rack may go as far below zero-torque running, where no fuel is left. The default, 26 % of rated torque, is on
-    the high side for friction, compression and driven pumps: the sine S12 alone swings the brake torque down to
-    -197 N m, with noise to -253 N m, and the sines shall stay unclipped so that they show a linear line. The chirps
-    C11 and C23 still touch both limits where they pass the closed-loop peak near 1.2 Hz, and the staircases do.
+    The rack may go as far below zero-torque running, where no fuel is left.
     """
     unboosted_torque_share: float = 1.0
     """Torque that a smoke limiter gives without boost, over the full-load torque; 1: no smoke limiter.

@@ -9,12 +9,14 @@ import numpy as np
 
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.cli._found_tests import print_found_tests
+from shaftprint.cli._limit_uses import print_limit_uses
 from shaftprint.cli._options import NAMES, hints_of, reading_options
 from shaftprint.cli._sensor_map import Seen, proposed_sensors
 from shaftprint.cli._signal_tables import print_lines, print_signals
 from shaftprint.cli._terminal import answer, echo, print_findings, say
 from shaftprint.cli.output import no_progress_option, print_table, print_tables, progress
 from shaftprint.clocks import LoggerClock, logger_clocks
+from shaftprint.design import limit_uses, recorded_operation, stated_limits
 from shaftprint.errors import ShaftprintError, SignalError
 from shaftprint.fingerprint import clock_findings, clock_influences
 from shaftprint.limits import limit_hints
@@ -55,8 +57,8 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
     """Show what is in a recording and whether it is good enough.
 
     Without a vessel file, the channels with rates, spans and levels, and a proposal for its sensors. With one, what
-    each sensor shows: pulses, faults, outliers. With a campaign file too, the calibration and the signal-to-noise ratio
-    of every test line.
+    each sensor shows: pulses, faults, outliers. With a campaign file too, the calibration, the signal-to-noise ratio of
+    every test line, and where the test left the limits of ship and engine.
     """
     if campaign is not None and vessel is None:
         raise click.UsageError("--campaign needs --vessel, which says what each channel is.")
@@ -76,8 +78,8 @@ def command(recording: Path, vessel: str | None, campaign: str | None, no_progre
         _print_channels(opened, levels)
         print_tables([clock_map_table(clocks)])
         _print_sensors(reports)
-        if test is not None:
-            _print_test(test, clocks)
+        if test is not None and ship is not None:
+            _print_test(test, clocks, ship)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -196,7 +198,7 @@ def _sensor_row(report: ChannelReport) -> tuple[str, ...]:
     )
 
 
-def _print_test(test: _Test, clocks: Sequence[LoggerClock]) -> None:
+def _print_test(test: _Test, clocks: Sequence[LoggerClock], ship: Vessel) -> None:
     if test.tests:
         print_found_tests(test.tests, test.planned)
     if test.signals is None or test.spectra is None:
@@ -211,6 +213,8 @@ def _print_test(test: _Test, clocks: Sequence[LoggerClock]) -> None:
         if leg.spectra is not test.spectra:
             say(f"Leg {leg.name}")
             print_lines(leg.spectra)
+    operation = recorded_operation(test.signals, test.planned, ship)
+    print_limit_uses(limit_uses(operation, stated_limits(ship)), is_expected=False)
     influences = clock_influences(clocks, spectra=test.spectra, signals=test.signals)
     print_findings("Findings on the signals", [*test.signals.findings, *clock_findings(influences)])
     print_findings("Limits", limit_hints(test.spectra.harmonics))

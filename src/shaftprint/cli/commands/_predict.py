@@ -10,10 +10,12 @@ import numpy as np
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.cli._known_values import hold_option, named_value, prior_option, rpm_per_volt_option
+from shaftprint.cli._limit_uses import print_limit_uses
 from shaftprint.cli._options import NAMES, campaign_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._prediction_tables import print_prediction
 from shaftprint.cli.output import no_progress_option, progress
+from shaftprint.design import expected_operation, limit_uses, stated_limits
 from shaftprint.errors import StructureError
 from shaftprint.identify import (
     STAN_TUG_NOISE,
@@ -30,7 +32,8 @@ from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse, open_loop
 from shaftprint.spelling import meant
 from shaftprint.survey import load_trial, measure, priors_of, stated_working_point
-from shaftprint.vessel import load_vessel
+from shaftprint.units import rpm_from_rev_s
+from shaftprint.vessel import Vessel, load_vessel
 
 CLOSED_LOOP = "GAUGE-CLOSED"
 # Where the sensitivity of a structure is taken; what can be found does not depend on it.
@@ -43,8 +46,9 @@ class _Ship:
 
     priors: Mapping[str, Prior]
     noise: NoiseLevels
-    rises: bool
+    slope_rpm_per_v: float
     words: str
+    vessel: Vessel | None = None
 
 
 @click.command("predict")
@@ -91,7 +95,8 @@ def command(
     """Predict the accuracy of a planned test.
 
     Prints the standard deviation of every parameter that the lines of a campaign would give, what they cannot
-    separate, and what no test of these outputs can find. --prior, --free, --hold and --value may be repeated.
+    separate, and what no test of these outputs can find. With --vessel also where the test would leave the limits of
+    ship and engine. --prior, --free, --hold and --value may be repeated.
     """
     (chosen,) = chosen_structures([name])
     chosen = chosen.held_at(**dict(held))
@@ -117,6 +122,22 @@ def command(
         predict_joint_accuracy(pairs, values=assumed, priors=assumed_priors, combinations=possible.combinations),
         predict_joint_intervals(pairs, values=assumed, priors=assumed_priors),
     )
+    if ship.vessel is not None:
+        _print_limits(planned, ship.vessel, ship, dict(priors), dict(values))
+
+
+def _print_limits(
+    planned: Campaign, vessel: Vessel, ship: _Ship, priors: Mapping[str, Prior], values: Mapping[str, float]
+) -> None:
+    """Print where the campaign would leave the limits of the vessel file, and how near it comes to each.
+
+    Whatever structure the test is for, it moves the whole closed loop.
+    """
+    loop = structure(CLOSED_LOOP)
+    beforehand = dict(priors_from_vessel(loop, vessel, stated_working_point(vessel))) | dict(priors)
+    assumed = _values_of(loop, beforehand) | dict(values)
+    operation = expected_operation(planned, vessel, assumed, slope_rpm_per_v=ship.slope_rpm_per_v)
+    print_limit_uses(limit_uses(operation, stated_limits(vessel)), is_expected=True)
 
 
 def _expect_free(freed: tuple[str, ...], chosen: Structure) -> None:
@@ -133,15 +154,20 @@ def _recorded(path: Path, vessel: str, campaign: str, chosen: Structure, *, no_p
     with progress(hidden=no_progress) as steps:
         measurement = measure(path, trial, mode="shaftprint", progress=steps)
     signals = measurement.signals
-    slope = abs(signals.calibration.slope_rev_s_per_v) * signals.dc_scale
+    slope = signals.calibration.slope_rev_s_per_v * signals.dc_scale
     noise = noise_levels(
         measurement.spectra.response,
         trial.campaign,
-        set_point_per_v=slope / signals.working_point.engine_speed_rev_s,
+        set_point_per_v=abs(slope) / signals.working_point.engine_speed_rev_s,
     )
     priors = priors_of(chosen, trial.vessel, signals)
-    rises = signals.calibration.slope_rev_s_per_v > 0.0
-    return _Ship(priors=priors, noise=noise, rises=rises, words=f"noise of {path.name}")
+    return _Ship(
+        priors=priors,
+        noise=noise,
+        slope_rpm_per_v=rpm_from_rev_s(slope),
+        words=f"noise of {path.name}",
+        vessel=trial.vessel,
+    )
 
 
 def _assumed(vessel: str | None, rpm_per_volt: float | None, chosen: Structure) -> _Ship:
@@ -149,14 +175,15 @@ def _assumed(vessel: str | None, rpm_per_volt: float | None, chosen: Structure) 
     if vessel is None:
         if rpm_per_volt is not None:
             raise click.UsageError("--rpm-per-volt needs --vessel, which says at what speed.")
-        return _Ship(priors={}, noise=STAN_TUG_NOISE, rises=False, words="noise of the Stan Tug 1205 assumed")
+        # with less voltage the tug goes faster; its speed plays no part without a vessel
+        return _Ship(priors={}, noise=STAN_TUG_NOISE, slope_rpm_per_v=-1.0, words="noise of the Stan Tug 1205 assumed")
     ship = load_vessel(vessel)
-    noise = STAN_TUG_NOISE
-    if rpm_per_volt is not None:
-        noise = replace(noise, set_point_per_v=abs(rpm_per_volt) / ship.working_point.engine_speed_rpm)
+    speed_rpm = ship.working_point.engine_speed_rpm
+    slope = -STAN_TUG_NOISE.set_point_per_v * speed_rpm if rpm_per_volt is None else rpm_per_volt
+    noise = replace(STAN_TUG_NOISE, set_point_per_v=abs(slope) / speed_rpm)
     priors = priors_from_vessel(chosen, ship, stated_working_point(ship))
     words = f"noise of the Stan Tug 1205 assumed for {ship.name}"
-    return _Ship(priors=priors, noise=noise, rises=rpm_per_volt is not None and rpm_per_volt > 0.0, words=words)
+    return _Ship(priors=priors, noise=noise, slope_rpm_per_v=slope, words=words, vessel=ship)
 
 
 def _values_of(chosen: Structure, priors: Mapping[str, Prior]) -> dict[str, float]:
@@ -177,7 +204,7 @@ def _planned(chosen: Structure, campaign: Campaign, ship: _Ship) -> list[tuple[S
     tests = [(chosen, loop, planned_response(campaign, ship.noise))] if campaign.sines or not campaign.legs else []
     tests += [
         (leg.structure(chosen), leg.structure(loop), leg.response)
-        for leg in planned_legs(campaign, ship.noise, rises=ship.rises)
+        for leg in planned_legs(campaign, ship.noise, rises=ship.slope_rpm_per_v > 0.0)
     ]
     return [(at_leg, _from_input(at_leg, loop_there, closed)) for at_leg, loop_there, closed in tests]
 

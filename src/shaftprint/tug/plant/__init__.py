@@ -3,7 +3,7 @@
 ``shaftprint.tug.sensors`` measures it. Quantities and signs are those of ``shaftprint.tug``.
 """
 
-from shaftprint.tug.plant._demand import Demand, demanded_speed, helm_voltage
+from shaftprint.tug.plant._demand import Demand, DemandLimits, demand_limits, demanded_speed, helm_voltage
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._physics import (
     build_plant,
@@ -38,10 +38,12 @@ __all__ = [
     "SPEED",
     "WAY",
     "Demand",
+    "DemandLimits",
     "Disturbance",
     "Leg",
     "Plant",
     "build_plant",
+    "demand_limits",
     "demanded_speed",
     "derivatives",
     "equilibrium",

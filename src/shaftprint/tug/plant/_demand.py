@@ -1,5 +1,7 @@
 """The way of the set point from the voltage at the helm to the speed demand inside the ECU."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from shaftprint.arrays import FloatArray
@@ -30,12 +32,46 @@ def demanded_speed(tug: Tug, voltage_v: FloatArray) -> FloatArray:
     return rev_s_from_rpm(tug.set_point_slope_rpm_per_v * voltage_v + tug.set_point_intercept_rpm)
 
 
+class DemandLimits(NamedTuple):
+    """What the ECU makes of the demand; None where it does not."""
+
+    resolution_rpm: float | None
+    """Step of the demand [rpm]."""
+    cycle_s: float | None
+    """Time for which a message is held [s]."""
+    rate_rpm_per_s: float | None
+    """Fastest change [rpm/s]."""
+    lowest_rpm: float | None
+    """Idle speed, below which no demand is followed [rpm]."""
+
+    @property
+    def stated(self) -> dict[str, float]:
+        """What the ECU limits, as it is kept with the truth."""
+        return {f"demand_{name}": value for name, value in self._asdict().items() if value is not None}
+
+
+def demand_limits(tug: Tug, vessel: Vessel) -> DemandLimits:
+    """Return what the ECU makes of the demand: what the truth says of it, else what the vessel file states."""
+    stated = vessel.limits
+    return DemandLimits(
+        resolution_rpm=_first(tug.demand_resolution_rpm, stated.demand_resolution_rpm),
+        cycle_s=_first(tug.demand_cycle_s, stated.demand_cycle_s),
+        rate_rpm_per_s=_first(tug.demand_rate_limit_rpm_per_s, stated.demand_rate_limit_rpm_per_s),
+        lowest_rpm=stated.lowest_speed_rpm,
+    )
+
+
+def _first(of_truth: float | None, of_vessel: float | None) -> float | None:
+    return of_vessel if of_truth is None else of_truth
+
+
 class Demand:
-    """Stream of the speed demand in the ECU on half steps: late, held, quantised, rate-limited if the truth says so."""
+    """Stream of the speed demand in the ECU on half steps: late, held, quantised, not below idle, rate-limited."""
 
     def __init__(self, tug: Tug, vessel: Vessel, campaign: Campaign, *, start_s: float, step_s: float) -> None:
         self._tug = tug
         self._campaign = campaign
+        self._limits = demand_limits(tug, vessel)
         self._working_point_rev_s, _ = working_point(tug, vessel)
         self._start_s = start_s
         self._half_step_s = 0.5 * step_s
@@ -58,8 +94,8 @@ class Demand:
         time: FloatArray = self._start_s + self._half_step_s * half_steps
         demand = self._late(time)
         self._count += 2 * steps
-        if self._tug.demand_rate_limit_rpm_per_s is not None:
-            largest = rev_s_from_rpm(self._tug.demand_rate_limit_rpm_per_s) * self._half_step_s
+        if self._limits.rate_rpm_per_s is not None:
+            largest = rev_s_from_rpm(self._limits.rate_rpm_per_s) * self._half_step_s
             # the first value is the last of the chunk before: it may not move twice
             demand[0] = self._last
             _rate_limit(demand[1:], largest, self._last)
@@ -70,13 +106,16 @@ class Demand:
 
     def _late(self, time_s: FloatArray) -> FloatArray:
         sent_s = time_s - self._tug.set_point_latency_s
-        cycle_s = self._tug.demand_cycle_s
+        cycle_s = self._limits.cycle_s
         if cycle_s is not None:
             # a billionth of a cycle, so that rounding does not delay a message that is due
             sent_s = cycle_s * np.floor(sent_s / cycle_s + 1e-9)
         voltage = helm_voltage(self._tug, self._campaign, sent_s)
         demand = demanded_speed(self._tug, voltage)
-        if self._tug.demand_resolution_rpm is not None:
-            resolution = rev_s_from_rpm(self._tug.demand_resolution_rpm)
+        if self._limits.resolution_rpm is not None:
+            resolution = rev_s_from_rpm(self._limits.resolution_rpm)
             demand = resolution * np.round(demand / resolution)
+        if self._limits.lowest_rpm is not None:
+            # a set point that asks for no positive speed at all is refused, not raised to idle
+            demand = np.where(demand > 0.0, np.maximum(demand, rev_s_from_rpm(self._limits.lowest_rpm)), demand)
         return demand

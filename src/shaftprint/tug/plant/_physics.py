@@ -7,10 +7,13 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SettingsError
 from shaftprint.tug._sailing import AT_THE_QUAY, steady_ship_speed_m_s, steady_torque_nm, way_of
-from shaftprint.tug._tug import Tug
+from shaftprint.tug._tug import USUAL_MOTORING_NM, Tug
 from shaftprint.tug.plant._plant import INTEGRAL, RACK, SLIPSTREAM, SPEED, STATES, WAY, Plant
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel
+
+# Speed over that of the working point up to which friction grows in proportion; no engine gets there.
+_FASTEST_SHARE = 10.0
 
 
 def build_plant(tug: Tug, vessel: Vessel) -> Plant:
@@ -45,6 +48,7 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
     rated = rev_s_from_rpm(vessel.engine.rated_speed_rpm)
     rack_slope = vessel.engine.rated_torque_nm - speed_slope * rated - offset
     rack = tug.v * brake / rack_slope
+    motoring_speed_rev_s, motoring_torque_nm = _motoring(tug, vessel, speed)
     upstream, downstream = tug.inertia_upstream_kg_m2, tug.inertia_downstream_kg_m2
     downstream = vessel.inertia_downstream_kg_m2 if downstream is None else downstream
     return Plant(
@@ -66,8 +70,8 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
         damping_ratio=tug.damping_ratio,
         limit_speed_rev_s=rev_s_from_rpm(np.array(vessel.engine.full_load_speed_rpm)),
         limit_torque_nm=np.array(vessel.engine.full_load_torque_nm),
-        motoring_torque_nm=tug.motoring_torque_nm,
-        motoring_speed_rev_s=speed,
+        motoring_speed_rev_s=motoring_speed_rev_s,
+        motoring_torque_nm=motoring_torque_nm,
         deadband_rev_s=rev_s_from_rpm(tug.governor_deadband_rpm),
         rack_rate_limit_per_s=np.inf if tug.rack_rate_limit_per_s is None else tug.rack_rate_limit_per_s,
         air_share=tug.unboosted_torque_share,
@@ -75,6 +79,20 @@ def build_plant(tug: Tug, vessel: Vessel) -> Plant:
         sails=tug.sailing is not None,
         way=AT_THE_QUAY if tug.sailing is None else way_of(tug.sailing, vessel),
     )
+
+
+def _motoring(tug: Tug, vessel: Vessel, speed_rev_s: float) -> tuple[FloatArray, FloatArray]:
+    """Return speeds [rev/s] and torques [N m] of the motoring curve: of the truth, else of the vessel file, else usual.
+
+    Friction of a motored engine of which one number is known at a speed: half of it independent of speed, half
+    proportional.
+    """
+    limits = vessel.limits
+    if tug.motoring_torque_nm is None and limits.motoring_speed_rpm:
+        return rev_s_from_rpm(np.array(limits.motoring_speed_rpm)), np.array(limits.motoring_torque_nm)
+    at_speed_nm = USUAL_MOTORING_NM if tug.motoring_torque_nm is None else tug.motoring_torque_nm
+    shares = np.array([0.0, _FASTEST_SHARE])
+    return shares * speed_rev_s, at_speed_nm * (0.5 + 0.5 * shares)
 
 
 def working_point(tug: Tug, vessel: Vessel) -> tuple[float, float]:

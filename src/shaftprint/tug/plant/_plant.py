@@ -72,9 +72,10 @@ class Plant(NamedTuple):
     """Engine speeds of the full-load curve [rev/s], ascending."""
     limit_torque_nm: FloatArray
     """Full-load brake torque [N m]."""
-    motoring_torque_nm: float
-    """Brake torque without fuel at ``motoring_speed_rev_s``, as a positive number [N m]."""
-    motoring_speed_rev_s: float
+    motoring_speed_rev_s: FloatArray
+    """Engine speeds of the motoring curve [rev/s], ascending."""
+    motoring_torque_nm: FloatArray
+    """Brake torque without fuel at them, as positive numbers [N m]."""
     deadband_rev_s: float = 0.0
     """Speed error within which the governor does nothing [rev/s], half of the whole band."""
     rack_rate_limit_per_s: float = np.inf
@@ -90,23 +91,27 @@ class Plant(NamedTuple):
 
 
 @compiled(inline="always")
-def torque_limits(speed, plant):  # type: ignore[no-untyped-def]
-    """Return the lowest and highest brake torque [N m] at an engine speed [rev/s]."""
-    speeds = plant.limit_speed_rev_s
-    torques = plant.limit_torque_nm
+def _on_curve(speed, speeds, torques):  # type: ignore[no-untyped-def]
+    """Return the torque [N m] of a curve at a speed [rev/s], straight between its points and flat beyond them."""
     last = speeds.size - 1
     if speed >= speeds[last]:
-        highest = torques[last]
+        torque = torques[last]
     elif speed <= speeds[0]:
-        highest = torques[0]
+        torque = torques[0]
     else:
         j = 1
         while speeds[j] < speed:
             j += 1
         part = (speed - speeds[j - 1]) / (speeds[j] - speeds[j - 1])
-        highest = torques[j - 1] + part * (torques[j] - torques[j - 1])
-    # friction of a motored engine: half of it independent of speed, half proportional
-    lowest = -plant.motoring_torque_nm * (0.5 + 0.5 * speed / plant.motoring_speed_rev_s)
+        torque = torques[j - 1] + part * (torques[j] - torques[j - 1])
+    return torque
+
+
+@compiled(inline="always")
+def torque_limits(speed, plant):  # type: ignore[no-untyped-def]
+    """Return the lowest and highest brake torque [N m] at an engine speed [rev/s]."""
+    highest = _on_curve(speed, plant.limit_speed_rev_s, plant.limit_torque_nm)
+    lowest = -_on_curve(speed, plant.motoring_speed_rev_s, plant.motoring_torque_nm)
     return lowest, highest
 
 

@@ -1,0 +1,86 @@
+"""What a campaign will ask of ship and engine, as far as the ship is known."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.campaign import setpoint
+from shaftprint.catalogue import ShipRole, limited
+from shaftprint.design.operation._operation import Operation
+from shaftprint.errors import DesignError
+from shaftprint.models import Structure
+from shaftprint.simulation import simulate
+
+if TYPE_CHECKING:
+    from shaftprint.campaign import Campaign
+    from shaftprint.vessel import Vessel
+
+# Fine enough for lines of 10 Hz: their peaks are met within half a per cent, and so is a derivative.
+_RATE_HZ = 200.0
+# A line whose speed goes further than so many times that of the working point from it does not run any more.
+_FARTHEST = 1.0
+_ROLES = (ShipRole.INERTIA_UPSTREAM, ShipRole.ENGINE_RACK_SLOPE, ShipRole.ENGINE_SPEED_SLOPE)
+
+
+def expected_operation(
+    campaign: "Campaign", vessel: "Vessel", values: Mapping[str, float], *, slope_rpm_per_v: float
+) -> Operation:
+    """Return what a campaign makes a line do: the closed loop with the quadratic propeller, without noise or limits.
+
+    Upstream of the gauge ``M_b - M_s = tau_up dn/dt``. Without the limits it shows how far beyond them the engine would
+    have to go; what happens there is another question (``simulate``).
+
+    Parameters
+    ----------
+    campaign
+        What is asked of the ship.
+    vessel
+        Working point; the campaign's offset asks for its speed, or for ``offset_rpm`` where the campaign states that.
+    values
+        Assumed values by name, normalised at that working point; the structure's own where not given.
+    slope_rpm_per_v
+        Change of the engine speed for one volt [rpm/V], negative where a lower voltage asks for more speed.
+
+    Raises
+    ------
+    DesignError
+        If the line stops or runs away with these values: its loop is unstable, or it is asked for too much.
+    """
+    line = limited(with_rack=True)
+    vector = line.vector({name: value for name, value in values.items() if name in line.names})
+    point = vessel.working_point
+    time_s = np.arange(round(campaign.duration_s * _RATE_HZ) + 1) / _RATE_HZ
+    offset_rpm = point.engine_speed_rpm if campaign.offset_rpm is None else campaign.offset_rpm
+    set_point_rpm = offset_rpm + slope_rpm_per_v * (setpoint(campaign, time_s) - campaign.offset_v)
+    with np.errstate(over="ignore", invalid="ignore"):
+        trace = simulate(line, vector, time_s, {"n_set": set_point_rpm / point.engine_speed_rpm - 1.0})
+    outputs = trace.outputs
+    if not np.all(np.abs(outputs["n"]) < _FARTHEST):
+        raise DesignError(
+            f"campaign {campaign.name}: expected speeds between 0 and {1.0 + _FARTHEST:g} times the working point, "
+            "found others: the loop is unstable with the assumed values, or the set point asks for too much; give "
+            "other values, or another campaign."
+        )
+    brake, demand = _torques(line, vector, outputs, time_s)
+    brake_nm = point.shaft_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
+    return Operation(
+        campaign=campaign,
+        time_s=time_s,
+        set_point_rpm=set_point_rpm,
+        speed_rpm=point.engine_speed_rpm * (1.0 + outputs["n"]),
+        brake_torque_nm=brake_nm * (1.0 + brake),
+        torque_demand_nm=brake_nm * (1.0 + demand),
+    )
+
+
+def _torques(
+    line: Structure, values: FloatArray, outputs: Mapping[str, FloatArray], time_s: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return brake torque and that which the governor asks for, ``v X + g n``, over the working point's."""
+    named = dict(zip(line.names, values.tolist(), strict=True))
+    inertia_s, with_rack, with_speed = (named[name] for role in _ROLES if (name := line.named_as(role)) is not None)
+    speed = outputs["n"]
+    brake = outputs["M_s"] + inertia_s * np.gradient(speed, time_s)
+    return brake, with_rack * outputs["X"] + with_speed * speed

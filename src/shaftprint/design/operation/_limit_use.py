@@ -1,0 +1,154 @@
+"""The noun ``LimitUse`` and its verb: how near a test comes to each limit, and whether it leaves it."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.design._limits import NO_MOTORING, Curve, Limits, limits_from_vessel
+from shaftprint.design.operation._operation import Operation
+from shaftprint.digits import plain
+from shaftprint.notebook import Shown
+
+if TYPE_CHECKING:
+    from shaftprint.vessel import Vessel
+
+# A barred range may be crossed, but not for longer [s].
+CROSSING_S = 2.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class LimitUse(Shown):
+    """The instant of one excitation that comes nearest to a limit, or leaves it furthest."""
+
+    limit: str
+    """Name of the limit, such as ``full load``."""
+    excitation: str
+    """Name of the excitation that runs then."""
+    time_s: float
+    """When [s], since the start of the test."""
+    value: float
+    """What is reached, in ``unit``."""
+    allowed: float
+    """What the limit allows then, in ``unit``."""
+    unit: str
+    """Unit of both."""
+    beyond_s: float
+    """How long this excitation is beyond the limit, in all [s]."""
+
+    @property
+    def is_beyond(self) -> bool:
+        """Whether the limit is left."""
+        return self.beyond_s > 0.0
+
+    @property
+    def sentence(self) -> str:
+        """Which excitation leaves which limit, when, and how far."""
+        return (
+            f"{self.excitation} leaves the limit {self.limit} at {self.time_s:.1f} s: {plain(self.value, 0)} "
+            f"{self.unit}, allowed {plain(self.allowed, 0)} {self.unit}; {self.beyond_s:.1f} s in all."
+        )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Rule:
+    """One limit over the time of a test."""
+
+    name: str
+    unit: str
+    value: FloatArray
+    """What is reached, shape (samples,)."""
+    allowed: FloatArray
+    """What is allowed, shape (samples,)."""
+    left: FloatArray
+    """How much is left, negative beyond, shape (samples,)."""
+
+
+def stated_limits(vessel: "Vessel") -> Limits:
+    """Return what a vessel file allows, without a limit of the set point."""
+    return limits_from_vessel(vessel, set_point_rpm=math.inf)
+
+
+def limit_uses(operation: Operation, limits: Limits) -> tuple[LimitUse, ...]:
+    """Return how near each excitation comes to each limit, the nearest or furthest beyond first for each limit.
+
+    What the vessel file does not state is not held against anything: no motoring torque, no rate.
+
+    Parameters
+    ----------
+    operation
+        What engine and shaft do.
+    limits
+        What they may do.
+    """
+    uses = []
+    for rule in _rules(operation, limits):
+        of_rule = [
+            (_nearest(rule, name, running, operation.time_s), float(rule.left[running].min()))
+            for name, running in operation.stretches.items()
+        ]
+        uses += [use for use, _ in sorted(of_rule, key=lambda pair: pair[1])]
+    return tuple(uses)
+
+
+def _nearest(rule: _Rule, excitation: str, running: BoolArray, time_s: FloatArray) -> LimitUse:
+    places = np.flatnonzero(running)
+    place = places[np.argmin(rule.left[places])]
+    beyond_s = float(np.count_nonzero(rule.left[places] < 0.0)) * float(time_s[1] - time_s[0])
+    if rule.name.startswith("barred") and beyond_s <= CROSSING_S:
+        beyond_s = 0.0
+    return LimitUse(
+        limit=rule.name,
+        excitation=excitation,
+        time_s=float(time_s[place]),
+        value=float(rule.value[place]),
+        allowed=float(rule.allowed[place]),
+        unit=rule.unit,
+        beyond_s=beyond_s,
+    )
+
+
+def _rules(operation: Operation, limits: Limits) -> Iterator[_Rule]:
+    speed = operation.speed_rpm
+    yield _below("highest speed", "rpm", speed, limits.highest_speed_rpm)
+    yield _above("lowest speed", "rpm", speed, limits.lowest_speed_rpm)
+    if limits.demand_rate_limit_rpm_per_s is not None:
+        rate = np.abs(operation.rate_rpm_per_s)
+        yield _below("rate of the set point", "rpm/s", rate, limits.demand_rate_limit_rpm_per_s)
+    demand = operation.torque_demand_nm
+    full_load = _torque(limits.full_load, speed)
+    yield _below("full load", "N m", operation.brake_torque_nm, full_load)
+    if demand is not None:
+        yield _below("full rack", "N m", demand, full_load)
+    if limits.motoring != NO_MOTORING:
+        motoring = -_torque(limits.motoring, speed)
+        yield _above("motoring torque", "N m", operation.brake_torque_nm, motoring)
+        if demand is not None:
+            yield _above("zero fuel", "N m", demand, motoring)
+    for low, high in limits.barred_rpm:
+        end = np.where(speed < 0.5 * (low + high), low, high)
+        yield _Rule(
+            name=f"barred {low:g} to {high:g} rpm",
+            unit="rpm",
+            value=speed,
+            allowed=end,
+            left=np.abs(speed - 0.5 * (low + high)) - 0.5 * (high - low),
+        )
+
+
+def _below(name: str, unit: str, value: FloatArray, highest: FloatArray | float) -> _Rule:
+    allowed = np.broadcast_to(highest, value.shape)
+    return _Rule(name=name, unit=unit, value=value, allowed=allowed, left=allowed - value)
+
+
+def _above(name: str, unit: str, value: FloatArray, lowest: FloatArray | float) -> _Rule:
+    allowed = np.broadcast_to(lowest, value.shape)
+    return _Rule(name=name, unit=unit, value=value, allowed=allowed, left=value - allowed)
+
+
+def _torque(curve: Curve, speed_rpm: FloatArray) -> FloatArray:
+    speeds, torques = zip(*curve, strict=True)
+    return np.asarray(np.interp(speed_rpm, speeds, torques))
