@@ -22,6 +22,7 @@ from shaftprint.signals._content import Content, content_of
 from shaftprint.signals._contradictions import contradictions
 from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._inspect import ChannelReport, PulseReport, channel_reports, inspect_channels
+from shaftprint.signals._orders import TrackedOrder
 from shaftprint.signals._prepare import find_tests, prepare_signals
 from shaftprint.signals._signals import Repair, SetPointCalibration, Signals, StepDelay, StripAngles
 from shaftprint.signals._working_points import LegState, WorkingPoint
@@ -51,6 +52,7 @@ __all__ = [
     "SpeedSignal",
     "StepDelay",
     "StripAngles",
+    "TrackedOrder",
     "WorkingPoint",
     "channel_reports",
     "common_shift_s",

@@ -10,11 +10,12 @@ from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
 from shaftprint.reasons import Reason
 from shaftprint.signals._channel_readings import ChannelReadings, logger_channels, read_channels
-from shaftprint.signals._channel_signals import ChannelSignal
+from shaftprint.signals._channel_signals import ChannelSignal, SpeedSignal
 from shaftprint.signals._channels import find_channel
 from shaftprint.signals._clock import Mode, clock_of
 from shaftprint.signals._gaps import Coverage
 from shaftprint.signals._leg_steady_state import samples_of_legs, steady_state_of_legs
+from shaftprint.signals._orders import tracked_orders
 from shaftprint.signals._rates import expect_one_rate
 from shaftprint.signals._readings import Readings, usable_readings
 from shaftprint.signals._signals import SetPointCalibration, Signals
@@ -140,6 +141,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
         strips=tuple(pick_up.strips for pick_up in readings.pick_ups if pick_up.strips is not None),
         step_delays=delays,
         legs=states,
+        orders=tracked_orders(vessel, {one.name: one for one in signals.values() if isinstance(one, SpeedSignal)}),
         repairs=readings.repairs,
         gaps=readings.gaps,
         mode=clock.mode,

@@ -13,6 +13,7 @@ from shaftprint.reasons import Reason
 from shaftprint.signals._channel_signals import ChannelSignal, ExcitationSignal, MessageSignal, SpeedSignal
 from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._leg_channels import channels_about
+from shaftprint.signals._orders import TrackedOrder
 from shaftprint.signals._working_points import LegState, WorkingPoint
 
 _UNITS = {
@@ -117,6 +118,8 @@ class Signals(Shown, Labelled):
     """What was repaired, in order of time."""
     legs: tuple[LegState, ...] = ()
     """Working point of each leg that the recording holds, in order of time."""
+    orders: tuple[TrackedOrder, ...] = ()
+    """What comes back in the torque with the turns of engine, shaft and propeller."""
     gaps: tuple[Gap, ...] = ()
     """Where set point, torque, a speed or the ship's log say nothing, in order of time."""
     mode: Literal["shaftprint", "thesis"]

@@ -105,6 +105,8 @@ def _judged(
         if aliased:
             alias = f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased"
             remarks[name] = "; ".join(part for part in (remarks.get(name), alias) if part)
+        if line.order_remark:
+            remarks[name] = "; ".join(part for part in (remarks.get(name), line.order_remark) if part)
         used[row] = not aliased and name not in finding.unusable
     return remarks, used
 
@@ -133,4 +135,11 @@ def _measured(signals: "Signals", leg: "Leg", state: "LegState", sensor: "SpeedS
                 f"{leg.name}: expected {name} to move, found a constant from {state.start_s:g} to {state.stop_s:g} "
                 "s: the sensor or its channel is dead."
             )
-    return measure_leg(window, harmonics, excitation="n_set", speed=sensor.name)
+    return measure_leg(
+        window,
+        harmonics,
+        excitation="n_set",
+        speed=sensor.name,
+        orders=signals.orders,
+        references={name: signal.reference for name, signal in channels.items()},
+    )

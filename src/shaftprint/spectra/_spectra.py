@@ -35,6 +35,7 @@ from shaftprint.spectra.lines import (
     shape_reasons,
     signal_to_noise,
     window_slice,
+    without_orders,
 )
 
 if TYPE_CHECKING:
@@ -98,11 +99,13 @@ def estimate_spectra(
 
     All values are divided by the working point of the whole recording: set point and speed by ``n_0``, torque by
     ``M_s0``, speed of the ship by ``v_0``, fuel rack by ``X_0``; the propeller load of each window relative to it
-    goes with the response as ``load``. Lines above half the pulse rate of the speed sensor are aliased and not used
-    by default; neither are lines whose set point is not a sine of the stated frequency. A line may be too fast for
-    the messages of the control unit: its response to ``X`` is then unknown (see `measured`), that to speed and
-    torque is not. In thesis mode all lines are used, each divided by its own mean instead of the working point, as the
-    thesis did (section 3.3), and the remarks say what speaks against them.
+    goes with the response as ``load``. Orders of engine, shaft and propeller near a line are taken out of the torque by
+    the angle of the shaft; a line that cannot be told from one has a remark and a large deviation. Lines above half the
+    pulse rate of the speed sensor are aliased and not used by default; neither are lines whose set point is not a sine
+    of the stated frequency. A line may be too fast for the messages of the control unit: its response to ``X`` is then
+    unknown (see `measured`), that to speed and torque is not. In thesis mode all lines are used, each divided by its
+    own mean instead of the working point, as the thesis did (section 3.3), orders stay in, and the remarks say what
+    speaks against them.
 
     Parameters
     ----------
@@ -264,6 +267,10 @@ def _measure(signals: "Signals", cut: WindowSamples, moved: "ExcitationSignal", 
                 f"{window.line}: expected {name} to move, found a constant between {window.start_s:g} and "
                 f"{window.stop_s:g} s: the sensor or its channel is dead."
             )
+    cost = None
+    if signals.mode == "shaftprint":
+        references = {name: signals.channels[name].reference for name in cut.channels}
+        cut, cost = without_orders(cut, signals.orders, references, speed=signals.engine_speed.name)
     return measure_line(
         cut,
         method,
@@ -271,6 +278,7 @@ def _measure(signals: "Signals", cut: WindowSamples, moved: "ExcitationSignal", 
         speed=signals.engine_speed.name,
         from_engine=moved.from_engine,
         messages={name: cut_messages(signal, window) for name, signal in signals.messages.items()},
+        orders=cost,
     )
 
 
@@ -313,6 +321,7 @@ def _judge(
         aliased = frequency > sensor.nyquist_hz
         if aliased:
             lines.append(f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased")
+        lines += [line.order_remark] if line.order_remark else []
         lines += line.message_remarks.values()
         lines += [
             f"{name} is not measured: a value every {signals.channels[name].cycle_s:g} s is too seldom for "

@@ -15,6 +15,7 @@ stiffness, damping    N m/rad,     of a link between two rows, at the speed of t
 ``psi``               1            energy that an elastic link loses in a cycle over its largest elastic energy
 ``K_Q``               1            effective torque coefficient at zero advance,
                                    ``Q / (rho n^2 D^5)``
+order                 1            periods in one turn of a shaft
 fuel rack ``X``       1            1 gives rated torque at rated speed; 100 % on the CAN bus
 resistance ``R``      N            of the ship at a speed through the water, against the way ahead
 ===================== ============ ==============================================================
@@ -28,6 +29,7 @@ from shaftprint.vessel._inertia import InertiaRow
 from shaftprint.vessel._limits import OperatingLimits
 from shaftprint.vessel._links import ShaftLink
 from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, RackMap, WorkingPoint
+from shaftprint.vessel._orders import Order
 from shaftprint.vessel._sensors import (
     Logger,
     PitchSetPointSensor,
@@ -47,6 +49,7 @@ __all__ = [
     "InertiaRow",
     "Logger",
     "OperatingLimits",
+    "Order",
     "PitchSetPointSensor",
     "Propeller",
     "RackMap",

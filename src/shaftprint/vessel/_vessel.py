@@ -16,6 +16,7 @@ from shaftprint.vessel._inertia import InertiaRow
 from shaftprint.vessel._limits import OperatingLimits
 from shaftprint.vessel._links import ShaftLink, wrong_links
 from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, WorkingPoint
+from shaftprint.vessel._orders import Order, orders_of
 from shaftprint.vessel._sensors import Logger, Sensors
 from shaftprint.vessel._usual import INERTIA_STD
 
@@ -81,6 +82,11 @@ class Vessel(Shown, Settings):
         if errors:
             raise ValueError(" ".join(errors))
         return self
+
+    @property
+    def orders(self) -> tuple[Order, ...]:
+        """Orders of engine, shaft and propeller in the shaft torque, lowest first."""
+        return orders_of(self.engine, self.gearbox, self.propeller)
 
     @property
     def inertia_upstream_kg_m2(self) -> float:

@@ -11,12 +11,15 @@ nearest to a line are averaged as a matrix: the factor by which an estimated cov
 ``n / (n - 2)``, is 1.06 then, and 1.2 with 12.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray, IntArray
+from shaftprint.spectra.legs._leg_orders import without_leg_orders
 from shaftprint.spectra.legs._leg_window import LegWindow
 from shaftprint.spectra.lines import (
     LineMeasurement,
@@ -27,6 +30,10 @@ from shaftprint.spectra.lines import (
     Window,
     noise_from_neighbours,
 )
+from shaftprint.spectra.orders import LineOrders
+
+if TYPE_CHECKING:
+    from shaftprint.signals import TrackedOrder
 
 _NOISE_BINS = 36
 # As many bins beside a line as the thesis' local ratio takes on both sides together.
@@ -46,7 +53,15 @@ class LegLines:
     """What each of them tells."""
 
 
-def measure_leg(window: LegWindow, harmonics: Sequence[int], *, excitation: str, speed: str) -> LegLines:
+def measure_leg(
+    window: LegWindow,
+    harmonics: Sequence[int],
+    *,
+    excitation: str,
+    speed: str,
+    orders: "Sequence[TrackedOrder]" = (),
+    references: Mapping[str, float] = MappingProxyType({}),
+) -> LegLines:
     """Measure every line of a leg in all channels.
 
     Parameters
@@ -59,12 +74,24 @@ def measure_leg(window: LegWindow, harmonics: Sequence[int], *, excitation: str,
         Name of the channel that is moved.
     speed
         Name of the speed whose square is in the torque.
+    orders
+        Orders of the shaft line, which are taken out of the torque.
+    references
+        Value of each channel at the working point, for the angle of the shaft.
     """
     speed_row, torque_row = (window.channels.index(name) for name in (speed, "M_s"))
     values = window.values.copy()
     values[torque_row] = _linear_torque(window.of(speed), window.of("M_s"))
     values -= _drift(values)
-    linear = replace(window, values=values)
+    linear, found = without_leg_orders(
+        replace(window, values=values),
+        orders,
+        # with their drift: the angle is their integral
+        {order.speed: window.of(order.speed) * references[order.speed] for order in orders},
+        load=window.of(speed) ** 2,
+        excitation=excitation,
+    )
+    values = linear.values
     spectrum, by_period = linear.spectrum(), linear.by_period()
     periods = window.state.periods
     number = np.arange(spectrum.shape[1])
@@ -75,6 +102,7 @@ def measure_leg(window: LegWindow, harmonics: Sequence[int], *, excitation: str,
     for harmonic in harmonics:
         amplitude = spectrum[:, harmonic * periods]
         local = _local(spectrum, beside, harmonic * periods)
+        cost = None if found is None else found.at(harmonic * periods)
         lines.append(
             LineMeasurement(
                 window=_window(window, harmonic),
@@ -84,7 +112,8 @@ def measure_leg(window: LegWindow, harmonics: Sequence[int], *, excitation: str,
                 harmonic=np.full((_NOT_FITTED, len(values)), np.nan + 0j),
                 harmonic_variance=np.full((_NOT_FITTED, len(values)), np.nan),
                 mean=window.values.mean(axis=(1, 2)),
-                noise=_noise(spectrum, beside, harmonic * periods, speed=speed_row, torque=torque_row),
+                noise=_noise(spectrum, beside, harmonic * periods, cost, speed=speed_row, torque=torque_row),
+                orders=cost,
                 variances=LineVariances(signal=0.5 * np.abs(amplitude) ** 2, local=local, overall=overall),
                 stretches=by_period[:, :, harmonic],
                 excitation_frequency_hz=harmonic / window.state.period_s,
@@ -136,12 +165,17 @@ def _drift(values: FloatArray) -> FloatArray:
     return drift
 
 
-def _noise(spectrum: ComplexArray, beside: IntArray, line: int, *, speed: int, torque: int) -> LineNoise:
+def _noise(
+    spectrum: ComplexArray, beside: IntArray, line: int, orders: LineOrders | None, *, speed: int, torque: int
+) -> LineNoise:
     """Return the noise at a line from the bins nearest to it that are no lines."""
     near = _nearest(beside, line, _NOISE_BINS)
     neighbours = Neighbours(bins=near.astype(np.float64), log_ratio=np.log(near / line), weight=np.ones(near.size))
     relation = ShaftRelation(speed=speed, torque=torque, ratio=complex(spectrum[torque, line] / spectrum[speed, line]))
-    return noise_from_neighbours(spectrum[:, near], neighbours, relation)
+    if orders is None:
+        return noise_from_neighbours(spectrum[:, near], neighbours, relation)
+    noise = noise_from_neighbours(spectrum[:, near], neighbours, relation, taken=orders.taken[near])
+    return noise.with_torque_variance(torque, orders.variance)
 
 
 def _nearest(beside: IntArray, line: int, count: int) -> IntArray:

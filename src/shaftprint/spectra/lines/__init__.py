@@ -26,6 +26,7 @@ from shaftprint.spectra.lines._set_point_check import (
 )
 from shaftprint.spectra.lines._signal_to_noise import LineVariances, SignalToNoise, signal_to_noise
 from shaftprint.spectra.lines._sine_fit import WholePeriodSine
+from shaftprint.spectra.lines._window_orders import without_orders, words_at
 from shaftprint.spectra.lines._windows import Window, plan_windows, whole_period_window
 
 __all__ = [
@@ -65,4 +66,6 @@ __all__ = [
     "window_slice",
     "without_cross_term",
     "without_modulation",
+    "without_orders",
+    "words_at",
 ]

@@ -14,6 +14,7 @@ from shaftprint.spectra.lines._modulation import without_modulation
 from shaftprint.spectra.lines._noise import LineNoise, ShaftRelation, line_noise, residual_spectrum
 from shaftprint.spectra.lines._signal_to_noise import LineVariances, line_variances
 from shaftprint.spectra.lines._stretches import stretch_amplitudes
+from shaftprint.spectra.orders import LineOrders
 
 if TYPE_CHECKING:
     from shaftprint.spectra.lines._line_fit import LineFit, SineMethod, WindowSamples
@@ -25,6 +26,8 @@ HARMONIC_ORDERS = (2, 3)
 """Harmonics that are reported."""
 
 _DOMINANT_SHARE = 1.0 / 3.0
+# Orders that enlarge the deviation of the torque by less are not worth a remark.
+_WORTH_A_REMARK = 1.5
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -56,6 +59,8 @@ class LineMeasurement:
     number where none does."""
     messages: Mapping[str, MessageLine] = field(default_factory=dict)
     """The line in channels on clocks of their own, as far as it can be measured there."""
+    orders: LineOrders | None = None
+    """What orders of the shaft, taken out of the torque, cost the line."""
     message_remarks: Mapping[str, str] = field(default_factory=dict)
     """Why such a channel that was logged cannot be measured at this line."""
 
@@ -66,6 +71,20 @@ class LineMeasurement:
     def of(self, values: NDArray[ScalarT], name: str) -> Any:
         """Return what an array with the channels last holds of one of them."""
         return values[..., self.channels.index(name)]
+
+    @property
+    def order_remark(self) -> str:
+        """Which order makes the torque of the line less known, and by how much; empty where none does."""
+        if self.orders is None:
+            return ""
+        total = float(self.of(self.noise.covariance.diagonal().real, "M_s"))
+        enlarged = float(np.sqrt(total / max(total - self.orders.variance, np.finfo(np.float64).tiny)))
+        if enlarged < _WORTH_A_REMARK:
+            return ""
+        return (
+            f"beside {self.orders.words}, which cannot be told from it in so short a time: the torque is "
+            f"{enlarged:.2g} times less well known"
+        )
 
     @property
     def excited(self) -> float:
@@ -98,6 +117,7 @@ def measure_line(
     speed: str,
     from_engine: bool = True,
     messages: Mapping[str, MessageWindow] = MappingProxyType({}),
+    orders: LineOrders | None = None,
 ) -> LineMeasurement:
     """Measure one line in all channels.
 
@@ -115,6 +135,8 @@ def measure_line(
         Whether the line is moved from the engine's side, so that the ratio of both is that of load and inertia.
     messages
         Channels on clocks of their own inside the window, by name.
+    orders
+        What orders that were taken out of the torque cost the line.
 
     Returns
     -------
@@ -142,15 +164,24 @@ def measure_line(
         harmonic=harmonic,
         harmonic_variance=harmonic_variance,
         mean=fit.mean,
-        noise=line_noise(cleaned, periods=window.periods, relation=relation),
+        noise=_noise(cleaned, window.periods, relation, orders),
         variances=variances,
         stretches=fit.amplitude[0][:, np.newaxis] + stretch_amplitudes(fit),
         excitation_frequency_hz=(
             window.frequency_hz if dominant else strongest_frequency_hz(samples.of(excitation), samples.rate_hz)
         ),
         messages=measured,
+        orders=orders,
         message_remarks={name: part.remark for name, part in messages.items() if part.remark},
     )
+
+
+def _noise(spectrum: ComplexArray, periods: int, relation: ShaftRelation, orders: LineOrders | None) -> LineNoise:
+    """Return the noise under a line, with what orders cost it."""
+    if orders is None:
+        return line_noise(spectrum, periods=periods, relation=relation)
+    noise = line_noise(spectrum, periods=periods, relation=relation, taken=orders.taken)
+    return noise.with_torque_variance(relation.torque, orders.variance)
 
 
 def _harmonics(fit: "LineFit", spectrum: ComplexArray, periods: int) -> tuple[ComplexArray, FloatArray]:

@@ -24,7 +24,7 @@ repeated simulated windows, for white and ``1/f^2`` noise, correlated outputs, f
 Scatter between the periods of the window would be another view of the same record; it sees a wider band still.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -56,6 +56,20 @@ class LineNoise:
     """``E[a a^H]`` of the noise amplitudes, Hermitian, shape (channels, channels)."""
     complex_samples: float
     """Number of independent complex samples behind it: half the real degrees of freedom."""
+
+    def with_torque_variance(self, torque: int, variance: float) -> "LineNoise":
+        """Return the covariance with something more on one channel, unrelated to the others.
+
+        Parameters
+        ----------
+        torque
+            Place of the channel.
+        variance
+            Variance ``E|a|^2`` that is added.
+        """
+        covariance = self.covariance.copy()
+        covariance[torque, torque] += variance
+        return replace(self, covariance=covariance)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -101,7 +115,12 @@ def residual_spectrum(fit: LineFit) -> ComplexArray:
 
 
 def line_noise(
-    spectrum: ComplexArray, *, periods: int, order: int = 1, relation: ShaftRelation | None = None
+    spectrum: ComplexArray,
+    *,
+    periods: int,
+    order: int = 1,
+    relation: ShaftRelation | None = None,
+    taken: FloatArray | None = None,
 ) -> LineNoise:
     """Estimate the covariance of the noise under a line or under one of its harmonics.
 
@@ -115,6 +134,8 @@ def line_noise(
         1 for the line itself, 2 and 3 for its harmonics.
     relation
         How the torque goes with the speed; taken as unrelated when not given.
+    taken
+        Share of the noise of the torque in each bin that the orders of the shaft have taken with them, shape (bins,).
 
     Returns
     -------
@@ -123,7 +144,9 @@ def line_noise(
     neighbours = _neighbours(spectrum.shape[1], periods, order)
     # what the drift in the fit takes from the neighbours, it adds to the uncertainty of the line
     kept = _kept_by_drift(neighbours.bins) * _kept_by_drift(np.array([float(order * periods)]))
-    return noise_from_neighbours(spectrum[:, neighbours.bins.astype(np.int64)], neighbours, relation, kept=kept)
+    near = neighbours.bins.astype(np.int64)
+    of_torque = None if taken is None else taken[near]
+    return noise_from_neighbours(spectrum[:, near], neighbours, relation, kept=kept, taken=of_torque)
 
 
 def noise_from_neighbours(
@@ -132,6 +155,7 @@ def noise_from_neighbours(
     relation: ShaftRelation | None = None,
     *,
     kept: FloatArray | float = 1.0,
+    taken: FloatArray | None = None,
 ) -> LineNoise:
     """Estimate the covariance of the noise under a line from amplitudes beside it.
 
@@ -145,20 +169,28 @@ def noise_from_neighbours(
         How the torque goes with the speed at the line; taken as unrelated when not given.
     kept
         Share of the power of each bin that is left in the amplitudes, shape (bins,).
+    taken
+        Share of the noise of the torque in each bin that the orders of the shaft have taken with them, shape (bins,):
+        what is left is enlarged, and the number of samples is smaller by that much.
 
     Returns
     -------
     The covariance with the number of complex samples behind it.
     """
     chosen = values
+    samples = equivalent_samples(neighbours)
+    if taken is not None and relation is not None:
+        chosen = values.copy()
+        chosen[relation.torque] /= np.sqrt(1.0 - taken)
+        samples *= 1.0 - float(neighbours.weight @ taken / neighbours.weight.sum())
     mixing = np.eye(len(chosen), dtype=np.complex128)
     if relation is not None and neighbours.bins.size >= _FEWEST_TO_SEPARATE:
-        chosen = values.copy()
+        chosen = chosen.copy()
         chosen[relation.torque], mixing[relation.torque, relation.speed] = _own_torque(chosen, relation, neighbours)
     levelled = _levelled(chosen, neighbours)
     weight = neighbours.weight / neighbours.weight.sum() / kept
     covariance = mixing @ (levelled * weight) @ levelled.conj().T @ mixing.conj().T
-    return LineNoise(covariance=covariance, complex_samples=equivalent_samples(neighbours))
+    return LineNoise(covariance=covariance, complex_samples=samples)
 
 
 def _own_torque(values: ComplexArray, relation: ShaftRelation, neighbours: Neighbours) -> tuple[ComplexArray, complex]:

@@ -1,0 +1,45 @@
+"""Orders of the shaft line with the pick-up by which their angle is known."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from shaftprint.signals._channel_signals import SpeedSignal
+    from shaftprint.vessel import Order, Vessel
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class TrackedOrder:
+    """Something in the shaft torque that comes back with the angle of a shaft."""
+
+    name: str
+    """What it is, in words."""
+    per_turn: float
+    """Periods in one turn of the engine, as the speed below counts them."""
+    speed: str
+    """Name of the speed whose integral is the angle."""
+
+
+def tracked_orders(vessel: "Vessel", speeds: Mapping[str, "SpeedSignal"]) -> tuple[TrackedOrder, ...]:
+    """Return the orders of a vessel, each with the pick-up of its own shaft that gives most pulses in a turn.
+
+    Where its shaft has none, the one that is identified is taken, through the gear ratio of the vessel file.
+
+    Parameters
+    ----------
+    vessel
+        Says which orders there are, and which pick-up is on which shaft.
+    speeds
+        Speeds of the recording by name, the one that is identified first.
+    """
+    return tuple(
+        TrackedOrder(name=order.name, per_turn=order.per_engine_turn, speed=_pick_up(order, vessel, speeds))
+        for order in vessel.orders
+    )
+
+
+def _pick_up(order: "Order", vessel: "Vessel", speeds: Mapping[str, "SpeedSignal"]) -> str:
+    own = [one for one in vessel.sensors.speed if one.shaft == order.shaft and one.name in speeds]
+    finest = max(own, key=lambda one: one.pulses_per_revolution, default=None)
+    return next(iter(speeds)) if finest is None else finest.name

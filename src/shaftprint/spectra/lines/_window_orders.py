@@ -1,0 +1,85 @@
+"""Orders of the shaft taken out of the torque in the window of a sine."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray
+from shaftprint.spectra.lines._line_fit import WindowSamples
+from shaftprint.spectra.lines._noise import residual_spectrum
+from shaftprint.spectra.lines._signal_to_noise import NEIGHBOUR_BINS
+from shaftprint.spectra.lines._sine_fit import WholePeriodSine
+from shaftprint.spectra.orders import LineOrders, OrderBand, fit_orders, order_bands, order_waves
+
+if TYPE_CHECKING:
+    from shaftprint.signals import TrackedOrder
+
+# Bins beyond a band in which its order is looked for as well: a steady order stands in one or two bins.
+_BESIDE_BINS = 10
+_TORQUE = "M_s"
+
+
+def without_orders(
+    samples: WindowSamples, orders: "Sequence[TrackedOrder]", references: Mapping[str, float], *, speed: str
+) -> tuple[WindowSamples, LineOrders | None]:
+    """Take the orders that reach a line out of the torque of its window.
+
+    Parameters
+    ----------
+    samples
+        Channels of the window, over the working point.
+    orders
+        Orders of the shaft line.
+    references
+        Value of each channel at the working point; speeds in rev/s.
+    speed
+        Name of the speed with whose square the load goes.
+
+    Returns
+    -------
+    The window, and what the orders cost the line; the same window and None where no order reaches it.
+    """
+    speeds = {order.speed: samples.of(order.speed) * references[order.speed] for order in orders}
+    bands = [band for band in order_bands(orders, speeds, rate_hz=samples.rate_hz) if _reaches(band, samples)]
+    if not bands:
+        return samples, None
+    waves = order_waves(bands, speeds, samples.of(speed) ** 2, rate_hz=samples.rate_hz)
+    fit = WholePeriodSine().fit(
+        replace(samples, channels=(_TORQUE,), values=np.vstack([samples.of(_TORQUE), waves]))
+    )
+    spectrum = residual_spectrum(fit)
+    found = fit_orders(spectrum[0], spectrum[1:], _bins_of(bands, samples, spectrum.shape[1], len(fit.amplitude)))
+    values = samples.values.copy()
+    values[samples.channels.index(_TORQUE)] -= found.coefficient @ waves
+    cost = LineOrders(
+        variance=found.variance_at(fit.amplitude[0, 1:]),
+        taken=found.taken,
+        words=words_at(bands, samples.window.frequency_hz, _BESIDE_BINS / samples.window.duration_s),
+    )
+    return replace(samples, values=values), cost
+
+
+def words_at(bands: Sequence[OrderBand], frequency_hz: float, reach_hz: float) -> str:
+    """Return the orders that stand at a frequency in words, or all where none does."""
+    near = [band for band in bands if band.reaches(frequency_hz - reach_hz, frequency_hz + reach_hz)]
+    return ", ".join(band.words for band in near or bands)
+
+
+def _reaches(band: OrderBand, samples: WindowSamples) -> bool:
+    """Whether an order or its first sideband of the sine itself comes near enough to be noise of the line."""
+    window = samples.window
+    reach_hz = window.frequency_hz + NEIGHBOUR_BINS / window.duration_s
+    return band.reaches(window.frequency_hz - reach_hz, window.frequency_hz + reach_hz)
+
+
+def _bins_of(bands: Sequence[OrderBand], samples: WindowSamples, count: int, harmonics: int) -> BoolArray:
+    """Return in which bins of a window the orders are found: their bands, without the line and its harmonics."""
+    window = samples.window
+    chosen = np.zeros(count, dtype=np.bool_)
+    for band in bands:
+        lowest, highest = (round(edge * window.duration_s) for edge in (band.lowest_hz, band.highest_hz))
+        chosen[max(lowest - _BESIDE_BINS, 1) : highest + _BESIDE_BINS + 1] = True
+    chosen[window.periods * np.arange(1, harmonics + 1)] = False
+    return chosen
