@@ -29,6 +29,7 @@ from shaftprint.spectra.lines import (
     collect_harmonics,
     cut_messages,
     cut_window,
+    left_in_remark,
     load_drift,
     measure_line,
     plan_windows,
@@ -267,11 +268,13 @@ def _measure(signals: "Signals", cut: WindowSamples, moved: "ExcitationSignal", 
                 f"{window.line}: expected {name} to move, found a constant between {window.start_s:g} and "
                 f"{window.stop_s:g} s: the sensor or its channel is dead."
             )
-    cost = None
-    if signals.mode == "shaftprint":
-        references = {name: signals.channels[name].reference for name in cut.channels}
+    references = {name: signals.channels[name].reference for name in cut.channels}
+    if signals.mode == "thesis":
+        cost, remark = None, left_in_remark(cut, signals.orders, references)
+    else:
         cut, cost = without_orders(cut, signals.orders, references, speed=signals.engine_speed.name)
-    return measure_line(
+        remark = ""
+    line = measure_line(
         cut,
         method,
         excitation=moved.name,
@@ -280,6 +283,7 @@ def _measure(signals: "Signals", cut: WindowSamples, moved: "ExcitationSignal", 
         messages={name: cut_messages(signal, window) for name, signal in signals.messages.items()},
         orders=cost,
     )
+    return replace(line, order_remark=remark or line.order_remark)
 
 
 def _expected_amplitude(moved: "ExcitationSignal", campaign: "Campaign", line: LineMeasurement) -> float:

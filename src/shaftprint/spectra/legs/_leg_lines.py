@@ -103,6 +103,7 @@ def measure_leg(
         amplitude = spectrum[:, harmonic * periods]
         local = _local(spectrum, beside, harmonic * periods)
         cost = None if found is None else found.at(harmonic * periods)
+        noise = _noise(spectrum, beside, harmonic * periods, cost, speed=speed_row, torque=torque_row)
         lines.append(
             LineMeasurement(
                 window=_window(window, harmonic),
@@ -112,8 +113,8 @@ def measure_leg(
                 harmonic=np.full((_NOT_FITTED, len(values)), np.nan + 0j),
                 harmonic_variance=np.full((_NOT_FITTED, len(values)), np.nan),
                 mean=window.values.mean(axis=(1, 2)),
-                noise=_noise(spectrum, beside, harmonic * periods, cost, speed=speed_row, torque=torque_row),
-                orders=cost,
+                noise=noise,
+                order_remark="" if cost is None else cost.remark(noise.variance_of(torque_row)),
                 variances=LineVariances(signal=0.5 * np.abs(amplitude) ** 2, local=local, overall=overall),
                 stretches=by_period[:, :, harmonic],
                 excitation_frequency_hz=harmonic / window.state.period_s,

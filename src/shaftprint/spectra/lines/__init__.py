@@ -26,7 +26,7 @@ from shaftprint.spectra.lines._set_point_check import (
 )
 from shaftprint.spectra.lines._signal_to_noise import LineVariances, SignalToNoise, signal_to_noise
 from shaftprint.spectra.lines._sine_fit import WholePeriodSine
-from shaftprint.spectra.lines._window_orders import without_orders, words_at
+from shaftprint.spectra.lines._window_orders import left_in_remark, without_orders, words_at
 from shaftprint.spectra.lines._windows import Window, plan_windows, whole_period_window
 
 __all__ = [
@@ -53,6 +53,7 @@ __all__ = [
     "cut_messages",
     "cut_window",
     "equivalent_samples",
+    "left_in_remark",
     "load_drift",
     "local_slope",
     "measure_line",

@@ -26,8 +26,6 @@ HARMONIC_ORDERS = (2, 3)
 """Harmonics that are reported."""
 
 _DOMINANT_SHARE = 1.0 / 3.0
-# Orders that enlarge the deviation of the torque by less are not worth a remark.
-_WORTH_A_REMARK = 1.5
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -59,8 +57,8 @@ class LineMeasurement:
     number where none does."""
     messages: Mapping[str, MessageLine] = field(default_factory=dict)
     """The line in channels on clocks of their own, as far as it can be measured there."""
-    orders: LineOrders | None = None
-    """What orders of the shaft, taken out of the torque, cost the line."""
+    order_remark: str = ""
+    """Which order makes the torque of the line less known, and by how much; empty where none does."""
     message_remarks: Mapping[str, str] = field(default_factory=dict)
     """Why such a channel that was logged cannot be measured at this line."""
 
@@ -71,20 +69,6 @@ class LineMeasurement:
     def of(self, values: NDArray[ScalarT], name: str) -> Any:
         """Return what an array with the channels last holds of one of them."""
         return values[..., self.channels.index(name)]
-
-    @property
-    def order_remark(self) -> str:
-        """Which order makes the torque of the line less known, and by how much; empty where none does."""
-        if self.orders is None:
-            return ""
-        total = float(self.of(self.noise.covariance.diagonal().real, "M_s"))
-        enlarged = float(np.sqrt(total / max(total - self.orders.variance, np.finfo(np.float64).tiny)))
-        if enlarged < _WORTH_A_REMARK:
-            return ""
-        return (
-            f"beside {self.orders.words}, which cannot be told from it in so short a time: the torque is "
-            f"{enlarged:.2g} times less well known"
-        )
 
     @property
     def excited(self) -> float:
@@ -149,6 +133,7 @@ def measure_line(
     variances = line_variances(fit.amplitude[0], samples.values, spectrum, periods=window.periods)
     harmonic, harmonic_variance = _harmonics(fit, spectrum, window.periods)
     cleaned = without_modulation(spectrum, samples.of("M_s"), relation, periods=window.periods)
+    noise = _noise(cleaned, window.periods, relation, orders)
     row = samples.channels.index(excitation)
     dominant = variances.signal[row] > 0.5 * variances.overall[row]
     measured = {
@@ -164,14 +149,14 @@ def measure_line(
         harmonic=harmonic,
         harmonic_variance=harmonic_variance,
         mean=fit.mean,
-        noise=_noise(cleaned, window.periods, relation, orders),
+        noise=noise,
         variances=variances,
         stretches=fit.amplitude[0][:, np.newaxis] + stretch_amplitudes(fit),
         excitation_frequency_hz=(
             window.frequency_hz if dominant else strongest_frequency_hz(samples.of(excitation), samples.rate_hz)
         ),
         messages=measured,
-        orders=orders,
+        order_remark="" if orders is None else orders.remark(noise.variance_of(relation.torque)),
         message_remarks={name: part.remark for name, part in messages.items() if part.remark},
     )
 

@@ -57,6 +57,10 @@ class LineNoise:
     complex_samples: float
     """Number of independent complex samples behind it: half the real degrees of freedom."""
 
+    def variance_of(self, place: int) -> float:
+        """Return the variance ``E|a|^2`` of the amplitude of one channel."""
+        return float(self.covariance[place, place].real)
+
     def with_torque_variance(self, torque: int, variance: float) -> "LineNoise":
         """Return the covariance with something more on one channel, unrelated to the others.
 

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray
+from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.spectra.lines._line_fit import WindowSamples
 from shaftprint.spectra.lines._noise import residual_spectrum
 from shaftprint.spectra.lines._signal_to_noise import NEIGHBOUR_BINS
@@ -41,14 +41,12 @@ def without_orders(
     -------
     The window, and what the orders cost the line; the same window and None where no order reaches it.
     """
-    speeds = {order.speed: samples.of(order.speed) * references[order.speed] for order in orders}
+    speeds = _speeds(samples, orders, references)
     bands = [band for band in order_bands(orders, speeds, rate_hz=samples.rate_hz) if _reaches(band, samples)]
     if not bands:
         return samples, None
     waves = order_waves(bands, speeds, samples.of(speed) ** 2, rate_hz=samples.rate_hz)
-    fit = WholePeriodSine().fit(
-        replace(samples, channels=(_TORQUE,), values=np.vstack([samples.of(_TORQUE), waves]))
-    )
+    fit = WholePeriodSine().fit(replace(samples, channels=(_TORQUE,), values=np.vstack([samples.of(_TORQUE), waves])))
     spectrum = residual_spectrum(fit)
     found = fit_orders(spectrum[0], spectrum[1:], _bins_of(bands, samples, spectrum.shape[1], len(fit.amplitude)))
     values = samples.values.copy()
@@ -59,6 +57,27 @@ def without_orders(
         words=words_at(bands, samples.window.frequency_hz, _BESIDE_BINS / samples.window.duration_s),
     )
     return replace(samples, values=values), cost
+
+
+def left_in_remark(samples: WindowSamples, orders: "Sequence[TrackedOrder]", references: Mapping[str, float]) -> str:
+    """Return a remark where a line stands on an order that was left in; empty where it stands on none.
+
+    Parameters
+    ----------
+    samples, orders, references
+        As those of `without_orders`.
+    """
+    speeds = _speeds(samples, orders, references)
+    frequency, bin_hz = samples.window.frequency_hz, 1.0 / samples.window.duration_s
+    bands = order_bands(orders, speeds, rate_hz=samples.rate_hz)
+    on = [band.words for band in bands if band.reaches(frequency - bin_hz, frequency + bin_hz)]
+    return f"stands on {', '.join(on)}, which was left in the torque" if on else ""
+
+
+def _speeds(
+    samples: WindowSamples, orders: "Sequence[TrackedOrder]", references: Mapping[str, float]
+) -> dict[str, FloatArray]:
+    return {order.speed: samples.of(order.speed) * references[order.speed] for order in orders}
 
 
 def words_at(bands: Sequence[OrderBand], frequency_hz: float, reach_hz: float) -> str:

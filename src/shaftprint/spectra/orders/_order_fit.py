@@ -47,18 +47,6 @@ class OrderFit:
         return float((waves @ self.covariance @ waves.conj()).real)
 
 
-@dataclass(frozen=True, kw_only=True, slots=True)
-class LineOrders:
-    """What the orders cost one line."""
-
-    variance: float
-    """Variance ``E|a|^2`` that they add to the torque at the line, over the working point."""
-    taken: FloatArray
-    """Share of the noise of the torque in each bin that their fit has taken, shape (bins,)."""
-    words: str
-    """Orders in whose band the line stands, in words."""
-
-
 def fit_orders(torque: ComplexArray, waves: ComplexArray, chosen: BoolArray) -> OrderFit:
     """Find the orders in the Fourier amplitudes of the torque.
 
