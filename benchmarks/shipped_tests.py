@@ -2,7 +2,8 @@
 
 Limits are those of its vessel file, and the set point moves by 1 V at most. The plan knows governor and engine of the
 simulated tug; for a ship that is not known so well, plan its own test. Run ``python -m benchmarks.shipped_tests`` (a
-minute of processor time each) to make the files again, with ``--output FOLDER`` elsewhere.
+few seconds each) to make the files again, with ``--output FOLDER`` elsewhere; with ``--sail 20`` to sail the files as
+they are and to identify them (half a minute of processor time a recording), nothing of the builder known.
 """
 
 import argparse
@@ -12,9 +13,27 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.planned_tests import CLOSED, OFFSET_V, SLOPE_RPM_PER_V, TRUTH, VESSEL
+from benchmarks.planned_tests import (
+    CLOSED,
+    OFFSET_V,
+    SLOPE_RPM_PER_V,
+    TRUTH,
+    VESSEL,
+    Case,
+    print_rehearsal,
+    sailed,
+    truth_of,
+)
 from shaftprint.campaign import Campaign, campaign_text, load_campaign
-from shaftprint.design import Plan, assumed_ship, campaign_of, design_campaign, limits_from_vessel, no_worse_than
+from shaftprint.design import (
+    Plan,
+    assumed_ship,
+    campaign_of,
+    design_campaign,
+    limits_from_vessel,
+    no_worse_than,
+    rehearse,
+)
 from shaftprint.identify import STAN_TUG_NOISE, Prior, planned_response, predict_accuracy
 
 SHIPPED = Path(__file__).parent.parent / "src" / "shaftprint" / "campaign" / "shipped"
@@ -88,14 +107,30 @@ def campaign_of_test(test: ShippedTest) -> Campaign:
     return campaign.model_copy(update={"multisines": legs, "sample_rate_hz": SAMPLE_RATE_HZ})
 
 
+def sail_file(file: str, test: ShippedTest, seeds: int) -> None:
+    """Sail a shipped campaign and print its errors beside what was planned."""
+    limits = limits_from_vessel(VESSEL, set_point_rpm=SET_POINT_RPM)
+    case = Case(name=test.name, limits=limits, speeds=SPEEDS, minutes=test.minutes)
+    campaign, plan = load_campaign(file), planned(test)
+    rehearsal = rehearse(
+        plan, lambda seed: sailed(case, campaign, seed), truth=truth_of(case), seeds=range(1, seeds + 1)
+    )
+    print_rehearsal(case, plan, rehearsal)
+
+
 def main() -> None:
     """Design the tests and write their files."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--output", type=Path, default=SHIPPED, help="folder of the files")
     parser.add_argument("--test", choices=list(TESTS), help="one of them alone")
+    parser.add_argument("--sail", type=int, default=0, help="recordings to sail of each file, instead of making it")
     options = parser.parse_args()
     for file, test in TESTS.items():
-        if options.test in (None, file):
+        if options.test not in (None, file):
+            continue
+        if options.sail:
+            sail_file(file, test, options.sail)
+        else:
             text = campaign_text(campaign_of_test(test), remarks="\n".join((*test.words, *REMARKS)))
             (options.output / f"{file}.toml").write_text(text, encoding="utf-8")
             print(options.output / f"{file}.toml")

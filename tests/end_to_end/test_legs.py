@@ -9,10 +9,11 @@ from tests.measured_truth import as_measured
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
-from shaftprint.identify import Settings
+from shaftprint.identify import STAN_TUG_NOISE, Settings
 from shaftprint.recording import cut, read_recording, write_recording
 from shaftprint.survey import (
     apart_sentences,
+    fingerprint_of,
     fit,
     leg_tests,
     legs_alone,
@@ -78,6 +79,24 @@ def test_a_recording_that_ends_in_the_second_leg_still_gives_a_result(trial, voy
     true = as_measured(truth, measurement.signals)
     assert max(abs(one.value - true[one.name]) / one.std for one in found.parameters) < 3.5
     assert found.p_value > 0.01
+    fingerprint = fingerprint_of(found, measurement, trial)
+    first, second = fingerprint.legs
+    assert (first.name, first.periods, first.load) == ("M1", 9, 1.0)
+    assert (second.name, second.periods, second.period_s) == ("M2", 4, 32.0)
+    assert second.engine_speed_rpm == pytest.approx(0.70 * 1183.8, rel=2e-3)
+    # the load of a propeller wanders by about a per cent
+    assert second.load == pytest.approx(1.0, abs=0.02)
+    assert [leg.p_value for leg in fingerprint.legs] == [
+        one.test.p_value for one in leg_tests(found, measurement.working_points)
+    ]
+    # the noise of both speeds, from either number of periods, is of the size that is stored for this tug
+    for levels in fingerprint.noise_at_speeds.values():
+        ratio = (
+            levels.of_outputs("M_s").density[:, 0, 0].real
+            / STAN_TUG_NOISE.of_outputs("M_s").at(levels.frequency_hz)[:, 0, 0].real
+        )
+        assert 0.3 < np.median(ratio) < 3.0
+    assert sorted(fingerprint.noise_at_speeds) == sorted(leg.engine_speed_rpm for leg in fingerprint.legs)
 
 
 @pytest.mark.parametrize(

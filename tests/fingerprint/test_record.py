@@ -135,7 +135,7 @@ def test_time_without_zone_is_refused(gauge_fit, take):
 
 
 def test_keeps_what_is_needed_to_judge_it_in_ten_years(fingerprint):
-    assert fingerprint.schema_version == 1
+    assert fingerprint.schema_version == "2.0"
     assert [(s.role, s.name, s.sha256[:2]) for s in fingerprint.sources] == [
         ("recording", "port.nc", "ab"),
         ("vessel", "tug.toml", "cd"),
@@ -242,8 +242,12 @@ def test_file_that_is_missing(tmp_path):
         (b"", "expected a fingerprint in JSON, found something else"),
         (b"[1, 2]", "expected a fingerprint, found JSON without a schema_version"),
         (b'{"schema": 1, "vessel": "tug"}', "expected a fingerprint, found JSON without a schema_version"),
-        (b'{"schema_version": 2, "hull": {}}', "expected a fingerprint of schema 1, found schema 2; read it with"),
-        (b'{"schema_version": "one"}', "expected a fingerprint of schema 1, found schema one"),
+        (b'{"schema_version": 3, "hull": {}}', "expected a fingerprint of schema 1 or 2, found schema 3; read it with"),
+        (b'{"schema_version": "3.1"}', "expected a fingerprint of schema 1 or 2, found schema 3.1"),
+        (b'{"schema_version": "2.99999999"}', "expected a fingerprint of schema 1 or 2, found schema 2.9"),
+        (b'{"schema_version": "one"}', "expected a fingerprint of schema 1 or 2, found schema one"),
+        (b'{"schema_version": true}', "expected a fingerprint of schema 1 or 2, found schema True"),
+        (b'{"schema_version": [1]}', "expected a fingerprint of schema 1 or 2"),
     ],
 )
 def test_foreign_file(path, content, message):
@@ -261,7 +265,7 @@ def test_cut_file(fingerprint, path):
 
 def test_unknown_fields_are_refused_with_their_place(fingerprint, path):
     with_field(fingerprint, path, lambda c: c.update(colour="red"))
-    with pytest.raises(FingerprintError, match=r"not a fingerprint of schema 1: colour: Extra inputs"):
+    with pytest.raises(FingerprintError, match=r"not a fingerprint of schema 2.0: colour: Extra inputs"):
         read_fingerprint(path)
     with_field(fingerprint, path, lambda c: c["conditions"].update(tide_m=1.2))
     with pytest.raises(FingerprintError, match=r"conditions\.tide_m: Extra inputs"):

@@ -17,6 +17,7 @@ from shaftprint.fingerprint._clock_influence import NOTABLE_SHIFT, ClockInfluenc
 from shaftprint.fingerprint._fingerprint import Conditions, Fingerprint, Quality, SourceFile
 from shaftprint.fingerprint._inertia import inertia_beside
 from shaftprint.fingerprint._json_file import fingerprint_sha256, read_fingerprint, write_fingerprint
+from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum, leg_record, noise_spectra
 from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._model import IdentifiedModel, identified_model, named_structure
@@ -35,6 +36,8 @@ __all__ = [
     "FieldValue",
     "Fingerprint",
     "IdentifiedModel",
+    "LegRecord",
+    "NoiseSpectrum",
     "Quality",
     "Quantity",
     "SourceFile",
@@ -43,9 +46,11 @@ __all__ = [
     "fingerprint_sha256",
     "identified_model",
     "inertia_beside",
+    "leg_record",
     "margin_numbers",
     "margin_quantities",
     "named_structure",
+    "noise_spectra",
     "physical_numbers",
     "physical_quantities",
     "read_fingerprint",

@@ -1,19 +1,65 @@
-"""Fingerprints of earlier versions, whose numbers have no roles: those of a shipped structure get them from it."""
+"""Fingerprints of other versions: of earlier ones, which have less, and of later ones, which have more.
 
-from collections.abc import Mapping
+What an earlier schema lacks stays empty, and the numbers of a shipped structure get their roles from it. Schema 2.N
+adds fields to 2.0 and changes none, so what is known here is read of every one of them.
+"""
+
+import json
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from pydantic import ValidationError
 
 from shaftprint.catalogue import ROLES, ShipRole, shipped_structure
 from shaftprint.errors import StructureError
-from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
 from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.models import Role
+from shaftprint.notebook import shortened
 
 PHYSICAL: Mapping[str, Role] = {
     **{role.physical.name: role for role in ROLES.values() if role.physical is not None},
     GAUGE_ZERO: ShipRole.LOAD_SLOPE,
     "K_Q": ShipRole.TORQUE,
 }
+
+
+def of_schema_1(text: str) -> Fingerprint:
+    """Return the fingerprint of a file of schema 1, which has neither legs nor noise."""
+    return Fingerprint.model_validate_json(json.dumps(json.loads(text) | {"schema_version": SCHEMA_VERSION}))
+
+
+def of_later_schema(text: str) -> Fingerprint:
+    """Return what is known here of a file of a later schema 2.N; a finding says what is not.
+
+    Raises
+    ------
+    ValidationError
+        If a field that is known here is wrong.
+    """
+    content = json.loads(text)
+    later = content["schema_version"]
+    content["schema_version"] = SCHEMA_VERSION
+    try:
+        return Fingerprint.model_validate_json(json.dumps(content))
+    except ValidationError as error:
+        unknown = [details["loc"] for details in error.errors() if details["type"] == "extra_forbidden"]
+        if not unknown:
+            raise
+    for place in unknown:
+        _leave_out(content, place)
+    fingerprint = Fingerprint.model_validate_json(json.dumps(content))
+    names = shortened(".".join(str(step) for step in place) for place in unknown)
+    finding = f"The file is of schema {later}; what is not known in {SCHEMA_VERSION} was left out: {names}."
+    return fingerprint.model_copy(update={"findings": (*fingerprint.findings, finding)})
+
+
+def _leave_out(content: Any, place: Sequence[int | str]) -> None:
+    """Take a field out of the content of a file."""
+    for step in place[:-1]:
+        content = content[step]
+    del content[place[-1]]
 
 
 def with_roles(fingerprint: Fingerprint) -> Fingerprint:

@@ -12,13 +12,15 @@ from shaftprint.catalogue import ShipRole
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._labelled_numbers import labelled_numbers
+from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
 from shaftprint.fingerprint._quantity import FrozenRecord, Quantity
 from shaftprint.fingerprint._vessel_fields import FieldValue
-from shaftprint.identify import Prior, Verdict
+from shaftprint.identify import NoiseLevels, Prior, Verdict
 from shaftprint.identify.uncertainty import Budget
 from shaftprint.notebook import Labelled, LabelledData, Shown, Summary, shortened
 
-SCHEMA_VERSION: Final = 1
+SCHEMA_VERSION: Final = "2.0"
+"""Version of the layout: the second number grows with what is added to it, see ``docs/fingerprint-file.md``."""
 
 
 class SourceFile(FrozenRecord):
@@ -93,7 +95,7 @@ class Quality(FrozenRecord):
 class Fingerprint(Shown, Labelled, FrozenRecord):
     """Physical and normalised parameters of one propulsion line with uncertainty, margins and conditions."""
 
-    schema_version: Literal[1] = SCHEMA_VERSION
+    schema_version: Literal["2.0"] = SCHEMA_VERSION
     """Version of this record's layout."""
     shaftprint_version: str
     """Version of shaftprint that made it."""
@@ -103,6 +105,10 @@ class Fingerprint(Shown, Labelled, FrozenRecord):
     """Recording, vessel and campaign with their hashes."""
     conditions: Conditions
     """Where it holds."""
+    legs: tuple[LegRecord, ...] = ()
+    """Legs of the test that were fitted, in order of time; empty for a test of sines."""
+    noise: tuple[NoiseSpectrum, ...] = ()
+    """Noise under the test lines at each engine speed; empty where it was not measured."""
     structure: str
     """Name of the model structure."""
     parameters: tuple[Quantity, ...]
@@ -166,6 +172,11 @@ class Fingerprint(Shown, Labelled, FrozenRecord):
             "margin": self.margins,
             "calibration": self.calibration,
         }
+
+    @property
+    def noise_at_speeds(self) -> dict[float, NoiseLevels]:
+        """The noise by engine speed [rpm], as planning takes it."""
+        return {spectrum.engine_speed_rpm: spectrum.levels() for spectrum in self.noise}
 
     def labelled(self) -> LabelledData:
         """Return a row for each number, with its interval and what was expected; and the covariance of parameters."""

@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import re
 from pathlib import Path
 
 from pydantic import ValidationError
@@ -9,9 +10,12 @@ from pydantic import ValidationError
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import FingerprintError, ShaftprintError
 from shaftprint.files import reason, written_whole
-from shaftprint.fingerprint._earlier_files import with_roles
+from shaftprint.fingerprint._earlier_files import of_later_schema, of_schema_1, with_roles
 from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
 from shaftprint.publication import complete
+
+_SCHEMA_2 = re.compile(r"2\.([0-9]{1,4})")
+MINOR = int(SCHEMA_VERSION.partition(".")[2])
 
 
 def write_fingerprint(fingerprint: Fingerprint, path: str | Path) -> None:
@@ -54,9 +58,11 @@ def read_fingerprint(path: str | Path) -> Fingerprint:
     """
     json_path = Path(path)
     complete(json_path.parent)
-    text = _fingerprint_text(json_path)
+    text, minor = _fingerprint_text(json_path)
     try:
-        return with_roles(Fingerprint.model_validate_json(text))
+        if minor is None:
+            return with_roles(of_schema_1(text))
+        return with_roles(of_later_schema(text) if minor > MINOR else Fingerprint.model_validate_json(text))
     except ValidationError as error:
         wrong = "; ".join(_described(details["loc"], details["msg"]) for details in error.errors())
         raise FingerprintError(f"{json_path} is not a fingerprint of schema {SCHEMA_VERSION}: {wrong}.") from None
@@ -71,8 +77,14 @@ def _described(field: tuple[int | str, ...], message: str) -> str:
     return f"{'.'.join(str(part) for part in field)}: {words}" if field else words
 
 
-def _fingerprint_text(json_path: Path) -> str:
-    """Return the content of a file that claims to be a fingerprint of the schema that is known here."""
+def _fingerprint_text(json_path: Path) -> tuple[str, int | None]:
+    """Return the content of a file that claims to be a fingerprint, and the second number of its schema.
+
+    Returns
+    -------
+    text, minor
+        The content, and N of schema 2.N; None for schema 1.
+    """
     try:
         text = json_path.read_text(encoding="utf-8")
         content = json.loads(text)
@@ -90,9 +102,10 @@ def _fingerprint_text(json_path: Path) -> str:
     schema = content.get("schema_version") if isinstance(content, dict) else None
     if schema is None:
         raise FingerprintError(f"{json_path}: expected a fingerprint, found JSON without a schema_version.")
-    if schema != SCHEMA_VERSION:
+    second = _SCHEMA_2.fullmatch(schema) if isinstance(schema, str) else None
+    if second is None and (type(schema) is not int or schema != 1):
         raise FingerprintError(
-            f"{json_path}: expected a fingerprint of schema {SCHEMA_VERSION}, found schema {schema}; read it with the "
-            "version of shaftprint that wrote it, or a newer one."
+            f"{json_path}: expected a fingerprint of schema 1 or 2, found schema {schema}; read it with the version of "
+            "shaftprint that wrote it, or a newer one."
         )
-    return text
+    return text, None if second is None else int(second[1])

@@ -1,7 +1,7 @@
 """The verb of the room: from an identification to the record that is kept."""
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from typing import TYPE_CHECKING
@@ -18,6 +18,7 @@ from shaftprint.fingerprint._calibration import calibration_quantities
 from shaftprint.fingerprint._contradictions import contradictions
 from shaftprint.fingerprint._findings import findings_of
 from shaftprint.fingerprint._fingerprint import Conditions, Fingerprint, Quality, SourceFile
+from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
 from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
 from shaftprint.fingerprint._physical import physical_numbers, physical_quantities
@@ -53,6 +54,8 @@ def take_fingerprint(
     settings_files: tuple[SourceFile, ...],
     now: datetime,
     tested_at: datetime | None = None,
+    legs: Sequence[LegRecord] = (),
+    noise: Sequence[NoiseSpectrum] = (),
 ) -> Fingerprint:
     """Return the fingerprint of an identified line.
 
@@ -68,6 +71,8 @@ def take_fingerprint(
         Time of making, with time zone.
     tested_at
         When the recording began, where that is known.
+    legs, noise
+        Legs that were fitted, and the noise at each speed, where they are known.
 
     Raises
     ------
@@ -104,6 +109,8 @@ def take_fingerprint(
             *settings_files,
         ),
         conditions=conditions,
+        legs=tuple(legs),
+        noise=tuple(noise),
         structure=identification.structure.name,
         parameters=tuple(reported.quantity(e) for e in identification.parameters),
         held={p.name: p.value for p in identification.structure.parameters if p.held},

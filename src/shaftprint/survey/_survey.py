@@ -12,8 +12,16 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.campaign import Campaign
 from shaftprint.catalogue import shipped_structure
-from shaftprint.errors import SettingsError
-from shaftprint.fingerprint import Fingerprint, SourceFile, take_fingerprint
+from shaftprint.errors import IdentificationError, SettingsError
+from shaftprint.fingerprint import (
+    Fingerprint,
+    LegRecord,
+    NoiseSpectrum,
+    SourceFile,
+    leg_record,
+    noise_spectra,
+    take_fingerprint,
+)
 from shaftprint.identify import Identification, Settings
 from shaftprint.identify.comparison import StructureComparison
 from shaftprint.limits import limit_hints
@@ -25,6 +33,7 @@ from shaftprint.survey._fits import comparisons_of, fit, priors_of
 from shaftprint.survey._legs import LegTest, leg_tests
 from shaftprint.survey._legs_apart import LegAlone, apart_sentences, legs_alone
 from shaftprint.survey._measurement import Measurement, measure, of_legs
+from shaftprint.survey._noise import noise_at_speeds
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._trial import Trial, load_trial
 from shaftprint.survey._validations import failed_steps, validations_of
@@ -181,7 +190,28 @@ def fingerprint_of(
         settings_files=trial.sources,
         now=now or datetime.now(UTC),
         tested_at=measurement.began,
+        legs=_fitted_legs(identification, measurement),
+        noise=_measured_noise(measurement, trial),
     )
+
+
+def _fitted_legs(identification: Identification, measurement: Measurement) -> tuple[LegRecord, ...]:
+    """Return what is kept of the legs that were measured, each with its share of the test of fit."""
+    p_values = {one.name: one.test.p_value for one in leg_tests(identification, measurement.working_points)}
+    names = {leg.name for leg in measurement.legs}
+    return tuple(
+        leg_record(leg, main=measurement.signals.working_point, p_value=p_values.get(leg.name))
+        for leg in measurement.signals.legs
+        if leg.name in names
+    )
+
+
+def _measured_noise(measurement: Measurement, trial: Trial) -> tuple[NoiseSpectrum, ...]:
+    """Return the noise at each speed; none where the recording does not show it, as in the thesis' mode."""
+    try:
+        return noise_spectra(noise_at_speeds(measurement, trial.campaign))
+    except IdentificationError:
+        return ()
 
 
 def survey_of(

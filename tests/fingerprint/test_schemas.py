@@ -1,0 +1,129 @@
+"""Files of every schema are read: what an earlier one lacks is empty, what a later one adds is left out and said."""
+
+import json
+
+import numpy as np
+import pytest
+
+from shaftprint.errors import FingerprintError
+from shaftprint.fingerprint import LegRecord, NoiseSpectrum, noise_spectra, read_fingerprint, write_fingerprint
+from shaftprint.identify import NoiseLevels
+
+LEGS = (
+    LegRecord(
+        name="M1", engine_speed_rpm=1361.4, shaft_torque_nm=2281.4, set_point_v=-5.7, load=1.0, periods=10,
+        period_s=33.77, p_value=0.42,
+    ),
+    LegRecord(
+        name="M2", engine_speed_rpm=923.4, shaft_torque_nm=1049.5, set_point_v=-3.96, load=1.003, periods=10,
+        period_s=33.77,
+    ),
+)  # fmt: skip
+# Hermitian, positive definite: eigenvalues 2 +/- |1 + 0.5 j| and 3 +/- 1
+LEVELS = NoiseLevels(
+    frequency_hz=np.array([0.1, 1.0 / 3.0]),
+    density=1e-6 * np.array([[[2.0, 1.0 + 0.5j], [1.0 - 0.5j, 2.0]], [[3.0, 1.0j], [-1.0j, 3.0]]]),
+    outputs=("n", "M_s"),
+    set_point_per_v=0.184,
+)
+
+
+@pytest.fixture
+def path(tmp_path):
+    return tmp_path / "fingerprint.json"
+
+
+@pytest.fixture(scope="module")
+def of_legs(fingerprint):
+    return fingerprint.model_copy(update={"legs": LEGS, "noise": noise_spectra({1361.4: LEVELS})})
+
+
+def write_changed(fingerprint, path, change):
+    content = json.loads(fingerprint.model_dump_json())
+    change(content)
+    path.write_text(json.dumps(content), encoding="utf-8")
+
+
+def test_legs_and_noise_come_back_as_they_were(of_legs, path):
+    write_fingerprint(of_legs, path)
+    kept = read_fingerprint(path)
+    assert kept == of_legs
+    assert [(leg.name, leg.p_value) for leg in kept.legs] == [("M1", 0.42), ("M2", None)]
+    ((speed, levels),) = kept.noise_at_speeds.items()
+    assert speed == 1361.4
+    assert levels.outputs == ("n", "M_s")
+    assert np.array_equal(levels.density, LEVELS.density)
+    assert np.array_equal(levels.at([0.2]), LEVELS.at([0.2]))
+    content = json.loads(path.read_text(encoding="utf-8"))
+    assert content["schema_version"] == "2.0"
+    assert content["noise"][0]["density_imaginary"][0] == [[0.0, 5e-7], [-5e-7, 0.0]]
+
+
+def test_a_file_of_schema_1_is_read(fingerprint, path):
+    def as_schema_1(content):
+        del content["legs"], content["noise"]
+        content["schema_version"] = 1
+
+    write_changed(fingerprint, path, as_schema_1)
+    kept = read_fingerprint(path)
+    assert kept == fingerprint
+    assert (kept.legs, kept.noise) == ((), ())
+
+
+def test_a_file_of_schema_1_with_an_unknown_field_is_refused(fingerprint, path):
+    write_changed(fingerprint, path, lambda content: content.update(schema_version=1, colour="red"))
+    with pytest.raises(FingerprintError, match=r"colour: Extra inputs"):
+        read_fingerprint(path)
+
+
+def test_every_later_2_is_read_and_says_what_it_left_out(of_legs, path):
+    def as_later(content):
+        content.update(schema_version="2.7", hull={"fouling": 0.1})
+        content["legs"][1]["orders"] = [1, 2]
+        content["noise"][0]["shaft_orders"] = {"1": 0.01}
+        content["parameters"][0]["drift"] = None
+
+    write_changed(of_legs, path, as_later)
+    kept = read_fingerprint(path)
+    assert kept.model_copy(update={"findings": of_legs.findings}) == of_legs
+    (finding,) = kept.findings[len(of_legs.findings) :]
+    assert finding.startswith("The file is of schema 2.7; what is not known in 2.0 was left out: ")
+    for name in ("hull", "legs.1.orders", "noise.0.shaft_orders", "parameters.0.drift"):
+        assert name in finding
+    # nothing new: nothing to say
+    write_changed(of_legs, path, lambda content: content.update(schema_version="2.1"))
+    assert read_fingerprint(path) == of_legs
+
+
+def test_a_later_2_with_wrong_fields_is_refused(of_legs, path):
+    def spoil(content):
+        content.update(schema_version="2.7", hull={})
+        content["legs"][0]["periods"] = -1
+
+    write_changed(of_legs, path, spoil)
+    with pytest.raises(FingerprintError, match=r"legs\.0\.periods: Input should be greater than 0"):
+        read_fingerprint(path)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda noise: noise["density_real"].pop(), r"noise\.0: expected densities of shape \(2, 2, 2\)"),
+        (lambda noise: noise["density_real"][1][0].pop(), "expected densities of shape"),
+        (lambda noise: noise["frequency_hz"].reverse(), "positive, ascending frequencies"),
+        (lambda noise: noise["density_real"][0][0].__setitem__(0, -1.0), "Hermitian, positive definite density"),
+        (lambda noise: noise["density_real"][0][0].__setitem__(0, "NaN"), "Hermitian, positive definite density"),
+        (lambda noise: noise.update(set_point_per_v=0.0), "set_point_per_v: Input should be greater than 0"),
+        (lambda noise: noise.update(outputs=[]), "expected densities of shape"),
+    ],
+)
+def test_a_spectrum_that_is_none_is_refused(of_legs, path, change, message):
+    write_changed(of_legs, path, lambda content: change(content["noise"][0]))
+    with pytest.raises(FingerprintError, match=message):
+        read_fingerprint(path)
+
+
+def test_what_is_measured_of_noise_may_not_be_changed():
+    spectrum = NoiseSpectrum.model_validate(noise_spectra({1000.0: LEVELS})[0].model_dump())
+    with pytest.raises(ValueError, match="frozen"):
+        spectrum.engine_speed_rpm = 2.0
