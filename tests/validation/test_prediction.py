@@ -4,7 +4,7 @@ import pytest
 from shaftprint.catalogue import structure
 from shaftprint.errors import ValidationError
 from shaftprint.validation import linear_prediction, simulated_prediction
-from shaftprint.validation._prediction import with_quadratic_torque
+from shaftprint.validation._prediction import add_quadratic_torque
 from shaftprint.validation.measures import low_pass
 
 RATE_HZ = 100.0
@@ -89,10 +89,10 @@ def test_the_square_of_the_speed_is_the_rest_of_the_propellers_law():
     # (1 + n)^2 - 1 = 2 n + n^2
     linear = np.array([[0.1, -0.2], [0.2, -0.4]])
     slopes = np.array([[[1.0, 1.0], [2.0, 2.0]]])
-    whole, turned = with_quadratic_torque(linear, slopes)
-    assert whole[1] == pytest.approx([1.1**2 - 1.0, 0.8**2 - 1.0])
-    assert turned[0, 1] == pytest.approx([2.2, 1.6])
-    assert whole[0] == pytest.approx(linear[0])
+    add_quadratic_torque(linear, slopes)
+    assert linear[1] == pytest.approx([1.1**2 - 1.0, 0.8**2 - 1.0])
+    assert slopes[0, 1] == pytest.approx([2.2, 1.6])
+    assert linear[0] == pytest.approx([0.1, -0.2])
 
 
 @pytest.mark.parametrize("predict", [linear_prediction, simulated_prediction])

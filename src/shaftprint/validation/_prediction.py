@@ -13,6 +13,7 @@ from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
+import scipy
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import ValidationError
@@ -26,6 +27,8 @@ _REST_S = 80.0
 _SLOWEST_RAD_S = 1e-7
 # Above these frequencies the model is faded out: the set point has no content there.
 _FADE_HZ = (15.0, 25.0)
+# Responses and derivatives of all blocks between: together they stay in the cache of a processor.
+_FREQUENCIES_AT_ONCE = 2048
 
 
 class Predict(Protocol):
@@ -80,13 +83,21 @@ def linear_prediction(
     first = float(set_point[0])
     back = round(_BACK_S * rate_hz)
     return_ = (set_point[-1] - first) * 0.5 * (1.0 + np.cos(np.linspace(0.0, np.pi, back)))
-    moved = np.concatenate([set_point - first, return_, np.zeros(round(_REST_S * rate_hz))])
+    # at least as long as the rest, and of a length whose transform is fast
+    length = scipy.fft.next_fast_len(set_point.size + back + round(_REST_S * rate_hz), real=True)
+    moved = np.concatenate([set_point - first, return_, np.zeros(length - set_point.size - back)])
     frequency = np.fft.rfftfreq(moved.size, 1.0 / rate_hz)
     low, high = _FADE_HZ
     shown = frequency < min(high, 0.5 * rate_hz)
     s = 2j * np.pi * frequency[shown]
     s[0] = 1j * _SLOWEST_RAD_S
-    stacked = structure.stacked(values, s, tuple(wanted))[:, places]
+    stacked = np.concatenate(
+        [
+            structure.stacked(values, s[k : k + _FREQUENCIES_AT_ONCE], tuple(wanted))[:, places]
+            for k in range(0, s.size, _FREQUENCIES_AT_ONCE)
+        ],
+        axis=-1,
+    )
     steady = stacked[..., :1].real.copy()
     stacked[..., 0] = stacked[..., 0].real
     stacked *= np.cos(0.5 * np.pi * np.clip((frequency[shown] - low) / (high - low), 0.0, 1.0)) ** 2
@@ -129,12 +140,21 @@ def simulated_prediction(
     )
 
 
-def with_quadratic_torque(output: FloatArray, slopes: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return a linear prediction with the rest of the propeller's quadratic law in the torque."""
-    squared, turned = output.copy(), slopes.copy()
-    squared[1] += output[0] ** 2
-    turned[:, 1] += 2.0 * output[0] * slopes[:, 0]
-    return squared, turned
+def add_quadratic_torque(outputs: FloatArray, slopes: FloatArray) -> None:
+    """Add the rest of the propeller's quadratic law to the torque of a linear prediction, in place.
+
+    Parameters
+    ----------
+    outputs
+        Speed and torque [-], shape (2, samples).
+    slopes
+        Their derivatives, shape (wanted, 2, samples).
+    """
+    speed, torque = outputs
+    torque += speed**2
+    twice = 2.0 * speed
+    for of_speed, of_torque in slopes:
+        of_torque += twice * of_speed
 
 
 def _places(structure: Structure) -> list[int]:

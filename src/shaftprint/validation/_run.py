@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -9,10 +10,17 @@ from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign
 from shaftprint.signals import Signals, deviation
 from shaftprint.validation._model import Model
-from shaftprint.validation._prediction import OUTPUTS, Predict, with_quadratic_torque
+from shaftprint.validation._prediction import OUTPUTS, Predict, add_quadratic_torque
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._validation_records import Excerpt
-from shaftprint.validation.measures import LEAST_LOAD, Compared, QuietNoise, low_pass, quiet_noise
+from shaftprint.validation.measures import (
+    LEAST_LOAD,
+    Compared,
+    QuietNoise,
+    low_pass,
+    quiet_noise,
+    reach_of_low_pass,
+)
 
 # Time behind a record that is predicted too: the low-pass and the search for a delay look beyond its end.
 _BEHIND_S = 5.0
@@ -20,18 +28,16 @@ _BEHIND_S = 5.0
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Data:
-    """A recording as deviations from its working point, with its noise."""
+    """A recording as deviations from its working point, with its noise.
 
-    rate_hz: float
-    """Sample rate [Hz]."""
-    start_s: float
-    """Time of the first sample [s]."""
-    set_point: FloatArray
-    """Set point, shape (samples,)."""
-    raw: FloatArray
-    """Speed and torque, shape (2, samples)."""
-    smooth: FloatArray
-    """The same through the low-pass, shape (2, samples)."""
+    Only stretches of it are made when they are asked for: a whole recording through the low-pass would take as much
+    memory as its signals.
+    """
+
+    signals: Signals
+    """The prepared recording."""
+    highest_hz: float
+    """Cut-off of the low-pass [Hz]."""
     raw_noise: QuietNoise
     """Noise of all frequencies."""
     noise: QuietNoise
@@ -46,43 +52,63 @@ class Data:
         ValidationError
             If no noise can be measured.
         """
-        point = signals.working_point
-        raw = np.stack(
-            [
-                deviation(signals.engine_speed.speed_rev_s, point.engine_speed_rev_s),
-                deviation(signals.shaft_torque_nm, point.shaft_torque_nm),
-            ]
-        )
-        smooth = low_pass(raw, signals.rate_hz, settings.highest_hz)
-        grid = {"rate_hz": signals.rate_hz, "start_s": signals.start_s}
+        highest_hz = settings.highest_hz
         raw_noise, noise = (
-            quiet_noise(outputs, campaign, signals.coverage, **grid, rest_s=settings.rest_s)
-            for outputs in (raw, smooth)
+            quiet_noise(outputs, campaign, signals, rest_s=settings.rest_s)
+            for outputs in (partial(_raw, signals), partial(_smooth, signals, highest_hz=highest_hz))
         )
-        return cls(
-            rate_hz=signals.rate_hz,
-            start_s=signals.start_s,
-            set_point=deviation(signals.set_point_rev_s, point.engine_speed_rev_s),
-            raw=raw,
-            smooth=smooth,
-            raw_noise=raw_noise,
-            noise=noise,
-        )
+        return cls(signals=signals, highest_hz=highest_hz, raw_noise=raw_noise, noise=noise)
 
     def places(self, begin_s: float, end_s: float) -> slice:
         """Return the samples between two times, as far as they are in the recording."""
-        first, last = (round((time - self.start_s) * self.rate_hz) for time in (begin_s, end_s))
-        return slice(max(first, 0), min(last, self.raw.shape[1]))
+        first, last = (round((time - self.signals.start_s) * self.signals.rate_hz) for time in (begin_s, end_s))
+        return slice(max(first, 0), min(last, self.signals.shaft_torque_nm.size))
+
+    def set_point(self, there: slice) -> FloatArray:
+        """Return the set point in some samples, shape (samples,)."""
+        return deviation(self.signals.set_point_rev_s[there], self.signals.working_point.engine_speed_rev_s)
+
+    def raw(self, there: slice) -> FloatArray:
+        """Return speed and torque in some samples, shape (2, samples)."""
+        return _raw(self.signals, there)
+
+    def smooth(self, there: slice) -> FloatArray:
+        """Return the same through the low-pass."""
+        return _smooth(self.signals, there, highest_hz=self.highest_hz)
+
+
+def _raw(signals: Signals, there: slice) -> FloatArray:
+    point = signals.working_point
+    return np.stack(
+        [
+            deviation(signals.engine_speed.speed_rev_s[there], point.engine_speed_rev_s),
+            deviation(signals.shaft_torque_nm[there], point.shaft_torque_nm),
+        ]
+    )
+
+
+def _smooth(signals: Signals, there: slice, *, highest_hz: float) -> FloatArray:
+    # what the filter reaches beyond either end belongs to the recording
+    reach = reach_of_low_pass(signals.rate_hz, highest_hz)
+    first = max(there.start - reach, 0)
+    smooth = low_pass(_raw(signals, slice(first, there.stop + reach)), signals.rate_hz, highest_hz)
+    return smooth[:, there.start - first : there.stop - first]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Run:
-    """A stretch of the recording around one record, with what the model makes of it."""
+    """A stretch of the recording around one record: its data, and what the model makes of it."""
 
     data: Data
     """The recording."""
     first: int
     """Sample of the recording with which it begins."""
+    set_point: FloatArray
+    """Set point, shape (samples,)."""
+    measured: FloatArray
+    """Measured speed and torque, shape (2, samples)."""
+    measured_smooth: FloatArray
+    """The same through the low-pass, shape (2, samples)."""
     raw: FloatArray
     """Speed and torque of the model, shape (2, samples)."""
     smooth: FloatArray
@@ -95,25 +121,30 @@ class Run:
         samples = self.data.places(excerpt.start_s, excerpt.stop_s)
         return slice(samples.start - self.first - margin, samples.stop - self.first + margin)
 
+    def time_s(self, excerpt: Excerpt) -> FloatArray:
+        """Return the times of the samples of an excerpt [s], shape (samples,)."""
+        there = self.data.places(excerpt.start_s, excerpt.stop_s)
+        return self.data.signals.start_s + np.arange(there.start, there.stop) / self.data.signals.rate_hz
+
     def compared(self, excerpt: Excerpt) -> list[tuple[Compared, Compared]]:
         """Return data and model of speed and of torque in an excerpt, raw and through the low-pass."""
-        in_model, in_data = self.excerpt(excerpt), self.data.places(excerpt.start_s, excerpt.stop_s)
+        there = self.excerpt(excerpt)
         # the median: a step spends most of its excerpt at the level that it ends at
-        load = max(1.0 + float(np.median(self.data.smooth[1, in_data])), LEAST_LOAD)
+        load = max(1.0 + float(np.median(self.measured_smooth[1, there])), LEAST_LOAD)
         pairs = []
         for measured, model, noise in (
-            (self.data.raw, self.raw, self.data.raw_noise),
-            (self.data.smooth, self.smooth, self.data.noise),
+            (self.measured, self.raw, self.data.raw_noise),
+            (self.measured_smooth, self.smooth, self.data.noise),
         ):
-            like = noise.like(in_data.stop - in_data.start, load)
+            like = noise.like(there.stop - there.start, load)
             pairs.append(
                 [
                     Compared(
                         output=output,
                         place=row,
-                        measured=measured[row, in_data],
-                        model=model[row, in_model],
-                        slopes=self.slopes[:, row, in_model],
+                        measured=measured[row, there],
+                        model=model[row, there],
+                        slopes=self.slopes[:, row, there],
                         noise=like,
                         offset_variance=load**2 * float(noise.offset_variance[row]),
                     )
@@ -141,16 +172,26 @@ def run_model(
     """
     begin, end = min(e.start_s for e in excerpts), max(e.stop_s for e in excerpts)
     there = data.places(begin - settings.lead_s, end + _BEHIND_S)
+    set_point, rate_hz = data.set_point(there), data.signals.rate_hz
     raw, slopes = predict(
         model.structure,
         model.values,
-        data.set_point[there],
-        rate_hz=data.rate_hz,
+        set_point,
+        rate_hz=rate_hz,
         wanted=[p.name for p in model.structure.free] if model.has_uncertainty else [],
     )
     if quadratic_propeller:
-        raw, slopes = with_quadratic_torque(raw, slopes)
+        add_quadratic_torque(raw, slopes)
     if not model.has_uncertainty:
         slopes = np.zeros((len(model.structure.free), *raw.shape))
-    smooth, slopes = (low_pass(values, data.rate_hz, settings.highest_hz) for values in (raw, slopes))
-    return Run(data=data, first=there.start, raw=raw, smooth=smooth, slopes=slopes)
+    return Run(
+        data=data,
+        first=there.start,
+        set_point=set_point,
+        measured=data.raw(there),
+        measured_smooth=data.smooth(there),
+        raw=raw,
+        smooth=low_pass(raw, rate_hz, settings.highest_hz),
+        # in place: the derivatives of a chirp of ten minutes are most of the memory that a validation takes
+        slopes=low_pass(slopes, rate_hz, settings.highest_hz, out=slopes),
+    )

@@ -11,6 +11,7 @@ from shaftprint.campaign import Campaign
 from shaftprint.errors import ValidationError
 from shaftprint.identify import Identification
 from shaftprint.identify.fit import pick_up_values
+from shaftprint.memory import give_back_memory
 from shaftprint.models import Structure
 from shaftprint.signals import Signals
 from shaftprint.validation._headline import headline_of
@@ -87,6 +88,7 @@ def validate(
         comparisons += (_compared(excerpt, run, chosen, settings, rng) for excerpt in of_record)
         # its derivatives are gone before those of the next record are made
         del run
+        give_back_memory()
     return Validation(
         model=chosen,
         settings=settings,
@@ -149,7 +151,7 @@ def _compared(
 def _delay(excerpt: Excerpt, run: Run, model: Model, smooth: Compared) -> RemainingDelay:
     samples = run.excerpt(excerpt)
     # the run goes on behind every record, but not before one that begins with the recording
-    margin = min(round(LONGEST_S * run.data.rate_hz), samples.start, run.smooth.shape[1] - samples.stop)
+    margin = min(round(LONGEST_S * run.data.signals.rate_hz), samples.start, run.smooth.shape[1] - samples.stop)
     wide = run.excerpt(excerpt, margin)
     return remaining_delay(
         smooth.output,
@@ -158,7 +160,7 @@ def _delay(excerpt: Excerpt, run: Run, model: Model, smooth: Compared) -> Remain
         run.slopes[:, smooth.place, wide],
         model.covariance,
         smooth.noise.autocovariances[smooth.place],
-        rate_hz=run.data.rate_hz,
+        rate_hz=run.data.signals.rate_hz,
         margin=margin,
     )
 
@@ -173,7 +175,7 @@ def _step_numbers(
 ) -> Iterator[StepNumber]:
     if excerpt.step_s is None:
         return
-    time = _time(excerpt, run) - excerpt.step_s
+    time = run.time_s(excerpt) - excerpt.step_s
     for one in smooth:
         yield from compare_steps(
             one,
@@ -186,21 +188,16 @@ def _step_numbers(
         )
 
 
-def _time(excerpt: Excerpt, run: Run) -> "np.ndarray[tuple[int], np.dtype[np.float64]]":
-    there = run.data.places(excerpt.start_s, excerpt.stop_s)
-    return run.data.start_s + np.arange(there.start, there.stop) / run.data.rate_hz
-
-
 def _traces(excerpt: Excerpt, run: Run, model: Model) -> ExcerptTraces:
-    in_model, in_data = run.excerpt(excerpt), run.data.places(excerpt.start_s, excerpt.stop_s)
-    slopes = run.slopes[:, :, in_model]
-    variance = np.einsum("iot,ij,jot->ot", slopes, model.covariance, slopes, optimize=True)
+    there = run.excerpt(excerpt)
+    by_output = [run.slopes[:, row, there] for row in range(len(run.smooth))]
+    variance = np.stack([np.sum((model.covariance @ slopes) * slopes, axis=0) for slopes in by_output])
     return ExcerptTraces(
-        time_s=frozen_float(_time(excerpt, run)),
-        # copies: views would keep the whole recording in memory
-        set_point=frozen_float(run.data.set_point[in_data].copy()),
-        measured=frozen_float(run.data.smooth[:, in_data].copy()),
-        model=frozen_float(run.smooth[:, in_model].copy()),
+        time_s=frozen_float(run.time_s(excerpt)),
+        # copies: views would keep the whole run in memory
+        set_point=frozen_float(run.set_point[there].copy()),
+        measured=frozen_float(run.measured_smooth[:, there].copy()),
+        model=frozen_float(run.smooth[:, there].copy()),
         model_std=frozen_float(np.sqrt(np.maximum(variance, 0.0))),
     )
 

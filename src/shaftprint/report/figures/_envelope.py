@@ -8,6 +8,7 @@ import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
 
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 STRETCHES = 1200
 # Samples that are kept for each period of the highest frequency of a signal without anything faster.
 SAMPLES_A_PERIOD = 6.0
-_CHUNK = 1 << 20
+_CHUNK = 1 << 18
 
 
 def envelope(time_s: FloatArray, values: FloatArray, *, stretches: int = STRETCHES) -> tuple[FloatArray, FloatArray]:
@@ -34,15 +35,29 @@ def envelope(time_s: FloatArray, values: FloatArray, *, stretches: int = STRETCH
     -------
         Times and values, shape (at most 2 * stretches,), in the order of time.
     """
+    places = extremes(values, stretches=stretches)
+    return time_s[places], values[places]
+
+
+def extremes(values: FloatArray, *, stretches: int = STRETCHES) -> NDArray[np.intp]:
+    """Return which samples are the smallest and the largest of each stretch, shape (at most 2 * stretches,).
+
+    Parameters
+    ----------
+    values
+        Samples in the order of time, shape (samples,).
+    stretches
+        Number of stretches; of a signal of at most twice as many samples all are returned.
+    """
     if values.size <= 2 * stretches:
-        return time_s, values
+        return np.arange(values.size)
     edges = np.linspace(0, values.size, stretches + 1).astype(np.intp)
     places = np.empty(2 * stretches, dtype=np.intp)
     for stretch, (first, last) in enumerate(itertools.pairwise(edges)):
         piece = values[first:last]
         pair = (first + np.argmin(piece), first + np.argmax(piece))
         places[2 * stretch : 2 * stretch + 2] = sorted(pair)
-    return time_s[places], values[places]
+    return places
 
 
 def worthwhile(time_s: FloatArray, highest_hz: float) -> slice:

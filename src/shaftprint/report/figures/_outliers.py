@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.report.charts import Chart, Line, Mark, Panel, Points, Scale
-from shaftprint.report.figures._envelope import channel_envelope, envelope
+from shaftprint.report.figures._envelope import channel_envelope, extremes
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
@@ -40,13 +40,14 @@ def outlier_chart(recording: "Recording", signals: "Signals", vessel: "Vessel") 
     torque_s, reading = channel_envelope(torque)
     rates = (f"raw, {set_point.rate_hz:g} Hz", f"prepared, {signals.rate_hz:g} Hz")
     demanded = SECONDS_PER_MINUTE * _demanded(signals, volts)
-    prepared = SECONDS_PER_MINUTE * signals.set_point_rev_s
     torque_nm = sensors.shaft_torque.torque_nm(reading)
     return Chart(
         panels=(
             Panel(
                 title="engine-speed set point",
-                marks=_marks(signals, set_point.name, (set_point_s, demanded), prepared, rates),
+                marks=_marks(
+                    signals, set_point.name, (set_point_s, demanded), signals.set_point_rev_s, rates, SECONDS_PER_MINUTE
+                ),
                 x=Scale(title="time in the recording [s]"),
                 y=Scale(title="set point [rpm]"),
             ),
@@ -78,8 +79,11 @@ def _marks(
     before: tuple[FloatArray, FloatArray],
     after: FloatArray,
     rates: tuple[str, str],
+    unit: float = 1.0,
 ) -> list[Mark]:
-    time, values = envelope(signals.start_s + np.arange(signals.samples) / signals.rate_hz, after)
+    """Return a channel before its repair, and after it in the unit of the former."""
+    drawn = extremes(after)
+    time, values = signals.start_s + drawn / signals.rate_hz, unit * after[drawn]
     marks: list[Mark] = [
         Line(x=before[0], y=before[1], name=rates[0], shade="early", width=1.2),
         Line(x=time, y=values, name=rates[1], width=1.2),

@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.report.charts import Chart, Line, Mark, Panel, Scale, Straight, joined
-from shaftprint.report.figures._envelope import envelope
+from shaftprint.report.figures._envelope import envelope, extremes
 from shaftprint.tables import Symbol
 
 if TYPE_CHECKING:
@@ -34,17 +34,17 @@ def excitation_chart(signals: "Signals", excitations: Sequence["Excitation"]) ->
     """
     time, places, joints = _joined(signals, excitations)
     point = signals.working_point
-    set_point = signals.set_point_rev_s[places] / point.engine_speed_rev_s - 1.0
+    set_point = envelope(time, signals.set_point_rev_s[places] / point.engine_speed_rev_s - 1.0)
     outputs = {
-        "n": signals.engine_speed.speed_rev_s[places] / point.engine_speed_rev_s - 1.0,
-        "M_s": signals.shaft_torque_nm[places] / point.shaft_torque_nm - 1.0,
+        "n": envelope(time, signals.engine_speed.speed_rev_s[places] / point.engine_speed_rev_s - 1.0),
+        "M_s": envelope(time, signals.shaft_torque_nm[places] / point.shaft_torque_nm - 1.0),
     }
     names = ", ".join(excitation.name for excitation in excitations)
     span = (float(time[0]), float(time[-1]))
     panels = []
-    for words, (name, values) in zip(WHAT, outputs.items(), strict=True):
+    for words, (name, response) in zip(WHAT, outputs.items(), strict=True):
         marks: list[Mark] = [Straight(at=joint, axis="x", shade="ink", dash="dash") for joint in joints]
-        marks += _lines(time, values, set_point, is_above=name == "n")
+        marks += _lines(response, set_point, is_above=name == "n")
         panels.append(
             Panel(
                 title=joined(f"{words} ", Symbol(name), f", {names}"),
@@ -65,30 +65,36 @@ def signal_chart(signals: "Signals") -> Chart:
         The prepared recording.
     """
     point = signals.working_point
-    time = signals.start_s + np.arange(signals.samples) / signals.rate_hz
-    set_point = signals.set_point_rev_s / point.engine_speed_rev_s - 1.0
-    speed = signals.engine_speed.speed_rev_s / point.engine_speed_rev_s - 1.0
-    torque = signals.shaft_torque_nm / point.shaft_torque_nm - 1.0
+    set_point = _drawn(signals, signals.set_point_rev_s, point.engine_speed_rev_s)
+    speed = _drawn(signals, signals.engine_speed.speed_rev_s, point.engine_speed_rev_s)
+    torque = _drawn(signals, signals.shaft_torque_nm, point.shaft_torque_nm)
     panels = [
         Panel(
             title=joined(f"{words} ", Symbol(name)),
-            marks=_lines(time, values, set_point, is_above=name == "n"),
+            marks=_lines(response, set_point, is_above=name == "n"),
             x=Scale(title="time in the recording [s]"),
             y=Scale(title="deviation [-]"),
         )
-        for words, name, values in zip(WHAT, ("n", "M_s"), (speed, torque), strict=True)
+        for words, name, response in zip(WHAT, ("n", "M_s"), (speed, torque), strict=True)
     ]
     return Chart(panels=panels, heights_px=(230,))
 
 
-def _lines(time: FloatArray, values: FloatArray, set_point: FloatArray, *, is_above: bool) -> list[Mark]:
+def _drawn(signals: "Signals", values: FloatArray, reference: float) -> tuple[FloatArray, FloatArray]:
+    """Return times and deviations of what is drawn of a signal."""
+    drawn = extremes(values)
+    return signals.start_s + drawn / signals.rate_hz, values[drawn] / reference - 1.0
+
+
+def _lines(
+    response: tuple[FloatArray, FloatArray], set_point: tuple[FloatArray, FloatArray], *, is_above: bool
+) -> list[Mark]:
     """Return a response and the set point: speed lies over the set point that it follows, noisy torque under it."""
-    lines = [(values, "response", 0), (set_point, joined("set point ", Symbol("n_set")), 1)]
-    marks: list[Mark] = []
-    for drawn, name, shade in reversed(lines) if is_above else lines:
-        x, y = envelope(time, drawn)
-        marks.append(Line(x=x, y=y, name=name, shade=shade, dash="solid", width=1.2))
-    return marks
+    lines = [(response, "response", 0), (set_point, joined("set point ", Symbol("n_set")), 1)]
+    return [
+        Line(x=time_s, y=values, name=name, shade=shade, dash="solid", width=1.2)
+        for (time_s, values), name, shade in (reversed(lines) if is_above else lines)
+    ]
 
 
 def chirp_chart(signals: "Signals", campaign: "Campaign", *, name: str) -> Chart:

@@ -16,7 +16,8 @@ from shaftprint.arrays import FloatArray
 
 LONGEST_S = 1.0
 _STEPS = 30
-_SMALL_S = 1e-10
+# A hundredth of a microsecond: no delay is known to a microsecond.
+_SMALL_S = 1e-8
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -70,12 +71,13 @@ def remaining_delay(
         Samples by which the model goes beyond the data at either end: the longest delay that is looked for.
     """
     unknown = RemainingDelay(output=output, delay_s=np.nan, noise_std_s=np.nan, model_std_s=np.nan)
+    if margin < 1:
+        return unknown
     spline = scipy.interpolate.CubicSpline(np.arange(model.size) / rate_hz, model)
-    time = (margin + np.arange(measured.size)) / rate_hz
     delay = _best_sample(measured, model, margin) / rate_hz
     longest = (margin - 1) / rate_hz
     for _ in range(_STEPS):
-        columns = _columns(spline, time - delay)
+        columns = _columns(spline.c, margin - delay * rate_hz, measured.size, rate_hz)
         offset_gain_slope = np.linalg.lstsq(columns, measured, rcond=None)[0]
         gain = float(offset_gain_slope[1])
         if not gain > 0.0:
@@ -86,7 +88,7 @@ def remaining_delay(
             return unknown
         if abs(change) < _SMALL_S:
             break
-    columns = _columns(spline, time - delay)
+    columns = _columns(spline.c, margin - delay * rate_hz, measured.size, rate_hz)
     inverse = np.linalg.pinv(columns.T @ columns)
     row = inverse[2] @ columns.T
     by_parameter = slopes[:, margin : margin + measured.size] @ row
@@ -98,8 +100,27 @@ def remaining_delay(
     )
 
 
-def _columns(spline: "scipy.interpolate.CubicSpline", time_s: FloatArray) -> FloatArray:
-    return np.column_stack([np.ones(time_s.size), spline(time_s), spline(time_s, 1)])
+def _columns(pieces: FloatArray, position: float, samples: int, rate_hz: float) -> FloatArray:
+    """Return 1, a cubic spline and its slope from a position on, which need not be a whole sample.
+
+    Parameters
+    ----------
+    pieces
+        Coefficients between the samples of the spline, the cubic ones first, shape (4, pieces).
+    position
+        Where the first value is taken [samples].
+    samples
+        How many values are taken.
+    rate_hz
+        Sample rate [Hz].
+    """
+    # at a whole sample the end of the piece before it, so that the last sample has a piece
+    first = max(int(np.ceil(position)) - 1, 0)
+    # all values lie equally far behind the sample before them
+    behind_s = (position - first) / rate_hz
+    cubic, square, slope, level = pieces[:, first : first + samples]
+    value = ((cubic * behind_s + square) * behind_s + slope) * behind_s + level
+    return np.column_stack([np.ones(samples), value, (3.0 * cubic * behind_s + 2.0 * square) * behind_s + slope])
 
 
 def _best_sample(measured: FloatArray, model: FloatArray, margin: int) -> int:

@@ -10,7 +10,12 @@ _LENGTH_TIMES_CUT_OFF = 6.6
 _BLOCK_OF_TAPS = 8
 
 
-def low_pass(values: FloatArray, rate_hz: float, highest_hz: float) -> FloatArray:
+def reach_of_low_pass(rate_hz: float, highest_hz: float) -> int:
+    """Return how many samples on either side of one go into it."""
+    return int(np.ceil(0.5 * _LENGTH_TIMES_CUT_OFF * rate_hz / highest_hz))
+
+
+def low_pass(values: FloatArray, rate_hz: float, highest_hz: float, *, out: FloatArray | None = None) -> FloatArray:
     """Return signals without what is faster than a frequency, neither late nor early, shape of ``values``.
 
     The ends are continued by their last value, so that half a filter's length from either end counts less.
@@ -21,14 +26,16 @@ def low_pass(values: FloatArray, rate_hz: float, highest_hz: float) -> FloatArra
         Signals along the last axis, shape (..., samples).
     rate_hz, highest_hz
         Sample rate and frequency at which half of the amplitude is left [Hz].
+    out
+        Where the result goes; ``values`` itself may be given.
     """
     if highest_hz >= rate_hz / 2.0:
         return values
-    half = int(np.ceil(0.5 * _LENGTH_TIMES_CUT_OFF * rate_hz / highest_hz))
+    half = reach_of_low_pass(rate_hz, highest_hz)
     # a windowed sinc (Oppenheim and Schafer, "Discrete-Time Signal Processing", section 7.5)
     taps = np.sinc(2.0 * highest_hz / rate_hz * np.arange(-half, half + 1)) * np.hamming(2 * half + 1)
     taps /= taps.sum()
-    smooth = np.empty_like(values)
+    smooth = np.empty_like(values) if out is None else out
     # one signal after the other: the transforms of all together would need several times their memory
     for row in np.ndindex(values.shape[:-1]):
         smooth[row] = _convolved(np.pad(values[row], half, mode="edge"), taps)

@@ -13,7 +13,7 @@ at the working point, and stays out of the test, which takes the mean off as wel
 is part of the noise.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -24,7 +24,7 @@ import scipy
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign import Campaign, Staircase
 from shaftprint.errors import ValidationError
-from shaftprint.signals import Coverage
+from shaftprint.signals import Signals
 
 # What the low-pass shows of a step before it happens.
 _AHEAD_S = 1.0
@@ -120,20 +120,18 @@ def autocorrelated(values: FloatArray) -> FloatArray:
 
 
 def quiet_noise(
-    outputs: FloatArray, campaign: Campaign, coverage: Coverage, *, rate_hz: float, start_s: float, rest_s: float
+    outputs: Callable[[slice], FloatArray], campaign: Campaign, signals: Signals, *, rest_s: float
 ) -> QuietNoise:
     """Return the noise in the quiet stretches of a recording.
 
     Parameters
     ----------
     outputs
-        Deviations of speed and torque from the working point, shape (2, samples).
+        Gives the deviations of speed and torque from the working point in some samples, shape (2, samples).
     campaign
         Says where the set point stands still.
-    coverage
-        Says where the gaps are.
-    rate_hz, start_s
-        The grid.
+    signals
+        The recording, with its grid and where its gaps are.
     rest_s
         Time after a change of the set point from which on a stretch is quiet [s].
 
@@ -143,13 +141,14 @@ def quiet_noise(
         If nothing stands still for 5 s.
     """
     cut, loads, means = [], [], []
-    end_s = start_s + outputs.shape[1] / rate_hz
+    rate_hz, start_s, samples = signals.rate_hz, signals.start_s, signals.shaft_torque_nm.size
+    end_s = start_s + samples / rate_hz
     for begin, end, between in _still(campaign, end_s):
         first = max(round((begin + rest_s - start_s) * rate_hz), 0)
-        last = min(round((end - _AHEAD_S - start_s) * rate_hz), outputs.shape[1])
-        if last - first < _SHORTEST_S * rate_hz or coverage.touching(begin, end):
+        last = min(round((end - _AHEAD_S - start_s) * rate_hz), samples)
+        if last - first < _SHORTEST_S * rate_hz or signals.coverage.touching(begin, end):
             continue
-        stretch = outputs[:, first:last]
+        stretch = outputs(slice(first, last))
         mean = stretch.mean(axis=1, keepdims=True)
         cut.append(stretch - mean)
         loads.append(max(1.0 + float(mean[1, 0]), LEAST_LOAD))
