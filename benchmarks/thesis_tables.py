@@ -102,7 +102,7 @@ def tables(recording: Path) -> str:
     trial, rng = _trial(), np.random.default_rng(SEED)
     measured = measure(recording, trial, mode="shaftprint")
     weighted = {fit.structure.name: fit for fit in weighted_fits(measured, trial, rng=rng)}
-    thesis = thesis_way(recording, trial, rng=rng)
+    thesis = thesis_way(measure(recording, trial, mode="thesis"), trial, rng=rng)
     truth = read_truth(truth_path(recording)).normalised
     known = [("GAUGE-CLOSED", *_found("shaftprint, weighted", weighted[GAUGE], tau="tau_dn"))]
     known.append(("truth", *_truth({**truth, "tau_n": truth["tau_dn"]})))

@@ -307,10 +307,12 @@ def fingerprint(identification, signals, spectra, vessel, campaign):
 
 
 @pytest.fixture(scope="session")
-def survey(fingerprint, identification, signals, spectra, vessel, campaign):
+def survey(fingerprint, identification, recording, signals, spectra, vessel, campaign):
     return Survey(
         trial=Trial(vessel=vessel, campaign=campaign),
-        measurement=Measurement(signals=signals, spectra=spectra, responses=(spectra.response,)),
+        measurement=Measurement(
+            signals=signals, spectra=spectra, responses=(spectra.response,), levels=recording.levels()
+        ),
         fits=(identification,),
         fingerprint=fingerprint,
     )

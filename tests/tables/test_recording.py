@@ -37,7 +37,7 @@ def test_what_a_reader_must_know_is_said():
     recording = Recording(
         path="x.nc", sha256="ab" * 32, format="native", channels={n: channel(n, v) for n, v in channels.items()}
     )
-    remarks = {row[0]: row[-1] for row in level_table(recording).rows}
+    remarks = {row[0]: row[-1] for row in level_table(recording, recording.levels()).rows}
     assert remarks["good"] == ""
     assert remarks["dead"].startswith("never changes")
     assert remarks["cut"] == "stays at its highest value: cut off?"

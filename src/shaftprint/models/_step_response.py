@@ -20,6 +20,8 @@ from shaftprint.errors import StructureError
 from shaftprint.models._structure import Structure
 
 TERMS = 4096
+# Waves of all terms at all times would take 40 MB.
+_TERMS_AT_ONCE = 512
 # What the period that the sum has, and the signal not, may add.
 ALIAS = 1e-9
 
@@ -59,7 +61,11 @@ def step_response(
     fade = np.where(order < TERMS / 2, 1.0, np.sin(np.pi * order / TERMS) ** 2)
     fade[0] = 0.5
     stacked = structure.stacked(values, s, tuple(wanted)) * (fade / s)
-    waves = np.exp(1j * np.outer(order * np.pi / half_period, time))
-    sums = (stacked @ waves).real * (np.exp(shift * time) / half_period)
+    sums = np.zeros((*stacked.shape[:-1], time.size))
+    for first in range(0, TERMS, _TERMS_AT_ONCE):
+        terms = slice(first, first + _TERMS_AT_ONCE)
+        waves = np.exp(1j * np.outer(order[terms] * np.pi / half_period, time))
+        sums += (stacked[..., terms] @ waves).real
+    sums *= np.exp(shift * time) / half_period
     responses = np.where(time > 0.0, sums, 0.0)
     return responses[0], responses[1:]

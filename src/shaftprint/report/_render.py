@@ -139,6 +139,7 @@ def _inputs(survey: "Survey", **further: Any) -> Inputs:
         fits={one.structure.name: one for one in survey.fits[1:]},
         comparisons=survey.comparisons,
         validations=survey.validations,
+        levels=survey.measurement.levels,
         legs=survey.measurement.legs,
         leg_tests=survey.leg_tests,
         **(nothing | further),

@@ -9,9 +9,10 @@ from shaftprint.clocks import logger_clocks
 from shaftprint.errors import StructureError
 from shaftprint.fingerprint import clock_findings, clock_influences
 from shaftprint.identify.fit import has_measured_inputs
+from shaftprint.memory import give_back_memory
 from shaftprint.models import Structure
 from shaftprint.notebook import Shown
-from shaftprint.recording import read_recording
+from shaftprint.recording import Levels, read_recording, watch_levels
 from shaftprint.signals import Mode, Signals, WorkingPoint, prepare_signals
 from shaftprint.spectra import (
     ExactBin,
@@ -45,6 +46,8 @@ class Measurement(Shown):
     """Every leg of the campaign, that of the working point of the signals first."""
     further: Mapping[str, Spectra] = field(default_factory=dict)
     """Spectra of what was moved beside the set point of the speed, by its symbol."""
+    levels: Mapping[str, Levels] = field(default_factory=dict)
+    """What every raw channel of the recording reaches, by its name."""
     began: datetime | None = None
     """When the recording began, where its file or its user says so."""
 
@@ -69,7 +72,9 @@ def measure(
     progress.begin(f"Reading the recording ({mode} mode)", total=1.0)
     with read_recording(recording) as opened:
         clocks, began = logger_clocks(opened), opened.began
-        signals = prepare_signals(opened, trial.vessel, trial.campaign, mode=mode, progress=progress.reach)
+        watch = watch_levels(opened)
+        signals = prepare_signals(watch.recording, trial.vessel, trial.campaign, mode=mode, progress=progress.reach)
+        levels = watch.levels()
     progress.begin("Measuring the test lines")
     method = ExactBin() if mode == "thesis" else WholePeriodSine()
     legs = legs_of(signals, trial.campaign)
@@ -84,12 +89,14 @@ def measure(
         if name != spectra.response.inputs[0] and moved.input in trial.campaign.inputs
     }
     responses = responses_of(spectra.response, set_point_latency_s=latency)
+    give_back_memory()
     return Measurement(
         signals=signals,
         spectra=spectra,
         responses=(*responses, *(one.response for one in further.values())),
         legs=legs,
         further=further,
+        levels=levels,
         began=began,
     )
 

@@ -1,7 +1,6 @@
 """One recording fitted both ways: weighted on shaftprint's signals, and step by step as in the thesis."""
 
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 
@@ -9,7 +8,7 @@ from shaftprint.catalogue import structure
 from shaftprint.identify import Identification, Settings, Uniform, Unweighted
 from shaftprint.spectra import FrequencyResponse
 from shaftprint.survey._fits import fit, priors_of
-from shaftprint.survey._measurement import Measurement, measure, responses_of
+from shaftprint.survey._measurement import Measurement, responses_of
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._thesis_mode import SET_POINT_OFF, ThesisMode
 from shaftprint.survey._trial import Trial
@@ -32,10 +31,21 @@ def weighted_fits(
 
 
 def thesis_way(
-    recording: str | Path, trial: Trial, *, rng: np.random.Generator, progress: Progress = SILENT
+    measurement: Measurement, trial: Trial, *, rng: np.random.Generator, progress: Progress = SILENT
 ) -> ThesisMode:
-    """Return the recording treated step by step as in the thesis, and besides its pick-up taken into the model."""
-    measurement = measure(recording, trial, mode="thesis", progress=progress)
+    """Return a recording treated step by step as in the thesis, and besides its pick-up taken into the model.
+
+    Parameters
+    ----------
+    measurement
+        Of the recording, by ``measure`` in the mode of the thesis.
+    trial
+        What was tested.
+    rng
+        For the starts of the searches.
+    progress
+        Is told of each step.
+    """
     latency = trial.vessel.sensors.shaft_torque.latency_s
     structures = [*(structure(name) for name in OF_THE_THESIS), structure(WITH_PICK_UP).held_at(t_gauge=latency)]
     unweighted = Settings(weighting=Unweighted(), draw=Uniform())

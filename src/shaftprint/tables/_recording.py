@@ -1,7 +1,7 @@
 """Tables of the raw channels: what levels they reach, at which rates they were logged, and by which clocks."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import plain, rounded, with_deviation
@@ -19,12 +19,19 @@ CUT_OFF = 0.01
 PULSES = 0.8
 
 
-def level_table(recording: "Recording") -> Table:
-    """Return lowest, mean and highest value of every raw channel, and what share of its time it spends at the ends."""
+def level_table(recording: "Recording", levels: "Mapping[str, Levels]") -> Table:
+    """Return lowest, mean and highest value of every raw channel, and what share of its time it spends at the ends.
+
+    Parameters
+    ----------
+    recording
+        Gives names and units.
+    levels
+        What each channel reaches, by its name.
+    """
     rows: list[tuple[str, ...]] = []
-    levels = recording.levels()
-    for name, channel in recording.channels.items():
-        reached = levels[name]
+    for name, reached in levels.items():
+        channel = recording.channel(name)
         rows.append(
             (
                 channel.name,

@@ -1,6 +1,7 @@
 """``shaftprint demo``: the whole way, from a ship whose truth is known to its fingerprint."""
 
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import click
@@ -78,9 +79,12 @@ def _sail(folder: Path, trial: Trial, campaign: str, *, seed: int, steps: Steps)
 def _identify(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> tuple[Survey, ThesisMode]:
     """Identify the gauge-aware structure and those of the thesis, and the latter once more the thesis' way."""
     rng = np.random.default_rng(seed)
-    measurement = measure(recording, trial, progress=steps)
-    fits = weighted_fits(measurement, trial, rng=rng, progress=steps)
-    thesis = thesis_way(recording, trial, rng=rng, progress=steps)
+    with ThreadPoolExecutor(max_workers=1) as beside:
+        # the file is read both ways at once: most of either is done by compiled code
+        other = beside.submit(measure, recording, trial, mode="thesis")
+        measurement = measure(recording, trial, progress=steps)
+        fits = weighted_fits(measurement, trial, rng=rng, progress=steps)
+        thesis = thesis_way(other.result(), trial, rng=rng, progress=steps)
     return survey_of(fits, measurement, trial, rng=rng, progress=steps), thesis
 
 

@@ -43,7 +43,8 @@ def command(
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, progress=steps)
         fits = weighted_fits(measurement, trial, rng=rng, progress=steps)
-        thesis = thesis_way(recording, trial, rng=rng, progress=steps)
+        other = measure(recording, trial, mode="thesis", progress=steps)
+        thesis = thesis_way(other, trial, rng=rng, progress=steps)
     by_name = {fit.structure.name: fit for fit in fits}
     explanation = explain_thesis(thesis, by_name, measurement.spectra.response, trial.vessel)
     if output is not None:

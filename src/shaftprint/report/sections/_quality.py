@@ -28,7 +28,7 @@ def quality_section(inputs: Inputs) -> Section:
     spectra = inputs.spectra
     tables: list[Table] = []
     if inputs.recording is not None:
-        tables += [level_table(inputs.recording), clock_table(inputs.recording)]
+        tables += [level_table(inputs.recording, inputs.levels), clock_table(inputs.recording)]
     tables += [
         clock_map_table(inputs.clocks),
         window_table(spectra),

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from shaftprint.tables import Table
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from shaftprint.identify import Identification
     from shaftprint.identify.comparison import StructureComparison
     from shaftprint.models import Structure
-    from shaftprint.recording import Recording
+    from shaftprint.recording import Levels, Recording
     from shaftprint.report.charts import Chart
     from shaftprint.signals import Signals
     from shaftprint.spectra import FrequencyResponse, Spectra
@@ -43,6 +43,7 @@ class Inputs:
     validations: Sequence["Validation"] = ()
     clocks: Sequence["LoggerClock"] = ()
     previous: "Fingerprint | None" = None
+    levels: Mapping[str, "Levels"] = field(default_factory=dict)
     legs: Sequence["LegMeasurement"] = ()
     leg_tests: Sequence["LegTest"] = ()
 

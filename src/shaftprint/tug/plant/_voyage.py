@@ -1,6 +1,7 @@
 """A voyage: the propulsion line stepped through a campaign, chunk by chunk."""
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -92,14 +93,12 @@ def voyage(
     ring = np.full(1 << int(np.ceil(np.log2(delay_steps + 8.0))), state[RACK])
     boost = np.array([steady_boost(plant, demand.first)])
     carried = Carried(state=state, history=ring, counter=np.zeros(1, dtype=np.int64), boost=boost)
-    done = 0
-    while done < steps:
+    for done, (asked, angle_asked, propeller, engine) in _forced(disturbance, demand, pitch, steps=steps, chunk=chunk):
         count = min(chunk, steps - done)
-        propeller, engine, wander = disturbance.next(count)
         speed, angle, torque, brake, rack, way = np.empty((6, count))
         limited = np.empty(count, dtype=np.bool_)
         traces = Traces(speed, angle, torque, brake, rack, limited, way)
-        advance(step_s, demand.next(count, wander), pitch.next(count), propeller, engine, plant, delay, carried, traces)
+        advance(step_s, asked, angle_asked, propeller, engine, plant, delay, carried, traces)
         yield Leg(
             time_s=start_s + step_s * np.arange(done, done + count, dtype=np.float64),
             shaft_speed_rev_s=speed,
@@ -110,7 +109,28 @@ def voyage(
             limited=limited,
             ship_speed_m_s=way,
         )
-        done += count
+
+
+def _forced(
+    disturbance: Disturbance, demand: Demand, pitch: PitchActuator, *, steps: int, chunk: int
+) -> Iterator[tuple[int, tuple[FloatArray, ...]]]:
+    """Yield the first step of each chunk and what acts in it; the next is made while the line is stepped through one.
+
+    It is demand, pitch, and disturbances of propeller and engine.
+    """
+
+    def acting(count: int) -> tuple[FloatArray, ...]:
+        propeller, engine, wander = disturbance.next(count)
+        return demand.next(count, wander), pitch.next(count), propeller, engine
+
+    with ThreadPoolExecutor(max_workers=1) as ahead:
+        waiting = ahead.submit(acting, min(chunk, steps))
+        for done in range(0, steps, chunk):
+            acts = waiting.result()
+            left = steps - done - chunk
+            if left > 0:
+                waiting = ahead.submit(acting, min(chunk, left))
+            yield done, acts
 
 
 def _delay(steps: float) -> DelayTaps:

@@ -60,7 +60,8 @@ class NoisePieces:
         samples = chosen.shape[-1]
         lags = max(int(_LAG_SHARE * samples), 1)
         # divided by all samples, not by those of the lag: a covariance that no signal can have is never made
-        return np.asarray(autocorrelated(chosen)[..., :lags].mean(axis=0) / samples)
+        total = sum((autocorrelated(piece)[:lags] for piece in chosen), start=np.zeros(lags))
+        return np.asarray(total / (samples * len(chosen)))
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -95,20 +96,22 @@ class QuietNoise:
         length = min(samples, longest)
         wanted = max(load, LEAST_LOAD)
         apart = np.abs(np.log(self.loads / wanted))
-        pieces: list[FloatArray] = []
+        pieces: list[tuple[int, int]] = []
         last = 0.0
         for index in np.argsort(apart, kind="stable"):
             if len(pieces) >= _ENOUGH_PIECES and apart[index] > last + _ALIKE:
                 break
-            stretch = self.stretches[index] * (wanted / self.loads[index])
-            count = stretch.shape[1] // length
+            count = self.stretches[index].shape[1] // length
             if count == 0:
                 continue
             last = last if len(pieces) >= _ENOUGH_PIECES else float(apart[index])
-            pieces += [stretch[:, k * length : (k + 1) * length] for k in range(count)]
+            pieces += [(int(index), k * length) for k in range(count)]
         kept = np.linspace(0, len(pieces) - 1, min(len(pieces), _MOST_PIECES)).round().astype(np.intp)
-        cut = np.stack([pieces[index] for index in kept])
-        return NoisePieces(pieces=cut - cut.mean(axis=-1, keepdims=True), as_long=length == samples)
+        cut = np.empty((kept.size, 2, length))
+        for piece, (index, first) in zip(cut, (pieces[k] for k in kept), strict=True):
+            piece[:] = self.stretches[index][:, first : first + length] * (wanted / self.loads[index])
+        cut -= cut.mean(axis=-1, keepdims=True)
+        return NoisePieces(pieces=cut, as_long=length == samples)
 
 
 def autocorrelated(values: FloatArray) -> FloatArray:
