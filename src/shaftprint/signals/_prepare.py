@@ -8,6 +8,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign
 from shaftprint.errors import SignalError
+from shaftprint.memory import give_back_memory
 from shaftprint.reasons import Reason
 from shaftprint.signals._channel_readings import ChannelReadings, logger_channels, read_channels
 from shaftprint.signals._channel_signals import ChannelSignal, SpeedSignal
@@ -130,6 +131,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
         coverage=readings.coverage,
     )
     scale = steady.scale
+    give_back_memory()
     return Signals(
         rate_hz=clock.rate_hz,
         start_s=clock.start_s,

@@ -17,8 +17,6 @@ from shaftprint.validation.measures import STEP_NUMBERS, Compared, step_numbers
 _FEWEST_PIECES = 3
 # A number that so small a share of the noisy responses shows is no number to compare.
 _SHOWN_SHARE = 0.8
-# Responses of all draws together would take as much memory as the recording.
-_DRAWS_AT_ONCE = 50
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -125,8 +123,4 @@ def _band(
     size, vectors = np.linalg.eigh(covariance)
     root = vectors * np.sqrt(np.maximum(size, 0.0))
     changes = rng.standard_normal((draws, size.size)) @ root.T
-    numbers = [
-        step_numbers(smooth.model + some @ smooth.slopes, time_s, settled_share=settled_share)
-        for some in np.array_split(changes, -(-draws // _DRAWS_AT_ONCE))
-    ]
-    return _moments(np.concatenate(numbers, axis=1))[1]
+    return _moments(step_numbers(smooth.model + changes @ smooth.slopes, time_s, settled_share=settled_share))[1]

@@ -85,7 +85,9 @@ def validate(
         if not of_record:
             continue
         run = run_model(chosen, data, of_record, settings, predict=predict, quadratic_propeller=quadratic_propeller)
-        comparisons += (_compared(excerpt, run, chosen, settings, rng) for excerpt in of_record)
+        for excerpt in of_record:
+            comparisons.append(_compared(excerpt, run, chosen, settings, rng))
+            give_back_memory()
         # its derivatives are gone before those of the next record are made
         del run
         give_back_memory()

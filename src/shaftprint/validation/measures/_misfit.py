@@ -105,13 +105,14 @@ def misfit_of(
     samples = residual.size
     autocovariance = smooth.noise.autocovariances[smooth.place]
     energy, energy_variance = _noise_energy(smooth, autocovariance)
-    slopes = smooth.slopes - smooth.slopes.mean(axis=1, keepdims=True)
-    spread = covariance @ (slopes @ slopes.T) / samples
+    mean_slopes = smooth.slopes.mean(axis=1)
+    spread = covariance @ (smooth.slopes @ smooth.slopes.T / samples - np.outer(mean_slopes, mean_slopes))
     expected = energy + float(np.trace(spread))
     variance = energy_variance + 2.0 * float(np.trace(spread @ spread))
     mean_square = float(np.mean(residual**2))
     beyond = mean_square - expected
-    along = slopes @ residual / samples
+    # the residual has no mean, so that those of the derivatives do not count
+    along = smooth.slopes @ residual / samples
     mixed = 4.0 * (_noise_along(residual, autocovariance) + float(along @ covariance @ along))
     half = deviations(coverage) * np.sqrt(variance + (mixed if beyond > 0.0 else 0.0))
     motion = float(np.std(smooth.measured))

@@ -21,6 +21,8 @@ STEP_NUMBERS = {
 
 _LOW, _HIGH = 0.1, 0.9
 _LAST_SHARE = 1.0 / 3.0
+# Hundreds of long responses together would need several times their memory.
+_SAMPLES_AT_ONCE = 1 << 17
 
 
 def step_numbers(values: FloatArray, time_s: FloatArray, *, settled_share: float) -> FloatArray:
@@ -38,6 +40,12 @@ def step_numbers(values: FloatArray, time_s: FloatArray, *, settled_share: float
     settled_share
         Share of the height within which a response has settled.
     """
+    blocks = -(-values.size // _SAMPLES_AT_ONCE)
+    parts = np.array_split(values, min(blocks, len(values)))
+    return np.concatenate([_of_block(part, time_s, settled_share) for part in parts], axis=1)
+
+
+def _of_block(values: FloatArray, time_s: FloatArray, settled_share: float) -> FloatArray:
     after = time_s >= 0.0
     time, later = time_s[after], values[:, after]
     last = later.shape[1] - max(int(_LAST_SHARE * later.shape[1]), 1)
