@@ -91,13 +91,10 @@ def linear_prediction(
     shown = frequency < min(high, 0.5 * rate_hz)
     s = 2j * np.pi * frequency[shown]
     s[0] = 1j * _SLOWEST_RAD_S
-    stacked = np.concatenate(
-        [
-            structure.stacked(values, s[k : k + _FREQUENCIES_AT_ONCE], tuple(wanted))[:, places]
-            for k in range(0, s.size, _FREQUENCIES_AT_ONCE)
-        ],
-        axis=-1,
-    )
+    stacked = np.empty((1 + len(wanted), len(places), s.size), dtype=np.complex128)
+    for lowest in range(0, s.size, _FREQUENCIES_AT_ONCE):
+        some = slice(lowest, lowest + _FREQUENCIES_AT_ONCE)
+        stacked[..., some] = structure.stacked(values, s[some], tuple(wanted))[:, places]
     steady = stacked[..., :1].real.copy()
     stacked[..., 0] = stacked[..., 0].real
     stacked *= np.cos(0.5 * np.pi * np.clip((frequency[shown] - low) / (high - low), 0.0, 1.0)) ** 2
