@@ -28,7 +28,7 @@ def test_every_drawn_point_is_a_sample_and_the_extremes_are_kept(count, stretche
 def test_a_short_signal_is_drawn_as_it_is():
     time, values = np.arange(10.0), np.arange(10.0) ** 2
     drawn = envelope(time, values, stretches=5)
-    assert drawn[0] is time
+    assert np.array_equal(drawn[0], time)
     assert drawn[1] is values
 
 
