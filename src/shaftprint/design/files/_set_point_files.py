@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Final
 
 import numpy as np
-from scipy.io import savemat
+import scipy
 
 from shaftprint import __version__
 from shaftprint.design.files._set_point_samples import SetPointSamples
@@ -35,6 +35,6 @@ def write_set_point(samples: SetPointSamples, folder: Path) -> None:
         "set_point_rpm": samples.speed_rpm,
     }
     with written_whole(folder / MAT, overwrite=True) as part:
-        savemat(str(part), content, appendmat=False, oned_as="column", do_compression=True)
+        scipy.io.savemat(str(part), content, appendmat=False, oned_as="column", do_compression=True)
         with part.open("r+b") as stored:
             stored.write(f"MATLAB 5.0 MAT-file, written by shaftprint {__version__}".encode().ljust(_HEAD))

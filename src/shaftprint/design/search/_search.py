@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize
+import scipy
 
 from shaftprint.arrays import FloatArray
 from shaftprint.design.search._problem import Problem
@@ -61,7 +61,7 @@ def search(problem: Problem, start: FloatArray, effort: Effort, *, share_held: f
         held = held_draws(problem.uses, legs, share_held)
         active = tuple(use.highest(leg, held, effort.active_draws) for use, leg in zip(problem.uses, legs, strict=True))
         stage = replace(problem, uses=active, power=power)
-        result = minimize(
+        result = scipy.optimize.minimize(
             stage.value_and_gradient,
             unknowns,
             jac=True,
