@@ -40,7 +40,7 @@ def recorded_operation(signals: "Signals", campaign: "Campaign", vessel: "Vessel
     step_s = max(1, count // 2) / signals.rate_hz
     change = np.gradient(speed_rev_s, step_s) / gearbox.ratio
     at_shaft_nm = gauge_nm + 2.0 * np.pi * vessel.inertia_upstream_kg_m2 * change
-    time_s = signals.start_s + step_s * np.arange(speed_rev_s.size)
+    time_s = signals.start_s + step_s * np.arange(speed_rev_s.size, dtype=np.float64)
     usable = ~signals.coverage.lost(time_s)
     # the ends are no means
     usable[:2] = usable[-2:] = False
