@@ -16,7 +16,7 @@ from shaftprint.design._timetable import Timetable
 from shaftprint.design._wish import Wish
 from shaftprint.design.search import Uses
 from shaftprint.errors import DesignError
-from shaftprint.identify import NoiseLevels, Prior
+from shaftprint.identify import NoiseLevels, Prior, noise_at
 from shaftprint.identify.prediction import LineInformation, line_information, planned_lines
 from shaftprint.models import Structure, at_working_point
 
@@ -81,7 +81,7 @@ class Brief:
             stated = ", ".join(f"{share:g}" for share in speeds) or "none"
             raise DesignError(f"plan: expected positive speeds over that of the working point, found {stated}.")
         periods, period_s = timetable.periods(within_s, [share * limits.engine_speed_rpm for share in speeds])
-        levels = tuple(noise[share] if isinstance(noise, Mapping) else noise for share in speeds)
+        levels = tuple(noise_at(noise, share) for share in speeds)
         structures = tuple(at_working_point(ship.structure, speed_share=share) for share in speeds)
         spread = (motion_noise(one, ship.values, level) for one, level in zip(structures, levels, strict=True))
         return cls(

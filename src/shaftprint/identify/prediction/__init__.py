@@ -6,6 +6,7 @@ from shaftprint.identify.prediction._identifiability import Identifiability, ide
 from shaftprint.identify.prediction._inseparable_groups import Group
 from shaftprint.identify.prediction._line_information import LineInformation, line_information
 from shaftprint.identify.prediction._lost_directions import Direction
+from shaftprint.identify.prediction._noise_at_speeds import noise_at
 from shaftprint.identify.prediction._noise_levels import NoiseLevels, noise_levels, stated_noise
 from shaftprint.identify.prediction._planned_legs import PlannedLeg, planned_legs
 from shaftprint.identify.prediction._planned_response import expected_response, planned_lines, planned_response
@@ -24,6 +25,7 @@ __all__ = [
     "expected_response",
     "identifiability",
     "line_information",
+    "noise_at",
     "noise_levels",
     "planned_legs",
     "planned_lines",

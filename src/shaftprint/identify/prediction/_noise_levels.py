@@ -33,6 +33,9 @@ class NoiseLevels:
     """Names of the outputs, such as ``("n", "M_s")``."""
     set_point_per_v: float
     """Change of the set point over the working-point speed for one volt [1/V], positive."""
+    orders_hz: tuple[float, ...] = ()
+    """Where orders of the shaft line stand at the working point [Hz]: they are taken out of the torque, which costs a
+    steady sine beside one; the density is without them."""
 
     def __post_init__(self) -> None:
         """Check the shapes and make the arrays read-only.
@@ -96,7 +99,9 @@ class NoiseLevels:
         return replace(self, outputs=names, density=self.density[np.ix_(range(self.frequency_hz.size), places, places)])
 
 
-def noise_levels(response: FrequencyResponse, campaign: "Campaign", *, set_point_per_v: float) -> NoiseLevels:
+def noise_levels(
+    response: FrequencyResponse, campaign: "Campaign", *, set_point_per_v: float, orders_hz: Sequence[float] = ()
+) -> NoiseLevels:
     """Return the noise levels behind a measured response: its covariance times length and squared amplitude of lines.
 
     Parameters
@@ -107,6 +112,8 @@ def noise_levels(response: FrequencyResponse, campaign: "Campaign", *, set_point
         The campaign that was sailed.
     set_point_per_v
         Change of the set point over the working-point speed for one volt [1/V].
+    orders_hz
+        Where orders of the shaft line stand at the working point [Hz].
 
     Raises
     ------
@@ -140,6 +147,7 @@ def noise_levels(response: FrequencyResponse, campaign: "Campaign", *, set_point
         density=density,
         outputs=response.outputs,
         set_point_per_v=set_point_per_v,
+        orders_hz=tuple(orders_hz),
     )
 
 
@@ -160,6 +168,7 @@ def stated_noise(
     coherences: Sequence[complex],
     *,
     set_point_per_v: float,
+    orders_hz: Sequence[float] = (),
 ) -> NoiseLevels:
     """Return the noise levels of speed and torque from a table.
 
@@ -173,6 +182,8 @@ def stated_noise(
         Complex coherence of ``n`` and ``M_s``, below 1 in magnitude, shape (frequencies,).
     set_point_per_v
         Change of the set point over the working-point speed for one volt [1/V].
+    orders_hz
+        Where orders of the shaft line stand at the working point [Hz].
 
     Raises
     ------
@@ -187,4 +198,5 @@ def stated_noise(
         density=shape * deviation[:, :, None] * deviation[:, None, :],
         outputs=("n", "M_s"),
         set_point_per_v=set_point_per_v,
+        orders_hz=tuple(orders_hz),
     )

@@ -10,18 +10,23 @@ from numpy.typing import ArrayLike
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import IdentificationError
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
+from shaftprint.identify.prediction._order_cost import order_cost
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse, plan_windows
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
 
+_TORQUE = "M_s"
+# By how much an order enlarges the deviation of a torque before that is worth a remark.
+_WORTH_A_REMARK = 1.5
+
 
 def planned_response(campaign: "Campaign", noise: NoiseLevels) -> FrequencyResponse:
     """Return the lines that the sines of a campaign would give, each over its whole periods; the values are zero.
 
     Lines above the highest frequency of the noise levels are not used: a recording of the same ship had no usable line
-    there.
+    there. A line beside an order of the shaft has a torque that is less well known, and a remark.
 
     Raises
     ------
@@ -30,13 +35,29 @@ def planned_response(campaign: "Campaign", noise: NoiseLevels) -> FrequencyRespo
     """
     windows = plan_windows(campaign)
     amplitudes = {sine.name: sine.amplitude_v for sine in campaign.sines}
-    return planned_lines(
+    response = planned_lines(
         [window.frequency_hz for window in windows],
         noise=noise,
         amplitude=[noise.set_point_per_v * amplitudes[window.line] for window in windows],
         duration_s=[window.duration_s for window in windows],
         lines=[window.line for window in windows],
     )
+    cost = np.array([order_cost(window.frequency_hz, window.duration_s, noise) for window in windows])
+    return _with_order_cost(response, cost) if cost.any() else response
+
+
+def _with_order_cost(response: FrequencyResponse, cost: FloatArray) -> FrequencyResponse:
+    """Return lines whose torque has so much more of its variance, with a remark where that is worth one."""
+    covariance, count = response.covariance.copy(), len(response.outputs)
+    torque = response.outputs.index(_TORQUE)
+    for place in (torque, count + torque):
+        covariance[:, place, place] *= 1.0 + cost
+    beside = {
+        line: f"beside an order of the shaft: its torque is {np.sqrt(1.0 + share):.2g} times less well known"
+        for line, share in zip(response.lines, cost.tolist(), strict=True)
+        if np.sqrt(1.0 + share) >= _WORTH_A_REMARK
+    }
+    return replace(response, covariance=covariance, remarks={**response.remarks, **beside})
 
 
 def planned_lines(

@@ -22,10 +22,14 @@ _LEVELS: tuple[tuple[float, float, float, complex], ...] = (
     (7.19, 3.27e-7, 9.62e-6, 0.049 - 0.018j),
 )
 
+ORDERS_HZ = (5.165, 9.865)
+"""First order of the shaft, and half an order of the engine, at 1183.8 rpm [Hz]."""
+
 STAN_TUG_NOISE: NoiseLevels = stated_noise(
     frequency_hz=[row[0] for row in _LEVELS],
     densities=[row[1:3] for row in _LEVELS],
     coherences=[row[3] for row in _LEVELS],
     set_point_per_v=0.2120,
+    orders_hz=ORDERS_HZ,
 )
 """Noise levels of the Stan Tug 1205 up to 7.2 Hz; one volt of set point is 251 rpm of 1183.8 rpm."""
