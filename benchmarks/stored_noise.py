@@ -1,10 +1,10 @@
 """Noise of the simulated Stan Tug at four speeds: the table of ``identify/prediction/_stan_tug_noise_at_speeds.py``.
 
 Every seed sails legs that swing by half of the shipped two-speed campaign, at 0.70, 0.85, 1.00 and 1.15 of the working
-speed. What is left between the lines, after the wander of the load and the orders of the shaft are taken out as in every
-leg, is averaged over bands of a sixth of an octave. The part of the torque that goes with the speed, load and inertia
-behind the gauge, is taken off before and put back at the middle of a band, since it turns within it. Run
-``python benchmarks/stored_noise.py --seeds 12``; a seed takes about ten seconds of one core.
+speed. What is left between the lines, after the wander of the load and the orders of the shaft are taken out as in
+every leg, is averaged over bands of a sixth of an octave. The part of the torque that goes with the speed, load and
+inertia behind the gauge, is taken off before and put back at the middle of a band, since it turns within it. Run
+``python benchmarks/stored_noise.py --seeds 10``; a seed takes about seven seconds of one core.
 """
 
 import argparse
@@ -97,7 +97,7 @@ def densities(signals: Signals, plan: Campaign, place: int, centre_hz: FloatArra
 def main() -> None:
     """Sail, average and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=12, help="number of recordings")
+    parser.add_argument("--seeds", type=int, default=10, help="number of recordings")
     chosen = parser.parse_args()
     vessel, plan = load_vessel("stan-tug-1205"), campaign()
     centre = np.geomspace(LOWEST_HZ, HIGHEST_HZ, BANDS)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from shaftprint.campaign import Campaign, Sine, Staircase
+from shaftprint.identify import STAN_TUG_NOISE, planned_response
 from shaftprint.recording import read_recording
 from shaftprint.signals import TrackedOrder, prepare_signals
 from shaftprint.spectra import estimate_spectra
@@ -150,3 +151,8 @@ def test_a_line_at_the_shaft_order_of_the_simulated_tug_is_off_by_its_stated_dev
     assert np.sqrt(np.mean((old / old_std) ** 2)) > 5.0
     assert np.sqrt(np.mean((new / new_std) ** 2)) < 1.6
     assert np.sqrt(np.mean(new**2)) < 0.1 * np.sqrt(np.mean(old**2))
+    planned = planned_response(campaign, STAN_TUG_NOISE)
+    assert "beside an order of the shaft" in planned.remarks["S1"]
+    predicted = np.sqrt(planned.covariance[0, 1, 1] + planned.covariance[0, 3, 3])
+    # on the safe side: the stored level at 5.16 Hz is on a straight line between 3.4 and 7.2 Hz
+    assert 0.8 < predicted / np.sqrt(np.mean(new_std**2)) < 2.5

@@ -55,8 +55,8 @@ def design_campaign(
     limits
         What ship and engine allow.
     noise
-        Noise of the outputs over their working-point values, the same at all speeds, or that of each speed by its
-        share.
+        Noise of the outputs over their working-point values: the same at all speeds, or by the share of the speed,
+        between which it is interpolated.
     speeds
         Mean speed of each leg over that of the first working point, in the order in which they are sailed.
     within_s

@@ -40,6 +40,7 @@ from shaftprint.identify.likelihood import (
 )
 from shaftprint.identify.prediction import (
     STAN_TUG_NOISE,
+    STAN_TUG_NOISE_AT_SPEEDS,
     NoiseLevels,
     expected_response,
     identifiability,
@@ -53,6 +54,7 @@ from shaftprint.identify.uncertainty import bootstrap, profile, profile_interval
 
 __all__ = [
     "STAN_TUG_NOISE",
+    "STAN_TUG_NOISE_AT_SPEEDS",
     "Identification",
     "LatinHypercube",
     "MaximumLikelihood",

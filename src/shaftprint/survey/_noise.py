@@ -59,4 +59,9 @@ def _levels(
     response: "FrequencyResponse", campaign: "Campaign", signals: "Signals", point: "WorkingPoint"
 ) -> NoiseLevels:
     slope = abs(signals.calibration.slope_rev_s_per_v) * signals.dc_scale
-    return noise_levels(response, campaign, set_point_per_v=slope / point.engine_speed_rev_s)
+    return noise_levels(
+        response,
+        campaign,
+        set_point_per_v=slope / point.engine_speed_rev_s,
+        orders_hz=[order.per_turn * point.engine_speed_rev_s for order in signals.orders],
+    )

@@ -19,19 +19,20 @@ from shaftprint.design import expected_operation, limit_uses, stated_limits
 from shaftprint.errors import StructureError
 from shaftprint.identify import (
     STAN_TUG_NOISE,
+    STAN_TUG_NOISE_AT_SPEEDS,
     NoiseLevels,
     Prior,
     expected_response,
     identifiability,
-    noise_levels,
+    noise_at,
     planned_response,
     priors_from_vessel,
 )
-from shaftprint.identify.prediction import planned_legs, predict_joint_accuracy, predict_joint_intervals
+from shaftprint.identify.prediction import first_leg, planned_legs, predict_joint_accuracy, predict_joint_intervals
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse, open_loop
 from shaftprint.spelling import meant
-from shaftprint.survey import load_trial, measure, priors_of, stated_working_point
+from shaftprint.survey import load_trial, measure, noise_at_speeds, priors_of, stated_working_point
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import Vessel, load_vessel
 
@@ -46,6 +47,8 @@ class _Ship:
 
     priors: Mapping[str, Prior]
     noise: NoiseLevels
+    noise_of_legs: Mapping[float, NoiseLevels]
+    """By the speed of a leg over that of the first."""
     slope_rpm_per_v: float
     words: str
     vessel: Vessel | None = None
@@ -105,9 +108,9 @@ def command(
     if recording is not None:
         if vessel is None:
             raise click.UsageError("--from needs --vessel, which says what is in the recording.")
-        ship = _recorded(recording, vessel, recorded or campaign, chosen, no_progress=no_progress)
+        ship = _recorded(recording, vessel, recorded or campaign, chosen, planned, no_progress=no_progress)
     else:
-        ship = _assumed(vessel, rpm_per_volt, chosen)
+        ship = _assumed(vessel, rpm_per_volt, chosen, planned)
     assumed_priors = {
         parameter: prior for parameter, prior in (dict(ship.priors) | dict(priors)).items() if parameter not in freed
     }
@@ -148,42 +151,72 @@ def _expect_free(freed: tuple[str, ...], chosen: Structure) -> None:
         raise StructureError(f"--free {', '.join(unknown)}: {expected}")
 
 
-def _recorded(path: Path, vessel: str, campaign: str, chosen: Structure, *, no_progress: bool) -> _Ship:
+def _recorded(
+    path: Path, vessel: str, campaign: str, chosen: Structure, planned: Campaign, *, no_progress: bool
+) -> _Ship:
     """Return what a recording tells of the noise, and what it and the vessel file know."""
     trial = load_trial(vessel, campaign)
     with progress(hidden=no_progress) as steps:
         measurement = measure(path, trial, mode="shaftprint", progress=steps)
     signals = measurement.signals
     slope = signals.calibration.slope_rev_s_per_v * signals.dc_scale
-    noise = noise_levels(
-        measurement.spectra.response,
-        trial.campaign,
-        set_point_per_v=abs(slope) / signals.working_point.engine_speed_rev_s,
-    )
+    levels = noise_at_speeds(measurement, trial.campaign)
+    point_rpm = rpm_from_rev_s(signals.working_point.engine_speed_rev_s)
+    noise = noise_at(levels, point_rpm)
+    from_point_v = first_leg(planned).level_v - signals.working_point.set_point_v if planned.legs else 0.0
+    first_rpm = point_rpm + rpm_from_rev_s(slope) * from_point_v
     priors = priors_of(chosen, trial.vessel, signals)
     return _Ship(
         priors=priors,
         noise=noise,
+        noise_of_legs={rpm / first_rpm: level for rpm, level in levels.items()},
         slope_rpm_per_v=rpm_from_rev_s(slope),
         words=f"noise of {path.name}",
         vessel=trial.vessel,
     )
 
 
-def _assumed(vessel: str | None, rpm_per_volt: float | None, chosen: Structure) -> _Ship:
+def _assumed(vessel: str | None, rpm_per_volt: float | None, chosen: Structure, planned: Campaign) -> _Ship:
     """Return the noise of the Stan Tug, and what the vessel file knows where there is one."""
     if vessel is None:
         if rpm_per_volt is not None:
             raise click.UsageError("--rpm-per-volt needs --vessel, which says at what speed.")
         # with less voltage the tug goes faster; its speed plays no part without a vessel
-        return _Ship(priors={}, noise=STAN_TUG_NOISE, slope_rpm_per_v=-1.0, words="noise of the Stan Tug 1205 assumed")
+        return _Ship(
+            priors={},
+            noise=STAN_TUG_NOISE,
+            noise_of_legs=_assumed_of_legs(planned, -STAN_TUG_NOISE.set_point_per_v),
+            slope_rpm_per_v=-1.0,
+            words="noise of the Stan Tug 1205 assumed",
+        )
     ship = load_vessel(vessel)
     speed_rpm = ship.working_point.engine_speed_rpm
     slope = -STAN_TUG_NOISE.set_point_per_v * speed_rpm if rpm_per_volt is None else rpm_per_volt
     noise = replace(STAN_TUG_NOISE, set_point_per_v=abs(slope) / speed_rpm)
     priors = priors_from_vessel(chosen, ship, stated_working_point(ship))
     words = f"noise of the Stan Tug 1205 assumed for {ship.name}"
-    return _Ship(priors=priors, noise=noise, slope_rpm_per_v=slope, words=words, vessel=ship)
+    of_legs = _assumed_of_legs(planned, slope / speed_rpm)
+    return _Ship(priors=priors, noise=noise, noise_of_legs=of_legs, slope_rpm_per_v=slope, words=words, vessel=ship)
+
+
+def _assumed_of_legs(planned: Campaign, per_v: float) -> dict[float, NoiseLevels]:
+    """Return the noise of the Stan Tug by the speed of a leg over that of the first, the working point at the offset.
+
+    Raises
+    ------
+    StructureError
+        If the first leg would stand still.
+    """
+    first = 1.0 + per_v * (first_leg(planned).level_v - planned.offset_v) if planned.legs else 1.0
+    if not first > 0.0:
+        raise StructureError(
+            f"campaign {planned.name}: expected legs at which the engine turns, found a first leg at "
+            f"{first:.2g} of the working speed; check level_v and the line from volts to speed, --rpm-per-volt."
+        )
+    return {
+        share / first: replace(level, set_point_per_v=abs(per_v) / share)
+        for share, level in STAN_TUG_NOISE_AT_SPEEDS.items()
+    }
 
 
 def _values_of(chosen: Structure, priors: Mapping[str, Prior]) -> dict[str, float]:
@@ -204,7 +237,7 @@ def _planned(chosen: Structure, campaign: Campaign, ship: _Ship) -> list[tuple[S
     tests = [(chosen, loop, planned_response(campaign, ship.noise))] if campaign.sines or not campaign.legs else []
     tests += [
         (leg.structure(chosen), leg.structure(loop), leg.response)
-        for leg in planned_legs(campaign, ship.noise, rises=ship.slope_rpm_per_v > 0.0)
+        for leg in planned_legs(campaign, ship.noise_of_legs, rises=ship.slope_rpm_per_v > 0.0)
     ]
     return [(at_leg, _from_input(at_leg, loop_there, closed)) for at_leg, loop_there, closed in tests]
 

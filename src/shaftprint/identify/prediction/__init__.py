@@ -8,13 +8,16 @@ from shaftprint.identify.prediction._line_information import LineInformation, li
 from shaftprint.identify.prediction._lost_directions import Direction
 from shaftprint.identify.prediction._noise_at_speeds import noise_at
 from shaftprint.identify.prediction._noise_levels import NoiseLevels, noise_levels, stated_noise
-from shaftprint.identify.prediction._planned_legs import PlannedLeg, planned_legs
+from shaftprint.identify.prediction._order_cost import common_share
+from shaftprint.identify.prediction._planned_legs import PlannedLeg, first_leg, planned_legs
 from shaftprint.identify.prediction._planned_response import expected_response, planned_lines, planned_response
 from shaftprint.identify.prediction._predicted_intervals import predict_intervals, predict_joint_intervals
 from shaftprint.identify.prediction._stan_tug_noise import STAN_TUG_NOISE
+from shaftprint.identify.prediction._stan_tug_noise_at_speeds import STAN_TUG_NOISE_AT_SPEEDS
 
 __all__ = [
     "STAN_TUG_NOISE",
+    "STAN_TUG_NOISE_AT_SPEEDS",
     "Accuracy",
     "Direction",
     "Group",
@@ -22,7 +25,9 @@ __all__ = [
     "LineInformation",
     "NoiseLevels",
     "PlannedLeg",
+    "common_share",
     "expected_response",
+    "first_leg",
     "identifiability",
     "line_information",
     "noise_at",

@@ -12,8 +12,8 @@ from shaftprint.identify.prediction._noise_levels import NoiseLevels
 def noise_at(levels: NoiseLevels | Mapping[float, NoiseLevels], speed: float) -> NoiseLevels:
     """Return the noise levels at a speed.
 
-    Densities follow a power of the speed between the stated speeds, coherences a straight line over its logarithm; beyond
-    them they are those of the nearest one. Levels of one speed hold for all.
+    Densities follow a power of the speed between the stated speeds, coherences a straight line over its logarithm;
+    beyond them they are those of the nearest one. Levels of one speed hold for all.
 
     Parameters
     ----------

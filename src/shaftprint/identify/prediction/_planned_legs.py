@@ -1,8 +1,10 @@
 """The responses that the legs of a campaign would give, each about its own working point."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from shaftprint.identify.prediction._noise_at_speeds import noise_at
 from shaftprint.identify.prediction._noise_levels import NoiseLevels
 from shaftprint.identify.prediction._planned_response import planned_lines
 from shaftprint.models import Structure, at_working_point
@@ -30,17 +32,25 @@ class PlannedLeg:
         return at_working_point(at_first, speed_share=self.speed_share)
 
 
-def planned_legs(campaign: "Campaign", noise: NoiseLevels, *, rises: bool) -> tuple[PlannedLeg, ...]:
+def first_leg(campaign: "Campaign") -> "Leg":
+    """Return the leg whose working point is that of a recording: the nearest to the offset of its campaign."""
+    return min(campaign.legs, key=lambda leg: abs(leg.level_v - campaign.offset_v))
+
+
+def planned_legs(
+    campaign: "Campaign", noise: NoiseLevels | Mapping[float, NoiseLevels], *, rises: bool
+) -> tuple[PlannedLeg, ...]:
     """Return the lines that the legs of a campaign would give, the leg nearest to its offset first.
 
-    Noise over the working point is taken as the same at every speed: the load wanders by a share of itself.
+    An order of the shaft costs a leg next to nothing: while the speed swings it has little in common with any line.
 
     Parameters
     ----------
     campaign
         The plan.
     noise
-        Noise of the outputs, over the values of the first working point.
+        Noise of the outputs over the values of each working point: the same at all speeds, or by the share of the
+        speed of the first.
     rises
         Whether more volts ask for more speed.
     """
@@ -48,16 +58,17 @@ def planned_legs(campaign: "Campaign", noise: NoiseLevels, *, rises: bool) -> tu
     return tuple(_planned(leg, legs[0], noise, 1.0 if rises else -1.0) for leg in legs)
 
 
-def _planned(leg: "Leg", first: "Leg", noise: NoiseLevels, sign: float) -> PlannedLeg:
-    ratio = 1.0 + sign * noise.set_point_per_v * (leg.level_v - first.level_v)
+def _planned(leg: "Leg", first: "Leg", noise: NoiseLevels | Mapping[float, NoiseLevels], sign: float) -> PlannedLeg:
+    at_first = noise_at(noise, 1.0)
+    ratio = 1.0 + sign * at_first.set_point_per_v * (leg.level_v - first.level_v)
     lines = leg.lines
     return PlannedLeg(
         name=leg.name,
         speed_share=ratio,
         response=planned_lines(
             [harmonic / leg.length_of_period_s for harmonic in lines],
-            noise=noise,
-            amplitude=[noise.set_point_per_v * amplitude_v / ratio for amplitude_v in lines.values()],
+            noise=noise_at(noise, ratio),
+            amplitude=[at_first.set_point_per_v * amplitude_v / ratio for amplitude_v in lines.values()],
             duration_s=leg.window_s,
             lines=[f"{leg.name}/{harmonic}" for harmonic in lines],
         ),

@@ -22,6 +22,9 @@ _LEVELS: tuple[tuple[float, float, float, complex], ...] = (
     (7.19, 3.27e-7, 9.62e-6, 0.049 - 0.018j),
 )
 
+SLOW_LEVELS = _LEVELS[:2]
+"""Levels below a hundredth of a hertz, which no leg shows."""
+
 ORDERS_HZ = (5.165, 9.865)
 """First order of the shaft, and half an order of the engine, at 1183.8 rpm [Hz]."""
 
