@@ -19,6 +19,8 @@ def test_commands_are_those_that_were_asked_for():
         "sail",
         "inspect",
         "convert",
+        "plan",
+        "continue",
         "predict",
         "identify",
         "compare",

@@ -24,6 +24,8 @@ SECTIONS = {
         "predict": "Predict the accuracy of a planned test.",
         "sensitivity": "Draw the effect of each parameter of a structure on its response.",
         "inertia": "Calculate inertia and torsional modes from the vessel file.",
+        "plan": "Plan the strongest test within a time, or the shortest that meets your wishes.",
+        "continue": "Say what is known so far of a planned test, and plan what is still missing.",
         "sail": "Simulate a tug in a campaign and write its raw recording.",
     },
     "Prepare a recording": {
@@ -50,6 +52,8 @@ SECTIONS = {
     },
 }
 
+NOT_REACHED = 3
+"""Exit code of a command that has done its work, and whose answer is that what was asked for cannot be had."""
 INTERRUPTED = 130
 
 
@@ -117,6 +121,10 @@ class CommandGroup(LazyGroup):
         except click.ClickException as error:
             # click says of its own attribute that nobody is to change it
             vars(error)["message"] = terminal_message(error.message)
+            raise
+        except click.exceptions.Exit as end:
+            if end.exit_code == NOT_REACHED:
+                print_document()
             raise
         except KeyboardInterrupt:
             echo("Interrupted; nothing is left half-written.", err=True)

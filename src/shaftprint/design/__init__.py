@@ -23,6 +23,7 @@ from shaftprint.design._known_ship import limits_of_fingerprint, ship_before_tes
 from shaftprint.design._leg import Leg
 from shaftprint.design._limits import Limits, limits_from_vessel, usual_speeds
 from shaftprint.design._plan import Peaks, Plan, SailedTest
+from shaftprint.design._plan_test import Knowledge, plan_test
 from shaftprint.design._planned_test import PlannedTest, SailedLeg
 from shaftprint.design._rehearsal import Rehearsal, Sailing, rehearse
 from shaftprint.design._remedies import Remedy, remedies
@@ -76,6 +77,7 @@ __all__ = [
     "AssumedShip",
     "Brief",
     "Effort",
+    "Knowledge",
     "Leg",
     "LengthCurve",
     "LimitUse",
@@ -110,6 +112,7 @@ __all__ = [
     "no_worse_than",
     "plan_of_lines",
     "plan_sentences",
+    "plan_test",
     "planned_motion",
     "read_plan",
     "recorded_operation",

@@ -60,6 +60,7 @@ from shaftprint.report.figures import (
     validation_chart,
     validation_summary_chart,
 )
+from shaftprint.report.plan import render_plan
 from shaftprint.report.sections import change_in_words
 from shaftprint.report.thesis import (
     Explanation,
@@ -110,6 +111,7 @@ __all__ = [
     "profile_chart",
     "render_comparison",
     "render_pdf",
+    "render_plan",
     "render_report",
     "residual_chart",
     "save_chart",

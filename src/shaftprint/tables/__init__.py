@@ -38,6 +38,7 @@ from shaftprint.tables._inertia import (
 )
 from shaftprint.tables._legs import leg_table, leg_test_table
 from shaftprint.tables._limit_uses import limit_use_sentences, limit_use_table
+from shaftprint.tables._plan import abort_table, planned_leg_table, wish_table
 from shaftprint.tables._recording import clock_deviations, clock_map_table, clock_table, level_table
 from shaftprint.tables._signals import (
     calibration_table,
@@ -59,6 +60,7 @@ __all__ = [
     "Column",
     "Symbol",
     "Table",
+    "abort_table",
     "budget_table",
     "calibration_table",
     "clock_deviations",
@@ -90,6 +92,7 @@ __all__ = [
     "parameter_table",
     "physical_table",
     "plain",
+    "planned_leg_table",
     "quantity_table",
     "repair_table",
     "rounded",
@@ -105,5 +108,6 @@ __all__ = [
     "unit_text",
     "water_table",
     "window_table",
+    "wish_table",
     "with_deviation",
 ]

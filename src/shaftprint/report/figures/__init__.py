@@ -12,6 +12,12 @@ from shaftprint.report.figures._limits import limit_chart
 from shaftprint.report.figures._modes import mode_chart
 from shaftprint.report.figures._nyquist import nyquist_chart
 from shaftprint.report.figures._outliers import outlier_chart
+from shaftprint.report.figures._plan import (
+    length_chart,
+    planned_line_chart,
+    planned_motion_chart,
+    planned_set_point_chart,
+)
 from shaftprint.report.figures._profiles import profile_chart
 from shaftprint.report.figures._residuals import line_chi_square, normalised_residuals, residual_chart
 from shaftprint.report.figures._responses import CRITICAL_SPAN_RAD_S, open_loop_chart
@@ -43,6 +49,7 @@ __all__ = [
     "excitation_chart",
     "fit_chart",
     "in_percent",
+    "length_chart",
     "limit_chart",
     "line_chi_square",
     "measured_phase_deg",
@@ -54,6 +61,9 @@ __all__ = [
     "open_loop_chart",
     "outlier_chart",
     "parameter_steps",
+    "planned_line_chart",
+    "planned_motion_chart",
+    "planned_set_point_chart",
     "profile_chart",
     "residual_chart",
     "scan_chart",

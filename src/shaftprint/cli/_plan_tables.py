@@ -1,0 +1,39 @@
+"""A planned test on the terminal: the answer first, then what it would tell, its legs and the card for the bridge."""
+
+from pathlib import Path
+
+from shaftprint.cli._terminal import answer, echo, print_findings
+from shaftprint.cli.output import REPORT, give, print_table
+from shaftprint.design import CAMPAIGN, CSV, GENERATOR, MAT, PLAN, PlannedTest, abort_card
+from shaftprint.tables import abort_table, planned_leg_table, wish_table
+
+
+def print_planned_test(planned: PlannedTest, folder: Path) -> None:
+    """Print what a planned test reaches.
+
+    Parameters
+    ----------
+    planned
+        The test.
+    folder
+        Where its files are.
+    """
+    first, *others = planned.sentences
+    answer(first)
+    echo()
+    print_table(wish_table(planned))
+    print_findings("What to know of it", [*others, f"Planned with the {planned.noise_source}."])
+    print_table(planned_leg_table(planned))
+    card = abort_card(planned)
+    print_table(abort_table(card))
+    give("duration_s", planned.campaign.duration_s)
+    give("rehearsed", planned.rehearsal is not None)
+    give("met", planned.plan.is_enough)
+    give("predicted", [*planned.plan.predicted.parameters, *planned.plan.predicted.combinations])
+    give("wished_std", planned.plan.targets)
+    give("remedies", planned.remedies)
+    give("card", card)
+    echo(f"Page:      {folder / REPORT}")
+    echo(f"Campaign:  {folder / CAMPAIGN}")
+    echo(f"Set point: {', '.join(str(folder / name) for name in (CSV, GENERATOR, MAT))}")
+    echo(f"Plan:      {folder / PLAN}")

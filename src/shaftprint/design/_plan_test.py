@@ -1,0 +1,120 @@
+"""The verb ``plan_test``: from what is known of a ship and wished of its test to a planned test."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.design._assumed_ship import AssumedShip
+from shaftprint.design._design import design_campaign
+from shaftprint.design._limits import Limits
+from shaftprint.design._plan import Plan
+from shaftprint.design._planned_test import PlannedTest
+from shaftprint.design._remedies import remedies
+from shaftprint.design._set_point_line import SetPointLine
+from shaftprint.design._shortest import shortest
+from shaftprint.design._wish import Wish
+from shaftprint.design.search import Effort
+from shaftprint.notebook import Shown
+from shaftprint.units import SECONDS_PER_MINUTE
+
+if TYPE_CHECKING:
+    from shaftprint.identify import NoiseLevels, Prior
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Knowledge(Shown):
+    """What is known of a ship before its test is planned."""
+
+    vessel: str
+    """Name of the vessel and shaft line."""
+    ship: AssumedShip
+    """What is assumed of it."""
+    limits: Limits
+    """What ship and engine allow."""
+    line: SetPointLine
+    """From volts to engine speed."""
+    noise: "Mapping[float, NoiseLevels]"
+    """Noise at each planned speed, by its share of the working point; their order is that of the legs."""
+    noise_source: str
+    """Where it comes from, in words."""
+    priors: "Mapping[str, Prior]"
+    """What the fit will know besides, by parameter."""
+
+
+def plan_test(
+    knowledge: Knowledge,
+    wish: Wish,
+    *,
+    name: str,
+    within_s: float,
+    now: datetime,
+    is_shortest: bool = False,
+    seed: int = 1,
+    effort: Effort | None = None,
+    tell: Callable[[str], None] | None = None,
+) -> PlannedTest:
+    """Return the strongest test within a time, or the shortest for the wishes; with what would help if none meets them.
+
+    Parameters
+    ----------
+    knowledge
+        What is known of the ship.
+    wish
+        What is wanted.
+    name
+        Name of the test.
+    within_s
+        Length of the test, or the longest that may be sailed [s].
+    now
+        When it is planned, with time zone.
+    is_shortest
+        Whether a shorter test is looked for.
+    seed
+        Of the possible ships and the starts of the search.
+    effort
+        What each search may cost.
+    tell
+        Is told what is being done.
+
+    Raises
+    ------
+    DesignError
+        If there is no such plan: no room below a limit, too little time, an unknown wish.
+    """
+    say = tell or _silent
+
+    def design(seconds: float, speeds: tuple[float, ...] = tuple(knowledge.noise)) -> Plan:
+        say(f"{seconds / SECONDS_PER_MINUTE:.3g} min at {len(speeds)} speed{'s' if len(speeds) > 1 else ''}")
+        nearest = {
+            share: knowledge.noise[min(knowledge.noise, key=lambda sailed: abs(sailed - share))] for share in speeds
+        }
+        return design_campaign(
+            knowledge.ship,
+            wish,
+            knowledge.limits,
+            nearest,
+            speeds=speeds,
+            within_s=seconds,
+            rng=np.random.default_rng(seed),
+            priors=knowledge.priors,
+            effort=effort,
+        )
+
+    plan = shortest(design, longest_s=within_s) if is_shortest else design(within_s)
+    help_needed = bool(wish.names) and not plan.is_enough
+    return PlannedTest(
+        name=name,
+        vessel=knowledge.vessel,
+        plan=plan,
+        line=knowledge.line,
+        created=now,
+        noise_source=knowledge.noise_source,
+        remedies=remedies(plan, lambda speeds: design(within_s, speeds)) if help_needed else (),
+    )
+
+
+def _silent(text: str) -> None:
+    """Say nothing."""

@@ -1,0 +1,84 @@
+"""The first page of a plan: are the wishes met, are the limits kept, was it rehearsed."""
+
+from typing import TYPE_CHECKING
+
+from shaftprint.report.sections import Card, Cover
+from shaftprint.tables import plain, wish_table
+from shaftprint.units import SECONDS_PER_MINUTE
+
+if TYPE_CHECKING:
+    from shaftprint.design import PlannedTest
+
+PERCENT = 100.0
+# Error over the planned deviation, limited time and coverage within which a rehearsal speaks for a plan.
+_MOST_LIMITED = 5e-4
+
+
+def plan_cover(test: "PlannedTest") -> Cover:
+    """Return the first page of a plan."""
+    plan = test.plan
+    cards = [_wishes(test), _limits(test), _rehearsed(test)]
+    is_enough = not plan.wish.names or plan.is_enough
+    return Cover(
+        headline=test.sentences[0].removesuffix("."),
+        state="bad" if not is_enough else "fine" if cards[-1].state == "fine" else "look",
+        opening=(
+            "Predicted, not measured: standard deviations to first order, for the assumed ship and noise. Planned with "
+            f"the {test.noise_source}."
+        ),
+        cards=cards,
+        facts=_facts(test),
+        tables=(wish_table(test),),
+    )
+
+
+def _facts(test: "PlannedTest") -> list[tuple[str, str]]:
+    plan = test.plan
+    volts = plan.limits.set_point_rpm / abs(test.line.slope_rpm_per_v)
+    return [
+        ("Ship", test.vessel),
+        ("Test", test.name),
+        ("Length", f"{plain(test.campaign.duration_s / SECONDS_PER_MINUTE, 1)} min"),
+        ("Speeds", ", ".join(f"{plain(leg.level_rpm, 0)} rpm" for leg in plan.legs)),
+        ("Set point", f"at most ± {plain(plan.limits.set_point_rpm, 0)} rpm, ± {plain(volts, 2)} V about each"),
+    ]
+
+
+def _wishes(test: "PlannedTest") -> Card:
+    plan, question = test.plan, "Does it meet the wishes?"
+    if not plan.wish.names:
+        words = "Nothing is wished: it makes all numbers of the line known as well as its limits allow."
+        return Card(question=question, state="open", sentence=words)
+    missed = sorted(
+        (name for name, ratio in plan.ratios.items() if not ratio <= 1.0), key=lambda name: -plan.ratios[name]
+    )
+    if not missed:
+        worst = max(plan.ratios, key=lambda name: plan.ratios[name])
+        words = f"All of them, as predicted; nearest to its wish is {worst}, {plan.ratios[worst]:.2g} times it."
+        return Card(question=question, state="fine", sentence=words)
+    words = "; ".join(f"{name} {plan.ratios[name]:.3g} times its wish" for name in missed)
+    action = test.remedies[0].sentence if test.remedies else "Allow more time or a larger set point."
+    return Card(question=question, state="bad", sentence=f"Not of {words}.", action=action)
+
+
+def _limits(test: "PlannedTest") -> Card:
+    names = list(dict.fromkeys(name for peaks in test.plan.peaks for name in peaks.binding))
+    words = (
+        "Planned for 98 of 100 ships that are possible within what is assumed, with "
+        f"{test.plan.limits.noise_sigmas:g} standard deviations of noise left free."
+    )
+    bound = f" It is bound by {', '.join(names)}." if names else ""
+    return Card(question="Does it keep the limits of ship and engine?", state="fine", sentence=words + bound)
+
+
+def _rehearsed(test: "PlannedTest") -> Card:
+    question, rehearsal = "Was it rehearsed?", test.rehearsal
+    if rehearsal is None:
+        return Card(
+            question=question,
+            state="open",
+            sentence="No. Its numbers are predictions that nobody has tried.",
+            action="Plan it again with --rehearse 20, which sails it on the simulated ship.",
+        )
+    sentences = rehearsal.sentences
+    return Card(question=question, state="fine" if len(sentences) == 1 else "look", sentence=" ".join(sentences))

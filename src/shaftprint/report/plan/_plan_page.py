@@ -1,0 +1,168 @@
+"""The page of a planned test."""
+
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from shaftprint.arguments import refusing_none
+from shaftprint.design import CAMPAIGN, CSV, GENERATOR, MAT, PLAN, abort_card, length_curve, line_worths, planned_motion
+from shaftprint.errors import ReportError
+from shaftprint.report._page import Page, write_page
+from shaftprint.report.figures import length_chart, planned_line_chart, planned_motion_chart, planned_set_point_chart
+from shaftprint.report.plan._plan_cover import plan_cover
+from shaftprint.report.sections import Picture, Section
+from shaftprint.tables import Symbol, Table, abort_table, numbers, planned_leg_table, texts, unit_text, with_deviation
+
+if TYPE_CHECKING:
+    from shaftprint.design import PlannedTest
+
+
+@refusing_none(ReportError)
+def render_plan(directory: str | Path, test: "PlannedTest", *, overwrite: bool = False) -> Path:
+    """Write the page of a planned test, ``index.html`` with its charts; return its path.
+
+    Parameters
+    ----------
+    directory
+        Where the page goes; made if it does not exist. Other files there are left alone.
+    test
+        The planned test.
+    overwrite
+        Whether an earlier page there may be replaced.
+
+    Raises
+    ------
+    FileExistsError
+        If there is a page already and ``overwrite`` is false.
+    ReportError
+        If plotly is not installed.
+    """
+    page = Page(
+        title=f"Planned test of {test.vessel}",
+        subtitle=f"Test “{test.name}”, {'rehearsed' if test.rehearsal is not None else 'not rehearsed'}",
+        created=test.created,
+        version=test.version,
+        cover=plan_cover(test),
+        sections=(_card(test), _motion(test), _lines(test), _length(test), _words(test), _assumed(test)),
+        files=_files(),
+        ending=(
+            f"shaftprint {test.version}. ± is one standard deviation throughout, predicted to first order; intervals "
+            "and bands hold 95 %."
+        ),
+    )
+    return write_page(directory, page, pictures=False, overwrite=overwrite, progress=None)
+
+
+def _card(test: "PlannedTest") -> Section:
+    return Section(
+        key="bridge",
+        title="Card for the bridge",
+        paragraphs=(
+            "For whoever stands on the bridge while the test runs. Within these numbers all is as planned, noise "
+            "included; beyond them the test is broken off.",
+        ),
+        tables=(abort_table(abort_card(test)), planned_leg_table(test)),
+        pictures=(
+            Picture(
+                name="set_point",
+                caption="The set point of the whole test, as the engine speed that it asks for.",
+                alt="Set point over time with the lowest and highest allowed speed.",
+                chart=partial(planned_set_point_chart, test),
+            ),
+        ),
+    )
+
+
+def _motion(test: "PlannedTest") -> Section:
+    return Section(
+        key="motion",
+        title="Set point, speed and torque",
+        paragraphs=(
+            "One period of each leg after it has settled, of the ship as it is assumed. Other ships within the stated "
+            "uncertainty swing more, and 98 of 100 of them keep the limits too.",
+        ),
+        pictures=(
+            Picture(
+                name="motion",
+                caption="Set point, speed and brake torque with their noise, and the limits of ship and engine.",
+                alt="Set point and speed over one period above, brake torque below, with limits; a leg a column.",
+                chart=lambda: planned_motion_chart(planned_motion(test.plan), test.plan),
+            ),
+        ),
+    )
+
+
+def _lines(test: "PlannedTest") -> Section:
+    return Section(
+        key="lines",
+        title="Lines and what they tell",
+        paragraphs=(
+            "Above, the amplitude of each line. Below, what a line of 1 rpm at a frequency would still tell in a "
+            "second beside this test: the fall of the logarithm of the volume that all numbers may lie in. A plan "
+            "without limits of peaks has its lines where the curve is highest.",
+        ),
+        pictures=(
+            Picture(
+                name="lines",
+                caption="Amplitudes of the lines, and the information of a line of 1 rpm in a second.",
+                alt="Amplitudes over frequency above the information that a line gives in a second; a leg a column.",
+                chart=lambda: planned_line_chart(line_worths(test.plan)),
+            ),
+        ),
+    )
+
+
+def _length(test: "PlannedTest") -> Section:
+    return Section(
+        key="length",
+        title="Longer or shorter",
+        paragraphs=("The same lines, sailed for another number of periods: deviations fall with the root of time.",),
+        pictures=(
+            Picture(
+                name="length",
+                caption="Predicted standard deviations over the length of the test.",
+                alt="Falling lines of predicted deviations over the length of the test, with this plan marked.",
+                chart=lambda: length_chart(length_curve(test.plan), test.plan),
+            ),
+        ),
+    )
+
+
+def _words(test: "PlannedTest") -> Section:
+    return Section(key="words", title="In words", points=test.sentences)
+
+
+def _assumed(test: "PlannedTest") -> Section:
+    ship, priors = test.plan.ship, test.plan.priors
+    rows = []
+    for place, parameter in enumerate(ship.structure.parameters):
+        std = float(ship.covariance[place, place]) ** 0.5
+        prior = priors.get(parameter.name)
+        rows.append(
+            (
+                Symbol(parameter.name),
+                with_deviation(float(ship.values[place]), std),
+                "" if prior is None else with_deviation(prior.mean, prior.std),
+                unit_text(parameter.unit),
+                "yes" if parameter.held else "",
+                parameter.meaning,
+            )
+        )
+    table = Table(
+        title=f"What is assumed: {ship.structure.name}",
+        columns=(*texts("quantity"), *numbers("assumed ± std", "known to the fit"), *texts("unit", "held", "meaning")),
+        rows=tuple(rows),
+        note="Limits are held for the ships that are possible within these deviations.",
+    )
+    return Section(key="assumed", title="What was assumed", tables=(table,), folded=True)
+
+
+def _files() -> Table:
+    rows = (
+        (CAMPAIGN, "the test, for shaftprint sail, predict, inspect and identify"),
+        (CSV, "set point over time, in volts and rpm"),
+        (GENERATOR, "voltages alone, one a line, for an arbitrary waveform generator"),
+        (MAT, "the same for MATLAB and Octave"),
+        (PLAN, "the plan with all digits, for shaftprint continue"),
+    )
+    return Table(title="Files beside this page", columns=texts("file", "what it is"), rows=rows)
