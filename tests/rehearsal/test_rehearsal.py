@@ -1,73 +1,22 @@
 """A plan rehearsed on the simulated tug: the tug has the assumed numbers, and raw recordings give them back."""
 
 from dataclasses import replace
-from datetime import UTC, datetime
 
 import numpy as np
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.design import (
-    Effort,
-    PlannedTest,
-    SetPointLine,
-    Wish,
-    assumed_ship,
-    design_campaign,
-    limits_from_vessel,
-)
+from shaftprint.design import PlannedTest, assumed_ship
 from shaftprint.errors import DesignError
-from shaftprint.identify import STAN_TUG_NOISE
 from shaftprint.rehearsal import rehearse_on_tug, simulated_truth, tug_of_plan
 from shaftprint.tug import normalised_truth
-from shaftprint.vessel import load_vessel
-
-# Not the tug that is shipped: every number is another.
-ASSUMED = {
-    "K_p": 4.9, "K_i": 3.9, "t_d": 0.061, "omega_n": 11.5, "zeta": 0.55, "tau_dn": 0.36, "tau_up": 0.93,
-    "k_q": 2.0, "g": -0.1, "t_sp": 0.043, "c_set": 1.0, "t_gauge": 0.0,
-}  # fmt: skip
-QUICK = Effort(steps=40, restarts=1, accuracy_draws=1, peak_draws=1, active_draws=1)
 
 
-@pytest.fixture(scope="module")
-def vessel():
-    return load_vessel("stan-tug-1205")
-
-
-@pytest.fixture(scope="module")
-def test(vessel):
-    """Three and a half minutes at two speeds, for a line whose set point rises with the voltage."""
-    limits = replace(
-        limits_from_vessel(vessel, set_point_rpm=200.0),
-        motoring=((0.0, 140.0), (1183.8, 280.0), (2367.6, 420.0)),
-        demand_cycle_s=0.02,
-    )
-    plan = design_campaign(
-        assumed_ship(structure("GAUGE-CLOSED"), ASSUMED, std={}),
-        Wish(),
-        limits,
-        STAN_TUG_NOISE,
-        speeds=(1.15, 0.78),
-        within_s=210.0,
-        rng=np.random.default_rng(1),
-        effort=QUICK,
-    )
-    return PlannedTest(
-        name="rehearsed",
-        vessel=vessel.name,
-        plan=plan,
-        line=SetPointLine(slope_rpm_per_v=180.0, offset_v=2.0),
-        created=datetime(2026, 11, 23, tzinfo=UTC),
-        noise_source="assumed",
-    )
-
-
-def test_the_simulated_ship_has_the_assumed_numbers(test, vessel):
+def test_the_simulated_ship_has_the_assumed_numbers(test, vessel, assumed):
     tug = tug_of_plan(test, vessel)
     truth = normalised_truth(tug, vessel)
     for name in ("K_p", "K_i", "t_d", "omega_n", "zeta", "tau_dn", "tau_up", "g", "t_sp"):
-        assert truth[name] == pytest.approx(ASSUMED[name], rel=1e-9), name
+        assert truth[name] == pytest.approx(assumed[name], rel=1e-9), name
     assert tug.motoring_torque_nm == pytest.approx(280.0)
     assert tug.demand_cycle_s == 0.02
 

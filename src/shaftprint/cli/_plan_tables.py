@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from shaftprint.cli._terminal import answer, echo, print_findings
-from shaftprint.cli.output import REPORT, give, print_table
+from shaftprint.cli.output import REPORT, give, print_tables
 from shaftprint.design import CAMPAIGN, CSV, GENERATOR, MAT, PLAN, PlannedTest, abort_card
-from shaftprint.tables import abort_table, planned_leg_table, wish_table
+from shaftprint.tables import abort_table, planned_leg_table, predicted_number_table, wish_table
 
 
 def print_planned_test(planned: PlannedTest, folder: Path) -> None:
@@ -21,11 +21,10 @@ def print_planned_test(planned: PlannedTest, folder: Path) -> None:
     first, *others = planned.sentences
     answer(first)
     echo()
-    print_table(wish_table(planned))
-    print_findings("What to know of it", [*others, f"Planned with the {planned.noise_source}."])
-    print_table(planned_leg_table(planned))
     card = abort_card(planned)
-    print_table(abort_table(card))
+    print_tables([wish_table(planned)])
+    print_findings("What to know of it", [*others, f"Planned with the {planned.noise_source}."])
+    print_tables([predicted_number_table(planned), planned_leg_table(planned), abort_table(card)])
     give("duration_s", planned.campaign.duration_s)
     give("rehearsed", planned.rehearsal is not None)
     give("met", planned.plan.is_enough)

@@ -30,6 +30,7 @@ from shaftprint.design._remedies import Remedy, remedies
 from shaftprint.design._replan import replan
 from shaftprint.design._set_point_line import SetPointLine, line_of_fingerprint
 from shaftprint.design._shortest import shortest
+from shaftprint.design._standing import Standing, standing_of
 from shaftprint.design._timetable import Timetable
 from shaftprint.design._verdict import plan_sentences
 from shaftprint.design._wish import Wish, no_worse_than
@@ -95,6 +96,7 @@ __all__ = [
     "Sailing",
     "SetPointLine",
     "SetPointSamples",
+    "Standing",
     "Timetable",
     "Wish",
     "abort_card",
@@ -125,6 +127,7 @@ __all__ = [
     "ship_of_fit",
     "shortest",
     "stated_limits",
+    "standing_of",
     "usual_speeds",
     "write_plan",
     "write_plan_files",

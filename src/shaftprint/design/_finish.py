@@ -91,11 +91,11 @@ def _scaled(brief: Brief, number: int, leg: Leg, start_use: float, uses: Uses, t
     for bound, use in zip(brief.bounds[number], uses.largest(scaled.amplitudes).max(axis=1).tolist(), strict=True):
         by_name[bound.name] = max(use, by_name.get(bound.name, 0.0))
     responses = motion(brief.structures[number], table, 2.0 * np.pi * leg.frequency_hz)
-    extremes = _extremes(responses, scaled, uses.samples)
-    return scaled, peaks_of(scaled, extremes, by_name, start_use / largest, brief.limits)
+    ends = extremes(responses, scaled, uses.samples)
+    return scaled, peaks_of(scaled, ends, by_name, start_use / largest, brief.limits)
 
 
-def _extremes(responses: ComplexArray, leg: Leg, samples: int) -> FloatArray:
+def extremes(responses: ComplexArray, leg: Leg, samples: int) -> FloatArray:
     """Return the lowest and highest deviation of each of ``SIGNALS`` over all ships, shape (signals, 2)."""
     ships, signals, lines = responses.shape
     rows = responses.swapaxes(0, 1).reshape(-1, lines)

@@ -9,14 +9,11 @@ import numpy as np
 from shaftprint.design import Rehearsal, Sailing, rehearse
 from shaftprint.errors import DesignError
 from shaftprint.identify import Identification, Settings, identify, identify_jointly
-from shaftprint.models import at_working_point
 from shaftprint.recording import read_recording
 from shaftprint.rehearsal._simulated_ship import simulated_truth, tug_of_plan
 from shaftprint.signals import prepare_signals
-from shaftprint.spectra import estimate_legs
-from shaftprint.survey import SILENT, Progress
+from shaftprint.survey import SILENT, Progress, leg_pairs, legs_of
 from shaftprint.tug import sail
-from shaftprint.units import rev_s_from_rpm
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
@@ -77,20 +74,13 @@ def _identified(
     test: "PlannedTest", vessel: "Vessel", signals: "Signals", campaign: "Campaign", seed: int
 ) -> Identification:
     """Return the fit to all legs, normalised at the working point of the plan as its numbers are."""
-    limits, structure = test.plan.limits, test.plan.ship.structure
-    torque_nm = limits.brake_torque_nm * vessel.gearbox.ratio * vessel.gearbox.efficiency
-    spectra = estimate_legs(signals, campaign)
-    pairs = [
-        (
-            at_working_point(
-                structure,
-                speed_share=state.working_point.engine_speed_rev_s / rev_s_from_rpm(limits.engine_speed_rpm),
-                torque_share=state.working_point.shaft_torque_nm / torque_nm,
-            ),
-            spectra[state.name].response.of_outputs(*structure.outputs),
-        )
-        for state in signals.legs
-    ]
+    limits = test.plan.limits
+    pairs = leg_pairs(
+        test.plan.ship.structure,
+        legs_of(signals, campaign),
+        engine_speed_rpm=limits.engine_speed_rpm,
+        shaft_torque_nm=limits.brake_torque_nm * vessel.gearbox.ratio * vessel.gearbox.efficiency,
+    )
     how, rng = Settings(priors=dict(test.plan.priors)), np.random.default_rng(seed)
     return (
         identify(*pairs[0], rng=rng, settings=how)

@@ -1,13 +1,14 @@
 """Legs of a campaign: one line at several working points, fitted to all of their responses at once."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from shaftprint.identify import Identification
 from shaftprint.identify.fit import FitTest, part_tests
 from shaftprint.models import Structure, at_working_point
-from shaftprint.spectra import Spectra, estimate_legs
+from shaftprint.spectra import FrequencyResponse, Spectra, estimate_legs
+from shaftprint.units import rev_s_from_rpm
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
@@ -66,6 +67,34 @@ def structure_at(structure: Structure, point: "WorkingPoint", *, main: "WorkingP
         speed_share=point.engine_speed_rev_s / main.engine_speed_rev_s,
         torque_share=point.shaft_torque_nm / main.shaft_torque_nm,
     )
+
+
+def leg_pairs(
+    structure: Structure, legs: "Sequence[LegMeasurement]", *, engine_speed_rpm: float, shaft_torque_nm: float
+) -> list[tuple[Structure, "FrequencyResponse"]]:
+    """Return what a joint fit of legs takes, its parameters normalised at a stated working point.
+
+    Parameters
+    ----------
+    structure
+        The structure.
+    legs
+        What was measured.
+    engine_speed_rpm, shaft_torque_nm
+        The working point at which the parameters are normalised, such as that of a plan.
+    """
+    speed_rev_s = rev_s_from_rpm(engine_speed_rpm)
+    return [
+        (
+            at_working_point(
+                structure,
+                speed_share=leg.working_point.engine_speed_rev_s / speed_rev_s,
+                torque_share=leg.working_point.shaft_torque_nm / shaft_torque_nm,
+            ),
+            leg.spectra.response.of_outputs(*structure.outputs),
+        )
+        for leg in legs
+    ]
 
 
 def leg_tests(identification: Identification, working_points: Mapping[str, "WorkingPoint"]) -> tuple[LegTest, ...]:

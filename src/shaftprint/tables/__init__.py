@@ -38,7 +38,14 @@ from shaftprint.tables._inertia import (
 )
 from shaftprint.tables._legs import leg_table, leg_test_table
 from shaftprint.tables._limit_uses import limit_use_sentences, limit_use_table
-from shaftprint.tables._plan import abort_table, planned_leg_table, wish_table
+from shaftprint.tables._plan import (
+    abort_table,
+    planned_leg_table,
+    predicted_number_table,
+    standing_leg_table,
+    standing_table,
+    wish_table,
+)
 from shaftprint.tables._recording import clock_deviations, clock_map_table, clock_table, level_table
 from shaftprint.tables._signals import (
     calibration_table,
@@ -93,10 +100,13 @@ __all__ = [
     "physical_table",
     "plain",
     "planned_leg_table",
+    "predicted_number_table",
     "quantity_table",
     "repair_table",
     "rounded",
     "speed_table",
+    "standing_leg_table",
+    "standing_table",
     "step_number_table",
     "step_table",
     "strip_table",

@@ -1,52 +1,53 @@
 """A planned test: what it would tell beside what is wished, its legs, and the card for the bridge."""
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from shaftprint.digits import fine_unit, interval, plain, rounded, unit_text, with_deviation
 from shaftprint.distributions import NORMAL_95
-from shaftprint.tables._table import Column, Symbol, Table, numbers, texts
+from shaftprint.tables._table import Symbol, Table, numbers, texts
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
-    from shaftprint.design import AbortCard, PlannedTest
+    from shaftprint.design import AbortCard, PlannedTest, Standing
     from shaftprint.identify.fit import Estimate
 
 PERCENT = 100.0
+_FIRST_ORDER = "Predicted for the assumed values, to first order"
 
 
 def wish_table(test: "PlannedTest") -> Table:
-    """Return what is wished of which number, what is predicted, and what a rehearsal made of it."""
-    plan = test.plan
-    every = (*plan.predicted.parameters, *plan.predicted.combinations)
-    # what is wished first, in the order of the wishes
-    names = [*plan.wish.names, *(one.name for one in every if one.name not in plan.wish.names)]
-    over = {} if test.rehearsal is None else test.rehearsal.over_planned
-    coverage = {} if test.rehearsal is None else test.rehearsal.coverage
-    headings: tuple[Column, ...] = (
-        *texts("quantity"),
-        *numbers("value ± std", "std [%]", "wished std", "of wish", "95 % interval"),
-        *texts("unit"),
-    )
-    if test.rehearsal is not None:
-        headings += numbers("rehearsed error / std", "intervals that hold [%]")
+    """Return what is wished, what is predicted, and what a rehearsal made of it; no rows where nothing is wished."""
+    targets = test.plan.targets
+    table = _number_table(test, test.plan.wish.names, "Wish against prediction")
+    if not table.rows:
+        return table
     rows = []
-    for name in names:
-        number = plan.predicted.estimate(name)
-        cells = [Symbol(name), *_predicted(number, plan.targets.get(name))]
-        if test.rehearsal is not None:
-            cells += [plain(over[name], 2), plain(PERCENT * coverage[name], 0)] if name in over else ["", ""]
-        rows.append(tuple(cells))
-    note = "Predicted for the assumed values, to first order; of wish: predicted over wished, met up to 1."
-    return Table(title="Wish against prediction", columns=headings, rows=tuple(rows), note=note)
+    for name, row in zip(test.plan.wish.names, table.rows, strict=True):
+        number = test.plan.predicted.estimate(name)
+        factor, _ = fine_unit(number.unit, number.value, number.std)
+        wish = (rounded(factor * targets[name], 2), rounded(number.std / targets[name], 2))
+        rows.append((*row[:3], *wish, *row[3:]))
+    columns = (*table.columns[:3], *numbers("wished std", "of wish"), *table.columns[3:])
+    note = f"{_FIRST_ORDER}; of wish: predicted over wished, met up to 1."
+    return Table(title=table.title, columns=columns, rows=tuple(rows), note=note)
+
+
+def predicted_number_table(test: "PlannedTest") -> Table:
+    """Return what is predicted of all numbers of which nothing is wished."""
+    every = (*test.plan.predicted.parameters, *test.plan.predicted.combinations)
+    names = [one.name for one in every if one.name not in test.plan.wish.names]
+    title = "What it would tell besides" if test.plan.wish.names else "What it would tell"
+    return _number_table(test, names, title)
 
 
 def planned_leg_table(test: "PlannedTest") -> Table:
     """Return the legs: where, how long, how strong, and what keeps them from being stronger."""
     columns = (
         *texts("leg"),
-        *numbers("speed [rpm]", "lines", "highest [Hz]", "periods", "period [s]", "set point [V]", "set point [rpm]"),
-        *numbers("speed [rpm] from", "to", "brake torque [N m] from", "to"),
+        *numbers("at [rpm]", "lines", "up to [Hz]", "periods", "of [s]", "set point [V]", "set point [rpm]"),
+        *numbers("speed [rpm]", "brake torque [N·m]"),
         *texts("bound by"),
     )
     rows = []
@@ -61,10 +62,8 @@ def planned_leg_table(test: "PlannedTest") -> Table:
                 plain(leg.period_s, 2),
                 f"± {rounded(leg.peak_rpm / abs(test.line.slope_rpm_per_v), 3)}",
                 f"± {plain(leg.peak_rpm, 0)}",
-                plain(peaks.speed_rpm[0], 0),
-                plain(peaks.speed_rpm[1], 0),
-                plain(peaks.brake_torque_nm[0], 0),
-                plain(peaks.brake_torque_nm[1], 0),
+                _range(peaks.speed_rpm, 0),
+                _range(peaks.brake_torque_nm, 0),
                 ", ".join(peaks.binding),
             )
         )
@@ -74,56 +73,83 @@ def planned_leg_table(test: "PlannedTest") -> Table:
 
 def abort_table(card: "AbortCard") -> Table:
     """Return the card for the bridge: what may be seen, and when to stop."""
-    leave_low, leave_high = card.leave_rpm
+    lowest, highest = (plain(speed, 0) for speed in card.leave_rpm)
     rows = (
-        (
-            "engine speed",
-            plain(card.speed_rpm[0], 0),
-            plain(card.speed_rpm[1], 0),
-            "rpm",
-            f"stop below {plain(leave_low, 0)} or above {plain(leave_high, 0)} rpm",
-        ),
-        (
-            "brake torque",
-            plain(card.brake_torque_nm[0], 0),
-            plain(card.brake_torque_nm[1], 0),
-            "N·m",
-            "stop if the engine smokes, hunts on, or stalls",
-        ),
-        ("set point", plain(card.set_point_rpm[0], 0), plain(card.set_point_rpm[1], 0), "rpm", ""),
-        ("set point", plain(card.set_point_v[0], 2), plain(card.set_point_v[1], 2), "V", "stop if it is another"),
-        ("fastest change of the set point", "", plain(card.rate_rpm_per_s, 0), "rpm/s", ""),
-        ("length", "", plain(card.duration_s / SECONDS_PER_MINUTE, 1), "min", "keep clear water ahead that long"),
+        ("engine speed", f"{_range(card.speed_rpm, 0)} rpm", f"below {lowest} or above {highest} rpm"),
+        ("brake torque", f"{_range(card.brake_torque_nm, 0)} N·m", "the engine smokes, stalls, or goes on hunting"),
+        ("set point", f"{_range(card.set_point_v, 2)} V", "the voltage is another"),
+        ("speed asked for", f"{_range(card.set_point_rpm, 0)} rpm", "the speed does not come back between swings"),
+        ("its fastest change", f"{plain(card.rate_rpm_per_s, 0)} rpm/s", ""),
+        ("length", f"{plain(card.duration_s / SECONDS_PER_MINUTE, 1)} min", "the water ahead will not last so long"),
     )
     how = (
         f"To stop: hold the set point at {plain(card.level_v, 2)} V, which asks for {plain(card.level_rpm, 0)} rpm, "
         "take the generator off, then slow down as usual. What was recorded up to then can be used to its last whole "
         "period."
     )
+    return Table(title="Card for the bridge", columns=texts("what", "is seen", "stop when"), rows=rows, note=how)
+
+
+def standing_table(standing: "Standing") -> Table:
+    """Return the wished numbers as they are found so far, with their predicted deviation over the wish."""
+    numbers_so_far = {one.name: one for one in (*standing.fit.parameters, *standing.fit.combinations)}
+    rows = []
+    for name, ratio in standing.ratios.items():
+        number, target = numbers_so_far[name], standing.targets[name]
+        factor, unit = fine_unit(number.unit, number.value, number.std)
+        cells = (with_deviation(factor * number.value, factor * number.std), rounded(factor * target, 2))
+        rows.append((Symbol(name), *cells, rounded(ratio, 3), "yes" if ratio <= 1.0 else "no", unit_text(unit)))
     return Table(
-        title="Card for the bridge",
-        columns=(*texts("what"), *numbers("lowest", "highest"), *texts("unit", "when to stop")),
-        rows=rows,
-        note=how,
+        title="Wishes so far",
+        columns=(*texts("quantity"), *numbers("value ± std", "wished std", "predicted of wish"), *texts("met", "unit")),
+        rows=tuple(rows),
+        note=(
+            "Stop by what is predicted with the recorded periods, not by the estimated std: who stops when that "
+            "happens to be small has intervals that hold too seldom."
+        ),
     )
 
 
-def _predicted(number: "Estimate", target: float | None) -> tuple[str, ...]:
+def standing_leg_table(standing: "Standing") -> Table:
+    """Return how many periods of each leg were planned and recorded, and how many are missing."""
+    missing = standing.more or {}
+    rows = []
+    for name, leg in zip(standing.recorded, standing.test.plan.legs, strict=True):
+        more = str(missing[name]) if name in missing else "–"
+        rows.append((name, plain(leg.level_rpm, 0), str(leg.periods), str(standing.recorded[name]), more))
+    columns = (*texts("leg"), *numbers("at [rpm]", "planned periods", "recorded", "missing"))
+    return Table(title="Periods", columns=columns, rows=tuple(rows))
+
+
+def _number_table(test: "PlannedTest", names: Sequence[str], title: str) -> Table:
+    """Return what is predicted of some numbers, and what a rehearsal made of it."""
+    rehearsal = test.rehearsal
+    over = {} if rehearsal is None else rehearsal.over_planned
+    coverage = {} if rehearsal is None else rehearsal.coverage
+    columns = (*texts("quantity"), *numbers("value ± std", "std [%]", "95 % interval"), *texts("unit"))
+    if rehearsal is not None:
+        columns += numbers("rehearsed error / std", "intervals that hold [%]")
+    rows = []
+    for name in names:
+        cells = [Symbol(name), *_predicted(test.plan.predicted.estimate(name))]
+        if rehearsal is not None:
+            cells += [plain(over[name], 2), plain(PERCENT * coverage[name], 0)] if name in over else ["", ""]
+        rows.append(tuple(cells))
+    return Table(title=title, columns=columns, rows=tuple(rows), note=f"{_FIRST_ORDER}.")
+
+
+def _predicted(number: "Estimate") -> tuple[str, str, str, str]:
     half = NORMAL_95 * number.std
-    ends = (number.value - half, number.value + half)
     factor, unit = fine_unit(number.unit, number.value, number.std)
+    low, high = factor * (number.value - half), factor * (number.value + half)
     known = math.isfinite(number.std)
     return (
         with_deviation(factor * number.value, factor * number.std),
-        _percent(number.std, number.value),
-        "" if target is None else rounded(factor * target, 2),
-        "" if target is None else rounded(number.std / target, 2),
-        interval(factor * ends[0], factor * ends[1], factor * number.std) if known else "",
+        rounded(PERCENT * number.std / abs(number.value), 2) if known and number.value != 0.0 else "",
+        interval(low, high, factor * number.std) if known else "",
         unit_text(unit),
     )
 
 
-def _percent(std: float, value: float) -> str:
-    if not math.isfinite(std) or value == 0.0:
-        return ""
-    return rounded(PERCENT * std / abs(value), 2)
+def _range(ends: tuple[float, float], decimals: int) -> str:
+    return f"{plain(ends[0], decimals)} to {plain(ends[1], decimals)}"

@@ -1,8 +1,110 @@
 """``shaftprint continue``: what is known so far of a planned test, and what is still missing."""
 
+from pathlib import Path
+
 import click
+
+from shaftprint.cli._command_group import NOT_REACHED
+from shaftprint.cli._options import vessel_option
+from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
+from shaftprint.cli._terminal import answer, echo, print_findings
+from shaftprint.cli.output import (
+    REPORT,
+    force_option,
+    give,
+    no_progress_option,
+    output_folder,
+    print_tables,
+    progress,
+)
+from shaftprint.design import CAMPAIGN, RATE_HZ, Standing, read_plan, write_plan_files
+from shaftprint.rehearsal import standing_after
+from shaftprint.report import render_plan
+from shaftprint.survey import load_trial, measure
+from shaftprint.tables import planned_leg_table, standing_leg_table, standing_table
+
+NEXT = "next"
+"""Folder for what is missing, in that of the plan."""
 
 
 @click.command("continue")
-def command() -> None:
-    """Say what is known so far of a planned test, and plan what is still missing."""
+@click.argument("recording", type=click.Path(path_type=Path))
+@click.option(
+    "--plan",
+    "place",
+    required=True,
+    type=click.Path(path_type=Path),
+    help="Folder of shaftprint plan, or of an earlier continue.",
+)
+@vessel_option
+@click.option("--campaign", help="Campaign that was sailed, where its file is not the one in the folder of the plan.")
+@click.option(
+    "--structure", "own", metavar="NAME", help=f"Structure of the plan where it is your own: {OWN_FILE_HELP}."
+)
+@click.option(
+    "--rate", "rate_hz", type=float, default=RATE_HZ, show_default=True, help="Samples a second of the set point [Hz]."
+)
+@click.option("--seed", type=click.IntRange(min=0), default=1, show_default=True, help="Seed of the starts.")
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help=f"Folder for what is missing; {NEXT} in the folder of the plan when not given.",
+)
+@force_option
+@no_progress_option
+@click.pass_context
+def command(
+    context: click.Context,
+    recording: Path,
+    place: Path,
+    vessel: str,
+    campaign: str | None,
+    own: TypedName | None,
+    rate_hz: float,
+    seed: int,
+    output: Path | None,
+    force: bool,
+    no_progress: bool,
+) -> None:
+    """Say what is known so far of a planned test, and plan what is still missing.
+
+    RECORDING may end anywhere: whole periods count. Wishes are met by the deviations that are predicted with the
+    periods that were recorded. Ends with 3 where no further periods of these lines would meet them.
+    """
+    test = read_plan(place, structure=None if own is None else chosen_structures([own])[0])
+    folder = place if place.is_dir() else place.parent
+    trial = load_trial(vessel, str(folder / CAMPAIGN) if campaign is None else campaign)
+    with progress(hidden=no_progress) as steps:
+        measurement = measure(recording, trial, progress=steps)
+        steps.begin("Fitting what was recorded so far")
+        standing = standing_after(test, measurement, trial, seed=seed)
+    target = output or folder / NEXT
+    if standing.remaining is not None:
+        with output_folder(target, of="continue", force=force) as part:
+            write_plan_files(standing.remaining, part, rate_hz=rate_hz)
+            render_plan(part, standing.remaining)
+    print_standing(standing, target)
+    if standing.more is None:
+        context.exit(NOT_REACHED)
+
+
+def print_standing(standing: Standing, folder: Path) -> None:
+    """Print what is met, what is missing, and where the next leg is."""
+    first, *others = standing.sentences
+    answer(first)
+    echo()
+    print_tables([standing_table(standing), standing_leg_table(standing)])
+    if others:
+        print_findings("What to know of it", others)
+    give("met", standing.is_enough)
+    give("ratios", standing.ratios)
+    give("recorded_periods", standing.recorded)
+    give("missing_periods", standing.more)
+    give("noise_ratio", standing.noise_ratio)
+    give("parameters", standing.fit.parameters)
+    give("combinations", standing.fit.combinations)
+    if standing.remaining is not None:
+        print_tables([planned_leg_table(standing.remaining)])
+        echo(f"Page:      {folder / REPORT}")
+        echo(f"Campaign:  {folder / CAMPAIGN}")

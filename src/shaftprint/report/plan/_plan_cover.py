@@ -28,7 +28,7 @@ def plan_cover(test: "PlannedTest") -> Cover:
         ),
         cards=cards,
         facts=_facts(test),
-        tables=(wish_table(test),),
+        tables=(wish_table(test),) if test.plan.wish.names else (),
     )
 
 
@@ -38,7 +38,7 @@ def _facts(test: "PlannedTest") -> list[tuple[str, str]]:
     return [
         ("Ship", test.vessel),
         ("Test", test.name),
-        ("Length", f"{plain(test.campaign.duration_s / SECONDS_PER_MINUTE, 1)} min"),
+        ("Length", f"{plain(test.campaign.duration_s / SECONDS_PER_MINUTE, 1)} min with the way back"),
         ("Speeds", ", ".join(f"{plain(leg.level_rpm, 0)} rpm" for leg in plan.legs)),
         ("Set point", f"at most ± {plain(plan.limits.set_point_rpm, 0)} rpm, ± {plain(volts, 2)} V about each"),
     ]
@@ -49,16 +49,15 @@ def _wishes(test: "PlannedTest") -> Card:
     if not plan.wish.names:
         words = "Nothing is wished: it makes all numbers of the line known as well as its limits allow."
         return Card(question=question, state="open", sentence=words)
-    missed = sorted(
-        (name for name, ratio in plan.ratios.items() if not ratio <= 1.0), key=lambda name: -plan.ratios[name]
-    )
+    ratios = plan.ratios
+    missed = sorted((name for name, ratio in ratios.items() if not ratio <= 1.0), key=lambda name: -ratios[name])
     if not missed:
-        worst = max(plan.ratios, key=lambda name: plan.ratios[name])
-        words = f"All of them, as predicted; nearest to its wish is {worst}, {plan.ratios[worst]:.2g} times it."
+        worst = max(ratios, key=lambda name: ratios[name])
+        words = f"All of them, as predicted; nearest to its wish is {worst}, {ratios[worst]:.2g} times it."
         return Card(question=question, state="fine", sentence=words)
-    words = "; ".join(f"{name} {plan.ratios[name]:.3g} times its wish" for name in missed)
+    words = ", ".join(f"{name} {ratios[name]:.3g} times" for name in missed)
     action = test.remedies[0].sentence if test.remedies else "Allow more time or a larger set point."
-    return Card(question=question, state="bad", sentence=f"Not of {words}.", action=action)
+    return Card(question=question, state="bad", sentence=f"Not all; predicted over the wish: {words}.", action=action)
 
 
 def _limits(test: "PlannedTest") -> Card:

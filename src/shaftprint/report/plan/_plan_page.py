@@ -11,7 +11,17 @@ from shaftprint.report._page import Page, write_page
 from shaftprint.report.figures import length_chart, planned_line_chart, planned_motion_chart, planned_set_point_chart
 from shaftprint.report.plan._plan_cover import plan_cover
 from shaftprint.report.sections import Picture, Section
-from shaftprint.tables import Symbol, Table, abort_table, numbers, planned_leg_table, texts, unit_text, with_deviation
+from shaftprint.tables import (
+    Symbol,
+    Table,
+    abort_table,
+    numbers,
+    planned_leg_table,
+    predicted_number_table,
+    texts,
+    unit_text,
+    with_deviation,
+)
 
 if TYPE_CHECKING:
     from shaftprint.design import PlannedTest
@@ -43,7 +53,15 @@ def render_plan(directory: str | Path, test: "PlannedTest", *, overwrite: bool =
         created=test.created,
         version=test.version,
         cover=plan_cover(test),
-        sections=(_card(test), _motion(test), _lines(test), _length(test), _words(test), _assumed(test)),
+        sections=(
+            _card(test),
+            _numbers(test),
+            _motion(test),
+            _lines(test),
+            _length(test),
+            _words(test),
+            _assumed(test),
+        ),
         files=_files(),
         ending=(
             f"shaftprint {test.version}. ± is one standard deviation throughout, predicted to first order; intervals "
@@ -71,6 +89,10 @@ def _card(test: "PlannedTest") -> Section:
             ),
         ),
     )
+
+
+def _numbers(test: "PlannedTest") -> Section:
+    return Section(key="numbers", title="What it would tell", tables=(predicted_number_table(test),))
 
 
 def _motion(test: "PlannedTest") -> Section:

@@ -1,0 +1,239 @@
+"""The noun ``Standing``: what is known of a planned test that was sailed so far, and what is still missing.
+
+Whether to stop is decided by predicted deviations, not by those that were estimated with the result: a test that stops
+as soon as its estimated deviations are small stops when they happen to be too small, and its intervals then hold the
+truth too seldom (Anscombe, Sequential estimation, J. R. Stat. Soc. B 15, 1953). What is predicted rests on the lines of
+the plan, the periods that were recorded, the fitted values, and the plan's noise, scaled by one number for all lines.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from datetime import datetime
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import frozen_complex
+from shaftprint.design._periods import PeriodInformation, missing_periods, period_information
+from shaftprint.design._plan import Plan, predicted_accuracy
+from shaftprint.design._planned_test import PlannedTest, SailedLeg
+from shaftprint.design._within import legs_within, updated_ship
+from shaftprint.errors import DesignError
+from shaftprint.identify.prediction import planned_lines
+from shaftprint.models import at_working_point
+from shaftprint.notebook import Shown, Summary
+from shaftprint.units import SECONDS_PER_MINUTE
+
+if TYPE_CHECKING:
+    from shaftprint.design._leg import Leg
+    from shaftprint.identify import Identification, NoiseLevels
+
+# A further leg has so many periods at least: the noise is what differs between them.
+FEWEST_MORE = 2
+# The test of fit below which the model does not explain what was recorded.
+_LEAST_P_VALUE = 0.01
+# Beyond these the noise is not that of the plan, over its density.
+_ALIKE = (0.7, 1.4)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class Standing(Shown):
+    """How far a planned test has come."""
+
+    test: PlannedTest
+    """What was planned."""
+    fit: "Identification"
+    """What the recordings give so far, normalised at the working point of the plan."""
+    recorded: Mapping[str, int]
+    """Whole periods that were recorded of each leg, by its name."""
+    noise_ratio: float
+    """Density of the noise over that of the plan, the median over all lines."""
+    ratios: Mapping[str, float]
+    """Predicted deviation so far over the wish, by name."""
+    targets: Mapping[str, float]
+    """Wished standard deviations in the numbers' units, by name."""
+    more: Mapping[str, int] | None
+    """Further periods of each leg that meet every wish, by its name; None where no number of them does."""
+    remaining: PlannedTest | None
+    """The test that is still missing; None where nothing is, or nothing helps."""
+
+    def summary(self) -> Summary:
+        """Return what is met and what is missing."""
+        return Summary(title=f"Standing of {self.test.name}", facts={"": " ".join(self.sentences)})
+
+    @property
+    def is_enough(self) -> bool:
+        """Whether nothing is missing."""
+        return self.more is not None and not any(self.more.values())
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What is met and what is missing, the answer first."""
+        return (self._answer(), *self._missed(), *self._doubts())
+
+    def _answer(self) -> str:
+        if self.more is None:
+            return (
+                "The wishes are not met, and no number of further periods of these lines meets them: plan another test "
+                "after this one."
+            )
+        periods = " and ".join(f"{count} of {name}" for name, count in self.more.items() if count)
+        if not periods:
+            return "Every wish is met, as predicted." if self.targets else "The whole plan is recorded."
+        if not self.targets:
+            return f"Nothing is wished; of the plan {periods} periods are missing."
+        minutes = 0.0 if self.remaining is None else self.remaining.campaign.duration_s / SECONDS_PER_MINUTE
+        return f"The wishes are not all met; {periods} more periods do it, {minutes:.1f} min with their ramps."
+
+    def _missed(self) -> list[str]:
+        return [
+            f"{name} is predicted to {ratio:.3g} times its wish so far."
+            for name, ratio in sorted(self.ratios.items(), key=lambda pair: -pair[1])
+            if ratio > 1.0
+        ]
+
+    def _doubts(self) -> list[str]:
+        sentences = []
+        low, high = _ALIKE
+        if not low <= self.noise_ratio <= high:
+            sentences.append(
+                f"The noise is {self.noise_ratio:.2g} times as dense as planned with, which is counted; for another "
+                "plan give the recording with --noise-from."
+            )
+        p_value = self.fit.p_value
+        if p_value is not None and p_value < _LEAST_P_VALUE:
+            sentences.append(
+                f"The model does not explain what was recorded (p = {p_value:.1g}): more periods will not mend that; "
+                "look at it with shaftprint identify."
+            )
+        return sentences
+
+
+def standing_of(
+    test: PlannedTest,
+    fit: "Identification",
+    sailed: Sequence[SailedLeg],
+    recorded: Mapping[str, int],
+    *,
+    now: datetime,
+    seed: int = 1,
+) -> Standing:
+    """Return how far a planned test has come.
+
+    Parameters
+    ----------
+    test
+        What was planned.
+    fit
+        The joint fit of all that was recorded, normalised at the working point of the plan.
+    sailed
+        Legs of this recording, by their names in the campaign of the plan.
+    recorded
+        Whole periods of each of them, by name.
+    now
+        When it is done, with time zone.
+    seed
+        Of the possible ships whose peaks are looked at.
+
+    Raises
+    ------
+    DesignError
+        If nothing of the plan was recorded, or the fit is of another structure.
+    """
+    plan, names = test.plan, tuple(f"M{number}" for number in range(1, len(test.plan.legs) + 1))
+    counts = tuple(recorded.get(name, 0) for name in names)
+    if not any(counts):
+        raise DesignError(f"plan {test.name}: expected a leg such as {names[0]} in the recording, found none.")
+    ship = updated_ship(plan, fit)
+    ratio = _noise_ratio(plan, names, sailed, recorded)
+    noise = tuple(_scaled(level, ratio) for level in plan.noise)
+    so_far = _information(plan, plan.legs, noise, ship.by_name)
+    legs, peaks = legs_within(plan, ship, np.random.default_rng(seed))
+    further = _information(plan, legs, noise, ship.by_name)
+    further = replace(further, before=so_far.after(counts))
+    more = _more(plan, further, counts)
+    by_name = None if more is None else dict(zip(names, more, strict=True))
+    remaining = None
+    if more is not None and any(more):
+        changed = replace(plan, ship=ship, legs=legs, peaks=peaks, noise=noise)
+        remaining = _remaining(replace(test, plan=changed), sailed, more, now=now)
+    return Standing(
+        test=test,
+        fit=fit,
+        recorded=dict(zip(names, counts, strict=True)),
+        noise_ratio=ratio,
+        ratios=so_far.ratios(counts),
+        targets=so_far.targets,
+        more=by_name,
+        remaining=remaining,
+    )
+
+
+def _information(
+    plan: Plan,
+    legs: "Sequence[Leg]",
+    noise: "Sequence[NoiseLevels]",
+    values: Mapping[str, float],
+) -> PeriodInformation:
+    return period_information(replace(plan, legs=tuple(legs)), noise, values=values)
+
+
+def _more(plan: Plan, information: PeriodInformation, counts: tuple[int, ...]) -> tuple[int, ...] | None:
+    """Return the further periods of each leg: for the wishes, or what is left of a plan without any."""
+    if plan.wish.names:
+        return missing_periods(information, fewest=FEWEST_MORE)
+    left = [max(leg.periods - count, 0) for leg, count in zip(plan.legs, counts, strict=True)]
+    return tuple(max(count, FEWEST_MORE) if count else 0 for count in left)
+
+
+def _remaining(test: PlannedTest, sailed: Sequence[SailedLeg], more: Sequence[int], *, now: datetime) -> PlannedTest:
+    """Return the legs that are still missing, with what was recorded as earlier tests."""
+    plan = test.plan
+    kept = [place for place, count in enumerate(more) if count]
+    legs = tuple(replace(plan.legs[place], periods=more[place]) for place in kept)
+    every = (*test.sailed, *sailed)
+    structures, levels = tuple(plan.structures[place] for place in kept), tuple(plan.noise[place] for place in kept)
+    earlier = tuple(
+        (
+            at_working_point(plan.ship.structure, speed_share=one.speed_share, torque_share=one.torque_share),
+            one.response,
+        )
+        for one in every
+    )
+    further = replace(
+        plan,
+        legs=legs,
+        structures=structures,
+        noise=levels,
+        peaks=tuple(plan.peaks[place] for place in kept),
+        earlier=earlier,
+        predicted=predicted_accuracy(
+            structures, legs, levels, values=plan.ship.by_name, priors=plan.priors, earlier=earlier
+        ),
+    )
+    return replace(test, plan=further, created=now, rehearsal=None, remedies=(), sailed=every)
+
+
+def _noise_ratio(plan: Plan, names: Sequence[str], sailed: Sequence[SailedLeg], recorded: Mapping[str, int]) -> float:
+    """Return the median, over the used lines, of the measured covariance over that of the plan."""
+    ratios: list[float] = []
+    for one in sailed:
+        place = names.index(one.name)
+        leg, response = plan.legs[place], one.response
+        planned = planned_lines(
+            leg.frequency_hz,
+            noise=plan.noise[place].of_outputs(*response.outputs),
+            amplitude=np.abs(leg.amplitudes),
+            duration_s=recorded[one.name] * leg.period_s,
+            lines=[f"{one.name}/{harmonic}" for harmonic in leg.harmonics],
+        )
+        rows = {name: row for row, name in enumerate(planned.lines)}
+        for line, name in enumerate(response.lines):
+            if response.used[line] and name in rows:
+                whitened = np.linalg.solve(planned.covariance[rows[name]], response.covariance[line])
+                ratios.append(float(np.trace(whitened)) / len(whitened))
+    return float(np.median(ratios)) if ratios else 1.0
+
+
+def _scaled(noise: "NoiseLevels", ratio: float) -> "NoiseLevels":
+    return replace(noise, density=frozen_complex(ratio * noise.density))

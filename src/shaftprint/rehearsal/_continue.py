@@ -1,0 +1,72 @@
+"""The verb ``standing_after``: from a recording of a planned test, whole or broken off, to what is known so far."""
+
+from datetime import UTC, datetime
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.design import SailedLeg, Standing, standing_of
+from shaftprint.errors import DesignError
+from shaftprint.identify import Settings, identify, identify_jointly
+from shaftprint.survey import Trial, leg_pairs
+from shaftprint.units import rpm_from_rev_s
+
+if TYPE_CHECKING:
+    from shaftprint.design import PlannedTest
+    from shaftprint.survey import Measurement
+
+
+def standing_after(
+    test: "PlannedTest", measurement: "Measurement", trial: Trial, *, seed: int = 1, now: datetime | None = None
+) -> Standing:
+    """Return how far a planned test has come with a recording of it.
+
+    Parameters
+    ----------
+    test
+        What was planned; legs of earlier recordings that it goes on from are fitted together with the new ones.
+    measurement
+        What the recording gives; of a leg that was broken off its whole periods.
+    trial
+        The vessel, and the campaign that was sailed.
+    seed
+        Of the starts of the search.
+    now
+        When it is done, with time zone.
+
+    Raises
+    ------
+    DesignError
+        If nothing of the plan was recorded.
+    """
+    if not measurement.legs:
+        raise DesignError(
+            f"plan {test.name}: expected a leg such as M1 in the recording, found none; name the campaign that was "
+            "sailed with --campaign."
+        )
+    limits, gearbox = test.plan.limits, trial.vessel.gearbox
+    torque_nm = limits.brake_torque_nm * gearbox.ratio * gearbox.efficiency
+    pairs = leg_pairs(
+        test.plan.ship.structure,
+        measurement.legs,
+        engine_speed_rpm=limits.engine_speed_rpm,
+        shaft_torque_nm=torque_nm,
+    )
+    sailed = tuple(
+        SailedLeg(
+            name=leg.name,
+            speed_share=rpm_from_rev_s(leg.working_point.engine_speed_rev_s) / limits.engine_speed_rpm,
+            torque_share=leg.working_point.shaft_torque_nm / torque_nm,
+            response=response,
+        )
+        for leg, (_, response) in zip(measurement.legs, pairs, strict=True)
+    )
+    every = [*test.plan.earlier, *pairs]
+    how, rng = Settings(priors=dict(test.plan.priors)), np.random.default_rng(seed)
+    fit = (
+        identify(*every[0], rng=rng, settings=how)
+        if len(every) == 1
+        else identify_jointly(every, rng=rng, settings=how)
+    )
+    recorded = {state.name: state.periods for state in measurement.signals.legs}
+    return standing_of(test, fit, sailed, recorded, now=now or datetime.now(UTC).replace(microsecond=0), seed=seed)
