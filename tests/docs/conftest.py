@@ -2,15 +2,30 @@
 
 import contextlib
 from dataclasses import replace
+from datetime import UTC, datetime
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 from pages import as_run, berth
 
+from shaftprint.catalogue import structure
 from shaftprint.cli import shaftprint
+from shaftprint.design import (
+    Effort,
+    PlannedTest,
+    SetPointLine,
+    Wish,
+    assumed_ship,
+    design_campaign,
+    limits_from_vessel,
+    write_plan_files,
+)
 from shaftprint.fingerprint import read_fingerprint, write_fingerprint
-from shaftprint.recording import read_recording, write_csv, write_recording
+from shaftprint.identify import STAN_TUG_NOISE
+from shaftprint.recording import cut, read_recording, write_csv, write_recording
+from shaftprint.tug import sail
+from shaftprint.vessel import load_vessel
 
 pytest.register_assert_rewrite("expected", "expected_exports")
 IDENTIFY = "identify log.csv --vessel mine.toml --campaign test.toml -o result"
@@ -20,6 +35,11 @@ from shaftprint.catalogue import structure
 
 my_loop = dataclasses.replace(structure("GAUGE-CLOSED"), name="MY-LOOP")
 """
+# The simulated tug, normalised at its working point.
+TUG = {
+    "K_p": 5.7, "K_i": 4.27, "t_d": 0.0703, "omega_n": 10.3, "zeta": 0.47, "tau_dn": 0.32, "tau_up": 1.016,
+    "k_q": 2.0, "g": 0.0, "t_sp": 0.0518, "c_set": 1.0, "t_gauge": 0.0,
+}  # fmt: skip
 # The second logger's clock is behind and slow: the first's time is 0.4 s and 1.00003 times the second's own.
 BEHIND_S, SLOW = 0.4, 30e-6
 
@@ -39,6 +59,7 @@ def harbour(demo, tmp_path_factory):
     berth(voyage, folder / "demo")
     write_loggers(folder)
     write_last_years(folder, voyage)
+    write_planned(folder)
     (folder / "my_ship.py").write_text(MY_SHIP, encoding="utf-8")
     rows = "".join(f"{0.1 * i:.1f},{0.0 if i < 10 else 0.02}\n" for i in range(50))
     (folder / "set_point.csv").write_text(f"time [s],n_set [-]\n{rows}", encoding="utf-8")
@@ -65,6 +86,33 @@ def write_loggers(folder):
             for channel in (recording.channel(name) for name in ("PTM_1", "PTM_4", "M_s"))
         ]
         write_recording(folder / "shaft.nc", shaft)
+
+
+def write_planned(folder):
+    """Write a plan of the tug, and its recording that was broken off after two periods of the second leg."""
+    vessel = load_vessel("stan-tug-1205")
+    plan = design_campaign(
+        assumed_ship(structure("GAUGE-CLOSED"), TUG, std={}),
+        Wish(),
+        limits_from_vessel(vessel, set_point_rpm=200.0),
+        STAN_TUG_NOISE,
+        speeds=(1.15, 0.78),
+        within_s=210.0,
+        rng=np.random.default_rng(1),
+        effort=Effort(steps=30, restarts=1),
+    )
+    line = SetPointLine(slope_rpm_per_v=-250.97, offset_v=-5.0)
+    now = datetime(2026, 11, 23, tzinfo=UTC)
+    planned = PlannedTest(
+        name="short", vessel=vessel.name, plan=plan, line=line, created=now, noise_source="stored noise"
+    )
+    (folder / "plan").mkdir()
+    write_plan_files(planned, folder / "plan", rate_hz=100.0)
+    second = planned.campaign.multisines[1]
+    sail(vessel, planned.campaign, folder / "sailed.nc", seed=1)
+    with read_recording(folder / "sailed.nc") as whole:
+        end_s = second.settled_s + 2.2 * second.period_s
+        write_recording(folder / "broken_off.nc", cut(whole, to_s=end_s).channels.values())
 
 
 def write_mdf(path, recording):

@@ -15,6 +15,7 @@ from expected_exports import EXPORTS
 
 from shaftprint.campaign import load_campaign
 from shaftprint.catalogue import structure
+from shaftprint.design import read_plan
 from shaftprint.fingerprint import read_fingerprint
 from shaftprint.recording import read_recording
 from shaftprint.tug import read_truth
@@ -240,7 +241,30 @@ def expect_comparison(folder, printed, words):
     assert (folder / after(words, "-o") / "index.html").is_file()
 
 
+def expect_plan(folder, printed, words):
+    names = {"campaign.toml", "index.html", "plan.json", "set_point.csv", "set_point_generator.txt", "set_point.mat"}
+    written = folder / after(words, "-o")
+    assert names <= {path.name for path in written.iterdir()}
+    assert " meet every wish, as predicted." in printed
+    wishes = rows(printed, "Wish against prediction")
+    assert set(wishes) == {"t_d", "K_p"}
+    assert float(wishes["t_d"][3]) <= 1.0
+    test = read_plan(written)
+    # twelve minutes, and the way back to the first level
+    assert 690.0 < test.plan.duration_s <= 720.0
+    assert "The plan was not rehearsed." in printed
+
+
+def expect_further_leg(folder, printed, words):
+    assert printed.startswith("Nothing is wished; of the plan 2 of M2 periods are missing.")
+    further = read_plan(folder / "plan" / "next")
+    assert [leg.speed_share for leg in further.plan.legs] == [0.78]
+    assert len(further.sailed) == 2
+
+
 EXPECTED = {
+    "plan": expect_plan,
+    "continue": expect_further_leg,
     "demo": expect_demo,
     "new": expect_settings,
     "predict": expect_prediction,

@@ -78,12 +78,8 @@ def knowledge_of(stated: Stated, *, steps: Steps) -> Knowledge:
     # after a first test the working point is that of the test, at which its numbers are normalised
     speeds = usual_speeds(limits) if shares is None else tuple(share * vessel_rpm / point_rpm for share in shares)
     outputs = stated.structure.outputs
-    if recorded is None:
-        noise = dict.fromkeys(speeds, STAN_TUG_NOISE)
-        source = f"noise of the Stan Tug 1205 assumed for {stated.vessel.name}"
-    else:
-        noise = nearest_noise(recorded.noise, {share: share * point_rpm for share in speeds})
-        source = f"noise of {Path(str(stated.noise_from)).name}"
+    levels, source = _noise(stated, first_test, recorded)
+    noise = nearest_noise(levels, {share: share * point_rpm for share in speeds})
     priors = priors_from_vessel(stated.structure, stated.vessel, stated_working_point(stated.vessel))
     priors = {name: prior for name, prior in (priors | dict(stated.priors)).items() if name not in stated.freed}
     return Knowledge(
@@ -119,6 +115,18 @@ def _recorded(stated: Stated, steps: Steps) -> _Recorded:
         slope_rpm_per_v=60.0 * slope, offset_v=(speed_rev_s - calibration.intercept_rev_s) / slope if slope else 0.0
     )
     return _Recorded(line=line, noise=noise_at_speeds(measurement, trial.campaign))
+
+
+def _noise(
+    stated: Stated, first_test: Fingerprint | None, recorded: _Recorded | None
+) -> tuple[Mapping[float, NoiseLevels], str]:
+    """Return the noise by engine speed [rpm] and where it is from: the recording, else the first test, else assumed."""
+    if recorded is not None:
+        return recorded.noise, f"noise of {Path(str(stated.noise_from)).name}"
+    if first_test is not None and first_test.noise:
+        return first_test.noise_at_speeds, f"noise of the first test, {first_test.conditions.campaign}"
+    point_rpm = stated.vessel.working_point.engine_speed_rpm
+    return {point_rpm: STAN_TUG_NOISE}, f"noise of the Stan Tug 1205 assumed for {stated.vessel.name}"
 
 
 def _line(stated: Stated, first_test: Fingerprint | None, recorded: _Recorded | None) -> SetPointLine:

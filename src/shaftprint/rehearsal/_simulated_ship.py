@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from shaftprint.catalogue import ShipRole
+from shaftprint.design import stated_limits
 from shaftprint.errors import DesignError
 from shaftprint.tug import Tug
 from shaftprint.units import rev_s_from_rpm
@@ -80,7 +81,8 @@ def tug_of_plan(test: "PlannedTest", vessel: "Vessel") -> Tug:
         demand_cycle_s=limits.demand_cycle_s,
         demand_rate_limit_rpm_per_s=limits.demand_rate_limit_rpm_per_s,
     )
-    if motoring_nm > 0.0:
+    # without a statement of the user's the curve of the vessel file holds, at all speeds
+    if motoring_nm > 0.0 and limits.motoring != stated_limits(vessel).motoring:
         tug = replace(tug, motoring_torque_nm=motoring_nm)
     stated = {name: value for name, value in (values | optional).items() if value is not None}
     numbers: dict[str, Any] = {
