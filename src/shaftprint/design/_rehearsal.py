@@ -4,6 +4,7 @@ First-order predictions are as good as their noise, and as straight as the model
 where a square falls, or be fitted with a bias. Only sailing it shows that.
 """
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.design._plan import Plan
-from shaftprint.distributions import NORMAL_95
+from shaftprint.distributions import NORMAL_95, chi_square_quantile
 from shaftprint.errors import DesignError, ShaftprintError
 from shaftprint.identify.fit import Estimate
 from shaftprint.notebook import Shown
@@ -73,7 +74,8 @@ class Rehearsal(Shown):
     def sentences(self) -> tuple[str, ...]:
         """What the rehearsal says of the plan."""
         count, covered = len(self.errors), 100.0 * float(np.mean(list(self.coverage.values())))
-        off = [f"{name} {ratio:.2g}" for name, ratio in self.over_planned.items() if not KEPT[0] <= ratio <= KEPT[1]]
+        low, high = (bound * chance for bound, chance in zip(KEPT, _chance(count), strict=True))
+        off = [f"{name} {ratio:.2g}" for name, ratio in self.over_planned.items() if not low <= ratio <= high]
         sentences = [f"Rehearsed with {count} simulated tests; {covered:.0f} % of the 95 % intervals hold the truth."]
         if off:
             sentences.append(f"Error over the planned deviation: {', '.join(off)}.")
@@ -88,6 +90,12 @@ class Rehearsal(Shown):
 
     def _named(self, values: FloatArray) -> dict[str, float]:
         return dict(zip(self.names, values.tolist(), strict=True))
+
+
+def _chance(count: int) -> tuple[float, float]:
+    """Return between which values the root mean square of so many standard normal errors lies in 99 of 100 cases."""
+    low, high = (chi_square_quantile(share, count) for share in (0.005, 0.995))
+    return math.sqrt(low / count), math.sqrt(high / count)
 
 
 def rehearse(

@@ -34,13 +34,14 @@ def plan_cover(test: "PlannedTest") -> Cover:
 
 def _facts(test: "PlannedTest") -> list[tuple[str, str]]:
     plan = test.plan
-    volts = plan.limits.set_point_rpm / abs(test.line.slope_rpm_per_v)
+    largest = max(leg.peak_rpm for leg in plan.legs)
+    volts = largest / abs(test.line.slope_rpm_per_v)
     return [
         ("Ship", test.vessel),
         ("Test", test.name),
         ("Length", f"{plain(test.campaign.duration_s / SECONDS_PER_MINUTE, 1)} min with the way back"),
         ("Speeds", ", ".join(f"{plain(leg.level_rpm, 0)} rpm" for leg in plan.legs)),
-        ("Set point", f"at most ± {plain(plan.limits.set_point_rpm, 0)} rpm, ± {plain(volts, 2)} V about each"),
+        ("Set point", f"± {plain(largest, 0)} rpm, ± {plain(volts, 2)} V at most, about each speed"),
     ]
 
 
