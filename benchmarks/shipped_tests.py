@@ -3,7 +3,7 @@
 Limits are those of its vessel file, and the set point moves by 1 V at most. The plan knows governor and engine of the
 simulated tug; for a ship that is not known so well, plan its own test. Run ``python -m benchmarks.shipped_tests`` (a
 few seconds each) to make the files again, with ``--output FOLDER`` elsewhere; with ``--sail 20`` to sail the files as
-they are and to identify them (half a minute of processor time a recording), nothing of the builder known.
+they are and to identify them (ten seconds of processor time a recording), nothing of the builder known.
 """
 
 import argparse

@@ -13,6 +13,7 @@ from shaftprint.identify import STAN_TUG_NOISE, Settings
 from shaftprint.recording import cut, read_recording, write_recording
 from shaftprint.survey import (
     apart_sentences,
+    comparisons_of,
     fingerprint_of,
     fit,
     leg_tests,
@@ -120,6 +121,25 @@ def test_a_governor_that_is_another_at_the_other_speed_is_refused(trial, voyage,
         assert "What differs most: " in sentence
         assert "t_d" in sentence
     assert sentence.endswith("The result of one speed is had with --leg M1 or --leg M2.")
+
+
+def test_structures_are_compared_on_all_legs(trial, voyage):
+    """A governor without the delay that the tug has is told apart, by criterion, nesting and lines left out."""
+    measurement = measure(voyage[0], trial)
+    without = replace(GAUGE.held_at(t_d=0.0), name="WITHOUT-DELAY")
+    settings = {one.name: Settings(starts=20) for one in (GAUGE, without)}
+    fits = fit([GAUGE, without], measurement, settings=settings, rng=np.random.default_rng(1))
+    (comparison,) = comparisons_of(fits, rng=np.random.default_rng(1))
+    assert comparison.best.name == GAUGE.name
+    assert comparison.best.criteria.data == sum(
+        2 * 2 * int(leg.spectra.response.used.sum()) for leg in measurement.legs
+    )
+    (ratio,) = comparison.ratios
+    assert ratio.small == "WITHOUT-DELAY"
+    assert ratio.p_value < 1e-3
+    first, second = comparison.candidates
+    assert first.hold_out.square == pytest.approx(first.hold_out.expected, rel=0.25)
+    assert second.criteria.bic - first.criteria.bic > 10.0
 
 
 def test_one_leg_can_be_chosen(trial, voyage):

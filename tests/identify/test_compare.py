@@ -184,7 +184,7 @@ def test_what_cannot_be_compared_is_refused_in_one_sentence(make_response):
         identify(structure("OL2"), response, rng=np.random.default_rng(1), settings=SETTINGS),
         identify(structure("OL3"), response, rng=np.random.default_rng(1), settings=SETTINGS, lines=["S3", "S9"]),
     ]
-    with pytest.raises(IdentificationError, match="OL2 and OL3 were not fitted to the same lines of one response"):
+    with pytest.raises(IdentificationError, match="OL2 and OL3 were not fitted to the same lines of the same"):
         compare_fits(fits, rng=np.random.default_rng(1))
 
 

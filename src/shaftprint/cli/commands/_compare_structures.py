@@ -10,9 +10,8 @@ from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._results import print_comparison
 from shaftprint.cli.output import no_progress_option, progress
-from shaftprint.identify import compare_structures
-from shaftprint.identify.comparison import expect_comparable
-from shaftprint.survey import load_trial, measure, response_of, settings_by_name
+from shaftprint.identify.comparison import compare_jointly, expect_comparable
+from shaftprint.survey import load_trial, measure, pairs_of, settings_by_name
 
 
 @click.command("compare-structures")
@@ -47,9 +46,9 @@ def command(
 ) -> None:
     """Compare model structures on a recording: which explains it best, and why.
 
-    Each structure is fitted to the same lines. It wins that explains them with the fewest parameters (BIC);
-    beside it stand a test of each fit, of each structure within a larger one, and how well each predicts
-    lines that were left out. --structure, --prior, --free and --hold may be repeated.
+    Each structure is fitted to the same lines, those of all legs where the campaign has legs. It wins that explains
+    them with the fewest parameters (BIC); beside it stand a test of each fit, of each structure within a larger one,
+    and how well each predicts lines that were left out. --structure, --prior, --free and --hold may be repeated.
     """
     structures = structures_of(names, options)
     expect_comparable(structures)
@@ -57,9 +56,8 @@ def command(
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode=options.mode, progress=steps)
         steps.begin("Comparing the structures")
-        comparison = compare_structures(
-            structures,
-            response_of(structures[0], measurement.responses),
+        comparison = compare_jointly(
+            [pairs_of(structure, measurement) for structure in structures],
             rng=np.random.default_rng(options.seed),
             settings=settings_by_name(structures, measurement, trial, settings_of(structures, options)),
             folds=folds,

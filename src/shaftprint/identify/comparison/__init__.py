@@ -1,6 +1,6 @@
 """Which of several structures the data want: criteria, tests of one within another, lines left out."""
 
-from shaftprint.identify.comparison._compare import compare_fits, compare_structures, expect_comparable
+from shaftprint.identify.comparison._compare import compare_fits, compare_jointly, compare_structures, expect_comparable
 from shaftprint.identify.comparison._comparison import Candidate, StructureComparison
 from shaftprint.identify.comparison._criteria import Criteria, criteria_of
 from shaftprint.identify.comparison._hold_out import HoldOut, hold_out
@@ -16,6 +16,7 @@ __all__ = [
     "Nesting",
     "StructureComparison",
     "compare_fits",
+    "compare_jointly",
     "compare_structures",
     "comparison_words",
     "criteria_of",

@@ -1,4 +1,4 @@
-"""Which structure do the data want: several structures fitted to one response and weighed against each other."""
+"""Which structure do the data want: several structures fitted to the same responses and weighed against each other."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -7,13 +7,14 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import IdentificationError
+from shaftprint.identify.comparison._again import fit_of
 from shaftprint.identify.comparison._comparison import Candidate, StructureComparison
 from shaftprint.identify.comparison._criteria import criteria_of
 from shaftprint.identify.comparison._hold_out import HoldOut, hold_out
 from shaftprint.identify.comparison._likelihood_ratio import LikelihoodRatio, likelihood_ratio
 from shaftprint.identify.comparison._nesting import nesting
 from shaftprint.identify.comparison._sentences import comparison_words
-from shaftprint.identify.fit import Identification, identify
+from shaftprint.identify.fit import Identification
 from shaftprint.identify.search import Settings
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
@@ -58,39 +59,74 @@ def compare_structures(
     IdentificationError
         If the structures differ in input or outputs or share a name, there are fewer than two, or none can be fitted.
     """
-    expect_comparable(structures)
+    pairs = [[(structure, response)] for structure in structures]
+    return compare_fits(*_fitted(pairs, settings, rng, lines), rng=rng, folds=folds, draws=draws)
+
+
+def compare_jointly(
+    pairs: Sequence[Sequence[tuple[Structure, FrequencyResponse]]],
+    *,
+    rng: np.random.Generator,
+    settings: Settings | Mapping[str, Settings] | None = None,
+    folds: int = FOLDS,
+    draws: int = DRAWS,
+) -> StructureComparison:
+    """Fit several structures to the same responses at several working points and say which one wins, and why.
+
+    Parameters
+    ----------
+    pairs
+        For each structure its form at each working point, the first of which it is named by, with the response there.
+    rng, settings, folds, draws
+        As in ``compare_structures``.
+
+    Raises
+    ------
+    IdentificationError
+        As ``compare_structures``.
+    """
+    return compare_fits(*_fitted(pairs, settings, rng, None), rng=rng, folds=folds, draws=draws)
+
+
+def _fitted(
+    pairs: Sequence[Sequence[tuple[Structure, FrequencyResponse]]],
+    settings: Settings | Mapping[str, Settings] | None,
+    rng: np.random.Generator,
+    lines: Sequence[str] | None,
+) -> tuple[list[Identification], dict[str, str]]:
+    """Return the fits of structures, and why others could not be fitted, by name."""
+    expect_comparable([of_structure[0][0] for of_structure in pairs])
     fits: list[Identification] = []
     failed: dict[str, str] = {}
-    for structure, generator in zip(structures, rng.spawn(len(structures)), strict=True):
+    for of_structure, generator in zip(pairs, rng.spawn(len(pairs)), strict=True):
+        structure = of_structure[0][0]
         try:
-            fits.append(
-                identify(structure, response, rng=generator, settings=_settings_of(structure, settings), lines=lines)
-            )
+            fits.append(fit_of(of_structure, rng=generator, settings=_settings_of(structure, settings), lines=lines))
         except IdentificationError as reason:
             failed[structure.name] = str(reason)
     if not fits:
         raise IdentificationError(f"none of the structures could be fitted: {' '.join(failed.values())}")
-    return compare_fits(fits, rng=rng, folds=folds, draws=draws, failed=failed)
+    return fits, failed
 
 
 def compare_fits(
     fits: Sequence[Identification],
+    failed: Mapping[str, str] | None = None,
     *,
     rng: np.random.Generator,
     folds: int = FOLDS,
     draws: int = DRAWS,
-    failed: Mapping[str, str] | None = None,
 ) -> StructureComparison:
     """Weigh fits of different structures to the same data against each other.
 
     Parameters
     ----------
     fits
-        One or more fits to the same lines of one response, weighed in the same way.
-    rng, folds, draws
-        As in ``compare_structures``.
+        One or more fits to the same lines of the same responses, weighed in the same way.
     failed
         Why other structures could not be fitted, by name.
+    rng, folds, draws
+        As in ``compare_structures``.
 
     Raises
     ------
@@ -159,17 +195,17 @@ def _expect_same_data(fits: Sequence[Identification]) -> None:
     for fit in fits:
         if fit.objective.others:
             raise IdentificationError(
-                f"structure {fit.objective.name} was fitted to {fit.objective.others[0].name}: only fits to a single "
-                "frequency response are compared."
+                f"structure {fit.objective.name} was fitted to {fit.objective.others[0].name}: only fits to frequency "
+                "responses are compared."
             )
-    data = fits[0].objective.experiments[0].data
+    data = [experiment.data for experiment in fits[0].objective.experiments]
     for fit in fits:
-        alike = fit.settings.weighting == fits[0].settings.weighting
-        alike &= np.array_equal(fit.objective.experiments[0].data, data)
-        if not alike or len(fit.experiments) > 1:
+        others = [experiment.data for experiment in fit.objective.experiments]
+        alike = fit.settings.weighting == fits[0].settings.weighting and len(others) == len(data)
+        if not alike or not all(map(np.array_equal, others, data)):
             raise IdentificationError(
                 f"structures {fits[0].structure.name} and {fit.structure.name} were not fitted to the same lines of "
-                "one response with the same weights: fit them in one call of compare_structures()."
+                "the same responses with the same weights: fit them in one call of compare_structures()."
             )
 
 

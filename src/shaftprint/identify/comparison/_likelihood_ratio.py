@@ -9,16 +9,20 @@ several stand at bounds, what the larger one has more is redundant, or the cost 
 law is at hand: then tests are drawn from the smaller structure and both are fitted to each.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.distributions import chi_square_tail
 from shaftprint.identify.comparison._nesting import NO_GAIN, Nesting
 from shaftprint.identify.fit import Identification, refit
 from shaftprint.identify.likelihood import MaximumLikelihood
 from shaftprint.identify.search import spread
+
+_Array = TypeVar("_Array", FloatArray, ComplexArray)
 
 DRAWS = 199
 # A bound on the p-value this much below the smallest that draws can give needs no draws.
@@ -131,30 +135,37 @@ def _drawn(
     small: Identification, large: Identification, nested: Nesting, rng: np.random.Generator, draws: int
 ) -> FloatArray:
     """Return the statistic of tests drawn from the smaller structure, shape (draws,)."""
-    experiment = small.objective.experiments[0]
-    responses, covariances = experiment.drawn(small.values, draws, rng)
-    estimated = bool(np.isfinite(experiment.freedom).any())
+    experiments = small.objective.experiments
+    drawn = [experiment.drawn(small.values, draws, rng) for experiment in experiments]
+    estimated = any(bool(np.isfinite(experiment.freedom).any()) for experiment in experiments)
     luck = rng.standard_normal((draws, len(small.objective.parameters) + len(large.objective.parameters)))
     names = list(dict.fromkeys((*small.objective.names, *large.objective.names)))
     noise = {name: luck[:, i] for i, name in enumerate(names)}
     theta = small.values[list(small.objective.free)]
     few = refit(
         small,
-        responses,
+        _one_or_all([responses for responses, _ in drawn]),
         prior_means=_prior_means(small, theta, noise, small_names=set(noise)),
-        covariances=covariances if estimated else None,
+        covariances=_one_or_all([covariances for _, covariances in drawn]) if estimated else None,
     ).cost
     means = _prior_means(large, nested.values, noise, small_names=set(small.objective.names))
     starts = _starts(large, nested)
     many = refit(
         large,
-        np.tile(responses, (len(starts), 1, 1)),
+        _one_or_all([np.tile(responses, (len(starts), 1, 1)) for responses, _ in drawn]),
         start=np.repeat(starts, draws, axis=0),
         prior_means=np.tile(means, (len(starts), 1)),
-        covariances=np.tile(covariances, (len(starts), 1, 1, 1)) if estimated else None,
+        covariances=_one_or_all([np.tile(covariances, (len(starts), 1, 1, 1)) for _, covariances in drawn])
+        if estimated
+        else None,
     ).cost.reshape(len(starts), draws)
     lowest = np.minimum(many.min(axis=0), few)
     return np.maximum(_deviance(small, few) - _deviance(large, lowest), 0.0)
+
+
+def _one_or_all(arrays: Sequence[_Array]) -> _Array | Sequence[_Array]:
+    """Return what ``refit`` takes: the array of the one experiment, or one of each."""
+    return arrays[0] if len(arrays) == 1 else arrays
 
 
 def _prior_means(

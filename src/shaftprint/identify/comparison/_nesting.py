@@ -12,7 +12,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.distributions import chi_square_tail
 from shaftprint.errors import IdentificationError
-from shaftprint.identify.fit import Identification, identify
+from shaftprint.identify.comparison._again import fit_of
+from shaftprint.identify.fit import Identification
 from shaftprint.identify.likelihood import Objective, load_factors
 from shaftprint.spectra import FrequencyResponse
 
@@ -91,19 +92,24 @@ def nesting(small: Identification, large: Identification, *, rng: np.random.Gene
     )
 
 
-def response_of(identification: Identification, values: FloatArray) -> FrequencyResponse:
-    """Return the data's response with the model's in its place, all else the same.
+def _responses_of(identification: Identification, values: FloatArray) -> list[FrequencyResponse]:
+    """Return the responses of the data with the model's in their place and the fitted lines used, all else the same.
 
     Parameters
     ----------
     values
-        All parameters, shape (parameters,).
+        All parameters of the fit, shape (parameters,).
     """
-    data = identification.response
-    model = identification.structure.response(
-        values, 1j * data.omega_rad_s, factors=load_factors(identification.structure, data)
-    )
-    return replace(data, response=model.reshape(data.response.shape))
+    responses = []
+    for experiment in identification.objective.experiments:
+        data = experiment.response
+        model = experiment.structure.response(
+            experiment.structure_values(values),
+            1j * data.omega_rad_s,
+            factors=load_factors(experiment.structure, data),
+        )
+        responses.append(replace(data, response=model.reshape(data.response.shape), used=experiment.fitted))
+    return responses
 
 
 def _places_beside(small: Identification) -> list[FloatArray]:
@@ -120,10 +126,9 @@ def _imitation(
     neutral = replace(
         large.settings, priors={}, regularisation={}, stability="ignored", starts=min(large.settings.starts, STARTS)
     )
-    data = response_of(small, values)
-    names = [name for name, fitted in zip(data.lines, small.fitted, strict=True) if fitted]
+    structures = [experiment.structure for experiment in large.objective.experiments]
     try:
-        fit = identify(large.structure, data, rng=rng, settings=neutral, lines=names)
+        fit = fit_of(list(zip(structures, _responses_of(small, values), strict=True)), rng=rng, settings=neutral)
     except IdentificationError:
         # more free parameters than data: without its priors the larger structure cannot be fitted
         return None

@@ -1,0 +1,35 @@
+"""The same structures fitted again: to some of the lines, or to other data at the same lines."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from shaftprint.identify.fit import Identification, identify, identify_jointly
+from shaftprint.identify.search import Settings
+from shaftprint.models import Structure
+from shaftprint.spectra import FrequencyResponse
+
+
+def fit_of(
+    pairs: Sequence[tuple[Structure, FrequencyResponse]],
+    *,
+    rng: np.random.Generator,
+    settings: Settings,
+    lines: Sequence[str] | None = None,
+) -> Identification:
+    """Return the fit of one structure to one response, or to several at their working points.
+
+    Parameters
+    ----------
+    pairs
+        The structure at each working point with its response.
+    rng
+        Source of the start values.
+    settings
+        How to search and weigh.
+    lines
+        Names of the lines of a single response to fit; those that responses mark as used by default.
+    """
+    if len(pairs) == 1:
+        return identify(*pairs[0], rng=rng, settings=settings, lines=lines)
+    return identify_jointly(pairs, rng=rng, settings=settings)
