@@ -21,9 +21,9 @@ from shaftprint.design import (
     usual_speeds,
 )
 from shaftprint.fingerprint import Fingerprint
-from shaftprint.identify import STAN_TUG_NOISE, NoiseLevels, Prior, priors_from_vessel
+from shaftprint.identify import STAN_TUG_NOISE_AT_SPEEDS, NoiseLevels, Prior, noise_at, priors_from_vessel
 from shaftprint.models import Structure
-from shaftprint.survey import load_trial, measure, nearest_noise, noise_at_speeds, stated_working_point
+from shaftprint.survey import load_trial, measure, noise_at_speeds, stated_working_point
 from shaftprint.vessel import Vessel
 
 
@@ -79,7 +79,7 @@ def knowledge_of(stated: Stated, *, steps: Steps) -> Knowledge:
     speeds = usual_speeds(limits) if shares is None else tuple(share * vessel_rpm / point_rpm for share in shares)
     outputs = stated.structure.outputs
     levels, source = _noise(stated, first_test, recorded)
-    noise = nearest_noise(levels, {share: share * point_rpm for share in speeds})
+    noise = {share: noise_at(levels, share * point_rpm) for share in speeds}
     priors = priors_from_vessel(stated.structure, stated.vessel, stated_working_point(stated.vessel))
     priors = {name: prior for name, prior in (priors | dict(stated.priors)).items() if name not in stated.freed}
     return Knowledge(
@@ -126,7 +126,8 @@ def _noise(
     if first_test is not None and first_test.noise:
         return first_test.noise_at_speeds, f"noise of the first test, {first_test.conditions.campaign}"
     point_rpm = stated.vessel.working_point.engine_speed_rpm
-    return {point_rpm: STAN_TUG_NOISE}, f"noise of the Stan Tug 1205 assumed for {stated.vessel.name}"
+    assumed = {share * point_rpm: level for share, level in STAN_TUG_NOISE_AT_SPEEDS.items()}
+    return assumed, f"noise of the Stan Tug 1205 assumed for {stated.vessel.name}"
 
 
 def _line(stated: Stated, first_test: Fingerprint | None, recorded: _Recorded | None) -> SetPointLine:

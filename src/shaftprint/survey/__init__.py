@@ -9,7 +9,7 @@ from shaftprint.survey._fits import comparisons_of, fit, priors_of, stated_worki
 from shaftprint.survey._legs import LegMeasurement, LegTest, leg_pairs, leg_tests, legs_of, structure_at
 from shaftprint.survey._legs_apart import LegAlone, apart_sentences, legs_alone
 from shaftprint.survey._measurement import Measurement, measure, of_legs, pairs_of, response_of, responses_of
-from shaftprint.survey._noise import nearest_noise, noise_at_speeds
+from shaftprint.survey._noise import noise_at_speeds
 from shaftprint.survey._progress import SILENT, Progress, Silent
 from shaftprint.survey._survey import SettingsOf, Survey, fingerprint_of, judged, run, settings_by_name, survey_of
 from shaftprint.survey._thesis_mode import SET_POINT_OFF, ThesisMode
@@ -43,7 +43,6 @@ __all__ = [
     "legs_of",
     "load_trial",
     "measure",
-    "nearest_noise",
     "noise_at_speeds",
     "of_legs",
     "pairs_of",

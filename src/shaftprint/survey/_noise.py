@@ -1,6 +1,5 @@
 """The noise that a recording shows at each speed at which it was made, to plan or predict the next test with."""
 
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -40,19 +39,6 @@ def noise_at_speeds(measurement: "Measurement", campaign: "Campaign") -> dict[fl
         speed_rpm = rpm_from_rev_s(leg.working_point.engine_speed_rev_s)
         levels[speed_rpm] = replace(level, density=share * level.density)
     return levels
-
-
-def nearest_noise(levels: Mapping[float, NoiseLevels], speeds_rpm: Mapping[float, float]) -> dict[float, NoiseLevels]:
-    """Return for each planned speed the noise of the nearest one that was sailed.
-
-    Parameters
-    ----------
-    levels
-        Noise by engine speed [rpm].
-    speeds_rpm
-        Engine speed [rpm] of each planned speed, by its share of the working point.
-    """
-    return {share: levels[min(levels, key=lambda rpm: abs(rpm - wanted))] for share, wanted in speeds_rpm.items()}
 
 
 def _levels(
