@@ -9,7 +9,7 @@ from shaftprint.fingerprint import Fingerprint, write_fingerprint
 from shaftprint.identify.comparison import StructureComparison
 from shaftprint.recording import read_recording
 from shaftprint.report import render_report
-from shaftprint.spectra import ExactBin, FrequencyResponse, HighestPeak, estimate_response
+from shaftprint.spectra import FrequencyResponse
 from shaftprint.survey import Survey, ThesisMode
 from shaftprint.tables import structure_tables
 
@@ -21,6 +21,7 @@ def write_results(
     *,
     steps: Steps,
     thesis: ThesisMode | None = None,
+    line_selection: Mapping[str, FrequencyResponse] | None = None,
     truth: Mapping[str, float] | None = None,
     pictures: bool = False,
     previous: Fingerprint | None = None,
@@ -38,6 +39,8 @@ def write_results(
         Progress of the command.
     thesis
         The same recording done the thesis' way, to compare.
+    line_selection
+        What other ways to measure a sine give, to compare.
     truth
         True values by name, where they are known.
     pictures
@@ -56,7 +59,7 @@ def write_results(
             recording=opened,
             thesis=thesis,
             truth=truth,
-            line_selection={} if thesis is None else _line_selection(survey),
+            line_selection=line_selection,
             sensitivity=(survey.identification.structure,),
             previous=previous,
             pictures=pictures,
@@ -69,17 +72,6 @@ def print_paths(output: Path) -> None:
     """Print where fingerprint and report are."""
     echo(f"Fingerprint: {output / FINGERPRINT}")
     echo(f"Report:      {output / REPORT}")
-
-
-def _line_selection(survey: Survey) -> dict[str, FrequencyResponse]:
-    """Return the response as other ways to measure a sine would have it; nothing where there are no sines."""
-    if not survey.campaign.sines:
-        return {}
-    others = {"bin of the line": ExactBin(), "highest peak": HighestPeak()}
-    selection = {"whole periods": survey.spectra.response}
-    for name, method in others.items():
-        selection[name] = estimate_response(survey.signals, survey.campaign, method=method)
-    return selection
 
 
 def print_comparison(comparison: StructureComparison, *, is_answer: bool = False) -> None:

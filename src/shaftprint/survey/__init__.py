@@ -13,7 +13,7 @@ from shaftprint.survey._noise import noise_at_speeds
 from shaftprint.survey._progress import SILENT, Progress, Silent
 from shaftprint.survey._survey import SettingsOf, Survey, fingerprint_of, judged, run, settings_by_name, survey_of
 from shaftprint.survey._thesis_mode import SET_POINT_OFF, ThesisMode
-from shaftprint.survey._thesis_way import GAUGE, set_point_scaled, thesis_way, weighted_fits
+from shaftprint.survey._thesis_way import GAUGE, line_selections, set_point_scaled, thesis_way, weighted_fits
 from shaftprint.survey._trial import Trial, load_trial, settings_text
 from shaftprint.survey._validations import failed_steps, validations_of
 
@@ -41,6 +41,7 @@ __all__ = [
     "leg_tests",
     "legs_alone",
     "legs_of",
+    "line_selections",
     "load_trial",
     "measure",
     "noise_at_speeds",

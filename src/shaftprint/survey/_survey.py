@@ -2,6 +2,7 @@
 
 import copy
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -243,10 +244,18 @@ def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SIL
     rng
         For the starts of the fits without a line, and for the parameter sets that bands are drawn from.
     """
-    comparisons = comparisons_of(survey.fits, rng=rng, progress=progress)
-    validations, remarks = validations_of(
-        survey.identification, survey.measurement, survey.trial, rng=copy.deepcopy(rng), progress=progress
-    )
+    with ThreadPoolExecutor(max_workers=1) as beside:
+        # a validation is Fourier transforms, a comparison of structures small fits: neither waits for the other
+        validating = beside.submit(
+            validations_of,
+            survey.identification,
+            survey.measurement,
+            survey.trial,
+            rng=copy.deepcopy(rng),
+            progress=progress,
+        )
+        comparisons = comparisons_of(survey.fits, rng=rng, progress=progress)
+        validations, remarks = validating.result()
     return replace(
         survey,
         comparisons=comparisons,

@@ -6,7 +6,7 @@ import numpy as np
 
 from shaftprint.catalogue import structure
 from shaftprint.identify import Identification, Settings, Uniform, Unweighted
-from shaftprint.spectra import FrequencyResponse
+from shaftprint.spectra import ExactBin, FrequencyResponse, HighestPeak, estimate_response
 from shaftprint.survey._fits import fit, priors_of
 from shaftprint.survey._measurement import Measurement, responses_of
 from shaftprint.survey._progress import SILENT, Progress
@@ -61,6 +61,16 @@ def thesis_way(
         identifications={result.structure.name: result for result in fits},
         set_point_off={result.structure.name: result for result in fits_off},
     )
+
+
+def line_selections(measurement: Measurement, trial: Trial) -> dict[str, FrequencyResponse]:
+    """Return the response as other ways to measure a sine would have it; nothing where there are no sines."""
+    if not trial.campaign.sines:
+        return {}
+    others = {"bin of the line": ExactBin(), "highest peak": HighestPeak()}
+    return {"whole periods": measurement.spectra.response} | {
+        name: estimate_response(measurement.signals, trial.campaign, method=method) for name, method in others.items()
+    }
 
 
 def set_point_scaled(response: FrequencyResponse, factor: float) -> FrequencyResponse:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
@@ -14,10 +15,12 @@ from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._signal_tables import print_lines
 from shaftprint.cli._terminal import echo, say
 from shaftprint.cli.output import Steps, force_option, no_progress_option, output_folder, print_table, progress
+from shaftprint.spectra import FrequencyResponse
 from shaftprint.survey import (
     Survey,
     ThesisMode,
     Trial,
+    line_selections,
     load_trial,
     measure,
     settings_text,
@@ -53,7 +56,8 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
     with output_folder(output, of="demo", force=force) as folder:
         with progress(hidden=no_progress) as steps:
             truth = _sail(folder, trial, campaign, seed=seed, steps=steps)
-            survey, thesis = _identify(folder / RECORDING, trial, seed=seed, steps=steps)
+            results = _identify(folder / RECORDING, trial, seed=seed, steps=steps)
+        survey, thesis = results.survey, results.thesis
         true = fingerprint_truth(truth, survey.identification.structure, survey.signals)
         # the answer first: the report takes as long again
         for remark in survey.remarks:
@@ -63,7 +67,15 @@ def command(output: Path, seed: int, short: bool, force: bool, no_progress: bool
             print_comparison(comparison)
         print_summary(survey.fingerprint, true, thesis.identifications["OL1"])
         with progress(hidden=no_progress) as steps:
-            write_results(folder, folder / RECORDING, survey, steps=steps, thesis=thesis, truth=true)
+            write_results(
+                folder,
+                folder / RECORDING,
+                survey,
+                steps=steps,
+                thesis=thesis,
+                line_selection=results.line_selection,
+                truth=true,
+            )
     _print_paths(output)
 
 
@@ -76,16 +88,29 @@ def _sail(folder: Path, trial: Trial, campaign: str, *, seed: int, steps: Steps)
     return truth
 
 
-def _identify(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> tuple[Survey, ThesisMode]:
-    """Identify the gauge-aware structure and those of the thesis, and the latter once more the thesis' way."""
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Results:
+    """What the recording gives."""
+
+    survey: Survey
+    """The gauge-aware structure and those of the thesis."""
+    thesis: ThesisMode
+    """The latter once more the thesis' way."""
+    line_selection: Mapping[str, FrequencyResponse]
+    """The response by other ways to measure a sine."""
+
+
+def _identify(recording: Path, trial: Trial, *, seed: int, steps: Steps) -> _Results:
     rng = np.random.default_rng(seed)
     with ThreadPoolExecutor(max_workers=1) as beside:
         # the file is read both ways at once: most of either is done by compiled code
         other = beside.submit(measure, recording, trial, mode="thesis")
         measurement = measure(recording, trial, progress=steps)
+        selections = beside.submit(line_selections, measurement, trial)
         fits = weighted_fits(measurement, trial, rng=rng, progress=steps)
         thesis = thesis_way(other.result(), trial, rng=rng, progress=steps)
-    return survey_of(fits, measurement, trial, rng=rng, progress=steps), thesis
+        survey = survey_of(fits, measurement, trial, rng=rng, progress=steps)
+        return _Results(survey=survey, thesis=thesis, line_selection=selections.result())
 
 
 def _print(survey: Survey, thesis: ThesisMode, true: Mapping[str, float]) -> None:

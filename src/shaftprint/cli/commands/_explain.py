@@ -19,7 +19,7 @@ from shaftprint.report import (
     inertia_table,
     integral_table,
 )
-from shaftprint.survey import Survey, fingerprint_of, load_trial, measure, thesis_way, weighted_fits
+from shaftprint.survey import Survey, fingerprint_of, line_selections, load_trial, measure, thesis_way, weighted_fits
 
 
 @click.command("explain")
@@ -52,7 +52,8 @@ def command(
             steps.begin("Finding the intervals")
             fingerprint = fingerprint_of(fits[0], measurement, trial)
             survey = Survey(trial=trial, measurement=measurement, fits=fits, fingerprint=fingerprint)
-            write_results(folder, recording, survey, steps=steps, thesis=thesis)
+            other_ways = line_selections(measurement, trial)
+            write_results(folder, recording, survey, steps=steps, thesis=thesis, line_selection=other_ways)
     _print(explanation)
     if output is not None:
         print_paths(output)
