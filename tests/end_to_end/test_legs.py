@@ -16,6 +16,7 @@ from shaftprint.survey import (
     comparisons_of,
     fingerprint_of,
     fit,
+    hints_of,
     leg_tests,
     legs_alone,
     load_trial,
@@ -140,6 +141,23 @@ def test_structures_are_compared_on_all_legs(trial, voyage):
     first, second = comparison.candidates
     assert first.hold_out.square == pytest.approx(first.hold_out.expected, rel=0.25)
     assert second.criteria.bic - first.criteria.bic > 10.0
+
+
+def test_a_leg_that_meets_a_limit_is_named(trial, voyage, tmp_path):
+    """The same ship, and one whose engine gives 800 N m at most: it meets that limit in the upper leg."""
+    measurement = measure(voyage[0], trial)
+    (hint,) = hints_of(measurement, trial, None)
+    assert hint.startswith("No leg reaches a limit that the vessel file states; nearest comes M")
+    engine = trial.vessel.engine
+    weak = trial.vessel.model_copy(
+        update={"engine": engine.model_copy(update={"full_load_torque_nm": (800.0,) * len(engine.full_load_torque_nm)})}
+    )
+    path = tmp_path / "weak.nc"
+    truth = sail(weak, trial.campaign, path, seed=12)
+    assert truth.limited["M1"] > 0.001
+    weak_trial = replace(trial, vessel=weak)
+    (hint,) = hints_of(measure(path, weak_trial), weak_trial, None)
+    assert hint.startswith("Legs reach limits of the vessel file: M1 to full load at ")
 
 
 def test_one_leg_can_be_chosen(trial, voyage):

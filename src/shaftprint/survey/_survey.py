@@ -25,7 +25,6 @@ from shaftprint.fingerprint import (
 )
 from shaftprint.identify import Identification, Settings
 from shaftprint.identify.comparison import StructureComparison
-from shaftprint.limits import limit_hints
 from shaftprint.models import Structure
 from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.signals import Mode, Signals
@@ -33,6 +32,7 @@ from shaftprint.spectra import Spectra
 from shaftprint.survey._fits import comparisons_of, fit, priors_of
 from shaftprint.survey._legs import LegTest, leg_tests
 from shaftprint.survey._legs_apart import LegAlone, apart_sentences, legs_alone
+from shaftprint.survey._limit_hints import hints_of
 from shaftprint.survey._measurement import Measurement, measure, of_legs
 from shaftprint.survey._noise import noise_at_speeds
 from shaftprint.survey._progress import SILENT, Progress
@@ -109,8 +109,8 @@ class Survey(Shown):
 
     @property
     def limit_hints(self) -> tuple[str, ...]:
-        """Whether sines and steps hint at a limit, in words."""
-        return limit_hints(self.spectra.harmonics, failed_steps(self.validations))
+        """Whether sines, steps or legs hint at a limit, in words."""
+        return hints_of(self.measurement, self.trial, failed_steps(self.validations))
 
 
 @refusing_none(SettingsError)

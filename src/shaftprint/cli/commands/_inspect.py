@@ -217,7 +217,8 @@ def _print_test(test: _Test, clocks: Sequence[LoggerClock], ship: Vessel) -> Non
     print_limit_uses(limit_uses(operation, stated_limits(ship)), is_expected=False)
     influences = clock_influences(clocks, spectra=test.spectra, signals=test.signals)
     print_findings("Findings on the signals", [*test.signals.findings, *clock_findings(influences)])
-    print_findings("Limits", limit_hints(test.spectra.harmonics))
+    if test.planned.sines:
+        print_findings("Limits", limit_hints(test.spectra.harmonics))
 
 
 def verdict(spectra: Spectra) -> str:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 # A barred range may be crossed, but not for longer [s].
 CROSSING_S = 2.0
+# A torque is at its limit where less than this share of it is left.
+REACHED = 0.02
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)
@@ -34,8 +36,10 @@ class LimitUse(Shown):
     """What is reached, in ``unit``."""
     allowed: float
     """What the limit allows then, in ``unit``."""
+    left: float
+    """How much is left between both, negative beyond the limit, in ``unit``."""
     unit: str
-    """Unit of both."""
+    """Unit of all three."""
     beyond_s: float
     """How long this excitation is beyond the limit, in all [s]."""
 
@@ -43,6 +47,11 @@ class LimitUse(Shown):
     def is_beyond(self) -> bool:
         """Whether the limit is left."""
         return self.beyond_s > 0.0
+
+    @property
+    def is_reached(self) -> bool:
+        """Whether the limit is left, or so near that whatever keeps it may act: a limiter lets nothing pass."""
+        return self.is_beyond or self.left < REACHED * abs(self.allowed)
 
     @property
     def sentence(self) -> str:
@@ -106,6 +115,7 @@ def _nearest(rule: _Rule, excitation: str, running: BoolArray, time_s: FloatArra
         time_s=float(time_s[place]),
         value=float(rule.value[place]),
         allowed=float(rule.allowed[place]),
+        left=float(rule.left[place]),
         unit=rule.unit,
         beyond_s=beyond_s,
     )

@@ -1,0 +1,43 @@
+"""Whether a recording hints at a limit that acts: by harmonics of sines and failed steps, or by what its legs reach."""
+
+from collections.abc import Sequence
+
+from shaftprint.design import LimitUse, limit_uses, recorded_operation, stated_limits
+from shaftprint.digits import plain
+from shaftprint.limits import limit_hints
+from shaftprint.survey._measurement import Measurement
+from shaftprint.survey._trial import Trial
+
+
+def hints_of(measurement: Measurement, trial: Trial, failed_steps: Sequence[str] | None) -> tuple[str, ...]:
+    """Return whether a limit may have acted, in words.
+
+    The lines of a leg have no harmonics of their own, so that what it reaches is held against the vessel file.
+
+    Parameters
+    ----------
+    failed_steps
+        Steps that a model does not predict; None where no model was held against them.
+    """
+    if not measurement.legs:
+        return limit_hints(measurement.spectra.harmonics, failed_steps)
+    operation = recorded_operation(measurement.signals, trial.campaign, trial.vessel)
+    names = {leg.name for leg in measurement.legs}
+    uses = [use for use in limit_uses(operation, stated_limits(trial.vessel)) if use.excitation in names]
+    of_sines = limit_hints(measurement.spectra.harmonics, failed_steps) if trial.campaign.sines else ()
+    return (*_of_legs(uses), *of_sines)
+
+
+def _of_legs(uses: Sequence[LimitUse]) -> tuple[str, ...]:
+    reached = [_words(use) for use in uses if use.is_reached]
+    if reached:
+        return (
+            f"Legs reach limits of the vessel file: {'; '.join(reached)}. What acts there bends the lines of the leg.",
+        )
+    nearest = min(uses, key=lambda use: use.left / abs(use.allowed))
+    return (f"No leg reaches a limit that the vessel file states; nearest comes {_words(nearest)}.",)
+
+
+def _words(use: LimitUse) -> str:
+    numbers = f"{plain(use.value, 0)} of {plain(use.allowed, 0)} {use.unit}"
+    return f"{use.excitation} to {use.limit} at {use.time_s:.1f} s, {numbers}"
