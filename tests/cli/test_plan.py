@@ -7,6 +7,7 @@ import pytest
 
 from shaftprint.campaign import load_campaign
 from shaftprint.design import read_plan
+from shaftprint.fingerprint import read_fingerprint
 
 LINE = ("--rpm-per-volt", "-251", "--offset", "-5")
 SHIP = ("--vessel", "stan-tug-1205", "--limit", "set-point=1.0V", "--no-progress")
@@ -149,3 +150,23 @@ def test_what_is_missing_or_impossible_is_one_sentence_and_leaves_no_folder(run,
     assert result.exit_code == code
     assert message in " ".join(result.stderr.split())
     assert not (tmp_path / "plan").exists()
+
+
+@pytest.mark.slow
+def test_after_a_first_test_its_numbers_noise_and_line_are_taken(run, demo, tmp_path):
+    scout = demo[0]
+    words = ("--vessel", scout / "vessel.toml", "--after", scout / "fingerprint.json", "--limit", "set-point=0.4V")
+    result = run("plan", *words, "--within", "3min", "--speeds", "1.1", "-o", tmp_path / "plan", "--no-progress")
+    assert result.exit_code == 0
+    test, first = read_plan(tmp_path / "plan"), read_fingerprint(scout / "fingerprint.json")
+    # the simulated set point: -250.97 rpm/V; at 1183.8 rpm -5 V, to which the potentiometer adds -0.0495 V
+    assert test.line.slope_rpm_per_v == pytest.approx(-250.97, rel=0.01)
+    assert test.line.offset_v == pytest.approx(-5.0495, abs=0.005)
+    # numbers are normalised where the first test was, speeds are shares of the vessel file's working point
+    assert test.plan.limits.engine_speed_rpm == first.conditions.engine_speed.value
+    assert [leg.level_rpm for leg in test.plan.legs] == pytest.approx([1.1 * 1183.8])
+    place = test.plan.ship.structure.names.index("tau_dn")
+    assert test.plan.ship.by_name["tau_dn"] == first.quantity("tau_dn").value
+    assert test.plan.ship.covariance[place, place] == pytest.approx(first.quantity("tau_dn").std ** 2)
+    assert test.plan.noise[0].frequency_hz[0] == first.noise[0].frequency_hz[0]
+    assert "noise of the first test" in " ".join(result.stdout.split())
