@@ -76,6 +76,7 @@ _INNER_ROOMS = (
     "escape",
     "files",
     "kernels",
+    "memory",
     "normalisation",
     "notebook",
     "publication",

@@ -15,6 +15,7 @@ from shaftprint import fingerprint as fingerprint
 from shaftprint import identify as identify
 from shaftprint import kernels as kernels
 from shaftprint import limits as limits
+from shaftprint import memory as memory
 from shaftprint import models as models
 from shaftprint import normalisation as normalisation
 from shaftprint import notebook as notebook
