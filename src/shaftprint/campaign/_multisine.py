@@ -11,6 +11,9 @@ from shaftprint.arrays import FloatArray
 from shaftprint.campaign._leg import Leg
 from shaftprint.settings import Number, PositiveInteger, PositiveNumber
 
+# So many samples are summed at a time: their phasors stay in the processor's cache.
+_BLOCK = 8192
+
 
 class Multisine(Leg):
     """All lines at once, and their phases chosen so that the sum stays small.
@@ -59,9 +62,23 @@ class Multisine(Leg):
 
     def value_at(self, time_s: FloatArray) -> FloatArray:
         """Return the set point [V], the level included, shape of ``time_s``."""
-        turn_rad = (2.0 * math.pi / self.period_s) * (np.asarray(time_s) - self.start_s)
-        value = np.full(turn_rad.shape, self.level_v)
-        # one line after the other: a table of lines times samples of a whole leg would need much memory
-        for harmonic, amplitude_v, phase_rad in zip(self.harmonics, self.amplitudes_v, self.phases_rad, strict=True):
-            value += amplitude_v * np.sin(harmonic * turn_rad + phase_rad)
-        return value
+        turn_rad = (2.0 * math.pi / self.period_s) * (np.asarray(time_s, dtype=np.float64) - self.start_s)
+        flat = turn_rad.reshape(-1)
+        blocks = (flat[first : first + _BLOCK] for first in range(0, flat.size, _BLOCK))
+        values = [self.level_v + self._sum_of_lines(block) for block in blocks]
+        return np.concatenate([np.empty(0), *values]).reshape(turn_rad.shape)
+
+    def _sum_of_lines(self, turn_rad: FloatArray) -> FloatArray:
+        """Return what all lines give [V] at phases of the period [rad], shape (samples,).
+
+        The phasor of each line is the one before it, turned by the gap between their harmonics. Gaps repeat, and a
+        product takes a tenth of the time of a sine: a simulated test of minutes has millions of samples.
+        """
+        gaps = np.diff(self.harmonics, prepend=0).tolist()
+        turns = {gap: np.exp(1j * gap * turn_rad) for gap in set(gaps)}
+        phasor = np.ones(turn_rad.shape, dtype=np.complex128)
+        total = np.zeros(turn_rad.shape)
+        for gap, amplitude_v, phase_rad in zip(gaps, self.amplitudes_v, self.phases_rad, strict=True):
+            phasor *= turns[gap]
+            total += amplitude_v * (math.cos(phase_rad) * phasor.imag + math.sin(phase_rad) * phasor.real)
+        return total
