@@ -9,8 +9,7 @@ test of eleven minutes takes about six seconds of one core.
 import argparse
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -19,48 +18,12 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
+from benchmarks.leg_outcomes import Outcome, outcome  # noqa: E402
 from shaftprint.campaign import Campaign  # noqa: E402
-from shaftprint.catalogue import structure  # noqa: E402
 from shaftprint.distributions import NORMAL_95  # noqa: E402
-from shaftprint.identify import Identification, Settings  # noqa: E402
-from shaftprint.signals import Signals  # noqa: E402
-from shaftprint.survey import Trial, fit, leg_tests, load_trial, measure  # noqa: E402
-from shaftprint.tug import Truth, sail  # noqa: E402
+from shaftprint.survey import load_trial  # noqa: E402
 
-NAME = "GAUGE-CLOSED"
 LOWEST_P_VALUE = 0.05
-
-
-@dataclass(frozen=True, kw_only=True)
-class Outcome:
-    """What one recording gave."""
-
-    error: Mapping[str, float]
-    """Estimate minus truth of each number."""
-    std: Mapping[str, float]
-    """Stated standard deviation of each number."""
-    truth: Mapping[str, float]
-    """True value of each number."""
-    p_value: float
-    """Of the fit to all legs."""
-    leg_p_values: tuple[float, ...]
-    """Of each leg."""
-    limited: float
-    """Largest share of a leg in which a limit of torque or rack acted."""
-
-
-def true_values(truth: Truth, signals: Signals) -> dict[str, float]:
-    """Return the true parameters as the signals are normalised: by measured speed, torque and set-point line."""
-    point, true = signals.working_point, truth.normalised
-    torque = truth.shaft_torque_nm / point.shaft_torque_nm
-    both = torque * point.engine_speed_rev_s * 60.0 / truth.engine_speed_rpm
-    return {
-        **{name: both * true[name] for name in ("K_p", "K_i", "tau_dn", "tau_up", "g")},
-        **{name: true[name] for name in ("t_d", "omega_n", "zeta", "k_q", "t_sp")},
-        "c_set": truth.set_point_slope_rpm_per_v / (60.0 * signals.calibration.slope_rev_s_per_v),
-        "t_gauge": 0.0,
-        "v": 1.0,
-    }
 
 
 def put_out(campaign: Campaign, *, clock_ppm: float, amplitude: float) -> Campaign:
@@ -75,31 +38,6 @@ def put_out(campaign: Campaign, *, clock_ppm: float, amplitude: float) -> Campai
         for leg in campaign.multisines
     ]
     return campaign.model_copy(update={"multisines": tuple(legs)})
-
-
-def outcome(trial: Trial, sailed: Campaign, seed: int, folder: Path) -> Outcome:
-    """Sail what was put out, and identify it as what was planned."""
-    path = folder / f"{seed}.nc"
-    truth = sail(trial.vessel, sailed, path, seed=seed)
-    measurement = measure(path, trial)
-    path.unlink()
-    gauge = structure(NAME)
-    (found,) = fit([gauge], measurement, settings={NAME: Settings()}, rng=np.random.default_rng(1))
-    true = true_values(truth, measurement.signals)
-    values = true | {c.name: float(c.of(true)) for c in gauge.combinations}
-    estimates = (*found.parameters, *found.combinations)
-    return Outcome(
-        error={one.name: one.value - values[one.name] for one in estimates},
-        std={one.name: one.std for one in estimates},
-        truth={one.name: values[one.name] for one in estimates},
-        p_value=_p_value(found),
-        leg_p_values=tuple(one.test.p_value or 0.0 for one in leg_tests(found, measurement.working_points)),
-        limited=max(truth.limited.values()),
-    )
-
-
-def _p_value(found: Identification) -> float:
-    return 0.0 if found.p_value is None else found.p_value
 
 
 def lines_of(outcomes: Sequence[Outcome]) -> list[str]:

@@ -111,7 +111,7 @@ def drawn_ship(seed: int, vessel: Vessel) -> Ship:
     sensors = vessel.sensors.model_copy(update={"shaft_torque": true})
     zero_nm = float(rng.normal(0.0, gauge.zero_std_nm or 0.0))
     inertia = float(rng.normal(vessel.inertia_upstream_kg_m2, vessel.inertia_upstream_std_kg_m2))
-    noise = _drawn_noise(rng)
+    noise = drawn_noise(rng)
     while True:
         tug = replace(_drawn_line(rng, vessel), inertia_upstream_kg_m2=inertia, noise=noise)
         if gain_margin(tug, vessel) >= LEAST_GAIN_MARGIN:
@@ -126,12 +126,13 @@ def drawn_ship(seed: int, vessel: Vessel) -> Ship:
 
 def _drawn_line(rng: np.random.Generator, vessel: Vessel) -> Tug:
     reference = replace(Tug(), inertia_downstream_kg_m2=vessel.inertia_downstream_kg_m2)
-    drawn = {name: getattr(reference, name) * _between(rng, *ends) for name, ends in FACTORS.items()}
+    drawn = {name: getattr(reference, name) * between(rng, *ends) for name, ends in FACTORS.items()}
     return replace(reference, **drawn, g=float(rng.normal(PRIOR_OF_G.mean, PRIOR_OF_G.std)))
 
 
-def _drawn_noise(rng: np.random.Generator) -> Noise:
-    usual, factor = Noise(), _between(rng, *NOISE_FACTOR)
+def drawn_noise(rng: np.random.Generator) -> Noise:
+    """Return a wander of the load, a surge in half of the tests, and all other noise halved to doubled."""
+    usual, factor = Noise(), between(rng, *NOISE_FACTOR)
     sizes = {
         name: factor * getattr(usual, name)
         for name in usual.__dataclass_fields__
@@ -142,13 +143,13 @@ def _drawn_noise(rng: np.random.Generator) -> Noise:
         usual,
         **sizes,
         inflow_rms=float(rng.uniform(*INFLOW_RMS)),
-        inflow_corner_hz=1.0 / (2.0 * np.pi * _between(rng, *INFLOW_TIME_S)),
+        inflow_corner_hz=1.0 / (2.0 * np.pi * between(rng, *INFLOW_TIME_S)),
         surge_rms=factor * usual.surge_rms if surges else 0.0,
-        surge_hz=_between(rng, *SURGE_HZ),
+        surge_hz=between(rng, *SURGE_HZ),
     )
 
 
-def _between(rng: np.random.Generator, low: float, high: float) -> float:
+def between(rng: np.random.Generator, low: float, high: float) -> float:
     """Draw from a range, each ratio being as likely."""
     return float(np.exp(rng.uniform(np.log(low), np.log(high))))
 

@@ -16,9 +16,13 @@ SPEEDS = (1.15, 0.70)
 
 
 def at_speed(share):
-    """The line at another speed in bollard pull: inertia times, gains and ``g`` go with one over the speed."""
-    names = ("tau_dn", "tau_up", "K_p", "K_i", "g")
-    return structure("GAUGE-CLOSED").scaled(**dict.fromkeys(names, 1.0 / share))
+    """The line at another speed in bollard pull: inertia times, gains and ``g`` go with one over the speed.
+
+    What ``k_q`` lacks to 2, the zero of the gauge over the torque, goes with one over the square.
+    """
+    over_torque = dict.fromkeys(("tau_dn", "tau_up", "K_p", "K_i", "g"), 1.0 / share)
+    moved = structure("GAUGE-CLOSED").scaled(**over_torque, k_q=share**-2)
+    return moved.offset(k_q=2.0 - 2.0 * share**-2)
 
 
 def designed(tug, limits, quick, **changed):

@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.catalogue import structure
 from shaftprint.errors import StructureError
-from shaftprint.models import at_working_point
+from shaftprint.models import at_working_point, check_structure
 
 
 def test_bollard_pull_from_physical_constants():
@@ -32,7 +32,23 @@ def test_bollard_pull_from_physical_constants():
 def test_torque_that_does_not_go_with_the_square():
     gauge = structure("GAUGE-CLOSED")
     moved = at_working_point(gauge, speed_share=0.8, torque_share=0.6)
-    assert moved.factors == pytest.approx(dict.fromkeys(("tau_dn", "tau_up", "K_p", "K_i", "g"), 0.8 / 0.6))
+    over_torque = dict.fromkeys(("tau_dn", "tau_up", "K_p", "K_i", "g"), 0.8 / 0.6)
+    assert moved.factors == pytest.approx({**over_torque, "k_q": 1.0 / 0.6})
+
+
+def test_zero_of_the_gauge():
+    """``Q n^2 + z`` is shown, and ``d ln M / d ln n`` is ``2 Q n^2 / (Q n^2 + z)``: another number at each speed."""
+    gauge, q, zero = structure("GAUGE-CLOSED"), 1.5, 0.02
+    shown = [q * speed**2 + zero for speed in (1.0, 0.7)]
+    slopes = [2.0 * q * speed**2 / torque for speed, torque in zip((1.0, 0.7), shown, strict=True)]
+    torque_share = shown[1] / shown[0]
+    moved = at_working_point(gauge, speed_share=0.7, torque_share=torque_share)
+    s = 2j * np.pi * np.geomspace(0.03, 3.0, 20)
+    values = dict(zip(gauge.names, gauge.vector({}), strict=True))
+    other = values | {name: values[name] * 0.7 / torque_share for name in ("tau_dn", "tau_up", "K_p", "K_i", "g")}
+    expected = gauge.response(gauge.vector(other | {"k_q": slopes[1]}), s)
+    assert moved.response(gauge.vector({"k_q": slopes[0]}), s) == pytest.approx(expected, rel=1e-12)
+    check_structure(moved)
 
 
 def test_shares_that_are_not_positive():

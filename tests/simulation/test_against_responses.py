@@ -60,9 +60,10 @@ OWN = {
     "inverse of what is partly late": of(1 / (1.0 + Gain(K_1) * Delay(D_1)) * LAG),
     "side by side": of(Delay(D_1) * LAG + Delay(D_4) * Gain(K_2) * FAST - Gain(K_1)),
     "no states": of(Gain(K_1) * Delay(D_1) + Gain(K_2)),
-    "tied and scaled": of(feedback(PIGovernor(K_1, K_2) * LAG * Delay(D_1)))
+    "tied, scaled and offset": of(feedback(PIGovernor(K_1, K_2) * LAG * Delay(D_1)))
     .tied("k_2", lambda k_1, T_i: k_1 / T_i, Parameter("T_i", "s", 0.1, 5.0, 1.4, "reset time"))
-    .scaled(k_1=1.3, d_1=0.7),
+    .scaled(k_1=1.3, d_1=0.7)
+    .offset(k_2=0.4),
     "two inputs": Structure(
         name="own",
         title="own",

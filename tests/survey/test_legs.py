@@ -37,7 +37,17 @@ def test_inertia_times_and_gains_go_with_speed_over_torque():
     assert other.factors["tau_dn"] * at_main == pytest.approx(0.439823, rel=1e-5)
     # a rack that changes the torque by 40 N m for an error of 1 rev/s: 40 * 20 / 1700 becomes 40 * 14 / 850
     assert other.factors["K_p"] * 40.0 * 20.0 / 1700.0 == pytest.approx(40.0 * 14.0 / 850.0)
-    assert set(other.factors) == {"tau_dn", "tau_up", "K_p", "K_i", "g"}
+    assert set(other.factors) == {"tau_dn", "tau_up", "K_p", "K_i", "g", "k_q"}
+    # a gauge that shows 51 N m too much: k_q is 2 (1 - 51 / 1700) = 1.94, and 2 (1 - 51 / 850) = 1.88 there
+    assert other.factors["k_q"] * 1.94 + other.offsets["k_q"] == pytest.approx(1.88)
+
+
+def test_zero_of_the_gauge_under_a_swinging_speed():
+    """``mean(M) / mean(u^2)`` with ``M = m u^2 + z`` is ``m + z / mean(u^2)``, whose slope is ``2 m`` over that."""
+    swinging = replace(OTHER, mean_square=1.02)
+    other = structure_at(GAUGE, swinging, main=MAIN)
+    without_zero = 850.0 - 51.0 / 1.02
+    assert other.factors["k_q"] * 1.94 + other.offsets["k_q"] == pytest.approx(2.0 * without_zero / 850.0)
 
 
 def _response(values, at, *, rng):

@@ -57,8 +57,8 @@ class ShipRole:
     """Slope of the engine torque with speed at constant rack."""
     ENGINE_RACK_SLOPE: Final = Role(name="engine slope with rack", unit="-", rack_power=1)
     """Slope of the engine torque with fuel rack."""
-    LOAD_SLOPE: Final = Role(name="load slope", unit="-", basis=frozenset(("load",)), loaded=True)
-    """Slope of the propeller torque with speed."""
+    LOAD_SLOPE: Final = Role(name="load slope", unit="-", basis=frozenset(("load",)), law=2.0, loaded=True)
+    """Slope of the propeller torque with speed, which goes with its square; less where the gauge shows a zero."""
     INFLOW_SLOPE: Final = Role(name="inflow slope", unit="-", loaded=True)
     """Slope of the propeller torque with the speed of the slipstream."""
     LOOP_DELAY: Final = _line("loop delay", "s", "delay", "governor")

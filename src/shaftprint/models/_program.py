@@ -95,7 +95,7 @@ def program_of(structure: Structure, zeros: Iterable[str] = ()) -> Program:
 
 
 def _leaves(structure: Structure, zeros: frozenset[str]) -> dict[str, Formula]:
-    """Return every parameter as the blocks take it: a leaf, a formula where it is tied, times its factor."""
+    """Return every parameter as the blocks take it: a leaf, a formula where it is tied, with factor and offset."""
     leaves = {
         name: number(0.0) if name in zeros else Formula("parameter", name=name, place=i)
         for i, name in enumerate(structure.names)
@@ -105,7 +105,10 @@ def _leaves(structure: Structure, zeros: frozenset[str]) -> dict[str, Formula]:
     for tie in structure.ties:
         formula: Callable[..., Any] = tie.of
         values[tie.name] = as_formula(formula(*(leaves[argument] for argument in tie.arguments)))
-    return {name: value * structure.factors.get(name, 1.0) for name, value in values.items()}
+    return {
+        name: value * structure.factors.get(name, 1.0) + structure.offsets.get(name, 0.0)
+        for name, value in values.items()
+    }
 
 
 def _output(flow: Flow, structure: Structure, output: str, inputs: Mapping[str, Formula]) -> tuple[Formula, Formula]:

@@ -42,6 +42,9 @@ class Role:
     """What it is made of; empty where that is everything."""
     over_torque: bool = False
     """Whether it is a physical value over the torque and times the speed of the working point, and so moves with it."""
+    law: float | None = None
+    """Value that a law gives it whatever the torque. What it lacks to that is a constant torque over the torque of the
+    working point, such as a zero of the gauge, and so moves with that; None where there is no such law."""
     loaded: bool = False
     """Whether it is a slope of the propeller torque, which grows with the load of a test line."""
     rack_power: int = 0

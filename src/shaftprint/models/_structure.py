@@ -47,6 +47,8 @@ class Structure(Shown):
     """Parameters of the blocks that follow from independent ones."""
     factors: Mapping[str, float] = field(default_factory=dict)
     """Factor on a parameter of the blocks, by name: what another working point makes of it."""
+    offsets: Mapping[str, float] = field(default_factory=dict)
+    """What is added to a parameter of the blocks after its factor, by name, for the same reason."""
     channels: tuple[tuple[str, str], ...] = field(init=False)
     """Output and input of each response, outputs slowest."""
     paths: tuple[Expression, ...] = field(init=False)
@@ -203,6 +205,17 @@ class Structure(Shown):
         self._expect_names(factors, tied=True)
         return replace(self, factors={**self.factors, **factors})
 
+    def offset(self, **offsets: float) -> "Structure":
+        """Return the structure with something added to some parameters after their factors.
+
+        Raises
+        ------
+        StructureError
+            If a name is not a parameter of the blocks.
+        """
+        self._expect_names(offsets, tied=True)
+        return replace(self, offsets={**self.offsets, **offsets})
+
     def of_outputs(self, *names: str) -> "Structure":
         """Return the structure with some of its outputs; parameters that they do not show are left out.
 
@@ -261,9 +274,13 @@ class Structure(Shown):
         return columns | {tie.name: tie.value(columns) for tie in self.ties}
 
     def columns(self, table: FloatArray) -> dict[str, FloatArray]:
-        """Return every parameter with its factor, as the blocks take it: shape (..., 1), from (..., parameters)."""
+        """Return every parameter as the blocks take it, factor and offset included.
+
+        Each has shape (..., 1), the table (..., parameters).
+        """
         columns = {name: np.asarray(value)[..., None] for name, value in self.named(table).items()}
-        return columns | {name: columns[name] * factor for name, factor in self.factors.items()}
+        columns |= {name: columns[name] * factor for name, factor in self.factors.items()}
+        return columns | {name: columns[name] + offset for name, offset in self.offsets.items()}
 
     def vector(self, values: Mapping[str, float]) -> FloatArray:
         """Return all parameter values in order, shape (parameters,); those not named take their default.

@@ -4,11 +4,15 @@ from shaftprint.errors import StructureError
 from shaftprint.models._structure import Structure
 
 
-def at_working_point(structure: Structure, *, speed_share: float, torque_share: float | None = None) -> Structure:
+def at_working_point(
+    structure: Structure, *, speed_share: float, torque_share: float | None = None, shown_share: float | None = None
+) -> Structure:
     """Return a structure as it is normalised at another working point; its parameters keep their values at the first.
 
     A parameter whose role is ``over_torque`` is a physical value times the speed over the torque, so it goes with
-    ``speed_share / torque_share`` (thesis eqs 2.14-2.25); delays and lags stay.
+    ``speed_share / torque_share`` (thesis eqs 2.14-2.25); delays and lags stay. What a parameter lacks to the ``law``
+    of its role goes with one over the torque that is shown: a gauge whose zero is ``z`` shows ``M = Q n^2 + z``, and
+    the slope ``n / M dM/dn`` is ``2 (1 - z / M)``.
 
     Parameters
     ----------
@@ -16,6 +20,9 @@ def at_working_point(structure: Structure, *, speed_share: float, torque_share: 
         Speed of the other working point over that of the first.
     torque_share
         The same of the torque; the square of the speed's in bollard pull, where it is not given.
+    shown_share
+        The same of the mean torque that is shown, in which a swinging speed has no part of a zero; ``torque_share``
+        where it is not given.
 
     Raises
     ------
@@ -23,10 +30,13 @@ def at_working_point(structure: Structure, *, speed_share: float, torque_share: 
         If a share is not positive.
     """
     torque = speed_share**2 if torque_share is None else torque_share
-    if not (speed_share > 0.0 and torque > 0.0):
+    shown = torque if shown_share is None else shown_share
+    if not (speed_share > 0.0 and torque > 0.0 and shown > 0.0):
         raise StructureError(
             f"structure {structure.name} at another working point: expected positive shares of speed and torque, "
             f"found {speed_share:g} and {torque:g}."
         )
-    factor = speed_share / torque
-    return structure.scaled(**{name: factor for name, role in structure.roles.items() if role.over_torque})
+    over_torque = {name: speed_share / torque for name, role in structure.roles.items() if role.over_torque}
+    laws = {name: role.law for name, role in structure.roles.items() if role.law is not None}
+    moved = structure.scaled(**over_torque, **dict.fromkeys(laws, 1.0 / shown))
+    return moved.offset(**{name: law * (1.0 - 1.0 / shown) for name, law in laws.items()})

@@ -62,10 +62,12 @@ def structure_at(structure: Structure, point: "WorkingPoint", *, main: "WorkingP
     point, main
         The other working point, and that of the parameters.
     """
+    torque_share = point.shaft_torque_nm / main.shaft_torque_nm
     return at_working_point(
         structure,
         speed_share=point.engine_speed_rev_s / main.engine_speed_rev_s,
-        torque_share=point.shaft_torque_nm / main.shaft_torque_nm,
+        torque_share=torque_share,
+        shown_share=torque_share * point.mean_square / main.mean_square,
     )
 
 

@@ -62,7 +62,8 @@ def leg_state(samples: LegSamples) -> LegState:
     periods = samples.periods
     speed = float(samples.speed_rev_s.mean())
     square = (samples.speed_rev_s / speed) ** 2
-    torque = float(samples.torque_nm.mean() / square.mean())
+    mean_square = float(square.mean())
+    torque = float(samples.torque_nm.mean()) / mean_square
     speed_std = _std_of_mean(samples.speed_rev_s, periods.periods)
     load_std = _std_of_mean(samples.torque_nm / torque - square, periods.periods)
     point = WorkingPoint(
@@ -72,6 +73,7 @@ def leg_state(samples: LegSamples) -> LegState:
         shaft_torque_std_nm=abs(torque) * float(np.hypot(load_std, 2.0 * speed_std / speed)),
         set_point_v=float(samples.set_point_v.mean()),
         load_std=load_std,
+        mean_square=mean_square,
     )
     return LegState(
         name=samples.leg.name,
