@@ -105,6 +105,6 @@ def _p_values(outcomes: Sequence[Outcome]) -> str:
     limited = 100.0 * max(one.limited for one in outcomes)
     return (
         f"p-value of the joint fit: mean {p_values.mean():.2f}, below {LOWEST_P_VALUE:g} in "
-        f"{100.0 * np.mean(p_values < LOWEST_P_VALUE):.0f} %. A limit of torque or rack acted for at most {limited:.2g} "
-        "% of a leg."
+        f"{100.0 * np.mean(p_values < LOWEST_P_VALUE):.0f} %. A limit of torque or rack acted for at most {limited:.2g}"
+        " % of a leg."
     )
