@@ -157,7 +157,7 @@ def delayed(one: Outcome, delay_s: float) -> Outcome:
     )
 
 
-def outcomes_of(case: Case, campaign: Campaign, seeds: range, *, kept: Path | None) -> Iterator[Outcome]:
+def outcomes_of(case: Case, campaign: Campaign, seeds: range, *, kept: Path | None = None) -> Iterator[Outcome]:
     """Give what each recording of a case gave, from the file where it stands there already."""
     lines = kept.read_text(encoding="utf-8").splitlines() if kept and kept.exists() else []
     earlier = {one.seed: one for one in (Outcome(**json.loads(line)) for line in lines)}

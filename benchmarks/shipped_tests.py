@@ -3,7 +3,7 @@
 Limits are those of its vessel file, and the set point moves by 1 V at most. The plan knows governor and engine of the
 simulated tug; for a ship that is not known so well, plan its own test. Run ``python -m benchmarks.shipped_tests`` (a
 few seconds each) to make the files again, with ``--output FOLDER`` elsewhere; with ``--sail 20`` to sail the files as
-they are and to identify them (ten seconds of processor time a recording), nothing of the builder known.
+they are and to identify them (four seconds of processor time a recording), nothing of the builder known.
 """
 
 import argparse
@@ -13,17 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.planned_tests import (
-    CLOSED,
-    OFFSET_V,
-    SLOPE_RPM_PER_V,
-    TRUTH,
-    VESSEL,
-    Case,
-    print_rehearsal,
-    sailed,
-    truth_of,
-)
+from benchmarks.planned_tests import CLOSED, OFFSET_V, SLOPE_RPM_PER_V, TRUTH, VESSEL, Case, outcomes_of
+from benchmarks.planned_tests_tables import case_table
 from shaftprint.campaign import Campaign, campaign_text, load_campaign
 from shaftprint.design import (
     Plan,
@@ -32,7 +23,6 @@ from shaftprint.design import (
     design_campaign,
     limits_from_vessel,
     no_worse_than,
-    rehearse,
 )
 from shaftprint.identify import STAN_TUG_NOISE, Prior, planned_response, predict_accuracy
 
@@ -111,11 +101,9 @@ def sail_file(file: str, test: ShippedTest, seeds: int) -> None:
     """Sail a shipped campaign and print its errors beside what was planned."""
     limits = limits_from_vessel(VESSEL, set_point_rpm=SET_POINT_RPM)
     case = Case(name=test.name, limits=limits, speeds=SPEEDS, minutes=test.minutes)
-    campaign, plan = load_campaign(file), planned(test)
-    rehearsal = rehearse(
-        plan, lambda seed: sailed(case, campaign, seed), truth=truth_of(case), seeds=range(1, seeds + 1)
-    )
-    print_rehearsal(case, plan, rehearsal)
+    outcomes = list(outcomes_of(case, load_campaign(file), range(1, seeds + 1)))
+    predicted = {name: planned(test).predicted.estimate(name).std for name in outcomes[0].error}
+    print(case_table(case.name, outcomes, predicted, TRUTH, {}))
 
 
 def main() -> None:

@@ -54,6 +54,18 @@ def test_predicted_deviations_are_those_of_the_same_lines(plan, truth):
         assert plan.predicted.estimate(estimate.name).std == pytest.approx(estimate.std, rel=1e-6)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("within_s", "periods"), [(240.0, 4), (480.0, 7)])
+def test_a_leg_of_slow_lines_settles_too(tug, limits, quick, within_s, periods):
+    """The set-point line alone is told by slow lines, which seldom pass the level: a first period settles then."""
+    plan = designed(tug, limits, quick, wish=Wish(relative={"c_set": 1e-3}), within_s=within_s)
+    assert all(leg.settle_s >= 4.0 for leg in plan.legs)
+    assert any(leg.settle_s > leg.period_s for leg in plan.legs)
+    # what is left to settle is no window: the plan stays within its time and does not count on it
+    assert plan.duration_s <= within_s
+    assert min(leg.periods for leg in plan.legs) == periods - 1
+
+
 def test_time_table_of_the_legs(plan):
     """10 s at rest, a ramp of 30 rpm/s over 0.45 of 1183.8 rpm, up to 10 s to settle in each leg: the rest are windows.
 

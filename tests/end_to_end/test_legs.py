@@ -124,7 +124,6 @@ def test_a_governor_that_is_another_at_the_other_speed_is_refused(trial, voyage,
     assert sentence.endswith("The result of one speed is had with --leg M1 or --leg M2.")
 
 
-<<<<<<< HEAD
 def test_structures_are_compared_on_all_legs(trial, voyage):
     """A governor without the delay that the tug has is told apart, by criterion, nesting and lines left out."""
     measurement = measure(voyage[0], trial)
@@ -159,7 +158,8 @@ def test_a_leg_that_meets_a_limit_is_named(trial, voyage, tmp_path):
     weak_trial = replace(trial, vessel=weak)
     (hint,) = hints_of(measure(path, weak_trial), weak_trial, None)
     assert hint.startswith("Legs reach limits of the vessel file: M1 to full load at ")
-=======
+
+
 def test_a_zero_of_the_gauge_is_found_and_spoils_nothing(trial, tmp_path):
     """75 N m, three deviations of what the vessel file states: 3.3 % of the torque of one leg, 8.9 % of the other."""
     path = tmp_path / "zero.nc"
@@ -170,7 +170,6 @@ def test_a_zero_of_the_gauge_is_found_and_spoils_nothing(trial, tmp_path):
     true = as_measured(truth, measurement.signals) | {"k_q": 2.0 * (1.0 - 75.0 / point.shaft_torque_nm)}
     assert max(abs(one.value - true[one.name]) / one.std for one in found.parameters) < 3.5
     assert found.p_value > 0.01
->>>>>>> 4773e37 (A zero of the torque gauge does not spoil the fit to two speeds: what k_q lacks to 2 goes with one over the torque)
 
 
 def test_one_leg_can_be_chosen(trial, voyage):

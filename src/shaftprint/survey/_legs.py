@@ -92,6 +92,7 @@ def leg_pairs(
                 structure,
                 speed_share=leg.working_point.engine_speed_rev_s / speed_rev_s,
                 torque_share=leg.working_point.shaft_torque_nm / shaft_torque_nm,
+                shown_share=leg.working_point.mean_square * leg.working_point.shaft_torque_nm / shaft_torque_nm,
             ),
             leg.spectra.response.of_outputs(*structure.outputs),
         )
