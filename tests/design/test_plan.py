@@ -60,7 +60,7 @@ def test_a_leg_of_slow_lines_settles_too(tug, limits, quick, within_s, periods):
     """The set-point line alone is told by slow lines, which seldom pass the level: a first period settles then."""
     plan = designed(tug, limits, quick, wish=Wish(relative={"c_set": 1e-3}), within_s=within_s)
     assert all(leg.settle_s >= 4.0 for leg in plan.legs)
-    assert any(leg.settle_s > leg.period_s for leg in plan.legs)
+    assert any(leg.settle_s >= leg.period_s for leg in plan.legs)
     # what is left to settle is no window: the plan stays within its time and does not count on it
     assert plan.duration_s <= within_s
     assert min(leg.periods for leg in plan.legs) == periods - 1
