@@ -25,6 +25,7 @@ LEVELS = NoiseLevels(
     density=1e-6 * np.array([[[2.0, 1.0 + 0.5j], [1.0 - 0.5j, 2.0]], [[3.0, 1.0j], [-1.0j, 3.0]]]),
     outputs=("n", "M_s"),
     set_point_per_v=0.184,
+    orders_hz=(5.94, 17.8),
 )
 
 
@@ -51,7 +52,7 @@ def test_legs_and_noise_come_back_as_they_were(of_legs, path):
     assert [(leg.name, leg.p_value) for leg in kept.legs] == [("M1", 0.42), ("M2", None)]
     ((speed, levels),) = kept.noise_at_speeds.items()
     assert speed == 1361.4
-    assert levels.outputs == ("n", "M_s")
+    assert (levels.outputs, levels.orders_hz) == (("n", "M_s"), (5.94, 17.8))
     assert np.array_equal(levels.density, LEVELS.density)
     assert np.array_equal(levels.at([0.2]), LEVELS.at([0.2]))
     content = json.loads(path.read_text(encoding="utf-8"))
@@ -115,6 +116,7 @@ def test_a_later_2_with_wrong_fields_is_refused(of_legs, path):
         (lambda noise: noise["density_real"][0][0].__setitem__(0, "NaN"), "Hermitian, positive definite density"),
         (lambda noise: noise.update(set_point_per_v=0.0), "set_point_per_v: Input should be greater than 0"),
         (lambda noise: noise.update(outputs=[]), "expected densities of shape"),
+        (lambda noise: noise.update(orders_hz=[-1.0]), r"orders_hz\.0: Input should be greater than 0"),
     ],
 )
 def test_a_spectrum_that_is_none_is_refused(of_legs, path, change, message):

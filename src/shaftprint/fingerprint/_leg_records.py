@@ -51,6 +51,8 @@ class NoiseSpectrum(FrozenRecord):
     """Real part of the density matrix [1/Hz], shape (frequencies, outputs, outputs)."""
     density_imaginary: tuple[tuple[tuple[float, ...], ...], ...]
     """Imaginary part of it [1/Hz], the same shape."""
+    orders_hz: tuple[PositiveFloat, ...] = ()
+    """Where orders of the shaft line stand at that speed [Hz]; they were taken out of the torque."""
 
     @model_validator(mode="after")
     def _is_a_spectrum(self) -> Self:
@@ -72,6 +74,7 @@ class NoiseSpectrum(FrozenRecord):
             density=density,
             outputs=self.outputs,
             set_point_per_v=self.set_point_per_v,
+            orders_hz=self.orders_hz,
         )
 
 
@@ -109,6 +112,7 @@ def noise_spectra(levels: Mapping[float, NoiseLevels]) -> tuple[NoiseSpectrum, .
             frequency_hz=tuple(one.frequency_hz.tolist()),
             density_real=one.density.real.tolist(),
             density_imaginary=one.density.imag.tolist(),
+            orders_hz=one.orders_hz,
         )
         for speed_rpm, one in levels.items()
     )
