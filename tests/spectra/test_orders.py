@@ -8,7 +8,7 @@ import pytest
 from shaftprint.campaign import Campaign, Sine, Staircase
 from shaftprint.identify import STAN_TUG_NOISE, planned_response
 from shaftprint.recording import read_recording
-from shaftprint.signals import TrackedOrder, prepare_signals
+from shaftprint.signals import TrackedOrder, prepare_signals, tracked_orders
 from shaftprint.spectra import estimate_spectra
 from shaftprint.spectra.orders import fit_orders
 from shaftprint.tug import Tug, linearised_response, sail
@@ -110,6 +110,45 @@ def test_slow_lines_are_left_alone(made):
     searched, plain = (estimate_spectra(one, campaign).response for one in (signals, replace(signals, orders=())))
     assert np.array_equal(searched.response, plain.response)
     assert np.array_equal(searched.covariance, plain.covariance)
+
+
+def test_an_order_through_rounded_gears_is_found_where_it_is(made):
+    """A ratio off by 0.13 % turns the order by one turn and a third in 200 s."""
+    rounded = replace(SHAFT, per_turn=SHAFT.per_turn * 1.0013)
+    through = replace(rounded, through_gears=True)
+    z, ratios = [], []
+    for seed in range(20):
+        signals, campaign = made(seed, seconds=200.0)
+        exact, blind, measured = (
+            _torque(estimate_spectra(replace(signals, orders=(order,)), campaign))
+            for order in (SHAFT, rounded, through)
+        )
+        z.append(measured[0] / measured[1])
+        ratios.append((measured[1] / exact[1], blind[1] / exact[1]))
+    assert np.sqrt(np.mean(np.square(z))) == pytest.approx(1.0, abs=0.3)
+    found, lost = np.median(ratios, axis=0)
+    assert found == pytest.approx(1.0, abs=0.1)
+    assert lost > 2.0
+
+
+def test_without_the_order_in_the_record_rounded_gears_change_nothing(made):
+    signals, campaign = made(4, order=0.0)
+    through = replace(SHAFT, through_gears=True)
+    responses = [
+        estimate_spectra(replace(signals, orders=(order,)), campaign).response.response for order in (SHAFT, through)
+    ]
+    assert np.array_equal(*responses)
+
+
+@pytest.mark.parametrize(
+    ("sensors", "expected"),
+    [(("n_e", "n_e4"), ("n_e4", False, "n_e", False)), (("n_e",), ("n_e", True, "n_e", False))],
+)
+def test_an_order_turns_with_the_finest_pick_up_of_its_shaft(sensors, expected):
+    vessel = load_vessel("stan-tug-1205")
+    orders = {one.name: one for one in tracked_orders(vessel, dict.fromkeys(sensors))}
+    shaft, engine = orders["shaft order 1"], orders["engine order 1/2"]
+    assert (shaft.speed, shaft.through_gears, engine.speed, engine.through_gears) == expected
 
 
 def test_in_thesis_mode_orders_stay_in_and_a_line_on_one_says_so(made):

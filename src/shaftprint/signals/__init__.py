@@ -22,7 +22,7 @@ from shaftprint.signals._content import Content, content_of
 from shaftprint.signals._contradictions import contradictions
 from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._inspect import ChannelReport, PulseReport, channel_reports, inspect_channels
-from shaftprint.signals._orders import TrackedOrder
+from shaftprint.signals._orders import TrackedOrder, tracked_orders
 from shaftprint.signals._prepare import find_tests, prepare_signals
 from shaftprint.signals._signals import Repair, SetPointCalibration, Signals, StepDelay, StripAngles
 from shaftprint.signals._working_points import LegState, WorkingPoint
@@ -64,4 +64,5 @@ __all__ = [
     "prepare_signals",
     "proposed_campaign",
     "read_channels",
+    "tracked_orders",
 ]

@@ -19,6 +19,8 @@ class TrackedOrder:
     """Periods in one turn of the engine, as the speed below counts them."""
     speed: str
     """Name of the speed whose integral is the angle."""
+    through_gears: bool = False
+    """Whether the pick-up is on the other shaft, so that the angle is as exact as the gear ratio of the vessel file."""
 
 
 def tracked_orders(vessel: "Vessel", speeds: Mapping[str, "SpeedSignal"]) -> tuple[TrackedOrder, ...]:
@@ -33,13 +35,15 @@ def tracked_orders(vessel: "Vessel", speeds: Mapping[str, "SpeedSignal"]) -> tup
     speeds
         Speeds of the recording by name, the one that is identified first.
     """
-    return tuple(
-        TrackedOrder(name=order.name, per_turn=order.per_engine_turn, speed=_pick_up(order, vessel, speeds))
-        for order in vessel.orders
-    )
+    return tuple(_tracked(order, vessel, speeds) for order in vessel.orders)
 
 
-def _pick_up(order: "Order", vessel: "Vessel", speeds: Mapping[str, "SpeedSignal"]) -> str:
+def _tracked(order: "Order", vessel: "Vessel", speeds: Mapping[str, "SpeedSignal"]) -> TrackedOrder:
     own = [one for one in vessel.sensors.speed if one.shaft == order.shaft and one.name in speeds]
     finest = max(own, key=lambda one: one.pulses_per_revolution, default=None)
-    return next(iter(speeds)) if finest is None else finest.name
+    return TrackedOrder(
+        name=order.name,
+        per_turn=order.per_engine_turn,
+        speed=next(iter(speeds)) if finest is None else finest.name,
+        through_gears=finest is None,
+    )

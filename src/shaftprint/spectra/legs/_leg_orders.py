@@ -9,7 +9,15 @@ import numpy as np
 from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
 from shaftprint.spectra.legs._leg_window import LegWindow
 from shaftprint.spectra.lines import words_at
-from shaftprint.spectra.orders import LineOrders, OrderBand, OrderFit, fit_orders, order_bands, order_waves
+from shaftprint.spectra.orders import (
+    LineOrders,
+    OrderBand,
+    OrderFit,
+    fit_orders,
+    order_bands,
+    order_waves,
+    with_measured_gears,
+)
 
 if TYPE_CHECKING:
     from shaftprint.signals import TrackedOrder
@@ -77,11 +85,12 @@ def without_leg_orders(
     if not bands:
         return window, None
     torque = window.channels.index(_TORQUE)
-    waves = order_waves(bands, speeds, load.ravel(), rate_hz=rate_hz)
-    transformed = np.fft.rfft(waves, axis=1) * (2.0 / waves.shape[1])
     spectrum = window.spectrum()
     duration_s = state.period_s * state.periods
     chosen = _bins_of(bands, spectrum[window.channels.index(excitation)], state.periods, duration_s)
+    bands = with_measured_gears(bands, speeds, load.ravel(), spectrum[torque], chosen, rate_hz=rate_hz)
+    waves = order_waves(bands, speeds, load.ravel(), rate_hz=rate_hz)
+    transformed = np.fft.rfft(waves, axis=1) * (2.0 / waves.shape[1])
     fit = fit_orders(spectrum[torque], transformed, chosen)
     values = window.values.copy()
     values[torque] -= (fit.coefficient @ waves).reshape(values[torque].shape)

@@ -7,11 +7,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.spectra.lines._line_fit import WindowSamples
+from shaftprint.spectra.lines._line_fit import LineFit, WindowSamples
 from shaftprint.spectra.lines._noise import residual_spectrum
 from shaftprint.spectra.lines._signal_to_noise import NEIGHBOUR_BINS
 from shaftprint.spectra.lines._sine_fit import WholePeriodSine
-from shaftprint.spectra.orders import LineOrders, OrderBand, fit_orders, order_bands, order_waves
+from shaftprint.spectra.orders import (
+    LineOrders,
+    OrderBand,
+    fit_orders,
+    order_bands,
+    order_waves,
+    with_measured_gears,
+)
 
 if TYPE_CHECKING:
     from shaftprint.signals import TrackedOrder
@@ -42,17 +49,22 @@ def without_orders(
     The window, and what the orders cost the line; the same window and None where no order reaches it.
     """
     speeds = _speeds(samples, orders, references)
-    bands = [band for band in order_bands(orders, speeds, rate_hz=samples.rate_hz) if _reaches(band, samples)]
+    every = order_bands(orders, speeds, rate_hz=samples.rate_hz)
+    bands = tuple(band for band in every if _reaches(band, samples))
     if not bands:
         return samples, None
-    waves = order_waves(bands, speeds, samples.of(speed) ** 2, rate_hz=samples.rate_hz)
-    fit = WholePeriodSine().fit(replace(samples, channels=(_TORQUE,), values=np.vstack([samples.of(_TORQUE), waves])))
-    spectrum = residual_spectrum(fit)
-    found = fit_orders(spectrum[0], spectrum[1:], _bins_of(bands, samples, spectrum.shape[1], len(fit.amplitude)))
+    load = samples.of(speed) ** 2
+    alone = _fit(samples, samples.of(_TORQUE)[np.newaxis])
+    torque = residual_spectrum(alone)[0]
+    chosen = _bins_of(bands, samples, torque.size, len(alone.amplitude))
+    bands = with_measured_gears(bands, speeds, load, torque, chosen, rate_hz=samples.rate_hz)
+    waves = order_waves(bands, speeds, load, rate_hz=samples.rate_hz)
+    fit = _fit(samples, waves)
+    found = fit_orders(torque, residual_spectrum(fit), chosen)
     values = samples.values.copy()
     values[samples.channels.index(_TORQUE)] -= found.coefficient @ waves
     cost = LineOrders(
-        variance=found.variance_at(fit.amplitude[0, 1:]),
+        variance=found.variance_at(fit.amplitude[0]),
         taken=found.taken,
         words=words_at(bands, samples.window.frequency_hz, _BESIDE_BINS / samples.window.duration_s),
     )
@@ -72,6 +84,11 @@ def left_in_remark(samples: WindowSamples, orders: "Sequence[TrackedOrder]", ref
     bands = order_bands(orders, speeds, rate_hz=samples.rate_hz)
     on = [band.words for band in bands if band.reaches(frequency - bin_hz, frequency + bin_hz)]
     return f"stands on {', '.join(on)}, which was left in the torque" if on else ""
+
+
+def _fit(samples: WindowSamples, values: FloatArray) -> LineFit:
+    """Return the sine of a window in other values."""
+    return WholePeriodSine().fit(replace(samples, channels=(), values=values))
 
 
 def _speeds(

@@ -1,0 +1,86 @@
+"""Orders of a shaft without a pick-up of its own: the gear ratio of the vessel file is rounded.
+
+A ratio of 3.82 may be 3.8167: over five minutes at 5 Hz the angle of the order is then wrong by one and a half turns,
+and of an order taken out by it nothing is gone. The torque turned back by the angle shows the order as a slow rotation,
+whose speed is the error of the ratio.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, ComplexArray, FloatArray
+from shaftprint.spectra.orders._order_waves import OrderBand, order_waves
+
+# Half a unit of the third digit of a ratio such as 3.82, and somewhat more.
+_LARGEST_ERROR = 2e-3
+# Frequencies for each bin, so that a rotation between two bins is found.
+_FINER = 4
+# Power over the median of the bins that noise has once in a million.
+_LEAST_PEAK = 20.0
+_STEPS = 4
+
+
+def with_measured_gears(
+    bands: Sequence[OrderBand],
+    speeds_rev_s: Mapping[str, FloatArray],
+    load: FloatArray,
+    torque: ComplexArray,
+    chosen: BoolArray,
+    *,
+    rate_hz: float,
+) -> tuple[OrderBand, ...]:
+    """Return the bands with their orders as the torque shows them, where the angle comes through the gears.
+
+    Parameters
+    ----------
+    bands
+        Orders that are wanted; those of a shaft with a pick-up stay, and those that do not stand out.
+    speeds_rev_s
+        Engine speed of every pick-up by its name [rev/s], each of shape (samples,).
+    load
+        Propeller load over that at the working point, shape (samples,).
+    torque
+        Fourier amplitudes of the torque, shape (bins,).
+    chosen
+        Bins of the bands without test lines, shape (bins,).
+    rate_hz
+        Rate of the samples [Hz].
+    """
+    if not any(band.order.through_gears for band in bands):
+        return tuple(bands)
+    rest = np.fft.irfft(np.where(chosen, torque, 0.0), n=load.size)
+    noise = float(np.median(np.abs(torque[chosen]) ** 2))
+    measured = []
+    for band in bands:
+        if band.order.through_gears:
+            cosine, sine = order_waves([band], speeds_rev_s, load, rate_hz=rate_hz)
+            order_hz = band.order.per_turn * float(speeds_rev_s[band.order.speed].mean())
+            error = _rotation_hz(rest * (cosine - 1j * sine), noise, _LARGEST_ERROR * order_hz, rate_hz) / order_hz
+            band = replace(band, order=replace(band.order, per_turn=band.order.per_turn * (1.0 + error)))
+        measured.append(band)
+    return tuple(measured)
+
+
+def _rotation_hz(turned: ComplexArray, noise: float, largest_hz: float, rate_hz: float) -> float:
+    """Return the frequency of what stands out in a record that was turned back [Hz]; 0 where nothing does.
+
+    The highest of the finer bins, and from there the highest power by Newton's method.
+    """
+    power = np.abs(np.fft.fft(turned, n=_FINER * turned.size)) ** 2
+    bin_hz = rate_hz / power.size
+    reach = int(np.ceil(largest_hz / bin_hz))
+    place = np.arange(-reach, reach + 1)
+    strongest = int(place[np.argmax(power[place])])
+    if power[strongest] < _LEAST_PEAK * noise:
+        return 0.0
+    angle = 2.0 * np.pi * (np.arange(turned.size) - 0.5 * turned.size) / rate_hz
+    hertz = strongest * bin_hz
+    for _ in range(_STEPS):
+        still = turned * np.exp(-1j * hertz * angle)
+        total, first, second = (complex(np.sum((-1j * angle) ** order * still)) for order in range(3))
+        slope = (total.conjugate() * first).real
+        curvature = abs(first) ** 2 + (total.conjugate() * second).real
+        hertz -= slope / curvature
+    return hertz
