@@ -70,7 +70,11 @@ SLOW = {
     "validate": ("validate", *TEST, "--fingerprint", "{demo}", "--thesis-sets"),
     "explain": ("explain", *TEST),
     "limits": ("limits", *TEST),
-}
+    "plan": (
+        "plan", "--vessel", "stan-tug-1205", "--within", "3min", "--limit", "set-point=0.5V", "--rpm-per-volt", "-251",
+        "--offset", "-5", "--wish", "tau_dn=10%", "-o", "{o}",
+    ),
+}  # fmt: skip
 
 
 def _expect_all_readable(tables_of, words, folder, tmp_path):
