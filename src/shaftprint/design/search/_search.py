@@ -19,7 +19,7 @@ class Effort(Shown):
     """Powers of the norm of the uses, one stage each: the first are smooth, the last is near the largest use."""
     steps: int = 200
     """Most steps of a stage."""
-    restarts: int = 2
+    restarts: int = 4
     """Starts from random phases; the best plan is taken."""
     accuracy_draws: int = 6
     """Possible ships over which the criterion is averaged."""
