@@ -439,7 +439,7 @@ def test_what_is_made_for_responses_alone_says_so(lag, mixed):
         refit(found, np.zeros((1, 1, 6)))
     part = found.parts[0]
     renamed = replace(found, parts=(replace(part, structure=replace(part.structure, name="OTHER")),))
-    with pytest.raises(IdentificationError, match="only fits to a single frequency response"):
+    with pytest.raises(IdentificationError, match="only fits to frequency responses are compared"):
         compare_fits([found, renamed], rng=np.random.default_rng(1))
     with pytest.raises(IdentificationError, match="record R1 is weighted by its noise"):
         identify_jointly(
