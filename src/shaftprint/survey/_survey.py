@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 from typing import TypeAlias
 
@@ -244,18 +245,23 @@ def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SIL
     rng
         For the starts of the fits without a line, and for the parameter sets that bands are drawn from.
     """
-    with ThreadPoolExecutor(max_workers=1) as beside:
+    validated = partial(
+        validations_of,
+        survey.identification,
+        survey.measurement,
+        survey.trial,
+        rng=copy.deepcopy(rng),
+        progress=progress,
+    )
+    comparisons: tuple[StructureComparison, ...] = ()
+    if len(survey.fits) == 1:
+        validations, remarks = validated()
+    else:
         # a validation is Fourier transforms, a comparison of structures small fits: neither waits for the other
-        validating = beside.submit(
-            validations_of,
-            survey.identification,
-            survey.measurement,
-            survey.trial,
-            rng=copy.deepcopy(rng),
-            progress=progress,
-        )
-        comparisons = comparisons_of(survey.fits, rng=rng, progress=progress)
-        validations, remarks = validating.result()
+        with ThreadPoolExecutor(max_workers=1) as beside:
+            validating = beside.submit(validated)
+            comparisons = comparisons_of(survey.fits, rng=rng, progress=progress)
+            validations, remarks = validating.result()
     return replace(
         survey,
         comparisons=comparisons,
