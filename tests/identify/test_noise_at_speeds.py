@@ -62,13 +62,16 @@ def test_other_outputs_are_refused():
 
 
 def test_the_shipped_legs_are_predicted_as_they_were_sailed():
-    """Deviations that 64 sailed recordings of ``two-speeds`` state (decision 52), nothing known beforehand."""
+    """Deviations that 64 sailed recordings of ``two-speeds`` state (decision 52), nothing known beforehand.
+
+    That of ``k_q`` is from 8 recordings, since what it lacks to 2 goes with one over the torque at both speeds.
+    """
     sailed = {
         "K_p": 0.024 * 5.7 / 1.15,
         "t_d": 0.11 * 0.0703,
         "tau_up": 0.044 * 1.016 / 1.15,
         "tau_dn": 0.00063 * 0.32 / 1.15,
-        "k_q": 0.00073 * 2.0,
+        "k_q": 0.00033 * 2.0,
         "g": 0.051,
         "t_d + t_sp": 0.0042 * 0.1203,
         "K_p / K_i": 0.042 * 5.7 / 4.27,
