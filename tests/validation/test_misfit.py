@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from shaftprint.validation.measures import Compared, NoisePieces, misfit_of
+from shaftprint.validation.measures import Compared, NoisePieces, Unfiltered, misfit_of
 
 SAMPLES = 400
 TIME = np.arange(SAMPLES) / 20.0
@@ -31,13 +31,15 @@ def compared(rng, *, error=0.0, pieces=24, std=0.2, slopes=NO_PARAMETER, shift=0
         model=MOTION + shift,
         slopes=slopes,
         noise=NoisePieces(pieces=np.stack([cut, cut], axis=1), as_long=True),
-        offset_variance=0.0,
     )
 
 
 def judged(one, covariance=None, largest_error=0.15):
     covariance = np.zeros((one.slopes.shape[0],) * 2) if covariance is None else covariance
-    return misfit_of(one, one, covariance, largest_error=largest_error, coverage=0.95)
+    unfiltered = Unfiltered(
+        measured=one.measured, model=one.model, noise_variance=float(np.mean(one.noise.pieces[:, one.place] ** 2))
+    )
+    return misfit_of(unfiltered, one, covariance, largest_error=largest_error, coverage=0.95)
 
 
 @pytest.mark.parametrize("pieces", [4, 24])
@@ -94,7 +96,6 @@ def test_what_the_parameters_may_be_off_is_no_error():
             model=one.model,
             slopes=slopes,
             noise=one.noise,
-            offset_variance=0.0,
         )
         found = judged(moved, np.array([[0.09]]))
         p.append(found.p_value)
@@ -123,7 +124,6 @@ def test_the_true_model_reaches_the_ceiling_on_average():
             model=one.model,
             slopes=one.slopes,
             noise=one.noise,
-            offset_variance=0.0,
         )
         found = judged(centred)
         gap.append(found.fit_ceiling - found.fit_percent)
@@ -148,7 +148,6 @@ def test_without_noise_an_exact_model_passes_and_any_error_is_sure():
             model=MOTION,
             slopes=NO_PARAMETER,
             noise=silent,
-            offset_variance=0.0,
         )
         found = judged(one)
         assert (found.outcome, found.p_value) == (outcome, p_value)

@@ -17,6 +17,7 @@ from shaftprint.validation.measures import (
     LEAST_LOAD,
     Compared,
     QuietNoise,
+    Unfiltered,
     low_pass,
     quiet_noise,
     reach_of_low_pass,
@@ -126,32 +127,38 @@ class Run:
         there = self.data.places(excerpt.start_s, excerpt.stop_s)
         return self.data.signals.start_s + np.arange(there.start, there.stop) / self.data.signals.rate_hz
 
-    def compared(self, excerpt: Excerpt) -> list[tuple[Compared, Compared]]:
-        """Return data and model of speed and of torque in an excerpt, raw and through the low-pass."""
+    def compared(self, excerpt: Excerpt) -> list[tuple[Unfiltered, Compared]]:
+        """Return data and model of speed and of torque in an excerpt, at all frequencies and through the low-pass."""
         there = self.excerpt(excerpt)
         # the median: a step spends most of its excerpt at the level that it ends at
         load = max(1.0 + float(np.median(self.measured_smooth[1, there])), LEAST_LOAD)
-        pairs = []
-        for measured, model, noise in (
-            (self.measured, self.raw, self.data.raw_noise),
-            (self.measured_smooth, self.smooth, self.data.noise),
-        ):
-            like = noise.like(there.stop - there.start, load)
-            pairs.append(
-                [
-                    Compared(
-                        output=output,
-                        place=row,
-                        measured=measured[row, there],
-                        model=model[row, there],
-                        slopes=self.slopes[:, row, there],
-                        noise=like,
-                        offset_variance=load**2 * float(noise.offset_variance[row]),
-                    )
-                    for row, output in enumerate(OUTPUTS)
-                ]
+        variance = self._noise_variance(there.stop - there.start, load)
+        noise = self.data.noise.like(there.stop - there.start, load)
+        return [
+            (
+                Unfiltered(
+                    measured=self.measured[row, there], model=self.raw[row, there], noise_variance=variance[row]
+                ),
+                Compared(
+                    output=output,
+                    place=row,
+                    measured=self.measured_smooth[row, there],
+                    model=self.smooth[row, there],
+                    slopes=self.slopes[:, row, there],
+                    noise=noise,
+                ),
             )
-        return list(zip(*pairs, strict=True))
+            for row, output in enumerate(OUTPUTS)
+        ]
+
+    def _noise_variance(self, samples: int, load: float) -> list[float]:
+        """Return the variance of the noise of all frequencies in an excerpt, of speed and of torque."""
+        noise = self.data.raw_noise
+        pieces = noise.like(samples, load).pieces
+        return [
+            float(np.mean(pieces[:, row] ** 2)) + load**2 * float(noise.offset_variance[row])
+            for row in range(len(OUTPUTS))
+        ]
 
 
 def run_model(

@@ -2,7 +2,7 @@
 
 from shaftprint.validation.measures._delay import LONGEST_S, RemainingDelay, remaining_delay
 from shaftprint.validation.measures._low_pass import low_pass, reach_of_low_pass
-from shaftprint.validation.measures._misfit import Compared, Misfit, Outcome, misfit_of
+from shaftprint.validation.measures._misfit import Compared, Misfit, Outcome, Unfiltered, misfit_of
 from shaftprint.validation.measures._noise_pieces import LEAST_LOAD, NoisePieces, QuietNoise, quiet_noise
 from shaftprint.validation.measures._step_numbers import STEP_NUMBERS, step_numbers
 
@@ -16,6 +16,7 @@ __all__ = [
     "Outcome",
     "QuietNoise",
     "RemainingDelay",
+    "Unfiltered",
     "low_pass",
     "misfit_of",
     "quiet_noise",

@@ -65,21 +65,33 @@ class Compared:
     """Derivatives of the model to its free parameters, shape (free, samples)."""
     noise: NoisePieces
     """Noise like that in the excerpt."""
-    offset_variance: float
-    """Variance of what the noise is off on average."""
 
 
-def fit_of(raw: Compared) -> tuple[float, float]:
-    """Return FitPercent and its ceiling, of unfiltered data [%]."""
-    measured = raw.measured
-    reached = fit_percent(measured.astype(np.complex128), raw.model.astype(np.complex128))
-    variance = float(np.mean(raw.noise.pieces[:, raw.place] ** 2)) + raw.offset_variance
-    spread = float(np.std(measured))
-    return reached, PERCENT * (1.0 - float(np.sqrt(variance)) / spread) if spread > 0.0 else float(np.nan)
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Unfiltered:
+    """Data and model of the same at all frequencies; of their noise the variance is enough."""
+
+    measured: FloatArray
+    """Data, shape (samples,)."""
+    model: FloatArray
+    """Model, shape (samples,)."""
+    noise_variance: float
+    """Variance of the noise, with what it is off on average."""
+
+    @property
+    def fit_percent(self) -> float:
+        """FitPercent (thesis eq. 2.41) [%]."""
+        return fit_percent(self.measured.astype(np.complex128), self.model.astype(np.complex128))
+
+    @property
+    def fit_ceiling(self) -> float:
+        """FitPercent that the true model would reach with this noise [%]."""
+        spread = float(np.std(self.measured))
+        return PERCENT * (1.0 - float(np.sqrt(self.noise_variance)) / spread) if spread > 0.0 else float(np.nan)
 
 
 def misfit_of(
-    raw: Compared,
+    raw: Unfiltered,
     smooth: Compared,
     covariance: FloatArray,
     *,
@@ -99,7 +111,6 @@ def misfit_of(
     coverage
         Coverage of the interval of the error.
     """
-    reached, ceiling = fit_of(raw)
     residual = smooth.measured - smooth.model
     residual = residual - residual.mean()
     samples = residual.size
@@ -121,8 +132,8 @@ def misfit_of(
     error, low, high = (float(np.sqrt(max(square, 0.0))) / motion for square in ends)
     return Misfit(
         output=smooth.output,
-        fit_percent=reached,
-        fit_ceiling=ceiling,
+        fit_percent=raw.fit_percent,
+        fit_ceiling=raw.fit_ceiling,
         error=error,
         error_interval=(low, high),
         p_value=_tail(mean_square, expected, variance),
