@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Self
 
 import numpy as np
-from pydantic import Field, NonNegativeFloat, PositiveFloat, PositiveInt, model_validator
+from pydantic import Field, FiniteFloat, NonNegativeFloat, PositiveFloat, PositiveInt, model_validator
 
 from shaftprint.fingerprint._quantity import FrozenRecord
 from shaftprint.identify import NoiseLevels
@@ -45,11 +45,11 @@ class NoiseSpectrum(FrozenRecord):
     """Change of the set point over that speed for one volt [1/V]."""
     outputs: tuple[str, ...]
     """Names of the outputs, such as ``n`` and ``M_s``."""
-    frequency_hz: tuple[float, ...]
+    frequency_hz: tuple[FiniteFloat, ...]
     """Frequencies of the lines under which it was measured [Hz], ascending."""
-    density_real: tuple[tuple[tuple[float, ...], ...], ...]
+    density_real: tuple[tuple[tuple[FiniteFloat, ...], ...], ...]
     """Real part of the density matrix [1/Hz], shape (frequencies, outputs, outputs)."""
-    density_imaginary: tuple[tuple[tuple[float, ...], ...], ...]
+    density_imaginary: tuple[tuple[tuple[FiniteFloat, ...], ...], ...]
     """Imaginary part of it [1/Hz], the same shape."""
     orders_hz: tuple[PositiveFloat, ...] = ()
     """Where orders of the shaft line stand at that speed [Hz]; they were taken out of the torque."""

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from shaftprint.design import LimitUse, limit_uses, recorded_operation, stated_limits
-from shaftprint.digits import plain
+from shaftprint.digits import plain, plain_letters
 from shaftprint.limits import limit_hints
 from shaftprint.survey._measurement import Measurement
 from shaftprint.survey._trial import Trial
@@ -40,4 +40,4 @@ def _of_legs(uses: Sequence[LimitUse]) -> tuple[str, ...]:
 
 def _words(use: LimitUse) -> str:
     numbers = f"{plain(use.value, 0)} of {plain(use.allowed, 0)} {use.unit}"
-    return f"{use.excitation} to {use.limit} at {use.time_s:.1f} s, {numbers}"
+    return plain_letters(f"{use.excitation} to {use.limit} at {use.time_s:.1f} s, {numbers}")

@@ -10,7 +10,7 @@ import numpy as np
 from shaftprint.arrays import BoolArray, FloatArray
 from shaftprint.design._limits import NO_MOTORING, Curve, Limits, limits_from_vessel
 from shaftprint.design.operation._operation import Operation
-from shaftprint.digits import plain
+from shaftprint.digits import plain, plain_letters
 from shaftprint.notebook import Shown
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ class LimitUse(Shown):
     @property
     def sentence(self) -> str:
         """Which excitation leaves which limit, when, and how far."""
-        return (
+        return plain_letters(
             f"{self.excitation} leaves the limit {self.limit} at {self.time_s:.1f} s: {plain(self.value, 0)} "
             f"{self.unit}, allowed {plain(self.allowed, 0)} {self.unit}; {self.beyond_s:.1f} s in all."
         )
