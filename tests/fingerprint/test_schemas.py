@@ -113,7 +113,7 @@ def test_a_later_2_with_wrong_fields_is_refused(of_legs, path):
         (lambda noise: noise["density_real"][1][0].pop(), "expected densities of shape"),
         (lambda noise: noise["frequency_hz"].reverse(), "positive, ascending frequencies"),
         (lambda noise: noise["density_real"][0][0].__setitem__(0, -1.0), "Hermitian, positive definite density"),
-        (lambda noise: noise["density_real"][0][0].__setitem__(0, "NaN"), "Hermitian, positive definite density"),
+        (lambda noise: noise["density_real"][0][0].__setitem__(0, "NaN"), "should be a finite number"),
         (lambda noise: noise.update(set_point_per_v=0.0), "set_point_per_v: Input should be greater than 0"),
         (lambda noise: noise.update(outputs=[]), "expected densities of shape"),
         (lambda noise: noise.update(orders_hz=[-1.0]), r"orders_hz\.0: Input should be greater than 0"),

@@ -42,8 +42,8 @@ def test_a_rehearsal_needs_a_test(test, vessel):
 
 
 @pytest.mark.slow
-def test_raw_recordings_give_the_assumed_numbers_back(test, vessel):
-    rehearsal = rehearse_on_tug(test, vessel, count=2)
+def test_raw_recordings_give_the_assumed_numbers_back(longer_test, vessel):
+    rehearsal = rehearse_on_tug(longer_test, vessel, count=2)
     assert rehearsal.failures == ()
     assert {"K_p", "t_d", "tau_dn", "tau_up", "t_d + t_sp"} <= set(rehearsal.names)
     z = rehearsal.errors / rehearsal.stated

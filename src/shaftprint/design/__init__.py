@@ -22,7 +22,7 @@ from shaftprint.design._finish import plan_of_lines
 from shaftprint.design._known_ship import limits_of_fingerprint, ship_before_test, ship_of_fingerprint
 from shaftprint.design._leg import Leg
 from shaftprint.design._limits import Limits, limits_from_vessel, usual_speeds
-from shaftprint.design._plan import Peaks, Plan, SailedTest
+from shaftprint.design._plan import Peaks, Plan
 from shaftprint.design._plan_test import Knowledge, plan_test
 from shaftprint.design._planned_test import PlannedTest, SailedLeg
 from shaftprint.design._rehearsal import Rehearsal, Sailing, rehearse
@@ -92,7 +92,6 @@ __all__ = [
     "Rehearsal",
     "Remedy",
     "SailedLeg",
-    "SailedTest",
     "Sailing",
     "SetPointLine",
     "SetPointSamples",

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from shaftprint.identify.fit import WITHIN
+from shaftprint.identify.fit import WITHIN, Identification
 from shaftprint.identify.judgement._evidence import Evidence
 from shaftprint.identify.judgement._line_quality import gap_at_crossing
 from shaftprint.identify.judgement._misfit import explained, misfit_words
-from shaftprint.identify.judgement._phrases import probability
+from shaftprint.identify.judgement._phrases import listed, probability
 from shaftprint.identify.judgement._search_words import rival_words
 
 
@@ -61,8 +61,17 @@ def not_explained(evidence: Evidence) -> str:
     p_value = "" if fit.p_value is None else f", {probability(fit.p_value)}"
     return (
         f"The structure {name} does not explain the data within their noise (chi-square {fit.chi_square:.0f} for "
-        f"{fit.degrees_of_freedom} degrees of freedom{p_value}); {misfit_words(fit)}."
+        f"{fit.degrees_of_freedom} degrees of freedom{p_value}); {misfit_words(fit)}.{_stopped(fit)}"
     )
+
+
+def _stopped(fit: Identification) -> str:
+    """Return which parameters of a misfit would go beyond their bounds: often a signal that comes late or early."""
+    names = [estimate.name for estimate in fit.parameters if estimate.at_bound]
+    if not names:
+        return ""
+    bounds = "its bound" if len(names) == 1 else "their bounds"
+    return f" {listed(names)} stopped at {bounds}: the data would go on."
 
 
 def better_when_unstable(evidence: Evidence) -> str:

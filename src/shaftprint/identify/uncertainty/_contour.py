@@ -161,7 +161,13 @@ class _Climb:
 
     def better(self, ends: Ends, rows: IntArray, theta: FloatArray) -> Ends:
         """Return the ends with those of some rows that lie further when climbed to from other parameters."""
-        again = self.ends_from(rows, theta)
+        # at the end of another row a number may be infinite, where what it divides by is 0: nothing climbs from there
+        starts = np.broadcast_to(theta, (rows.size, theta.shape[-1]))
+        usable = np.isfinite(self.numbers.chosen(rows).values(starts))
+        if not usable.any():
+            return ends
+        rows = rows[usable]
+        again = self.ends_from(rows, starts[usable])
         points, value, is_open = ends.theta.copy(), ends.value.copy(), ends.is_open.copy()
         further = self.side[rows] * (again.value - value[rows]) > 0.0
         places = rows[further]
