@@ -14,7 +14,7 @@ COPY --from=build /opt/shaftprint /opt/shaftprint
 RUN useradd --create-home --uid 1000 shaftprint
 USER shaftprint
 # an image that cannot identify is not built; the compiled code of its user is kept in the image
-RUN /opt/shaftprint/bin/shaftprint demo --short --no-progress --output /tmp/demo && rm -r /tmp/demo
+RUN folder=$(mktemp -d) && /opt/shaftprint/bin/shaftprint demo --short --no-progress --output "$folder/demo" && rm -r "$folder"
 WORKDIR /data
 ENTRYPOINT ["/opt/shaftprint/bin/shaftprint"]
 CMD ["--help"]
