@@ -10,7 +10,7 @@ import pytest
 
 from shaftprint.recording import read_recording
 from shaftprint.tug import Noise, Tug, sail, simulate_signals
-from shaftprint.tug.plant import Leg
+from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors import ControlUnit
 from shaftprint.vessel import RackSensor, Vessel
 
@@ -23,9 +23,9 @@ def with_sensor(vessel: Vessel, **changes: Any) -> Vessel:
     return Vessel.model_validate(content)
 
 
-def leg_of(rack: np.ndarray, start: int = 0) -> Leg:
+def stretch_of(rack: np.ndarray, start: int = 0) -> Stretch:
     zeros = np.zeros(rack.size)
-    return Leg(
+    return Stretch(
         time_s=(start + np.arange(rack.size)) / 2000.0,
         shaft_speed_rev_s=zeros,
         shaft_angle_rev=zeros,
@@ -95,17 +95,17 @@ def test_every_message_holds_what_the_governor_gave_a_latency_ago(
 def test_beyond_125_percent_the_message_cannot_go() -> None:
     sensor = RackSensor(channel="X", unit="%", cycle_s=0.01, latency_s=0.0)
     unit = ControlUnit(sensor, latency_s=0.0, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1))
-    counts = unit.next(leg_of(np.concatenate([np.full(200, 1.6), np.full(200, -1.6)])))
+    counts = unit.next(stretch_of(np.concatenate([np.full(200, 1.6), np.full(200, -1.6)])))
     assert set(counts.tolist()) == {250, 0}
 
 
-def test_legs_shorter_than_a_message_lose_none() -> None:
+def test_stretches_shorter_than_a_message_lose_none() -> None:
     sensor = RackSensor(channel="X", unit="%", cycle_s=0.05, latency_s=0.02, resolution_percent=0.01)
     rack = 0.4 + 1e-4 * np.arange(3000.0)
     counts = []
     for size in (3000, 7, 1):
         unit = ControlUnit(sensor, latency_s=0.02, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1))
-        parts = [unit.next(leg_of(rack[start : start + size], start)) for start in range(0, 3000, size)]
+        parts = [unit.next(stretch_of(rack[start : start + size], start)) for start in range(0, 3000, size)]
         counts.append(np.concatenate(parts))
         # of a ramp of 20 % a second
         expected = 40.0 + 20.0 * (unit.start_s + 0.05 * np.arange(counts[-1].size) - 0.02)

@@ -14,7 +14,7 @@ from shaftprint.tug.plant import (
     SLIPSTREAM,
     SPEED,
     Disturbance,
-    Leg,
+    Stretch,
     build_plant,
     derivatives,
     equilibrium,
@@ -43,14 +43,16 @@ def closed_form(tug: Tug, frequency_hz: float) -> np.ndarray:
     return np.array([speed, (down * s + propeller) * speed, governor * (demand - speed)])
 
 
-def one_leg(tug: Tug, vessel: Vessel, campaign: Any, seconds: float, chunk: int = 1 << 20) -> Leg:
-    legs = list(
+def one_stretch(tug: Tug, vessel: Vessel, campaign: Any, seconds: float, chunk: int = 1 << 20) -> Stretch:
+    stretches = list(
         voyage(
             tug, vessel, campaign, step_s=STEP_S, steps=round(seconds / STEP_S), chunk=chunk,
             disturbance=Disturbance(tug.noise, STEP_S, np.random.default_rng(3)),
         )
     )  # fmt: skip
-    return Leg(**{name: np.concatenate([getattr(leg, name) for leg in legs]) for name in Leg.__slots__})
+    return Stretch(
+        **{name: np.concatenate([getattr(stretch, name) for stretch in stretches]) for name in Stretch.__slots__}
+    )
 
 
 def fitted(values: np.ndarray, time_s: np.ndarray, frequency_hz: float) -> complex:
@@ -145,11 +147,11 @@ def test_nothing_changes_while_the_gain_is_zero(vessel: Vessel, ask: Make, sine:
     assert np.abs(lagging.shaft_torque_nm - plain.shaft_torque_nm).max() > 50.0
 
 
-def test_legs_do_not_depend_on_their_length(vessel: Vessel, ask: Make) -> None:
+def test_stretches_do_not_depend_on_their_length(vessel: Vessel, ask: Make) -> None:
     levels = {"name": "St", "levels_v": [-5.0, -7.0, -5.0], "dwell_s": 1.0, "start_s": 0.0}
     tug = Tug(**WITH_INFLOW)
-    whole, cut = (one_leg(tug, vessel, ask(4.0, staircases=[levels]), 4.0, chunk) for chunk in (8000, 777))
-    for name in Leg.__slots__:
+    whole, cut = (one_stretch(tug, vessel, ask(4.0, staircases=[levels]), 4.0, chunk) for chunk in (8000, 777))
+    for name in Stretch.__slots__:
         assert np.array_equal(getattr(whole, name), getattr(cut, name))
 
 

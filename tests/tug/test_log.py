@@ -5,7 +5,7 @@ import pytest
 
 from shaftprint.recording import read_recording
 from shaftprint.tug import Noise, Sailing, Tug, normalised_truth, sail
-from shaftprint.tug.plant import Leg
+from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors import SpeedLog
 from shaftprint.vessel import ShipSpeedSensor, Vessel
 
@@ -17,15 +17,15 @@ def sensor(**changes: Any) -> ShipSpeedSensor:
     return ShipSpeedSensor.model_validate(given | changes)
 
 
-def values(log: SpeedLog, speed: np.ndarray, leg_samples: int) -> np.ndarray:
+def values(log: SpeedLog, speed: np.ndarray, stretch_samples: int) -> np.ndarray:
     zeros = np.zeros(speed.size)
     parts = []
-    for first in range(0, speed.size, leg_samples):
-        part = slice(first, first + leg_samples)
+    for first in range(0, speed.size, stretch_samples):
+        part = slice(first, first + stretch_samples)
         count = speed[part].size
         parts.append(
             log.next(
-                Leg(
+                Stretch(
                     time_s=(first + np.arange(count)) / RATE_HZ,
                     shaft_speed_rev_s=zeros[part],
                     shaft_angle_rev=zeros[part],
@@ -55,10 +55,10 @@ def test_values_are_late_by_the_latency() -> None:
     assert shown == pytest.approx(np.maximum(4.0 + 0.1 * (time - 0.3), 4.0), abs=0.0006)
 
 
-@pytest.mark.parametrize("leg_samples", [300, 777, 5000])
-def test_values_do_not_depend_on_the_legs(leg_samples: int) -> None:
+@pytest.mark.parametrize("stretch_samples", [300, 777, 5000])
+def test_values_do_not_depend_on_the_stretches(stretch_samples: int) -> None:
     speed = 4.0 + 0.1 * np.sin(np.arange(20_000) / 3000.0)
-    whole, cut = (values(log_of(noise_m_s=0.02), speed, n) for n in (20_000, leg_samples))
+    whole, cut = (values(log_of(noise_m_s=0.02), speed, n) for n in (20_000, stretch_samples))
     assert np.array_equal(whole, cut)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from shaftprint.errors import SettingsError
 from shaftprint.tug import Tug, linearised_response, simulate_signals
-from shaftprint.tug.plant import Disturbance, Leg, build_plant, interpolation_weights, torque_limits, voyage
+from shaftprint.tug.plant import Disturbance, Stretch, build_plant, interpolation_weights, torque_limits, voyage
 from shaftprint.vessel import Vessel
 
 Make = Callable[..., Any]
@@ -36,14 +36,16 @@ def fitted(values: np.ndarray, time_s: np.ndarray, frequency_hz: float) -> compl
     return complex(cosine, -sine)
 
 
-def one_leg(tug: Tug, vessel: Vessel, campaign: Any, seconds: float, chunk: int = 1 << 20) -> Leg:
-    legs = list(
+def one_stretch(tug: Tug, vessel: Vessel, campaign: Any, seconds: float, chunk: int = 1 << 20) -> Stretch:
+    stretches = list(
         voyage(
             tug, vessel, campaign, step_s=STEP_S, steps=round(seconds / STEP_S), chunk=chunk,
             disturbance=Disturbance(tug.noise, STEP_S, np.random.default_rng(3)),
         )
     )  # fmt: skip
-    return Leg(**{name: np.concatenate([getattr(leg, name) for leg in legs]) for name in Leg.__slots__})
+    return Stretch(
+        **{name: np.concatenate([getattr(stretch, name) for stretch in stretches]) for name in Stretch.__slots__}
+    )
 
 
 @pytest.mark.parametrize("frequency_hz", [0.05, 0.37, 1.0, 2.3])
@@ -85,17 +87,17 @@ def test_equilibrium_holds_exactly(vessel: Vessel, quiet_tug: Tug, ask: Make) ->
 
 
 def test_torque_and_energy_balance(vessel: Vessel, quiet_tug: Tug, ask: Make, sine: Make) -> None:
-    leg = one_leg(quiet_tug, vessel, ask(21.0, sines=[sine(0.8, 0.6)]), 20.0)
-    propeller = 1725.0 * (leg.shaft_speed_rev_s / SPEED_S) ** 2
-    acceleration = np.gradient(leg.shaft_speed_rev_s, STEP_S, edge_order=2)[2:-2]
-    downstream = (leg.shaft_torque_nm - propeller)[2:-2]
+    stretch = one_stretch(quiet_tug, vessel, ask(21.0, sines=[sine(0.8, 0.6)]), 20.0)
+    propeller = 1725.0 * (stretch.shaft_speed_rev_s / SPEED_S) ** 2
+    acceleration = np.gradient(stretch.shaft_speed_rev_s, STEP_S, edge_order=2)[2:-2]
+    downstream = (stretch.shaft_torque_nm - propeller)[2:-2]
     assert downstream == pytest.approx(2.0 * np.pi * 17.0 * acceleration, abs=0.05)
-    upstream = (3.82 * 0.97 * leg.brake_torque_nm - leg.shaft_torque_nm)[2:-2]
+    upstream = (3.82 * 0.97 * stretch.brake_torque_nm - stretch.shaft_torque_nm)[2:-2]
     assert upstream == pytest.approx(2.0 * np.pi * 54.006 * acceleration, abs=0.15)
-    power = 2.0 * np.pi * leg.shaft_speed_rev_s * (3.82 * 0.97 * leg.brake_torque_nm - propeller)
-    kinetic = 0.5 * 71.006 * (2.0 * np.pi * leg.shaft_speed_rev_s) ** 2
+    power = 2.0 * np.pi * stretch.shaft_speed_rev_s * (3.82 * 0.97 * stretch.brake_torque_nm - propeller)
+    kinetic = 0.5 * 71.006 * (2.0 * np.pi * stretch.shaft_speed_rev_s) ** 2
     assert np.trapezoid(power, dx=STEP_S) == pytest.approx(kinetic[-1] - kinetic[0], rel=1e-4)
-    assert leg.shaft_angle_rev[-1] == pytest.approx(np.trapezoid(leg.shaft_speed_rev_s, dx=STEP_S), abs=1e-5)
+    assert stretch.shaft_angle_rev[-1] == pytest.approx(np.trapezoid(stretch.shaft_speed_rev_s, dx=STEP_S), abs=1e-5)
 
 
 def test_propeller_law_and_gear_ratio_on_steady_levels(vessel: Vessel, quiet_tug: Tug, ask: Make) -> None:
@@ -153,16 +155,16 @@ def test_demand_is_quantised_and_rate_limited(vessel: Vessel, quiet_tug: Tug, as
     # 1183.8 and 1309.285 rpm asked
     assert rpm[[0, -1]] == pytest.approx([1200.0, 1300.0], rel=1e-6)
     slow = replace(quiet_tug, demand_rate_limit_rpm_per_s=10.0)
-    leg = one_leg(slow, vessel, campaign, 60.0)
-    rise = 60.0 * 3.82 * np.gradient(leg.shaft_speed_rev_s[90_000:100_000:1000], 0.5)
+    stretch = one_stretch(slow, vessel, campaign, 60.0)
+    rise = 60.0 * 3.82 * np.gradient(stretch.shaft_speed_rev_s[90_000:100_000:1000], 0.5)
     assert rise == pytest.approx(10.0, rel=0.02)
 
 
-def test_legs_do_not_depend_on_their_length(vessel: Vessel, ask: Make) -> None:
+def test_stretches_do_not_depend_on_their_length(vessel: Vessel, ask: Make) -> None:
     levels = {"name": "St", "levels_v": [-5.0, -7.0, -5.0], "dwell_s": 1.0, "start_s": 0.0}
     tug = Tug(demand_rate_limit_rpm_per_s=2000.0)
-    whole, cut = (one_leg(tug, vessel, ask(4.0, staircases=[levels]), 4.0, chunk) for chunk in (8000, 777))
-    for name in Leg.__slots__:
+    whole, cut = (one_stretch(tug, vessel, ask(4.0, staircases=[levels]), 4.0, chunk) for chunk in (8000, 777))
+    for name in Stretch.__slots__:
         assert np.array_equal(getattr(whole, name), getattr(cut, name))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from shaftprint.arrays import BoolArray, FloatArray, frozen_bool, frozen_float
 from shaftprint.campaign import Campaign
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import Disturbance, Leg, demanded_speed, helm_voltage, voyage
+from shaftprint.tug.plant import Disturbance, Stretch, demanded_speed, helm_voltage, voyage
 from shaftprint.vessel import Vessel
 
 _CHUNK = 1 << 17
@@ -78,7 +78,7 @@ def simulate_signals(
         disturbance = Disturbance.none(step_s)
     else:
         disturbance = Disturbance(tug.noise, step_s, np.random.default_rng(seed))
-    legs = voyage(
+    stretches = voyage(
         tug,
         vessel,
         campaign,
@@ -88,7 +88,7 @@ def simulate_signals(
         start_s=start_s,
         disturbance=disturbance,
     )
-    speed, torque, brake, rack, way, limited = _sampled(legs, every)
+    speed, torque, brake, rack, way, limited = _sampled(stretches, every)
     speed *= vessel.gearbox.ratio
     time = start_s + np.arange(samples) / rate_hz
     return IdealSignals(
@@ -104,20 +104,20 @@ def simulate_signals(
 
 
 def _sampled(
-    legs: Iterable[Leg], every: int
+    stretches: Iterable[Stretch], every: int
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, FloatArray, BoolArray]:
     """Return every so many steps of shaft speed, torques, rack and ship, and whether a limit acted in any between."""
     # copies: a view would keep every step in memory
     parts = [
         (
-            leg.shaft_speed_rev_s[::every].copy(),
-            leg.shaft_torque_nm[::every].copy(),
-            leg.brake_torque_nm[::every].copy(),
-            leg.rack_given[::every].copy(),
-            leg.ship_speed_m_s[::every].copy(),
-            leg.limited.reshape(-1, every).any(axis=1),
+            stretch.shaft_speed_rev_s[::every].copy(),
+            stretch.shaft_torque_nm[::every].copy(),
+            stretch.brake_torque_nm[::every].copy(),
+            stretch.rack_given[::every].copy(),
+            stretch.ship_speed_m_s[::every].copy(),
+            stretch.limited.reshape(-1, every).any(axis=1),
         )
-        for leg in legs
+        for stretch in stretches
     ]
     speed, torque, brake, rack, way, limited = (np.concatenate(part) for part in zip(*parts, strict=True))
     return speed, torque, brake, rack, way, limited

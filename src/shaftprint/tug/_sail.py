@@ -21,7 +21,7 @@ from shaftprint.tug.plant import (
     WAY,
     Demand,
     Disturbance,
-    Leg,
+    Stretch,
     build_plant,
     equilibrium,
     steady_load_nm,
@@ -110,7 +110,7 @@ class _Sensor(Protocol):
 
     channel: str
 
-    def next(self, leg: Leg) -> NDArray[np.int16]: ...
+    def next(self, stretch: Stretch) -> NDArray[np.int16]: ...
 
     def faults(self) -> list[Fault]: ...
 
@@ -181,7 +181,7 @@ class _Crew:
     def record(self, writer: RecordingWriter, progress: Callable[[float], None]) -> None:
         """Sail and write; the sensors and the file work in a second thread while the ship sails on."""
         self._declare(writer)
-        legs = voyage(
+        stretches = voyage(
             self._tug,
             self._vessel,
             self._campaign,
@@ -193,11 +193,11 @@ class _Crew:
         done = 0
         waiting: Future[None] | None = None
         with ThreadPoolExecutor(max_workers=1) as second_thread:
-            for leg in legs:
+            for stretch in stretches:
                 if waiting is not None:
                     waiting.result()
-                waiting = second_thread.submit(self._write, writer, leg)
-                done += leg.time_s.size
+                waiting = second_thread.submit(self._write, writer, stretch)
+                done += stretch.time_s.size
                 progress(done / self._samples)
         if waiting is not None:
             waiting.result()
@@ -280,10 +280,10 @@ class _Crew:
                 long_name="speed of the ship through the water, from its log",
             )
 
-    def _write(self, writer: RecordingWriter, leg: Leg) -> None:
+    def _write(self, writer: RecordingWriter, stretch: Stretch) -> None:
         for sensor in self._sensors:
-            writer.append(sensor.channel, sensor.next(leg))
-        times = leg.time_s[leg.limited]
+            writer.append(sensor.channel, sensor.next(stretch))
+        times = stretch.time_s[stretch.limited]
         for excitation in self._campaign.excitations:
             inside = (times >= excitation.start_s) & (times < excitation.stop_s)
             self._limited[excitation.name] += int(np.count_nonzero(inside))

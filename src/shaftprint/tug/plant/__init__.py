@@ -27,7 +27,7 @@ from shaftprint.tug.plant._plant import (
     interpolation_weights,
     torque_limits,
 )
-from shaftprint.tug.plant._voyage import Leg, voyage
+from shaftprint.tug.plant._voyage import Stretch, voyage
 
 __all__ = [
     "ANGLE",
@@ -40,8 +40,8 @@ __all__ = [
     "Demand",
     "DemandLimits",
     "Disturbance",
-    "Leg",
     "Plant",
+    "Stretch",
     "build_plant",
     "demand_limits",
     "demanded_speed",

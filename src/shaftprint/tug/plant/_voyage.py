@@ -19,7 +19,7 @@ from shaftprint.vessel import Vessel
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Leg:
+class Stretch:
     """What really happens in one chunk of a voyage, one value at the start of each step."""
 
     time_s: FloatArray
@@ -50,7 +50,7 @@ def voyage(
     chunk: int,
     start_s: float = 0.0,
     disturbance: Disturbance,
-) -> Iterator[Leg]:
+) -> Iterator[Stretch]:
     """Step the line from the equilibrium of the set point at ``start_s``, in chunks of steps.
 
     Parameters
@@ -62,7 +62,7 @@ def voyage(
     steps
         Number of steps.
     chunk
-        Largest number of steps in one leg; the values do not depend on it.
+        Largest number of steps in one stretch; the values do not depend on it.
     start_s
         Time of the first step [s].
     disturbance
@@ -70,7 +70,7 @@ def voyage(
 
     Yields
     ------
-    leg
+    stretch
         The next chunk.
 
     Raises
@@ -99,7 +99,7 @@ def voyage(
         limited = np.empty(count, dtype=np.bool_)
         traces = Traces(speed, angle, torque, brake, rack, limited, way)
         advance(step_s, asked, angle_asked, propeller, engine, plant, delay, carried, traces)
-        yield Leg(
+        yield Stretch(
             time_s=start_s + step_s * np.arange(done, done + count, dtype=np.float64),
             shaft_speed_rev_s=speed,
             shaft_angle_rev=angle,

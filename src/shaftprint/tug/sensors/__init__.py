@@ -1,6 +1,6 @@
 """The logger's view of the simulated ship: one stream of raw counts a sensor, with its faults.
 
-Each takes the legs of a voyage of ``shaftprint.tug.plant`` in order and gives the counts of its channel.
+Each takes the stretches of a voyage of ``shaftprint.tug.plant`` in order and gives the counts of its channel.
 """
 
 from shaftprint.tug.sensors._control_unit import LOWEST_PERCENT, ControlUnit

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
-from shaftprint.tug.plant import Leg
+from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors._faults import Fault
 from shaftprint.vessel import RackSensor
 
@@ -44,17 +44,17 @@ class ControlUnit:
         # before the start the line ran steadily
         self._tail: FloatArray = np.full(int(np.ceil(latency_s * rate_hz)) + 2, first_rack)
 
-    def next(self, leg: Leg) -> NDArray[np.int16]:
-        """Return the counts of the messages of the next leg, shape (messages,)."""
-        rack = np.concatenate([self._tail, leg.rack_given])
+    def next(self, stretch: Stretch) -> NDArray[np.int16]:
+        """Return the counts of the messages of the next stretch, shape (messages,)."""
+        rack = np.concatenate([self._tail, stretch.rack_given])
         begin = self._passed - self._tail.size
-        self._passed += leg.rack_given.size
+        self._passed += stretch.rack_given.size
         most = int(self._passed / (self.cycle_s * self._rate_hz)) + 2
         message = self.start_s + self.cycle_s * np.arange(self._sent, most)
         position = (message - self._latency_s) * self._rate_hz
         position = position[(message * self._rate_hz < self._passed) & (position < self._passed - 1)]
         self._sent += position.size
-        # in samples since the start, so that the result does not depend on how the time is cut into legs
+        # in samples since the start, so that the result does not depend on how the time is cut into stretches
         before = np.floor(position).astype(np.int64)
         part = position - before
         percent = 100.0 * ((1.0 - part) * rack[before - begin] + part * rack[before - begin + 1])

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.kernels import compiled
 from shaftprint.tug._noise import Noise
-from shaftprint.tug.plant import Leg
+from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors._faults import Fault, draw_dropouts, draw_spikes
 from shaftprint.vessel import Vessel
 
@@ -151,14 +151,14 @@ class TorqueGauge:
             place=np.zeros(4, dtype=np.int64),
         )
 
-    def next(self, leg: Leg) -> NDArray[np.int16]:
-        """Return the counts of the next leg, shape (steps,)."""
-        counts = np.empty(leg.time_s.size, dtype=np.int16)
+    def next(self, stretch: Stretch) -> NDArray[np.int16]:
+        """Return the counts of the next stretch, shape (steps,)."""
+        counts = np.empty(stretch.time_s.size, dtype=np.int16)
         broadband = self._rng.standard_normal(counts.size, dtype=np.float32) * np.float32(self._broadband)
         _read_out(
-            leg.shaft_torque_nm,
-            leg.shaft_angle_rev,
-            leg.shaft_speed_rev_s,
+            stretch.shaft_torque_nm,
+            stretch.shaft_angle_rev,
+            stretch.shaft_speed_rev_s,
             broadband,
             self._telemetry,
             self._memory,

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from shaftprint.campaign import Campaign, setpoint
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import Leg, helm_voltage
+from shaftprint.tug.plant import Stretch, helm_voltage
 from shaftprint.tug.sensors._faults import Fault, draw_spikes
 from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT
 from shaftprint.vessel import Vessel
@@ -30,9 +30,9 @@ class Helm:
         self._spikes = draw_spikes(tug.noise.set_point_spike_interval_s, campaign.duration_s, rate_hz, rng)
         self._done = 0
 
-    def next(self, leg: Leg) -> NDArray[np.int16]:
-        """Return the counts of the next leg, shape (steps,)."""
-        voltage = helm_voltage(self._tug, self._campaign, leg.time_s)
+    def next(self, stretch: Stretch) -> NDArray[np.int16]:
+        """Return the counts of the next stretch, shape (steps,)."""
+        voltage = helm_voltage(self._tug, self._campaign, stretch.time_s)
         noise = self._rng.standard_normal(voltage.size, dtype=np.float32)
         voltage += np.float32(self._tug.noise.set_point_rms_v) * noise
         inside = (self._spikes.sample >= self._done) & (self._spikes.sample < self._done + voltage.size)
@@ -57,9 +57,9 @@ class PitchLever:
         self._rms_v = tug.noise.set_point_rms_v
         self._rng = rng
 
-    def next(self, leg: Leg) -> NDArray[np.int16]:
-        """Return the counts of the next leg, shape (steps,)."""
-        voltage = setpoint(self._campaign, leg.time_s, input=PITCH_INPUT)
+    def next(self, stretch: Stretch) -> NDArray[np.int16]:
+        """Return the counts of the next stretch, shape (steps,)."""
+        voltage = setpoint(self._campaign, stretch.time_s, input=PITCH_INPUT)
         voltage += self._rms_v * self._rng.standard_normal(voltage.size)
         return np.rint(voltage / VOLT_PER_COUNT).clip(-32768, 32767).astype(np.int16)
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray
-from shaftprint.tug.plant import Leg
+from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors._faults import Fault
 from shaftprint.vessel import ShipSpeedSensor
 
@@ -47,11 +47,11 @@ class SpeedLog:
         """Return how many samples a later value can ask for: its latency, its own cycle and the samples around."""
         return int(np.ceil((self._latency_s + self.cycle_s) * self._rate_hz)) + 2
 
-    def next(self, leg: Leg) -> NDArray[np.int16]:
-        """Return the counts of the values of the next leg, shape (values,)."""
-        speed = np.concatenate([self._tail, leg.ship_speed_m_s])
+    def next(self, stretch: Stretch) -> NDArray[np.int16]:
+        """Return the counts of the values of the next stretch, shape (values,)."""
+        speed = np.concatenate([self._tail, stretch.ship_speed_m_s])
         begin = self._passed - self._tail.size
-        self._passed += leg.ship_speed_m_s.size
+        self._passed += stretch.ship_speed_m_s.size
         most = int(self._passed / (self.cycle_s * self._rate_hz)) + 2
         time = self.start_s + self.cycle_s * np.arange(self._sent, most)
         position = (time - self._latency_s) * self._rate_hz

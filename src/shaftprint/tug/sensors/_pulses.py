@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.kernels import compiled
 from shaftprint.tug._tug import Tug
-from shaftprint.tug.plant import Leg
+from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors._faults import Fault, draw_times
 from shaftprint.vessel import SpeedSensor, Vessel
 
@@ -153,11 +153,11 @@ class PickUp:
         """Angle of the shaft at the start, from the marked edge of strip 1 [rev]."""
         return self._strips.phase_rev
 
-    def next(self, leg: Leg) -> NDArray[np.int16]:
-        """Return the counts of the next leg, shape (steps,)."""
-        counts = np.empty(leg.time_s.size, dtype=np.int16)
+    def next(self, stretch: Stretch) -> NDArray[np.int16]:
+        """Return the counts of the next stretch, shape (steps,)."""
+        counts = np.empty(stretch.time_s.size, dtype=np.int16)
         noise_v = self._rng.standard_normal(counts.size, dtype=np.float32) * np.float32(self._noise_v)
-        _pulse_train(leg.shaft_angle_rev, leg.shaft_speed_rev_s, noise_v, self._strips, self._view, counts)
+        _pulse_train(stretch.shaft_angle_rev, stretch.shaft_speed_rev_s, noise_v, self._strips, self._view, counts)
         return counts
 
     def faults(self) -> list[Fault]:
