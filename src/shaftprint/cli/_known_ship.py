@@ -24,6 +24,7 @@ from shaftprint.fingerprint import Fingerprint
 from shaftprint.identify import STAN_TUG_NOISE_AT_SPEEDS, NoiseLevels, Prior, noise_at, priors_from_vessel
 from shaftprint.models import Structure
 from shaftprint.survey import load_trial, measure, noise_at_speeds, stated_working_point
+from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import Vessel
 
 
@@ -112,7 +113,8 @@ def _recorded(stated: Stated, steps: Steps) -> _Recorded:
     slope = calibration.slope_rev_s_per_v
     speed_rev_s = stated_working_point(trial.vessel).engine_speed_rev_s
     line = SetPointLine(
-        slope_rpm_per_v=60.0 * slope, offset_v=(speed_rev_s - calibration.intercept_rev_s) / slope if slope else 0.0
+        slope_rpm_per_v=rpm_from_rev_s(slope),
+        offset_v=(speed_rev_s - calibration.intercept_rev_s) / slope if slope else 0.0,
     )
     return _Recorded(line=line, noise=noise_at_speeds(measurement, trial.campaign))
 

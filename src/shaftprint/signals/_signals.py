@@ -15,6 +15,7 @@ from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._leg_channels import channels_about
 from shaftprint.signals._orders import TrackedOrder
 from shaftprint.signals._working_points import LegState, WorkingPoint
+from shaftprint.units import rpm_from_rev_s
 
 _UNITS = {
     "n_set": ("rev/s", "set point of the engine speed"),
@@ -139,7 +140,7 @@ class Signals(Shown, Labelled):
         facts = {
             "length": f"{self.samples / self.rate_hz:,.1f} s at {self.rate_hz:g} Hz from {self.start_s:g} s",
             "channels": shortened(self.channels),
-            "working point": f"{60.0 * point.engine_speed_rev_s:.1f} rpm, {point.shaft_torque_nm:.0f} N m",
+            "working point": f"{rpm_from_rev_s(point.engine_speed_rev_s):.1f} rpm, {point.shaft_torque_nm:.0f} N m",
             "repairs": f"{len(self.repairs)}, gaps {len(self.gaps)}",
             "prepared": f"{self.mode} mode",
             "findings": str(len(self.findings)),
