@@ -1,12 +1,12 @@
 """The options of the commands that fit structures: which, what is known, how they are weighed and searched."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
-from functools import reduce, wraps
+from dataclasses import dataclass
 from typing import Any
 
 import click
 
+from shaftprint.cli._gathered_options import gathered_options
 from shaftprint.cli._known_values import hold_option, prior_option
 from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.errors import StructureError
@@ -64,13 +64,7 @@ def fit_options(command: Callable[..., Any]) -> Callable[..., Any]:
 
     The command takes them as one ``options``, a ``FitOptions``.
     """
-
-    @wraps(command)
-    def gathered(**given: Any) -> Any:
-        options = FitOptions(**{field.name: given.pop(field.name) for field in fields(FitOptions)})
-        return command(options=options, **given)
-
-    return reduce(lambda wrapped, option: option(wrapped), reversed(_OPTIONS), gathered)
+    return gathered_options(FitOptions, _OPTIONS)(command)
 
 
 def structures_of(names: Sequence[TypedName], options: FitOptions) -> tuple[Structure, ...]:

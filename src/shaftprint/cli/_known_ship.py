@@ -1,12 +1,14 @@
 """What ``plan`` knows of a ship: from its vessel file, a first test, a recording, and what the user states."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import click
 
-from shaftprint.cli._plan_options import StatedLimit, limits_with, set_point_rpm_of
+from shaftprint.cli._known_ship_options import KnownShipOptions
+from shaftprint.cli._own_structure import TypedName, chosen_structures, structure_to_use
+from shaftprint.cli._plan_options import limits_with, set_point_rpm_of
 from shaftprint.cli.output import Steps, fingerprint_at
 from shaftprint.design import (
     AssumedShip,
@@ -25,7 +27,9 @@ from shaftprint.identify import STAN_TUG_NOISE_AT_SPEEDS, NoiseLevels, Prior, no
 from shaftprint.models import Structure
 from shaftprint.survey import load_trial, measure, noise_at_speeds, stated_working_point
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.vessel import Vessel
+from shaftprint.vessel import Vessel, load_vessel
+
+CLOSED_LOOP = "GAUGE-CLOSED"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -36,28 +40,44 @@ class Stated:
     """The structure that the test is to find, with what is held."""
     vessel: Vessel
     """The vessel file."""
-    limits: Sequence[StatedLimit]
-    """Limits instead of those of the vessel file."""
-    speeds: tuple[float, ...] | None
-    """Speeds of the legs over that of the vessel file's working point; None for the usual ones."""
-    rpm_per_volt: float | None
-    """Slope of the set point [rpm/V]."""
-    offset_v: float | None
-    """Set point at the working point [V]."""
-    priors: Mapping[str, Prior]
-    """Priors instead of those of the vessel file."""
-    freed: Sequence[str]
-    """Parameters of which nothing is taken as known."""
-    values: Mapping[str, float]
-    """Assumed values."""
-    after: Path | None
-    """Fingerprint of a first test."""
-    noise_from: Path | None
-    """Recording that shows the noise."""
-    noise_campaign: str | None
-    """Its campaign."""
     vessel_name: str
     """Path or name of the vessel file."""
+    first_test: Fingerprint | None
+    """Fingerprint of a first test; None where there was none."""
+    options: KnownShipOptions
+    """What is stated beside these."""
+
+
+def stated_ship(vessel_name: str, structure_name: TypedName | None, options: KnownShipOptions) -> Stated:
+    """Return what the user states, with its files read.
+
+    Parameters
+    ----------
+    vessel_name
+        Path or name of the vessel file.
+    structure_name
+        The structure; that of the first test, or else ``CLOSED_LOOP``, where it is None.
+    options
+        What is stated beside these.
+
+    Raises
+    ------
+    ShaftprintError
+        If a file cannot be used, or there is no such structure or parameter.
+    """
+    vessel = load_vessel(vessel_name)
+    first_test = None if options.after is None else fingerprint_at(options.after)
+    if first_test is None:
+        (structure,) = chosen_structures([structure_name or TypedName(CLOSED_LOOP)])
+    else:
+        structure = structure_to_use(structure_name, first_test)
+    return Stated(
+        structure=structure.held_at(**dict(options.held)),
+        vessel=vessel,
+        vessel_name=vessel_name,
+        first_test=first_test,
+        options=options,
+    )
 
 
 def knowledge_of(stated: Stated, *, steps: Steps) -> Knowledge:
@@ -70,22 +90,22 @@ def knowledge_of(stated: Stated, *, steps: Steps) -> Knowledge:
     click.UsageError
         If the line from volts to speed is not known.
     """
-    first_test = None if stated.after is None else fingerprint_at(stated.after)
-    recorded = None if stated.noise_from is None else _recorded(stated, steps)
-    line = _line(stated, first_test, recorded)
-    limits = _limits(stated, line, first_test)
+    options = stated.options
+    recorded = None if options.noise_from is None else _recorded(stated, steps)
+    line = _line(stated, recorded)
+    limits = _limits(stated, line)
     point_rpm, vessel_rpm = limits.engine_speed_rpm, stated.vessel.working_point.engine_speed_rpm
-    shares = stated.speeds
+    shares = options.speeds
     # after a first test the working point is that of the test, at which its numbers are normalised
     speeds = usual_speeds(limits) if shares is None else tuple(share * vessel_rpm / point_rpm for share in shares)
     outputs = stated.structure.outputs
-    levels, source = _noise(stated, first_test, recorded)
+    levels, source = _noise(stated, recorded)
     noise = {share: noise_at(levels, share * point_rpm) for share in speeds}
     priors = priors_from_vessel(stated.structure, stated.vessel, stated_working_point(stated.vessel))
-    priors = {name: prior for name, prior in (priors | dict(stated.priors)).items() if name not in stated.freed}
+    priors = {name: prior for name, prior in (priors | dict(options.priors)).items() if name not in options.freed}
     return Knowledge(
         vessel=stated.vessel.name,
-        ship=_ship(stated, first_test, priors),
+        ship=_ship(stated, priors),
         limits=limits,
         line=line,
         noise={share: level.of_outputs(*outputs) for share, level in noise.items()},
@@ -105,10 +125,10 @@ class _Recorded:
 
 
 def _recorded(stated: Stated, steps: Steps) -> _Recorded:
-    if stated.noise_campaign is None:
+    if stated.options.noise_campaign is None:
         raise click.UsageError("--noise-from needs --noise-campaign, which says what was asked in that recording.")
-    trial = load_trial(stated.vessel_name, stated.noise_campaign)
-    measurement = measure(Path(str(stated.noise_from)), trial, mode="shaftprint", progress=steps)
+    trial = load_trial(stated.vessel_name, stated.options.noise_campaign)
+    measurement = measure(Path(str(stated.options.noise_from)), trial, mode="shaftprint", progress=steps)
     calibration = measurement.signals.calibration
     slope = calibration.slope_rev_s_per_v
     speed_rev_s = stated_working_point(trial.vessel).engine_speed_rev_s
@@ -119,12 +139,11 @@ def _recorded(stated: Stated, steps: Steps) -> _Recorded:
     return _Recorded(line=line, noise=noise_at_speeds(measurement, trial.campaign))
 
 
-def _noise(
-    stated: Stated, first_test: Fingerprint | None, recorded: _Recorded | None
-) -> tuple[Mapping[float, NoiseLevels], str]:
+def _noise(stated: Stated, recorded: _Recorded | None) -> tuple[Mapping[float, NoiseLevels], str]:
     """Return the noise by engine speed [rpm] and where it is from: the recording, else the first test, else assumed."""
     if recorded is not None:
-        return recorded.noise, f"noise of {Path(str(stated.noise_from)).name}"
+        return recorded.noise, f"noise of {Path(str(stated.options.noise_from)).name}"
+    first_test = stated.first_test
     if first_test is not None and first_test.noise:
         return first_test.noise_at_speeds, f"noise of the first test, {first_test.conditions.campaign}"
     point_rpm = stated.vessel.working_point.engine_speed_rpm
@@ -132,11 +151,12 @@ def _noise(
     return assumed, f"noise of the Stan Tug 1205 assumed for {stated.vessel.name}"
 
 
-def _line(stated: Stated, first_test: Fingerprint | None, recorded: _Recorded | None) -> SetPointLine:
+def _line(stated: Stated, recorded: _Recorded | None) -> SetPointLine:
     known = recorded.line if recorded is not None else None
-    known = line_of_fingerprint(first_test) if first_test is not None else known
-    slope = stated.rpm_per_volt if stated.rpm_per_volt is not None else getattr(known, "slope_rpm_per_v", None)
-    offset_v = stated.offset_v if stated.offset_v is not None else getattr(known, "offset_v", None)
+    known = line_of_fingerprint(stated.first_test) if stated.first_test is not None else known
+    slope, offset_v = stated.options.rpm_per_volt, stated.options.offset_v
+    slope = slope if slope is not None else getattr(known, "slope_rpm_per_v", None)
+    offset_v = offset_v if offset_v is not None else getattr(known, "offset_v", None)
     if slope is None or offset_v is None:
         point = stated.vessel.working_point
         raise click.UsageError(
@@ -147,20 +167,20 @@ def _line(stated: Stated, first_test: Fingerprint | None, recorded: _Recorded | 
     return SetPointLine(slope_rpm_per_v=slope, offset_v=offset_v)
 
 
-def _limits(stated: Stated, line: SetPointLine, first_test: Fingerprint | None) -> Limits:
-    set_point_rpm = set_point_rpm_of(stated.limits, line.slope_rpm_per_v)
+def _limits(stated: Stated, line: SetPointLine) -> Limits:
+    set_point_rpm = set_point_rpm_of(stated.options.limits, line.slope_rpm_per_v)
     if set_point_rpm is None:
         raise click.UsageError(
             "expected --limit set-point=..., the largest deviation of the set point from the level of a leg, in V or "
             "rpm, such as --limit set-point=1.0V."
         )
     limits = limits_from_vessel(stated.vessel, set_point_rpm=set_point_rpm)
-    if first_test is not None:
-        limits = limits_of_fingerprint(limits, first_test, stated.vessel)
-    return limits_with(limits, stated.limits)
+    if stated.first_test is not None:
+        limits = limits_of_fingerprint(limits, stated.first_test, stated.vessel)
+    return limits_with(limits, stated.options.limits)
 
 
-def _ship(stated: Stated, first_test: Fingerprint | None, priors: Mapping[str, Prior]) -> AssumedShip:
-    if first_test is not None:
-        return ship_of_fingerprint(first_test, stated.structure)
-    return ship_before_test(stated.structure, priors, stated.values)
+def _ship(stated: Stated, priors: Mapping[str, Prior]) -> AssumedShip:
+    if stated.first_test is not None:
+        return ship_of_fingerprint(stated.first_test, stated.structure)
+    return ship_before_test(stated.structure, priors, dict(stated.options.values))

@@ -7,28 +7,18 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._command_group import NOT_REACHED
-from shaftprint.cli._known_ship import Stated, knowledge_of
-from shaftprint.cli._known_values import hold_option, named_value, prior_option, rpm_per_volt_option
+from shaftprint.cli._known_ship import CLOSED_LOOP, knowledge_of, stated_ship
+from shaftprint.cli._known_ship_options import KnownShipOptions, known_ship_options
 from shaftprint.cli._options import vessel_option
-from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures, structure_to_use
-from shaftprint.cli._plan_options import (
-    LIMITS,
-    StatedLimit,
-    limit_of,
-    seconds_of,
-    shares_of,
-    wish_from,
-    wish_of,
-)
+from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
+from shaftprint.cli._plan_options import seconds_of, wish_from, wish_of
 from shaftprint.cli._plan_tables import print_planned_test
-from shaftprint.cli.output import Steps, fingerprint_at, force_option, no_progress_option, output_folder, progress
-from shaftprint.design import RATE_HZ, PlannedTest, plan_test, write_plan_files
-from shaftprint.identify import Prior
+from shaftprint.cli.output import Steps, force_option, no_progress_option, output_folder, progress
+from shaftprint.design import RATE_HZ, PlannedTest, Wish, plan_test, write_plan_files
 from shaftprint.rehearsal import rehearse_on_tug
 from shaftprint.report import render_plan
-from shaftprint.vessel import Vessel, load_vessel
+from shaftprint.vessel import Vessel
 
-CLOSED_LOOP = "GAUGE-CLOSED"
 LONGEST_S = 3600.0
 
 
@@ -52,31 +42,7 @@ LONGEST_S = 3600.0
 @click.option(
     "--shortest", "is_shortest", is_flag=True, help="Look for the shortest test, of at most --within or an hour."
 )
-@click.option(
-    "--limit",
-    "limits",
-    metavar="NAME=VALUE",
-    type=limit_of,
-    multiple=True,
-    help=f"Limit, such as set-point=1.0V or rate=600rpm/s; one of {', '.join(LIMITS)}.",
-)
-@click.option(
-    "--speeds",
-    metavar="SHARE,...",
-    type=shares_of,
-    help="Speeds of the legs over that of the working point; as far apart as limits allow, within 1.15,0.78.",
-)
-@rpm_per_volt_option
-@click.option("--offset", "offset_v", type=float, help="Set point at the working point [V].")
-@click.option(
-    "--after", type=click.Path(path_type=Path), help="Fingerprint of a first test: its values with their covariance."
-)
-@click.option("--noise-from", type=click.Path(path_type=Path), help="Recording of the ship, for its noise.")
-@click.option("--noise-campaign", metavar="CAMPAIGN", help="Campaign of that recording.")
-@prior_option
-@click.option("--free", "freed", metavar="NAME", multiple=True, help="Take nothing as known of a parameter.")
-@hold_option
-@click.option("--value", "values", metavar="NAME=VALUE", type=named_value, multiple=True, help="Value that is assumed.")
+@known_ship_options
 @click.option(
     "--rehearse",
     "rehearsals",
@@ -101,17 +67,7 @@ def command(
     wishes: tuple[tuple[str, float, bool], ...],
     within_s: float | None,
     is_shortest: bool,
-    limits: tuple[StatedLimit, ...],
-    speeds: tuple[float, ...] | None,
-    rpm_per_volt: float | None,
-    offset_v: float | None,
-    after: Path | None,
-    noise_from: Path | None,
-    noise_campaign: str | None,
-    priors: tuple[tuple[str, Prior], ...],
-    freed: tuple[str, ...],
-    held: tuple[tuple[str, float], ...],
-    values: tuple[tuple[str, float], ...],
+    options: KnownShipOptions,
     rehearsals: int,
     rate_hz: float,
     name: str | None,
@@ -126,48 +82,32 @@ def command(
     plan that can be reached is written then. --wish, --limit, --prior, --free, --hold and --value may be repeated.
     """
     wish = wish_from(wishes)
-    if within_s is None and not is_shortest:
-        raise click.UsageError("expected --within, such as --within 12min, or --shortest with a --wish.")
-    if is_shortest and not wish.names:
-        raise click.UsageError("--shortest needs a --wish, such as --wish t_d=10%: every longer test knows more.")
-    ship = load_vessel(vessel)
-    (chosen,) = (
-        chosen_structures([structure_name or TypedName(CLOSED_LOOP)])
-        if after is None
-        else [structure_to_use(structure_name, fingerprint_at(after))]
-    )
-    stated = Stated(
-        structure=chosen.held_at(**dict(held)),
-        vessel=ship,
-        limits=limits,
-        speeds=speeds,
-        rpm_per_volt=rpm_per_volt,
-        offset_v=offset_v,
-        priors=dict(priors),
-        freed=freed,
-        values=dict(values),
-        after=after,
-        noise_from=noise_from,
-        noise_campaign=noise_campaign,
-        vessel_name=vessel,
-    )
+    _expect_a_goal(wish, within_s, is_shortest=is_shortest)
+    stated = stated_ship(vessel, structure_name, options)
     with output_folder(output, of="plan", force=force) as folder, progress(hidden=no_progress) as steps:
         planned = plan_test(
             knowledge_of(stated, steps=steps),
             wish,
-            name=name or f"Planned test of {ship.name}",
+            name=name or f"Planned test of {stated.vessel.name}",
             within_s=within_s or LONGEST_S,
             is_shortest=is_shortest,
             now=datetime.now(UTC).replace(microsecond=0),
             seed=seed,
             tell=lambda words: steps.tell("Planning", words),
         )
-        planned = _rehearsed(planned, ship, rehearsals, seed, steps)
+        planned = _rehearsed(planned, stated.vessel, rehearsals, seed, steps)
         write_plan_files(planned, folder, rate_hz=rate_hz)
         render_plan(folder, planned)
     print_planned_test(planned, output)
     if wish.names and not planned.plan.is_enough:
         context.exit(NOT_REACHED)
+
+
+def _expect_a_goal(wish: Wish, within_s: float | None, *, is_shortest: bool) -> None:
+    if within_s is None and not is_shortest:
+        raise click.UsageError("expected --within, such as --within 12min, or --shortest with a --wish.")
+    if is_shortest and not wish.names:
+        raise click.UsageError("--shortest needs a --wish, such as --wish t_d=10%: every longer test knows more.")
 
 
 def _rehearsed(planned: PlannedTest, vessel: Vessel, count: int, seed: int, steps: Steps) -> PlannedTest:
