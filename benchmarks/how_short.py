@@ -9,7 +9,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import matplotlib as mpl
 import numpy as np
+from matplotlib.figure import Figure
 
 from benchmarks.planned_tests import CLOSED, TRUTH, VESSEL
 from shaftprint.arrays import FloatArray
@@ -112,13 +114,9 @@ def print_table(curves: Mapping[str, tuple[FloatArray, dict[str, FloatArray]]], 
 
 def draw(curves: Mapping[str, tuple[FloatArray, dict[str, FloatArray]]], wished: Accuracy, path: Path) -> None:
     """Draw every number of the first way, and the delay of all of them."""
-    import matplotlib as mpl
-
-    mpl.use("Agg")
-    import matplotlib.pyplot as plt
-
-    plt.rcParams |= {"svg.hashsalt": "how-short", "svg.fonttype": "none", "font.size": 9}
-    figure, (numbers, ways) = plt.subplots(1, 2, figsize=(10.0, 4.6), layout="constrained", sharex=True)
+    mpl.rcParams |= {"svg.hashsalt": "how-short", "svg.fonttype": "none", "font.size": 9}
+    figure = Figure(figsize=(10.0, 4.6), layout="constrained")
+    numbers, ways = figure.subplots(1, 2, sharex=True)
     first, (lengths, values) = next(iter(curves.items()))
     for name, label in SHOWN.items():
         (line,) = numbers.plot(lengths, values[name])
