@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TypeAlias
 
@@ -46,7 +46,7 @@ SettingsOf: TypeAlias = Callable[[Structure, Measurement, Trial], Settings]
 """Gives how a structure is fitted to a measurement of a trial."""
 
 
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Survey(Shown):
     """A recording, what was tested, and all that follows from both."""
 
@@ -108,7 +108,7 @@ class Survey(Shown):
         """The fit that the fingerprint is of."""
         return self.fits[0]
 
-    @property
+    @cached_property
     def limit_hints(self) -> tuple[str, ...]:
         """Whether sines, steps or legs hint at a limit, in words."""
         return hints_of(self.measurement, self.trial, failed_steps(self.validations))
@@ -183,6 +183,19 @@ def fingerprint_of(
     identification: Identification, measurement: Measurement, trial: Trial, *, now: datetime | None = None
 ) -> Fingerprint:
     """Return the fingerprint of one fit."""
+    return _fingerprint(
+        identification, measurement, trial, leg_tests(identification, measurement.working_points), now=now
+    )
+
+
+def _fingerprint(
+    identification: Identification,
+    measurement: Measurement,
+    trial: Trial,
+    tests: Sequence[LegTest],
+    *,
+    now: datetime | None,
+) -> Fingerprint:
     return take_fingerprint(
         identification,
         signals=measurement.signals,
@@ -192,14 +205,14 @@ def fingerprint_of(
         settings_files=trial.sources,
         now=now or datetime.now(UTC),
         tested_at=measurement.began,
-        legs=_fitted_legs(identification, measurement),
+        legs=_fitted_legs(measurement, tests),
         noise=_measured_noise(measurement, trial),
     )
 
 
-def _fitted_legs(identification: Identification, measurement: Measurement) -> tuple[LegRecord, ...]:
+def _fitted_legs(measurement: Measurement, tests: Sequence[LegTest]) -> tuple[LegRecord, ...]:
     """Return what is kept of the legs that were measured, each with its share of the test of fit."""
-    p_values = {one.name: one.test.p_value for one in leg_tests(identification, measurement.working_points)}
+    p_values = {one.name: one.test.p_value for one in tests}
     names = {leg.name for leg in measurement.legs}
     return tuple(
         leg_record(leg, main=measurement.signals.working_point, p_value=p_values.get(leg.name))
@@ -233,8 +246,9 @@ def _of_fits(
     fits: Sequence[Identification], measurement: Measurement, trial: Trial, *, now: datetime | None, progress: Progress
 ) -> Survey:
     progress.begin("Finding the intervals")
-    fingerprint = fingerprint_of(fits[0], measurement, trial, now=now)
-    return Survey(trial=trial, measurement=measurement, fits=tuple(fits), fingerprint=fingerprint)
+    tests = leg_tests(fits[0], measurement.working_points)
+    fingerprint = _fingerprint(fits[0], measurement, trial, tests, now=now)
+    return Survey(trial=trial, measurement=measurement, fits=tuple(fits), fingerprint=fingerprint, leg_tests=tests)
 
 
 def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SILENT) -> Survey:
@@ -265,7 +279,6 @@ def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SIL
     return replace(
         survey,
         comparisons=comparisons,
-        leg_tests=leg_tests(survey.identification, survey.measurement.working_points),
         validations=validations,
         remarks=(*survey.remarks, *remarks),
     )
