@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray, IntArray
-from shaftprint.spectra.legs._leg_orders import without_leg_orders
+from shaftprint.spectra.legs._leg_orders import LegOrders, without_leg_orders
 from shaftprint.spectra.legs._leg_window import LegWindow
 from shaftprint.spectra.lines import (
     LineMeasurement,
@@ -35,6 +35,7 @@ from shaftprint.spectra.orders import LineOrders
 if TYPE_CHECKING:
     from shaftprint.signals import TrackedOrder
 
+_TORQUE = "M_s"
 _NOISE_BINS = 36
 # As many bins beside a line as the thesis' local ratio takes on both sides together.
 _LOCAL_BINS = 40
@@ -79,11 +80,64 @@ def measure_leg(
     references
         Value of each channel at the working point, for the angle of the shaft.
     """
-    speed_row, torque_row = (window.channels.index(name) for name in (speed, "M_s"))
+    linear, found = _linear_window(window, orders, references, excitation=excitation, speed=speed)
+    spectrum, periods = linear.spectrum(), window.state.periods
+    leg = _LegSpectrum(
+        window=linear,
+        excitation=excitation,
+        speed=window.channels.index(speed),
+        torque=window.channels.index(_TORQUE),
+        spectrum=spectrum,
+        by_period=linear.by_period(),
+        beside=np.flatnonzero(np.arange(spectrum.shape[1]) % periods != 0).astype(np.int64),
+        orders=found,
+        mean=window.values.mean(axis=(1, 2)),
+        # of a sum of lines each answers for its share of the variance, so that all together answer for the whole
+        overall=linear.values.reshape(len(linear.values), -1).var(axis=1) / len(harmonics),
+    )
+    lines = tuple(_line(leg, harmonic) for harmonic in harmonics)
+    return LegLines(window=linear, harmonics=tuple(harmonics), lines=lines)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _LegSpectrum:
+    """What every line of a leg is measured from."""
+
+    window: LegWindow
+    """Its whole periods, the torque linear in the speed and without orders of the shaft."""
+    excitation: str
+    """Name of the channel that is moved."""
+    speed: int
+    """Row of the speed."""
+    torque: int
+    """Row of the torque."""
+    spectrum: ComplexArray
+    """Amplitudes of all periods together, shape (channels, bins)."""
+    by_period: ComplexArray
+    """Amplitudes of each period, shape (channels, periods, harmonics)."""
+    beside: IntArray
+    """Bins that are no harmonics, ascending, shape (bins beside,)."""
+    orders: LegOrders | None
+    """Orders that were taken out of the torque; None where there are none."""
+    mean: FloatArray
+    """Mean of each channel over the working point, shape (channels,)."""
+    overall: FloatArray
+    """Variance of each channel for one line to answer for, shape (channels,)."""
+
+
+def _linear_window(
+    window: LegWindow,
+    orders: "Sequence[TrackedOrder]",
+    references: Mapping[str, float],
+    *,
+    excitation: str,
+    speed: str,
+) -> tuple[LegWindow, LegOrders | None]:
+    """Return a leg with a torque that is linear in the speed, without drift and orders, and what orders there were."""
     values = window.values.copy()
-    values[torque_row] = _linear_torque(window.of(speed), window.of("M_s"))
+    values[window.channels.index(_TORQUE)] = _linear_torque(window.of(speed), window.of(_TORQUE))
     values -= _drift(values)
-    linear, found = without_leg_orders(
+    return without_leg_orders(
         replace(window, values=values),
         orders,
         # with their drift: the angle is their integral
@@ -91,36 +145,32 @@ def measure_leg(
         load=window.of(speed) ** 2,
         excitation=excitation,
     )
-    values = linear.values
-    spectrum, by_period = linear.spectrum(), linear.by_period()
-    periods = window.state.periods
-    number = np.arange(spectrum.shape[1])
-    beside = np.flatnonzero(number % periods != 0).astype(np.int64)
-    # of a sum of lines each answers for its share of the variance, so that all together answer for the whole
-    overall = values.reshape(len(values), -1).var(axis=1) / len(harmonics)
-    lines = []
-    for harmonic in harmonics:
-        amplitude = spectrum[:, harmonic * periods]
-        local = _local(spectrum, beside, harmonic * periods)
-        cost = None if found is None else found.at(harmonic * periods)
-        noise = _noise(spectrum, beside, harmonic * periods, cost, speed=speed_row, torque=torque_row)
-        lines.append(
-            LineMeasurement(
-                window=_window(window, harmonic),
-                channels=window.channels,
-                excitation=excitation,
-                amplitude=amplitude,
-                harmonic=np.full((_NOT_FITTED, len(values)), np.nan + 0j),
-                harmonic_variance=np.full((_NOT_FITTED, len(values)), np.nan),
-                mean=window.values.mean(axis=(1, 2)),
-                noise=noise,
-                order_remark="" if cost is None else cost.remark(noise.variance_of(torque_row)),
-                variances=LineVariances(signal=0.5 * np.abs(amplitude) ** 2, local=local, overall=overall),
-                stretches=by_period[:, :, harmonic],
-                excitation_frequency_hz=harmonic / window.state.period_s,
-            )
-        )
-    return LegLines(window=linear, harmonics=tuple(harmonics), lines=tuple(lines))
+
+
+def _line(leg: _LegSpectrum, harmonic: int) -> LineMeasurement:
+    """Return what the leg tells at one of its lines."""
+    state = leg.window.state
+    place = harmonic * state.periods
+    amplitude = leg.spectrum[:, place]
+    cost = None if leg.orders is None else leg.orders.at(place)
+    noise = _noise(leg.spectrum, leg.beside, place, cost, speed=leg.speed, torque=leg.torque)
+    not_fitted = (_NOT_FITTED, amplitude.size)
+    return LineMeasurement(
+        window=_window(leg.window, harmonic),
+        channels=leg.window.channels,
+        excitation=leg.excitation,
+        amplitude=amplitude,
+        harmonic=np.full(not_fitted, np.nan + 0j),
+        harmonic_variance=np.full(not_fitted, np.nan),
+        mean=leg.mean,
+        noise=noise,
+        order_remark="" if cost is None else cost.remark(noise.variance_of(leg.torque)),
+        variances=LineVariances(
+            signal=0.5 * np.abs(amplitude) ** 2, local=_local(leg.spectrum, leg.beside, place), overall=leg.overall
+        ),
+        stretches=leg.by_period[:, :, harmonic],
+        excitation_frequency_hz=harmonic / state.period_s,
+    )
 
 
 def _window(window: LegWindow, harmonic: int) -> Window:
