@@ -1,11 +1,13 @@
-"""Files that are written whole or not at all."""
+"""Files that are written whole or not at all, and JSON that is read with a reason where it cannot be."""
 
 import contextlib
 import errno
+import json
 import os
 import secrets
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 # Names may have 255 bytes, a letter up to four: so many letters of the stem and of the ending.
 _LONGEST = 24
@@ -44,6 +46,46 @@ def written_whole(path: Path, *, overwrite: bool = False) -> Iterator[Path]:
             part.replace(path)
         finally:
             part.unlink(missing_ok=True)
+
+
+def write_bytes(path: Path, content: bytes, *, noun: str, error: type[Exception]) -> None:
+    """Write a file whole or not at all; an existing one is replaced.
+
+    Parameters
+    ----------
+    noun
+        What the file holds, for the message, such as ``fingerprint``.
+    error
+        What is raised where the file cannot be written.
+    """
+    try:
+        with written_whole(path, overwrite=True) as part:
+            part.write_bytes(content)
+    except OSError as refusal:
+        raise error(f"{path}: the {noun} cannot be written: {reason(refusal)}.") from None
+
+
+def read_json(path: Path, *, noun: str, where: str, error: type[Exception]) -> tuple[str, Any]:
+    """Return the text of a JSON file, and what it holds.
+
+    Parameters
+    ----------
+    noun
+        What the file should hold, for the message, such as ``fingerprint``.
+    where
+        What to do where there is no file, such as ``name the folder``.
+    error
+        What is raised where the file cannot be read or is no JSON.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+        return text, json.loads(text)
+    except FileNotFoundError:
+        raise error(f"{path}: expected a {noun} in JSON, found nothing there; {where}.") from None
+    except OSError as refusal:
+        raise error(f"{path}: expected a {noun} in JSON, but it cannot be read: {reason(refusal)}.") from None
+    except (ValueError, RecursionError) as fault:
+        raise error(f"{path}: expected a {noun} in JSON, found something else: {fault}.") from None
 
 
 @contextlib.contextmanager

@@ -1,7 +1,6 @@
 """Fingerprints in files: JSON, written whole or not at all, read with every wrong field named."""
 
 import hashlib
-import json
 import re
 from pathlib import Path
 
@@ -9,7 +8,7 @@ from pydantic import ValidationError
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import FingerprintError, ShaftprintError
-from shaftprint.files import reason, written_whole
+from shaftprint.files import read_json, write_bytes
 from shaftprint.fingerprint._earlier_files import of_later_schema, of_schema_1, with_roles
 from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
 from shaftprint.publication import complete
@@ -26,12 +25,7 @@ def write_fingerprint(fingerprint: Fingerprint, path: str | Path) -> None:
     FingerprintError
         If the file cannot be written.
     """
-    json_path = Path(path)
-    try:
-        with written_whole(json_path, overwrite=True) as part:
-            part.write_bytes(_content(fingerprint))
-    except OSError as error:
-        raise FingerprintError(f"{json_path}: the fingerprint cannot be written: {reason(error)}.") from None
+    write_bytes(Path(path), _content(fingerprint), noun="fingerprint", error=FingerprintError)
 
 
 def fingerprint_sha256(fingerprint: Fingerprint) -> str:
@@ -85,20 +79,8 @@ def _fingerprint_text(json_path: Path) -> tuple[str, int | None]:
     text, minor
         The content, and N of schema 2.N; None for schema 1.
     """
-    try:
-        text = json_path.read_text(encoding="utf-8")
-        content = json.loads(text)
-    except FileNotFoundError:
-        raise FingerprintError(
-            f"{json_path}: expected a fingerprint in JSON, found nothing there; name the file, or the folder in which "
-            "identify or demo has put it."
-        ) from None
-    except OSError as error:
-        raise FingerprintError(
-            f"{json_path}: expected a fingerprint in JSON, but it cannot be read: {reason(error)}."
-        ) from None
-    except (ValueError, RecursionError) as error:
-        raise FingerprintError(f"{json_path}: expected a fingerprint in JSON, found something else: {error}.") from None
+    where = "name the file, or the folder in which identify or demo has put it"
+    text, content = read_json(json_path, noun="fingerprint", where=where, error=FingerprintError)
     schema = content.get("schema_version") if isinstance(content, dict) else None
     if schema is None:
         raise FingerprintError(f"{json_path}: expected a fingerprint, found JSON without a schema_version.")

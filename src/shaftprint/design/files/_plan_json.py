@@ -1,6 +1,5 @@
 """``plan.json``: a planned test, to be read again when it goes on."""
 
-import json
 from pathlib import Path
 from typing import Final
 
@@ -13,7 +12,7 @@ from shaftprint.design.files._from_record import planned_test_of
 from shaftprint.design.files._records import SCHEMA_VERSION, PlanRecord
 from shaftprint.design.files._to_record import record_of
 from shaftprint.errors import DesignError, ShaftprintError
-from shaftprint.files import reason, written_whole
+from shaftprint.files import read_json, write_bytes
 from shaftprint.models import Structure
 from shaftprint.publication import complete
 
@@ -30,12 +29,8 @@ def write_plan(test: PlannedTest, path: str | Path) -> None:
     DesignError
         If the file cannot be written.
     """
-    json_path = Path(path)
-    try:
-        with written_whole(json_path, overwrite=True) as part:
-            part.write_bytes((record_of(test).model_dump_json(indent=1) + "\n").encode())
-    except OSError as error:
-        raise DesignError(f"{json_path}: the plan cannot be written: {reason(error)}.") from None
+    content = (record_of(test).model_dump_json(indent=1) + "\n").encode()
+    write_bytes(Path(path), content, noun="plan", error=DesignError)
 
 
 @refusing_none(DesignError)
@@ -92,17 +87,8 @@ def _structure(record: PlanRecord, own: Structure | None) -> Structure:
 
 def _content(json_path: Path) -> str:
     """Return the content of a file that claims to be a plan of the schema that is known here."""
-    try:
-        text = json_path.read_text(encoding="utf-8")
-        content = json.loads(text)
-    except FileNotFoundError:
-        raise DesignError(
-            f"{json_path}: expected a plan, found nothing there; name the folder in which shaftprint plan has put it."
-        ) from None
-    except OSError as error:
-        raise DesignError(f"{json_path}: expected a plan, but it cannot be read: {reason(error)}.") from None
-    except (ValueError, RecursionError) as error:
-        raise DesignError(f"{json_path}: expected a plan in JSON, found something else: {error}.") from None
+    where = "name the folder in which shaftprint plan has put it"
+    text, content = read_json(json_path, noun="plan", where=where, error=DesignError)
     schema = content.get("schema_version") if isinstance(content, dict) else None
     if schema != SCHEMA_VERSION:
         raise DesignError(
