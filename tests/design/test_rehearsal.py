@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from shaftprint.design import Sailing, rehearse
+from shaftprint.design import RehearsedTest, rehearse
 from shaftprint.errors import DesignError, IdentificationError
 from shaftprint.identify.fit import Estimate
 
@@ -14,7 +14,7 @@ def sailing(plan, truth, *, errors, stated=1.0, limited=0.0):
     for name, error in errors.items():
         std = plan.predicted.estimate(name).std
         numbers.append(Estimate(name=name, unit="-", value=truth[name] + error * std, std=stated * std))
-    return Sailing(numbers=numbers, limited_share=limited)
+    return RehearsedTest(numbers=numbers, limited_share=limited)
 
 
 def test_errors_of_known_size(plan, truth):

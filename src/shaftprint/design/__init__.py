@@ -12,28 +12,12 @@ brake torque        N m     of the engine, positive when it drives; down to the 
 
 A plan is made of what is assumed of the ship (``AssumedShip``), what is wanted (``Wish``), what ship and engine allow
 (``Limits``) and the noise. Its accuracy is that of ``predict_joint_accuracy``, and a prediction until it is rehearsed.
+
+Folders: ``inputs`` is what a plan is made of, ``motion`` what a leg does to the ship. ``search`` finds the strongest
+lines, ``planning`` makes a ``plan`` of them. A ``planned_test`` is a plan that is ready to be sailed, ``standing`` how
+far it has come. ``files`` keep it, ``views`` show it. ``operation`` is where a test, planned or sailed, leaves limits.
 """
 
-from shaftprint.design._assumed_ship import AssumedShip, assumed_ship, ship_of_fit
-from shaftprint.design._brief import Brief
-from shaftprint.design._campaign import campaign_of
-from shaftprint.design._design import best_plan, design_campaign
-from shaftprint.design._finish import plan_of_lines
-from shaftprint.design._known_ship import limits_of_fingerprint, ship_before_test, ship_of_fingerprint
-from shaftprint.design._leg import Leg
-from shaftprint.design._limits import Limits, limits_from_vessel, usual_speeds
-from shaftprint.design._plan import Peaks, Plan
-from shaftprint.design._plan_test import Knowledge, plan_test
-from shaftprint.design._planned_test import PlannedTest, SailedLeg
-from shaftprint.design._rehearsal import Rehearsal, Sailing, rehearse
-from shaftprint.design._remedies import Remedy, remedies
-from shaftprint.design._replan import replan
-from shaftprint.design._set_point_line import SetPointLine, line_of_fingerprint
-from shaftprint.design._shortest import shortest
-from shaftprint.design._standing import Standing, standing_of
-from shaftprint.design._timetable import Timetable
-from shaftprint.design._verdict import plan_sentences
-from shaftprint.design._wish import Wish, no_worse_than
 from shaftprint.design.files import (
     CAMPAIGN,
     CSV,
@@ -47,6 +31,22 @@ from shaftprint.design.files import (
     write_plan,
     write_plan_files,
 )
+from shaftprint.design.inputs import (
+    AssumedShip,
+    Knowledge,
+    Limits,
+    SetPointLine,
+    Wish,
+    assumed_ship,
+    limits_from_vessel,
+    limits_of_fingerprint,
+    line_of_fingerprint,
+    no_worse_than,
+    ship_before_test,
+    ship_of_fingerprint,
+    ship_of_fit,
+    usual_speeds,
+)
 from shaftprint.design.operation import (
     LimitUse,
     Operation,
@@ -55,7 +55,20 @@ from shaftprint.design.operation import (
     recorded_operation,
     stated_limits,
 )
+from shaftprint.design.plan import Leg, Peaks, Plan, Timetable, campaign_of
+from shaftprint.design.planned_test import (
+    PlannedTest,
+    Rehearsal,
+    RehearsedTest,
+    Remedy,
+    SailedLeg,
+    plan_sentences,
+    rehearse,
+    remedies,
+)
+from shaftprint.design.planning import Brief, best_plan, design_campaign, plan_of_lines, plan_test, replan, shortest
 from shaftprint.design.search import Effort
+from shaftprint.design.standing import Standing, standing_of
 from shaftprint.design.views import (
     AbortCard,
     LengthCurve,
@@ -90,9 +103,9 @@ __all__ = [
     "PlannedMotion",
     "PlannedTest",
     "Rehearsal",
+    "RehearsedTest",
     "Remedy",
     "SailedLeg",
-    "Sailing",
     "SetPointLine",
     "SetPointSamples",
     "Standing",

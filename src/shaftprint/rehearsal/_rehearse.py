@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.design import Rehearsal, Sailing, rehearse
+from shaftprint.design import Rehearsal, RehearsedTest, rehearse
 from shaftprint.errors import DesignError
 from shaftprint.identify import Identification, Settings, identify, identify_jointly
 from shaftprint.recording import read_recording
@@ -51,7 +51,7 @@ def rehearse_on_tug(
     tug, campaign = tug_of_plan(test, vessel), test.campaign
     progress.begin(f"Rehearsing {count} times", total=float(count))
 
-    def sailing(seed: int) -> Sailing:
+    def sailing(seed: int) -> RehearsedTest:
         result = _sailed(test, vessel, tug, campaign, seed)
         progress.advance(1.0)
         return result
@@ -60,14 +60,14 @@ def rehearse_on_tug(
     return rehearse(test.plan, sailing, truth=truth, seeds=range(first_seed, first_seed + count))
 
 
-def _sailed(test: "PlannedTest", vessel: "Vessel", tug: "Tug", campaign: "Campaign", seed: int) -> Sailing:
+def _sailed(test: "PlannedTest", vessel: "Vessel", tug: "Tug", campaign: "Campaign", seed: int) -> RehearsedTest:
     with tempfile.TemporaryDirectory(prefix="shaftprint-") as folder:
         path = Path(folder) / "recording.nc"
         truth = sail(vessel, campaign, path, tug=tug, seed=seed)
         with read_recording(path) as recording:
             signals = prepare_signals(recording, vessel, campaign)
     fit = _identified(test, vessel, signals, campaign, seed)
-    return Sailing(numbers=(*fit.parameters, *fit.combinations), limited_share=max(truth.limited.values()))
+    return RehearsedTest(numbers=(*fit.parameters, *fit.combinations), limited_share=max(truth.limited.values()))
 
 
 def _identified(

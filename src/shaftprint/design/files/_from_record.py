@@ -5,14 +5,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import frozen_float
-from shaftprint.design._assumed_ship import AssumedShip
-from shaftprint.design._leg import Leg
-from shaftprint.design._plan import Plan, predicted_accuracy
-from shaftprint.design._planned_test import PlannedTest, SailedLeg
-from shaftprint.design._rehearsal import Rehearsal
-from shaftprint.design._remedies import Remedy
-from shaftprint.design._set_point_line import SetPointLine
-from shaftprint.design._wish import Wish
+from shaftprint.design.inputs import AssumedShip, SetPointLine, Wish
+from shaftprint.design.plan import Leg, Plan, predicted_accuracy
+from shaftprint.design.planned_test import PlannedTest, Rehearsal, Remedy, SailedLeg
 from shaftprint.errors import DesignError
 from shaftprint.identify import NoiseLevels, Prior
 from shaftprint.models import Structure, at_working_point
@@ -20,8 +15,8 @@ from shaftprint.spectra import FrequencyResponse
 
 if TYPE_CHECKING:
     from shaftprint.design.files._records import (
-        LegRecord,
         NoiseRecord,
+        PlannedLegRecord,
         PlanRecord,
         RehearsalRecord,
         SailedRecord,
@@ -95,7 +90,7 @@ def _ship(record: "ShipRecord", structure: Structure) -> AssumedShip:
     return AssumedShip(structure=structure, values=frozen_float(values), covariance=frozen_float(record.covariance))
 
 
-def _leg(record: "LegRecord") -> Leg:
+def _leg(record: "PlannedLegRecord") -> Leg:
     count = len(record.harmonics)
     ascending = all(later > earlier for earlier, later in zip(record.harmonics, record.harmonics[1:], strict=False))
     if not (count and record.harmonics[0] > 0 and ascending) or [len(row) for row in record.amplitudes] != [count] * 2:

@@ -10,7 +10,7 @@ from shaftprint.design.files._set_point_samples import set_point_samples
 from shaftprint.files import written_whole
 
 if TYPE_CHECKING:
-    from shaftprint.design._planned_test import PlannedTest
+    from shaftprint.design.planned_test import PlannedTest
 
 CAMPAIGN = "campaign.toml"
 """Name of the campaign file in a folder of ``shaftprint plan``."""

@@ -7,10 +7,10 @@ from pydantic import ValidationError
 
 from shaftprint.arguments import refusing_none
 from shaftprint.catalogue import shipped_structure
-from shaftprint.design._planned_test import PlannedTest
 from shaftprint.design.files._from_record import planned_test_of
 from shaftprint.design.files._records import SCHEMA_VERSION, PlanRecord
 from shaftprint.design.files._to_record import record_of
+from shaftprint.design.planned_test import PlannedTest
 from shaftprint.errors import DesignError, ShaftprintError
 from shaftprint.files import read_json, write_bytes
 from shaftprint.models import Structure

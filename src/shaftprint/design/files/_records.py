@@ -4,9 +4,8 @@ from typing import Annotated, Final, Literal
 
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
-from shaftprint.design._limits import Limits
-from shaftprint.design._plan import Peaks
-from shaftprint.design._timetable import Timetable
+from shaftprint.design.inputs import Limits
+from shaftprint.design.plan import Peaks, Timetable
 
 SCHEMA_VERSION: Final = 1
 
@@ -56,7 +55,7 @@ class NoiseRecord(Record):
     """Change of the set point over the working-point speed for one volt [1/V]."""
 
 
-class LegRecord(Record):
+class PlannedLegRecord(Record):
     """One leg."""
 
     speed_share: Number
@@ -179,7 +178,7 @@ class PlanRecord(Record):
     """What the fit will know besides: mean and standard deviation."""
     timetable: Timetable
     """How the time is divided."""
-    legs: Annotated[tuple[LegRecord, ...], Field(min_length=1, max_length=100)]
+    legs: Annotated[tuple[PlannedLegRecord, ...], Field(min_length=1, max_length=100)]
     """Legs in the order in which they are sailed."""
     rehearsal: RehearsalRecord | None = None
     """What came out of sailing it on simulated ships."""

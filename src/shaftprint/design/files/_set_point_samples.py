@@ -11,7 +11,7 @@ from shaftprint.campaign import setpoint
 from shaftprint.errors import DesignError
 
 if TYPE_CHECKING:
-    from shaftprint.design._planned_test import PlannedTest
+    from shaftprint.design.planned_test import PlannedTest
 
 RATE_HZ = 100.0
 """Samples a second where nobody says otherwise [Hz]: the steps take 0.2 % of a line of 3.4 Hz."""

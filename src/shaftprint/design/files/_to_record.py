@@ -6,8 +6,8 @@ import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.design.files._records import (
-    LegRecord,
     NoiseRecord,
+    PlannedLegRecord,
     PlanRecord,
     RehearsalRecord,
     RemedyRecord,
@@ -16,10 +16,8 @@ from shaftprint.design.files._records import (
 )
 
 if TYPE_CHECKING:
-    from shaftprint.design._leg import Leg
-    from shaftprint.design._plan import Peaks, Plan
-    from shaftprint.design._planned_test import PlannedTest, SailedLeg
-    from shaftprint.design._rehearsal import Rehearsal
+    from shaftprint.design.plan import Leg, Peaks, Plan
+    from shaftprint.design.planned_test import PlannedTest, Rehearsal, SailedLeg
     from shaftprint.identify import NoiseLevels
 
 
@@ -63,8 +61,8 @@ def _predicted(plan: "Plan") -> dict[str, dict[str, float | str | None]]:
     }
 
 
-def _leg(leg: "Leg", noise: "NoiseLevels", peaks: "Peaks") -> LegRecord:
-    return LegRecord(
+def _leg(leg: "Leg", noise: "NoiseLevels", peaks: "Peaks") -> PlannedLegRecord:
+    return PlannedLegRecord(
         speed_share=leg.speed_share,
         level_rpm=leg.level_rpm,
         period_s=leg.period_s,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.design._limits import NO_MOTORING, Curve, Limits, limits_from_vessel
+from shaftprint.design.inputs import NO_MOTORING, Curve, Limits, limits_from_vessel
 from shaftprint.design.operation._operation import Operation
 from shaftprint.digits import plain, plain_letters
 from shaftprint.notebook import Shown

@@ -7,7 +7,7 @@ from typing import Self
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray, IntArray
-from shaftprint.design._bounds import Bound
+from shaftprint.design.motion import Bound
 
 # Samples a period of the fastest line.
 SAMPLES_PER_PERIOD = 8

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.design._motion import SIGNALS, motion_noise
+from shaftprint.design.motion import SIGNALS, motion_noise
 from shaftprint.notebook import Shown
 
 if TYPE_CHECKING:
-    from shaftprint.design._planned_test import PlannedTest
+    from shaftprint.design.planned_test import PlannedTest
 
 _SPEED, _TORQUE = SIGNALS.index("speed"), SIGNALS.index("brake torque")
 _OWN = slice(_SPEED, _TORQUE + 1)

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.design._plan import Plan
+from shaftprint.design.plan import Plan
 from shaftprint.identify.prediction import line_information, planned_lines
 
 if TYPE_CHECKING:
-    from shaftprint.design._leg import Leg
+    from shaftprint.design.plan import Leg
 
 # Frequencies at which the worth is computed.
 _FREQUENCIES = 120

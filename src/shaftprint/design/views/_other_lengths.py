@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.design._plan import Plan, predicted_accuracy
-from shaftprint.design._timetable import FEWEST_PERIODS
-from shaftprint.design._wish import numbers_of_line
+from shaftprint.design.inputs import numbers_of_line
+from shaftprint.design.plan import FEWEST_PERIODS, Plan, predicted_accuracy
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.design._assumed_ship import AssumedShip, assumed_ship
+from shaftprint.design.inputs._assumed_ship import AssumedShip, assumed_ship
 from shaftprint.fingerprint import identified_model
 
 if TYPE_CHECKING:
-    from shaftprint.design._limits import Limits
+    from shaftprint.design.inputs._limits import Limits
     from shaftprint.fingerprint import Fingerprint
     from shaftprint.identify import Prior
     from shaftprint.models import Structure

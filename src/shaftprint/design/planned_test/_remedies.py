@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from shaftprint.catalogue import ShipRole
-from shaftprint.design._plan import Plan, predicted_accuracy
+from shaftprint.design.plan import Plan, predicted_accuracy
 from shaftprint.errors import DesignError
 from shaftprint.identify import Prior
 from shaftprint.identify.prediction import Accuracy

@@ -5,12 +5,11 @@ from datetime import datetime
 
 from shaftprint import __version__
 from shaftprint.campaign import Campaign
-from shaftprint.design._campaign import campaign_of
-from shaftprint.design._plan import Plan
-from shaftprint.design._rehearsal import Rehearsal
-from shaftprint.design._remedies import Remedy
-from shaftprint.design._set_point_line import SetPointLine
-from shaftprint.design._verdict import plan_sentences
+from shaftprint.design.inputs import SetPointLine
+from shaftprint.design.plan import Plan, campaign_of
+from shaftprint.design.planned_test._rehearsal import Rehearsal
+from shaftprint.design.planned_test._remedies import Remedy
+from shaftprint.design.planned_test._verdict import plan_sentences
 from shaftprint.notebook import Shown, Summary
 from shaftprint.spectra import FrequencyResponse
 

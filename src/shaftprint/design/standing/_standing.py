@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import frozen_complex
-from shaftprint.design._periods import PeriodInformation, missing_periods, period_information
-from shaftprint.design._plan import Plan, predicted_accuracy
-from shaftprint.design._planned_test import PlannedTest, SailedLeg
-from shaftprint.design._within import legs_within, updated_ship
+from shaftprint.design.plan import Plan, predicted_accuracy
+from shaftprint.design.planned_test import PlannedTest, SailedLeg
+from shaftprint.design.standing._periods import PeriodInformation, missing_periods, period_information
+from shaftprint.design.standing._within import legs_within, updated_ship
 from shaftprint.errors import DesignError
 from shaftprint.identify.prediction import planned_lines
 from shaftprint.models import at_working_point
@@ -25,7 +25,7 @@ from shaftprint.notebook import Shown, Summary
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
-    from shaftprint.design._leg import Leg
+    from shaftprint.design.plan import Leg
     from shaftprint.identify import Identification, NoiseLevels
 
 # A further leg has so many periods at least: the noise is what differs between them.

@@ -10,7 +10,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.identify.prediction import line_information, planned_lines
 
 if TYPE_CHECKING:
-    from shaftprint.design._plan import Plan
+    from shaftprint.design.plan import Plan
     from shaftprint.identify import NoiseLevels
 
 MOST_PERIODS = 400

@@ -3,8 +3,8 @@
 import numpy as np
 
 from shaftprint.campaign import Campaign, Multisine
-from shaftprint.design._leg import Leg
-from shaftprint.design._plan import Plan
+from shaftprint.design.plan._leg import Leg
+from shaftprint.design.plan._plan import Plan
 from shaftprint.errors import DesignError
 
 # Ramps are this much shorter than the time between legs, so that rounding does not make one too long [s].

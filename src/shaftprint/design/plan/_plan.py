@@ -8,11 +8,9 @@ from typing import TypeAlias
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.design._assumed_ship import AssumedShip
-from shaftprint.design._leg import Leg
-from shaftprint.design._limits import Limits
-from shaftprint.design._timetable import Timetable
-from shaftprint.design._wish import Wish
+from shaftprint.design.inputs import AssumedShip, Limits, Wish
+from shaftprint.design.plan._leg import Leg
+from shaftprint.design.plan._timetable import Timetable
 from shaftprint.identify import NoiseLevels, Prior
 from shaftprint.identify.prediction import Accuracy, planned_lines, predict_joint_accuracy
 from shaftprint.models import Structure

@@ -5,13 +5,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.design._assumed_ship import AssumedShip
-from shaftprint.design._brief import Brief
-from shaftprint.design._finish import SHARE_HELD, plan_of_lines
-from shaftprint.design._limits import Limits
-from shaftprint.design._plan import Plan, SailedTest
-from shaftprint.design._timetable import Timetable
-from shaftprint.design._wish import Wish, numbers_of_line
+from shaftprint.design.inputs import AssumedShip, Limits, Wish, numbers_of_line
+from shaftprint.design.plan import Plan, SailedTest, Timetable
+from shaftprint.design.planning._brief import Brief
+from shaftprint.design.planning._finish import SHARE_HELD, plan_of_lines
 from shaftprint.design.search import (
     Criterion,
     DeterminantWithFloor,

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.design._plan import Plan
+from shaftprint.design.plan import Plan
 from shaftprint.distributions import NORMAL_95, chi_square_quantile
 from shaftprint.errors import DesignError, ShaftprintError
 from shaftprint.identify.fit import Estimate
@@ -24,7 +24,7 @@ KEPT = (0.75, 1.35)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Sailing:
+class RehearsedTest:
     """One simulated test and what was identified from it."""
 
     numbers: Sequence[Estimate]
@@ -99,7 +99,7 @@ def _chance(count: int) -> tuple[float, float]:
 
 
 def rehearse(
-    plan: Plan, sail: Callable[[int], Sailing], *, truth: Mapping[str, float], seeds: Sequence[int]
+    plan: Plan, sail: Callable[[int], RehearsedTest], *, truth: Mapping[str, float], seeds: Sequence[int]
 ) -> Rehearsal:
     """Return what comes out when a plan is sailed and identified several times.
 

@@ -1,47 +1,21 @@
 """The verb ``plan_test``: from what is known of a ship and wished of its test to a planned test."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
 from datetime import datetime
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.design._assumed_ship import AssumedShip
-from shaftprint.design._design import design_campaign
-from shaftprint.design._limits import Limits
-from shaftprint.design._plan import Plan
-from shaftprint.design._planned_test import PlannedTest
-from shaftprint.design._remedies import remedies
-from shaftprint.design._set_point_line import SetPointLine
-from shaftprint.design._shortest import shortest
-from shaftprint.design._wish import Wish
+from shaftprint.design.inputs import Knowledge, Wish
+from shaftprint.design.plan import Plan
+from shaftprint.design.planned_test import PlannedTest, remedies
+from shaftprint.design.planning._design import design_campaign
+from shaftprint.design.planning._shortest import shortest
 from shaftprint.design.search import Effort
-from shaftprint.notebook import Shown
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
-    from shaftprint.identify import NoiseLevels, Prior
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
-class Knowledge(Shown):
-    """What is known of a ship before its test is planned."""
-
-    vessel: str
-    """Name of the vessel and shaft line."""
-    ship: AssumedShip
-    """What is assumed of it."""
-    limits: Limits
-    """What ship and engine allow."""
-    line: SetPointLine
-    """From volts to engine speed."""
-    noise: "Mapping[float, NoiseLevels]"
-    """Noise at each planned speed, by its share of the working point; their order is that of the legs."""
-    noise_source: str
-    """Where it comes from, in words."""
-    priors: "Mapping[str, Prior]"
-    """What the fit will know besides, by parameter."""
+    pass
 
 
 def plan_test(

@@ -6,11 +6,10 @@ from dataclasses import replace
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.design._brief import Brief
-from shaftprint.design._leg import Leg, strong_lines
-from shaftprint.design._motion import motion
-from shaftprint.design._plan import Peaks, Plan, peaks_of, predicted_accuracy
-from shaftprint.design._start import gentle_start
+from shaftprint.design.motion import motion
+from shaftprint.design.plan import Leg, Peaks, Plan, peaks_of, predicted_accuracy, strong_lines
+from shaftprint.design.planning._brief import Brief
+from shaftprint.design.planning._start import gentle_start
 from shaftprint.design.search import Uses, held_draws
 
 # Share of the possible ships for which every limit of every leg holds.

@@ -6,14 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.design._assumed_ship import AssumedShip
-from shaftprint.design._bounds import Bound, bounds_of_leg
-from shaftprint.design._leg import odd_harmonics
-from shaftprint.design._limits import Limits
-from shaftprint.design._motion import expect_motion, motion, motion_noise
-from shaftprint.design._plan import SailedTest
-from shaftprint.design._timetable import Timetable
-from shaftprint.design._wish import Wish
+from shaftprint.design.inputs import AssumedShip, Limits, Wish
+from shaftprint.design.motion import Bound, bounds_of_leg, expect_motion, motion, motion_noise
+from shaftprint.design.plan import SailedTest, Timetable, odd_harmonics
 from shaftprint.design.search import Uses
 from shaftprint.errors import DesignError
 from shaftprint.identify import NoiseLevels, Prior, noise_at

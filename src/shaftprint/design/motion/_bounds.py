@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.design._limits import Curve, Limits
-from shaftprint.design._motion import SIGNALS
+from shaftprint.design.inputs import Curve, Limits
+from shaftprint.design.motion._motion import SIGNALS
 from shaftprint.errors import DesignError
 
 # A leg reaches speeds so many times as far from its level as its set point does.

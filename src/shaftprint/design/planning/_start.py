@@ -9,9 +9,8 @@ from dataclasses import replace
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray
-from shaftprint.design._bounds import Bound
-from shaftprint.design._leg import Leg
-from shaftprint.design._motion import motion
+from shaftprint.design.motion import Bound, motion
+from shaftprint.design.plan import Leg
 from shaftprint.models import Structure
 
 # Samples a period of the fastest line, between which the set point is straight where it passes its level.

@@ -3,9 +3,9 @@
 import math
 from collections.abc import Sequence
 
-from shaftprint.design._plan import Plan
-from shaftprint.design._rehearsal import Rehearsal
-from shaftprint.design._remedies import Remedy
+from shaftprint.design.plan import Plan
+from shaftprint.design.planned_test._rehearsal import Rehearsal
+from shaftprint.design.planned_test._remedies import Remedy
 from shaftprint.digits import stated
 from shaftprint.units import SECONDS_PER_MINUTE
 

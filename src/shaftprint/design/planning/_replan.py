@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from shaftprint.design._assumed_ship import ship_of_fit
-from shaftprint.design._design import design_campaign
-from shaftprint.design._plan import Plan
+from shaftprint.design.inputs import ship_of_fit
+from shaftprint.design.plan import Plan
+from shaftprint.design.planning._design import design_campaign
 from shaftprint.design.search import Effort
 from shaftprint.identify import Identification, NoiseLevels
 from shaftprint.identify.likelihood import FittedResponse

@@ -1,0 +1,28 @@
+"""What a plan is made from: the ship as it is assumed, what it allows, what is wished for, and volts to speed."""
+
+from shaftprint.design.inputs._assumed_ship import AssumedShip, assumed_ship, ship_of_fit
+from shaftprint.design.inputs._knowledge import Knowledge
+from shaftprint.design.inputs._known_ship import limits_of_fingerprint, ship_before_test, ship_of_fingerprint
+from shaftprint.design.inputs._limits import NO_MOTORING, Curve, Limits, limits_from_vessel, usual_speeds
+from shaftprint.design.inputs._set_point_line import SetPointLine, line_of_fingerprint
+from shaftprint.design.inputs._wish import Wish, no_worse_than, numbers_of_line
+
+__all__ = [
+    "NO_MOTORING",
+    "AssumedShip",
+    "Curve",
+    "Knowledge",
+    "Limits",
+    "SetPointLine",
+    "Wish",
+    "assumed_ship",
+    "limits_from_vessel",
+    "limits_of_fingerprint",
+    "line_of_fingerprint",
+    "no_worse_than",
+    "numbers_of_line",
+    "ship_before_test",
+    "ship_of_fingerprint",
+    "ship_of_fit",
+    "usual_speeds",
+]
