@@ -18,7 +18,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.campaign import load_campaign
 from shaftprint.design import assumed_ship, design_campaign, limits_from_vessel, no_worse_than
 from shaftprint.errors import DesignError
-from shaftprint.identify import STAN_TUG_NOISE, Prior, planned_response, predict_accuracy
+from shaftprint.identify import STAN_TUG_NOISE, STAN_TUG_NOISE_AT_SPEEDS, Prior, planned_response, predict_accuracy
 from shaftprint.identify.prediction import Accuracy
 
 FIGURE = Path(__file__).parent.parent / "docs" / "images" / "how-short.svg"
@@ -87,7 +87,7 @@ def curve(way: Way, minutes: Sequence[float], wished: Accuracy) -> tuple[FloatAr
                 assumed_ship(CLOSED, TRUTH, std={}),
                 no_worse_than((*wished.parameters, *wished.combinations), but=("t_gauge",)),
                 limits_from_vessel(VESSEL, set_point_rpm=RPM_PER_V * way.volts),
-                STAN_TUG_NOISE,
+                STAN_TUG_NOISE_AT_SPEEDS,
                 speeds=way.speeds,
                 within_s=60.0 * length,
                 rng=np.random.default_rng(1),

@@ -39,7 +39,13 @@ from shaftprint.design import (  # noqa: E402
     no_worse_than,
 )
 from shaftprint.errors import ShaftprintError  # noqa: E402
-from shaftprint.identify import STAN_TUG_NOISE, Prior, planned_response, predict_accuracy  # noqa: E402
+from shaftprint.identify import (  # noqa: E402
+    STAN_TUG_NOISE,
+    STAN_TUG_NOISE_AT_SPEEDS,
+    Prior,
+    planned_response,
+    predict_accuracy,
+)
 from shaftprint.survey import load_trial  # noqa: E402
 from shaftprint.tug import Tug  # noqa: E402
 from shaftprint.vessel import load_vessel  # noqa: E402
@@ -117,7 +123,7 @@ def planned(case: Case) -> Plan:
         assumed_ship(CLOSED, TRUTH, std={}),
         no_worse_than((*thesis.parameters, *thesis.combinations), but=("t_gauge",)),
         case.limits,
-        STAN_TUG_NOISE,
+        STAN_TUG_NOISE_AT_SPEEDS,
         speeds=case.speeds,
         within_s=60.0 * case.minutes,
         rng=np.random.default_rng(1),

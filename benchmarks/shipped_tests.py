@@ -11,20 +11,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-from benchmarks.planned_tests import CLOSED, OFFSET_V, SLOPE_RPM_PER_V, TRUTH, VESSEL, Case, outcomes_of
+from benchmarks.planned_tests import OFFSET_V, SLOPE_RPM_PER_V, TRUTH, VESSEL, Case, outcomes_of, planned
 from benchmarks.planned_tests_tables import case_table
 from shaftprint.campaign import Campaign, campaign_text, load_campaign
-from shaftprint.design import (
-    Plan,
-    assumed_ship,
-    campaign_of,
-    design_campaign,
-    limits_from_vessel,
-    no_worse_than,
-)
-from shaftprint.identify import STAN_TUG_NOISE, Prior, planned_response, predict_accuracy
+from shaftprint.design import campaign_of, limits_from_vessel
 
 SHIPPED = Path(__file__).parent.parent / "src" / "shaftprint" / "campaign" / "shipped"
 SET_POINT_RPM = 251.0
@@ -66,25 +56,15 @@ REMARKS = (
 )
 
 
-def planned(test: ShippedTest) -> Plan:
-    """Return the plan: every number no worse than the thesis campaign with the builder's data would give it."""
-    priors = {"g": Prior(0.0, 0.1), "tau_up": Prior(1.016, 0.0285)}
-    lines = planned_response(load_campaign("thesis"), STAN_TUG_NOISE)
-    thesis = predict_accuracy(CLOSED, lines, values=TRUTH, priors=priors)
-    return design_campaign(
-        assumed_ship(CLOSED, TRUTH, std={}),
-        no_worse_than((*thesis.parameters, *thesis.combinations), but=("t_gauge",)),
-        limits_from_vessel(VESSEL, set_point_rpm=SET_POINT_RPM),
-        STAN_TUG_NOISE,
-        speeds=SPEEDS,
-        within_s=60.0 * test.minutes,
-        rng=np.random.default_rng(1),
-    )
+def case_of(test: ShippedTest) -> Case:
+    """Return what the test is planned for."""
+    limits = limits_from_vessel(VESSEL, set_point_rpm=SET_POINT_RPM)
+    return Case(name=test.name, limits=limits, speeds=SPEEDS, minutes=test.minutes)
 
 
 def campaign_of_test(test: ShippedTest) -> Campaign:
     """Return the campaign of a test, in tens of microvolts and of microradians."""
-    campaign = campaign_of(planned(test), name=test.name, offset_v=OFFSET_V, slope_rpm_per_v=SLOPE_RPM_PER_V)
+    campaign = campaign_of(planned(case_of(test)), name=test.name, offset_v=OFFSET_V, slope_rpm_per_v=SLOPE_RPM_PER_V)
     legs = tuple(
         one.model_copy(
             update={
@@ -99,10 +79,9 @@ def campaign_of_test(test: ShippedTest) -> Campaign:
 
 def sail_file(file: str, test: ShippedTest, seeds: int) -> None:
     """Sail a shipped campaign and print its errors beside what was planned."""
-    limits = limits_from_vessel(VESSEL, set_point_rpm=SET_POINT_RPM)
-    case = Case(name=test.name, limits=limits, speeds=SPEEDS, minutes=test.minutes)
+    case, plan = case_of(test), planned(case_of(test))
     outcomes = list(outcomes_of(case, load_campaign(file), range(1, seeds + 1)))
-    predicted = {name: planned(test).predicted.estimate(name).std for name in outcomes[0].error}
+    predicted = {name: plan.predicted.estimate(name).std for name in outcomes[0].error}
     print(case_table(case.name, outcomes, predicted, TRUTH, {}))
 
 
