@@ -47,6 +47,8 @@ def _made(
     rng=None,
     periods=PERIODS,
     order=0.0,
+    order_late_s=0.0,
+    tracked=ORDER,
 ):
     """Signals of the leg: u = sum of its lines, n = H u, M_s = (1 + wander) (1 + n)^2 + inertia, and noise."""
     time_s = np.arange(round(90.0 * RATE_HZ)) / RATE_HZ
@@ -61,7 +63,8 @@ def _made(
     if cut_v is not None:
         set_point = np.minimum(set_point, cut_v)
     load = 1.0 + wander * np.cos(2.0 * np.pi * time_s / 37.0 + 1.0)
-    turns = ORDER.per_turn * SPEED_REV_S * np.cumsum(1.0 + speed) / RATE_HZ
+    turns = tracked.per_turn * SPEED_REV_S * np.cumsum(1.0 + speed) / RATE_HZ
+    turns = np.interp(time_s - order_late_s, time_s, turns)
     load = load * (1.0 + order * np.cos(2.0 * np.pi * turns + 0.7))
     torque = load * (1.0 + speed) ** 2 + INERTIA_S * change
     if noise:
@@ -234,6 +237,18 @@ def test_an_order_that_swings_across_the_lines_is_taken_out_of_them():
     left = 0.02 * np.sqrt(4.0 / (PERIODS * PERIOD_S * RATE_HZ)) / (0.2 * abs(PER_VOLT) / SPEED_REV_S)
     assert np.median(stds, axis=0)[-1] == pytest.approx(left, rel=0.2)
     assert np.median(bare, axis=0)[-1] > 4.0 * left
+
+
+@pytest.mark.parametrize("late_s", [-5e-3, 8e-3])
+def test_an_order_may_come_late_and_repeat_with_the_leg(late_s):
+    # 21 turns a period: nothing of the order is between the harmonics, where the noise is measured
+    order = replace(ORDER, per_turn=21.0 / PERIOD_S / SPEED_REV_S)
+    made = [_made(order=size, order_late_s=late_s, tracked=order) for size in (0.09, 0.0)]
+    with_order, without = (
+        estimate_legs(replace(signals, orders=(order,)), CAMPAIGN)["M1"].response.response[1, 0] for signals in made
+    )
+    untouched = estimate_legs(made[0], CAMPAIGN)["M1"].response.response[1, 0]
+    assert np.abs(with_order - without).max() < 1e-3 * np.abs(untouched - without).max()
 
 
 def test_a_leg_without_orders_keeps_its_response():

@@ -17,6 +17,7 @@ from shaftprint.spectra.orders import (
     order_bands,
     order_waves,
     with_measured_gears,
+    with_speed,
 )
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class LegOrders:
     fit: OrderFit
     """How large they are."""
     waves: ComplexArray
-    """Fourier amplitudes of their waves, shape (2 orders, bins)."""
+    """Fourier amplitudes of their waves, shape (4 orders, bins)."""
     duration_s: float
     """Length of the window [s]."""
 
@@ -89,7 +90,7 @@ def without_leg_orders(
     duration_s = state.period_s * state.periods
     chosen = _bins_of(bands, spectrum[window.channels.index(excitation)], state.periods, duration_s)
     bands = with_measured_gears(bands, speeds, load.ravel(), spectrum[torque], chosen, rate_hz=rate_hz)
-    waves = order_waves(bands, speeds, load.ravel(), rate_hz=rate_hz)
+    waves = with_speed(order_waves(bands, speeds, load.ravel(), rate_hz=rate_hz), bands, speeds)
     transformed = np.fft.rfft(waves, axis=1) * (2.0 / waves.shape[1])
     fit = fit_orders(spectrum[torque], transformed, chosen)
     values = window.values.copy()

@@ -29,9 +29,9 @@ class OrderFit:
     """Orders of one window over the load."""
 
     coefficient: FloatArray
-    """Cosine and sine part of each order over the torque of the working point, shape (2 orders,)."""
+    """Cosine and sine part of each order over the torque of the working point, shape (waves,)."""
     covariance: FloatArray
-    """Their covariance, shape (2 orders, 2 orders)."""
+    """Their covariance, shape (waves, waves)."""
     taken: FloatArray
     """Share of the noise of each bin that the fit has taken with it, shape (bins,): they add up to half the number of
     coefficients, one degree of freedom each."""
@@ -42,7 +42,7 @@ class OrderFit:
         Parameters
         ----------
         waves
-            Complex amplitudes that the waves of the orders have at the line, shape (2 orders,).
+            Complex amplitudes that the waves of the orders have at the line, shape (waves,).
         """
         return float((waves @ self.covariance @ waves.conj()).real)
 
@@ -55,7 +55,7 @@ def fit_orders(torque: ComplexArray, waves: ComplexArray, chosen: BoolArray) -> 
     torque
         Fourier amplitudes of the torque, over the working point, without the test lines, shape (bins,).
     waves
-        Those of the waves of the orders, shape (2 orders, bins).
+        Those of the waves of the orders, shape (waves, bins).
     chosen
         Bins to use: bands of the orders without test lines, shape (bins,).
     """

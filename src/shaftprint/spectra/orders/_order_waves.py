@@ -94,3 +94,27 @@ def order_waves(
         angle = 2.0 * np.pi * band.order.per_turn * turns
         waves[2 * place], waves[2 * place + 1] = load * np.cos(angle), load * np.sin(angle)
     return waves
+
+
+def with_speed(waves: FloatArray, bands: Sequence[OrderBand], speeds_rev_s: Mapping[str, FloatArray]) -> FloatArray:
+    """Return waves of orders, and after them what they are times the deviation of the speed from its mean.
+
+    An order whose size and phase change with the speed is the sum of both: one whose torque comes late, since the
+    angle is then that of a moment before; one near a torsional mode; one that does not go with the load alone.
+
+    Parameters
+    ----------
+    waves
+        Cosine and sine of each order, shape (2 orders, samples).
+    bands
+        The orders.
+    speeds_rev_s
+        Engine speed of every pick-up by its name [rev/s], each of shape (samples,).
+
+    Returns
+    -------
+    Waves, shape (4 orders, samples).
+    """
+    swing = {name: speed / speed.mean() - 1.0 for name, speed in speeds_rev_s.items()}
+    of_waves = np.repeat([swing[band.order.speed] for band in bands], 2, axis=0)
+    return np.concatenate([waves, waves * of_waves])
