@@ -96,58 +96,53 @@ def _numbers(test: "PlannedTest") -> Section:
 
 
 def _motion(test: "PlannedTest") -> Section:
-    return Section(
-        key="motion",
+    return _with_picture(
         title="Set point, speed and torque",
-        paragraphs=(
+        words=(
             "One period of each leg after it has settled, of the ship as it is assumed. Other ships within the stated "
-            "uncertainty swing more, and 98 of 100 of them keep the limits too.",
+            "uncertainty swing more, and 98 of 100 of them keep the limits too."
         ),
-        pictures=(
-            Picture(
-                name="motion",
-                caption="Set point, speed and brake torque with their noise, and the limits of ship and engine.",
-                alt="Set point and speed over one period above, brake torque below, with limits; a leg a column.",
-                chart=lambda: planned_motion_chart(planned_motion(test.plan), test.plan),
-            ),
+        picture=Picture(
+            name="motion",
+            caption="Set point, speed and brake torque with their noise, and the limits of ship and engine.",
+            alt="Set point and speed over one period above, brake torque below, with limits; a leg a column.",
+            chart=lambda: planned_motion_chart(planned_motion(test.plan), test.plan),
         ),
     )
 
 
 def _lines(test: "PlannedTest") -> Section:
-    return Section(
-        key="lines",
+    return _with_picture(
         title="Lines and what they tell",
-        paragraphs=(
+        words=(
             "Above, the amplitude of each line. Below, what a line of 1 rpm at a frequency would still tell in a "
             "second beside this test: the fall of the logarithm of the volume that all numbers may lie in. A plan "
-            "without limits of peaks has its lines where the curve is highest.",
+            "without limits of peaks has its lines where the curve is highest."
         ),
-        pictures=(
-            Picture(
-                name="lines",
-                caption="Amplitudes of the lines, and the information of a line of 1 rpm in a second.",
-                alt="Amplitudes over frequency above the information that a line gives in a second; a leg a column.",
-                chart=lambda: planned_line_chart(line_worths(test.plan)),
-            ),
+        picture=Picture(
+            name="lines",
+            caption="Amplitudes of the lines, and the information of a line of 1 rpm in a second.",
+            alt="Amplitudes over frequency above the information that a line gives in a second; a leg a column.",
+            chart=lambda: planned_line_chart(line_worths(test.plan)),
         ),
     )
 
 
 def _length(test: "PlannedTest") -> Section:
-    return Section(
-        key="length",
+    return _with_picture(
         title="Longer or shorter",
-        paragraphs=("The same lines, sailed for another number of periods: deviations fall with the root of time.",),
-        pictures=(
-            Picture(
-                name="length",
-                caption="Predicted standard deviations over the length of the test.",
-                alt="Falling lines of predicted deviations over the length of the test, with this plan marked.",
-                chart=lambda: length_chart(length_curve(test.plan), test.plan),
-            ),
+        words="The same lines, sailed for another number of periods: deviations fall with the root of time.",
+        picture=Picture(
+            name="length",
+            caption="Predicted standard deviations over the length of the test.",
+            alt="Falling lines of predicted deviations over the length of the test, with this plan marked.",
+            chart=lambda: length_chart(length_curve(test.plan), test.plan),
         ),
     )
+
+
+def _with_picture(*, title: str, words: str, picture: Picture) -> Section:
+    return Section(key=picture.name, title=title, paragraphs=(words,), pictures=(picture,))
 
 
 def _words(test: "PlannedTest") -> Section:
