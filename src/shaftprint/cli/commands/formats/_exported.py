@@ -26,6 +26,9 @@ set_option = click.option(
     multiple=True,
     help="Value of a parameter instead of the fingerprint's; may be repeated.",
 )
+output_option = click.option(
+    "-o", "--output", type=click.Path(path_type=Path), help="File to write; named after the vessel by default."
+)
 force_option = click.option("--force", is_flag=True, help="Replace an earlier file.")
 
 

@@ -13,6 +13,7 @@ from shaftprint.cli.commands.formats._exported import (
     fingerprint_argument,
     force_option,
     model_to_export,
+    output_option,
     set_option,
     structure_option,
 )
@@ -45,9 +46,7 @@ from shaftprint.export import PLATFORMS, WrittenFmu, write_fmu
     help="Samples of the parameters by their covariance, one of which is chosen by the parameter posterior_sample.",
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Start of the random numbers.")
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="File to write; named after the vessel by default."
-)
+@output_option
 @force_option
 @no_progress_option
 def command(

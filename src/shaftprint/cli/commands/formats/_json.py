@@ -6,7 +6,7 @@ import click
 
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
 from shaftprint.cli._terminal import answer
-from shaftprint.cli.commands.formats._exported import file_to_write, fingerprint_argument, force_option
+from shaftprint.cli.commands.formats._exported import file_to_write, fingerprint_argument, force_option, output_option
 from shaftprint.cli.output import fingerprint_at
 from shaftprint.export import exported_model, write_json
 
@@ -16,9 +16,7 @@ from shaftprint.export import exported_model, write_json
 @click.option(
     "--structure", metavar="NAME", help=f"Structure that was identified, if it is not shipped: {OWN_FILE_HELP}."
 )
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="File to write; named after the vessel by default."
-)
+@output_option
 @force_option
 def command(fingerprint: Path, structure: TypedName | None, output: Path | None, force: bool) -> None:
     """Write parameters, state space and frequency response as one JSON file.

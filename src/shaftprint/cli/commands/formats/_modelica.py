@@ -11,6 +11,7 @@ from shaftprint.cli.commands.formats._exported import (
     fingerprint_argument,
     force_option,
     model_to_export,
+    output_option,
     set_option,
     structure_option,
 )
@@ -21,9 +22,7 @@ from shaftprint.export import write_modelica
 @fingerprint_argument
 @structure_option
 @set_option
-@click.option(
-    "-o", "--output", type=click.Path(path_type=Path), help="File to write; named after the vessel by default."
-)
+@output_option
 @force_option
 def command(
     fingerprint: Path,
