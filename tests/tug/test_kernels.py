@@ -45,6 +45,7 @@ tugs = {
         governor_deadband_rpm=5.0,
     ),
     "underway": Tug(sailing=Sailing()),
+    "scheduled": Tug(governor_gain_exponent=0.5, governor_delay_exponent=-1.0, generator_cycle_s=0.01),
 }
 arrays = {}
 for name, tug in tugs.items():

@@ -141,8 +141,15 @@ def physical_truth(tug: Tug, vessel: Vessel) -> dict[str, float]:
         "transmission_efficiency": plant.efficiency,
         "torque_zero_offset_nm": tug.torque_zero_offset_nm,
         **limited,
+        **_of_speed_and_generator(tug),
         **demand_limits(tug, vessel).stated,
     }
+
+
+def _of_speed_and_generator(tug: Tug) -> dict[str, float]:
+    """Return how gains and delay go with the speed, and what the generator makes of the voltage, where they do."""
+    names = ("governor_gain_exponent", "governor_delay_exponent", "generator_step_v", "generator_cycle_s")
+    return {name: value for name in names if (value := getattr(tug, name))}
 
 
 def tell_truth(

@@ -59,6 +59,12 @@ class Tug:
     """Time constant of the back-calculation that empties the integrator at the limits [s]."""
     governor_delay_s: float = 0.0703
     """Transport delay ``t_d`` between governor output and fuel rack, inside the loop [s]; 0 or three time steps."""
+    governor_gain_exponent: float = 0.0
+    """Power of the engine speed, over that of the working point, with which ``K_p`` and ``K_i`` go: a governor that
+    takes its gains from a table over the speed; 0: the same gains at all speeds."""
+    governor_delay_exponent: float = 0.0
+    """Power of the engine speed with which ``t_d`` goes; -1 where all of it is a part of a turn of the engine, 0: the
+    same delay at all speeds."""
     governor_deadband_rpm: float = 0.0
     """Speed error within which the governor does nothing [rpm], half of the whole band; 0: none."""
     rack_rate_limit_per_s: float | None = None
@@ -75,6 +81,10 @@ class Tug:
     """Intercept of that line [rpm]."""
     set_point_offset_v: float = -0.04947603299199
     """What the potentiometer adds to the voltage of the campaign [V]: at -5 V the default line gives ``n_0``."""
+    generator_step_v: float | None = None
+    """Step of the voltage that the generator can put out [V], 4.9 mV of +/- 10 V in 12 bits; ``None``: any voltage."""
+    generator_cycle_s: float | None = None
+    """Time for which the generator holds a voltage [s], that of the campaign in the middle; ``None``: not held."""
     demand_resolution_rpm: float | None = None
     """Step of the demand on its way to the ECU [rpm]; ``None``: the vessel's, not quantised where it has none."""
     demand_cycle_s: float | None = None

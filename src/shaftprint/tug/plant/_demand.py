@@ -24,7 +24,14 @@ def _rate_limit(demand: FloatArray, largest_change, last) -> None:  # type: igno
 
 def helm_voltage(tug: Tug, campaign: Campaign, time_s: FloatArray) -> FloatArray:
     """Return the true set-point voltage [V] behind the potentiometer, shape of ``time_s``."""
-    return setpoint(campaign, time_s) + tug.set_point_offset_v
+    cycle_s, step_v = tug.generator_cycle_s, tug.generator_step_v
+    if cycle_s is not None:
+        # a billionth of a cycle, so that rounding does not delay a voltage that is due
+        time_s = cycle_s * (np.floor(time_s / cycle_s + 1e-9) + 0.5)
+    voltage = setpoint(campaign, time_s)
+    if step_v is not None:
+        voltage = step_v * np.round(voltage / step_v)
+    return voltage + tug.set_point_offset_v
 
 
 def demanded_speed(tug: Tug, voltage_v: FloatArray) -> FloatArray:

@@ -25,6 +25,8 @@ both change with the pitch, to second order about that of the curves.
 A smoke limiter lets the engine burn no more than the boost gives air for: ``M_b <= M_full (a + (1 - a) b)`` with the
 boost ``b`` of a turbocharger that follows the torque late, ``tau_tc db/dt = M_b / M_full - b``: steady running is never
 limited, a fast rise is. A limit of the rate of the rack holds for what the governor gives, before delay and actuation.
+
+Gains and delay may go with a power of the engine speed, ``K (n_e / n_e0)^a`` and ``t_d (n_e / n_e0)^b``, at any time.
 """
 
 from typing import NamedTuple
@@ -39,6 +41,9 @@ SPEED, INTEGRAL, RACK, RACK_RATE, SLIPSTREAM, ANGLE, WAY = range(7)
 """Places in the state vector: shaft speed [rev/s], integrator [rack], rack, rack rate [1/s], slipstream velocity as a
 shaft speed [rev/s], shaft angle [rev], speed of the ship [m/s]."""
 STATES = 7
+FARTHEST_SHARE = 4.0
+"""Gains and delay that go with the speed stay as they are beyond this share of the working point's, and below one over
+it."""
 
 
 class Plant(NamedTuple):
@@ -68,6 +73,12 @@ class Plant(NamedTuple):
     delay_s: float
     natural_frequency_rad_s: float
     damping_ratio: float
+    point_speed_rev_s: float
+    """Engine speed of the working point [rev/s], at which gains and delay are as stated."""
+    gain_exponent: float
+    """Power of the engine speed with which both gains go."""
+    delay_exponent: float
+    """Power of the engine speed with which the delay goes."""
     limit_speed_rev_s: FloatArray
     """Engine speeds of the full-load curve [rev/s], ascending."""
     limit_torque_nm: FloatArray
@@ -153,13 +164,23 @@ def _felt(error, plant):  # type: ignore[no-untyped-def]
 
 
 @compiled(inline="always")
+def _scheduled(speed, exponent, plant):  # type: ignore[no-untyped-def]
+    """Return what is over its value at the working point what goes with a power of the engine speed [rev/s]."""
+    if exponent == 0.0:
+        return 1.0
+    share = min(max(speed / plant.point_speed_rev_s, 1.0 / FARTHEST_SHARE), FARTHEST_SHARE)
+    return share**exponent
+
+
+@compiled(inline="always")
 def governor_rack(speed_s, integral, demand, plant, air=1.0):  # type: ignore[no-untyped-def]
     """Return the rack that the governor asks for, before and after the limiter of the ECU.
 
     ``air`` is the share of the full-load torque for which the boost gives air.
     """
     speed = plant.gear_ratio * speed_s
-    wanted = plant.proportional_s * _felt(demand - speed, plant) + integral
+    gain = _scheduled(speed, plant.gain_exponent, plant)
+    wanted = gain * plant.proportional_s * _felt(demand - speed, plant) + integral
     lowest, highest = torque_limits(speed, plant)
     highest *= air
     without_rack = plant.speed_slope_nm_s * speed + plant.rack_offset_nm
@@ -196,7 +217,8 @@ def derivatives(  # type: ignore[no-untyped-def]
     drive = plant.gear_ratio * plant.efficiency * brake + load * engine_noise
     acceleration = (drive - propeller) / (2.0 * np.pi * (plant.inertia_upstream_kg_m2 + plant.inertia_downstream_kg_m2))
     gauge = propeller + 2.0 * np.pi * plant.inertia_downstream_kg_m2 * acceleration
-    integral_rate = plant.integral * _felt(demand - speed, plant) + (rack_given - wanted) / plant.anti_windup_s
+    gain = _scheduled(speed, plant.gain_exponent, plant)
+    integral_rate = gain * plant.integral * _felt(demand - speed, plant) + (rack_given - wanted) / plant.anti_windup_s
     omega = plant.natural_frequency_rad_s
     rack_acceleration = omega * (omega * (rack_delayed - rack) - 2.0 * plant.damping_ratio * rack_rate)
     limited = rack_given != wanted or brake != unlimited
@@ -225,19 +247,33 @@ def _past(history, mask, first, weights):  # type: ignore[no-untyped-def]
     )
 
 
-def interpolation_weights(position: float) -> tuple[int, FloatArray]:
+def _lagrange(position):  # type: ignore[no-untyped-def]
     """Return the first of four nodes and their cubic Lagrange weights for a place between the middle two."""
     node = int(np.floor(position))
     part = position - node
-    weights = np.array(
-        [
-            -part * (part - 1.0) * (part - 2.0) / 6.0,
-            (part + 1.0) * (part - 1.0) * (part - 2.0) / 2.0,
-            -(part + 1.0) * part * (part - 2.0) / 2.0,
-            (part + 1.0) * part * (part - 1.0) / 6.0,
-        ]
+    weights = (
+        -part * (part - 1.0) * (part - 2.0) / 6.0,
+        (part + 1.0) * (part - 1.0) * (part - 2.0) / 2.0,
+        -(part + 1.0) * part * (part - 2.0) / 2.0,
+        (part + 1.0) * part * (part - 1.0) / 6.0,
     )
     return node - 1, weights
+
+
+_taps = compiled(inline="always")(_lagrange)
+
+
+def interpolation_weights(position: float) -> tuple[int, FloatArray]:
+    """Return the first of four nodes and their cubic Lagrange weights for a place between the middle two."""
+    first, weights = _lagrange(position)  # type: ignore[no-untyped-call]
+    return first, np.array(weights)
+
+
+@compiled(inline="always")
+def _past_at(history, mask, k, position):  # type: ignore[no-untyped-def]
+    """Return the value at a place relative to a node of a ring."""
+    first, weights = _taps(position)
+    return _past(history, mask, k + first, weights)
 
 
 class Carried(NamedTuple):
@@ -260,6 +296,8 @@ class DelayTaps(NamedTuple):
     """First of four nodes, relative to the node of the step, shape (3,)."""
     weights: FloatArray
     """Interpolation weights, shape (3, 4)."""
+    steps: float
+    """The delay at the working point, in steps."""
 
 
 class Traces(NamedTuple):
@@ -332,11 +370,20 @@ def advance(  # type: ignore[no-untyped-def]
         engine = (engine_noise[j], 0.5 * (engine_noise[j] + engine_noise[j + 1]), engine_noise[j + 1])
         demands = (demand[2 * j], demand[2 * j + 1], demand[2 * j + 2])
         blades = (pitch[2 * j], pitch[2 * j + 1], pitch[2 * j + 2])
-        past = (
-            _past(history, mask, k + delay.first[0], delay.weights[0]),
-            _past(history, mask, k + delay.first[1], delay.weights[1]),
-            _past(history, mask, k + delay.first[2], delay.weights[2]),
-        )
+        if plant.delay_exponent == 0.0:
+            past = (
+                _past(history, mask, k + delay.first[0], delay.weights[0]),
+                _past(history, mask, k + delay.first[1], delay.weights[1]),
+                _past(history, mask, k + delay.first[2], delay.weights[2]),
+            )
+        else:
+            # a step is so short that the speed is that of its start
+            steps = delay.steps * _scheduled(plant.gear_ratio * x[0], plant.delay_exponent, plant)
+            past = (
+                _past_at(history, mask, k, -steps),
+                _past_at(history, mask, k, 0.5 - steps),
+                _past_at(history, mask, k, 1.0 - steps),
+            )
         air = plant.air_share + (1.0 - plant.air_share) * carried.boost[0]
         rates = derivatives(x, demands[0], past[0], propeller[0], engine[0], plant, air, blades[0])
         # the limiter of the rate keeps no state of its own: it starts from the rack that it gave last

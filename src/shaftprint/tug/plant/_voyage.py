@@ -14,7 +14,15 @@ from shaftprint.tug.plant._demand import Demand
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._physics import build_plant, equilibrium, steady_boost
 from shaftprint.tug.plant._pitch import PitchActuator
-from shaftprint.tug.plant._plant import RACK, Carried, DelayTaps, Traces, advance, interpolation_weights
+from shaftprint.tug.plant._plant import (
+    FARTHEST_SHARE,
+    RACK,
+    Carried,
+    DelayTaps,
+    Traces,
+    advance,
+    interpolation_weights,
+)
 from shaftprint.vessel import Vessel
 
 
@@ -82,15 +90,16 @@ def voyage(
     demand = Demand(tug, vessel, campaign, start_s=start_s, step_s=step_s)
     pitch = PitchActuator(tug, vessel, campaign, start_s=start_s, step_s=step_s)
     delay_steps = plant.delay_s / step_s
+    farthest = FARTHEST_SHARE ** abs(plant.delay_exponent)
     # the delayed rack is interpolated over four nodes of which the newest must already be known
-    if 0.0 < delay_steps < 3.0:
+    if 0.0 < delay_steps < 3.0 * farthest:
         raise SettingsError(
-            f"tug: expected governor_delay_s of 0 or at least {3.0 * step_s:g}, three steps of the simulation, "
-            f"found {plant.delay_s:g}; give a longer delay or none."
+            f"tug: expected governor_delay_s of 0 or at least {3.0 * step_s * farthest:g}, three steps of the "
+            f"simulation at every speed, found {plant.delay_s:g}; give a longer delay or none."
         )
     delay = _delay(delay_steps)
     state = equilibrium(plant, demand.first)
-    ring = np.full(1 << int(np.ceil(np.log2(delay_steps + 8.0))), state[RACK])
+    ring = np.full(1 << int(np.ceil(np.log2(farthest * delay_steps + 8.0))), state[RACK])
     boost = np.array([steady_boost(plant, demand.first)])
     carried = Carried(state=state, history=ring, counter=np.zeros(1, dtype=np.int64), boost=boost)
     for done, (asked, angle_asked, propeller, engine) in _forced(disturbance, demand, pitch, steps=steps, chunk=chunk):
@@ -137,5 +146,7 @@ def _delay(steps: float) -> DelayTaps:
     """Return where the delayed rack is found at the stages of a step, for a delay in steps."""
     parts = [interpolation_weights(stage - steps) for stage in (0.0, 0.5, 1.0)]
     return DelayTaps(
-        first=np.array([node for node, _ in parts], dtype=np.int64), weights=np.array([weight for _, weight in parts])
+        first=np.array([node for node, _ in parts], dtype=np.int64),
+        weights=np.array([weight for _, weight in parts]),
+        steps=steps,
     )
