@@ -101,6 +101,24 @@ def test_a_recording_that_ends_in_the_second_leg_still_gives_a_result(trial, voy
     assert sorted(fingerprint.noise_at_speeds) == sorted(leg.engine_speed_rpm for leg in fingerprint.legs)
 
 
+def test_a_generator_that_stops_in_the_second_leg_still_gives_a_result(trial, tmp_path):
+    """The recorder goes on: what the set point does after the fourth of nine periods belongs to no period."""
+    first, second = trial.campaign.multisines
+    stopped = trial.campaign.model_copy(
+        update={"multisines": (first, second.model_copy(update={"stop_s": second.settled_s + 4.6 * second.period_s}))}
+    )
+    path = tmp_path / "stopped.nc"
+    truth = sail(trial.vessel, stopped, path, seed=21)
+    measurement = measure(path, trial)
+    assert measurement.legs[1].spectra.remarks["M2"] == "4 of 9 periods are in the recording"
+    (told,) = [finding for finding in measurement.signals.findings if finding.startswith("M2: the set point repeats")]
+    assert "in 4 of 9 periods alone" in told
+    found = _fitted(measurement)
+    true = as_measured(truth, measurement.signals)
+    assert max(abs(one.value - true[one.name]) / one.std for one in found.parameters) < 3.5
+    assert found.p_value > 0.01
+
+
 @pytest.mark.parametrize(
     "changed", [{"proportional_gain": 1.1 * 5.7, "integral_gain_per_s": 1.1 * 4.27}, {"governor_delay_s": 1.1 * 0.0703}]
 )

@@ -6,7 +6,7 @@ import pytest
 from shaftprint.campaign import Multisine
 from shaftprint.errors import SignalError
 from shaftprint.signals import Coverage, Gap
-from shaftprint.signals.levels import LegSamples, calibration_of_legs, leg_periods, leg_state
+from shaftprint.signals.levels import LegSamples, calibration_of_legs, leg_periods, leg_state, repeated_periods
 
 RATE_HZ = 50.0
 LEG = Multisine(
@@ -112,3 +112,42 @@ def test_a_set_point_that_stands_still_is_refused():
 def test_the_longest_run_of_whole_periods_is_used(coverage, expected):
     periods = leg_periods(LEG, coverage)
     assert (periods if periods is None else (periods.start_s, periods.periods)) == expected
+
+
+def _put_out(*, begins_s=0.0, stops_s=1e3, then_v=-5.0, clock_ratio=0.0, noise=0.0):
+    """What the recorder shows from 0 to 140 s of a generator that puts the leg out for a while; at 2 V/s it goes on."""
+    time_s = np.arange(round(140.0 * RATE_HZ)) / RATE_HZ
+    omega = 2.0 * np.pi * np.array(LEG.harmonics)[:, np.newaxis] / (LEG.period_s * (1.0 + clock_ratio))
+    waves = np.sin(omega * (time_s - LEG.start_s) + np.array(LEG.phases_rad)[:, np.newaxis])
+    volts = LEG.level_v + np.array(LEG.amplitudes_v) @ waves
+    volts[(time_s < begins_s) | (time_s >= stops_s)] = then_v
+    return volts + noise * np.random.default_rng(1).standard_normal(time_s.size)
+
+
+@pytest.mark.parametrize(
+    ("generator", "expected"),
+    [
+        ({}, (30.0, 5)),
+        # half of a promille of the clock, and noise of a fifth of the swing
+        ({"clock_ratio": 5e-4, "noise": 0.06}, (30.0, 5)),
+        # periods end at 50, 70, 90, 110 and 130 s: two are whole until 75 s, four until 129 s
+        ({"stops_s": 75.0}, (30.0, 2)),
+        ({"stops_s": 75.0, "then_v": -3.0}, (30.0, 2)),
+        ({"stops_s": 129.0, "then_v": -5.6}, (30.0, 4)),
+        # from 58 s on: 70 s is the next begin, and the period after it is left to settle
+        ({"begins_s": 58.0}, (90.0, 2)),
+        # one whole period alone: not for this check to say what is wrong
+        ({"stops_s": 55.0}, (30.0, 5)),
+    ],
+)
+def test_periods_that_the_generator_did_not_put_out_are_left_out(generator, expected):
+    held = leg_periods(LEG, Coverage())
+    found = repeated_periods(held, _put_out(**generator), rate_hz=RATE_HZ, start_s=0.0)
+    assert (found.start_s, found.periods) == expected
+    assert (found.leg, found.period_s) == ("M1", 20.0)
+
+
+def test_a_period_that_is_disturbed_in_the_middle_stays():
+    volts = _put_out()
+    volts[round(75.0 * RATE_HZ) : round(80.0 * RATE_HZ)] = -5.0
+    assert repeated_periods(leg_periods(LEG, Coverage()), volts, rate_hz=RATE_HZ, start_s=0.0).periods == 5

@@ -10,6 +10,7 @@ from shaftprint.signals.levels import (
     calibration_of_legs,
     leg_periods,
     leg_state,
+    repeated_periods,
     stretch_of,
 )
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 def samples_of_legs(campaign: "Campaign", readings: "Readings") -> tuple[LegSamples, ...]:
     """Return set point, speed and torque of every leg of which the recording holds two whole periods.
 
+    Of what it holds, the periods that the generator put out.
+
     Parameters
     ----------
     campaign
@@ -31,17 +34,41 @@ def samples_of_legs(campaign: "Campaign", readings: "Readings") -> tuple[LegSamp
     """
     clock = readings.clock
     grid = {"rate_hz": clock.rate_hz, "start_s": clock.start_s}
-    inside = ((leg, leg_periods(leg, readings.coverage)) for leg in campaign.legs)
-    return tuple(
-        LegSamples(
-            leg=leg,
-            periods=periods,
-            set_point_v=periods.cut(readings.set_point, **grid),
-            speed_rev_s=periods.cut(readings.pick_ups[0].values, **grid),
-            torque_nm=periods.cut(readings.torque_nm, **grid),
+    samples = []
+    for leg in campaign.legs:
+        held = leg_periods(leg, readings.coverage)
+        if held is None:
+            continue
+        periods = repeated_periods(held, readings.set_point, **grid)
+        samples.append(
+            LegSamples(
+                leg=leg,
+                periods=periods,
+                set_point_v=periods.cut(readings.set_point, **grid),
+                speed_rev_s=periods.cut(readings.pick_ups[0].values, **grid),
+                torque_nm=periods.cut(readings.torque_nm, **grid),
+            )
         )
-        for leg, periods in inside
-        if periods is not None
+    return tuple(samples)
+
+
+def stopped_generators(samples: tuple[LegSamples, ...], readings: "Readings") -> tuple[str, ...]:
+    """Return of every leg that the generator did not put out whole what was used of it.
+
+    Parameters
+    ----------
+    samples
+        From `samples_of_legs`.
+    readings
+        What was read.
+    """
+    found = ((one, leg_periods(one.leg, readings.coverage)) for one in samples)
+    return tuple(
+        f"{one.leg.name}: the set point repeats itself in {one.periods.periods} of {held.periods} periods alone, from "
+        f"{one.periods.start_s:.1f} to {one.periods.stop_s:.1f} s: the generator stopped, or began late; the other "
+        "periods were left out"
+        for one, held in found
+        if held is not None and held.periods > one.periods.periods
     )
 
 

@@ -15,7 +15,7 @@ from shaftprint.signals._channel_signals import ChannelSignal, SpeedSignal
 from shaftprint.signals._channels import find_channel
 from shaftprint.signals._clock import Mode, clock_of
 from shaftprint.signals._gaps import Coverage
-from shaftprint.signals._leg_steady_state import samples_of_legs, steady_state_of_legs
+from shaftprint.signals._leg_steady_state import samples_of_legs, steady_state_of_legs, stopped_generators
 from shaftprint.signals._orders import tracked_orders
 from shaftprint.signals._rates import expect_one_rate
 from shaftprint.signals._readings import Readings, usable_readings
@@ -112,6 +112,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
     lost, mismatches = _differences_from_campaign(recording, vessel, campaign, readings)
     differences = compare_speeds(readings.pick_ups, vessel)
     legs = samples_of_legs(campaign, readings)
+    stopped = stopped_generators(legs, readings)
     states: tuple[LegState, ...]
     unsteady: tuple[Reason, ...] = ()
     if campaign.legs and not campaign.sines:
@@ -147,7 +148,17 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
         repairs=readings.repairs,
         gaps=readings.gaps,
         mode=clock.mode,
-        findings=(*lost, *readings.findings, *mismatches, *strange, *differences, *scale.findings, *absent, *missed),
+        findings=(
+            *lost,
+            *readings.findings,
+            *mismatches,
+            *stopped,
+            *strange,
+            *differences,
+            *scale.findings,
+            *absent,
+            *missed,
+        ),
         reasons=(*reasons, *unsteady),
         recording_sha256=recording.sha256,
         recording_name=recording.path.name,

@@ -5,6 +5,7 @@ from shaftprint.signals.levels._dc_scale import DcScale, LowLines, dc_scale, low
 from shaftprint.signals.levels._leg_periods import LegPeriods, leg_periods
 from shaftprint.signals.levels._leg_state import LegSamples, calibration_of_legs, leg_state, stretch_of
 from shaftprint.signals.levels._load import torque_of_mean_load
+from shaftprint.signals.levels._repeated_periods import repeated_periods
 from shaftprint.signals.levels._steadiness import expect_steady_gauge
 from shaftprint.signals.levels._steady import SteadyStretch, steady_stretches
 from shaftprint.signals.levels._wander import fit_through_wander
@@ -37,6 +38,7 @@ __all__ = [
     "leg_state",
     "low_lines",
     "mean_of_stretches",
+    "repeated_periods",
     "steady_stretches",
     "stretch_of",
     "stretches_at_working_point",

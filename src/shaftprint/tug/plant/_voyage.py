@@ -14,15 +14,8 @@ from shaftprint.tug.plant._demand import Demand
 from shaftprint.tug.plant._disturbance import Disturbance
 from shaftprint.tug.plant._physics import build_plant, equilibrium, steady_boost
 from shaftprint.tug.plant._pitch import PitchActuator
-from shaftprint.tug.plant._plant import (
-    FARTHEST_SHARE,
-    RACK,
-    Carried,
-    DelayTaps,
-    Traces,
-    advance,
-    interpolation_weights,
-)
+from shaftprint.tug.plant._plant import FARTHEST_SHARE, RACK, advance, interpolation_weights
+from shaftprint.tug.plant._traces import Carried, DelayTaps, Traces
 from shaftprint.vessel import Vessel
 
 
