@@ -97,7 +97,11 @@ def knowledge_of(stated: Stated, *, steps: Steps) -> Knowledge:
     point_rpm, vessel_rpm = limits.engine_speed_rpm, stated.vessel.working_point.engine_speed_rpm
     shares = options.speeds
     # after a first test the working point is that of the test, at which its numbers are normalised
-    speeds = usual_speeds(limits) if shares is None else tuple(share * vessel_rpm / point_rpm for share in shares)
+    speeds = (
+        usual_speeds(limits, working_point_rpm=vessel_rpm)
+        if shares is None
+        else tuple(share * vessel_rpm / point_rpm for share in shares)
+    )
     outputs = stated.structure.outputs
     levels, source = _noise(stated, recorded)
     noise = {share: noise_at(levels, share * point_rpm) for share in speeds}

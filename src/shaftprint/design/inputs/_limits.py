@@ -135,16 +135,30 @@ def limits_from_vessel(vessel: "Vessel", *, set_point_rpm: float) -> Limits:
     )
 
 
-def usual_speeds(limits: Limits) -> tuple[float, ...]:
+def usual_speeds(limits: Limits, *, working_point_rpm: float | None = None) -> tuple[float, ...]:
     """Return two speeds as far apart as the limits leave room for, at most 1.15 and 0.78 of the working point.
 
     A second speed separates what one alone cannot. Where there is no room for two it is the working point alone.
+
+    Parameters
+    ----------
+    limits
+        What ship and engine allow.
+    working_point_rpm
+        Engine speed of the working point that is meant [rpm], where the limits are stated about another one, such as
+        that of a first test at a higher speed; theirs where not given.
+
+    Returns
+    -------
+        Shares of ``limits.engine_speed_rpm``.
     """
+    point_rpm = limits.engine_speed_rpm if working_point_rpm is None else working_point_rpm
     high, low = USUAL_SHARES
     clear = _CLEAR * limits.set_point_rpm
-    high = min(high, (limits.highest_speed_rpm - clear) / limits.engine_speed_rpm)
-    low = max(low, (limits.lowest_speed_rpm + clear) / limits.engine_speed_rpm)
-    return (round(high, 3), round(low, 3)) if high > low else (1.0,)
+    high = min(high, (limits.highest_speed_rpm - clear) / point_rpm)
+    low = max(low, (limits.lowest_speed_rpm + clear) / point_rpm)
+    shares = (round(high, 3), round(low, 3)) if high > low else (1.0,)
+    return tuple(share * point_rpm / limits.engine_speed_rpm for share in shares)
 
 
 def _curve(speeds_rpm: Sequence[float], torques_nm: Sequence[float]) -> Curve:

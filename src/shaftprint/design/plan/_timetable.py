@@ -9,6 +9,9 @@ from shaftprint.notebook import Shown
 
 # A test with fewer periods a leg has too little to tell noise from the response.
 FEWEST_PERIODS = 4
+# A short test has periods of so much of the length that is aimed at, at least: with 11 s the lines begin at 0.09 Hz, and
+# a first test of two legs of 45 s tells the peaks of the loop (decision 56).
+_SHORTEST_SHARE = 1.0 / 3.0
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)
@@ -39,10 +42,11 @@ class Timetable(Shown):
         """
         window_s = (within_s - self.overhead_s(levels_rpm)) / len(levels_rpm)
         count = max(FEWEST_PERIODS, round(window_s / self.period_s))
-        if window_s < 0.5 * FEWEST_PERIODS * self.period_s:
-            least = self.overhead_s(levels_rpm) + 0.5 * FEWEST_PERIODS * self.period_s * len(levels_rpm)
+        shortest_s = _SHORTEST_SHARE * self.period_s
+        if window_s < FEWEST_PERIODS * shortest_s:
+            least = self.overhead_s(levels_rpm) + FEWEST_PERIODS * shortest_s * len(levels_rpm)
             raise DesignError(
                 f"test of {within_s:.0f} s with {len(levels_rpm)} legs: expected at least {least:.0f} s, which hold "
-                f"{FEWEST_PERIODS} periods of {0.5 * self.period_s:.3g} s in each leg; give more time or fewer speeds."
+                f"{FEWEST_PERIODS} periods of {shortest_s:.3g} s in each leg; give more time or fewer speeds."
             )
         return count, window_s / count
