@@ -22,7 +22,7 @@ ROOT = Path(__file__).resolve().parent.parent
 # Run as a file, the folder of the benchmarks is on the path, not the one above.
 sys.path.insert(0, str(ROOT))
 
-from benchmarks.leg_outcomes import NAME, as_planned, true_values  # noqa: E402
+from benchmarks.leg_outcomes import as_planned, true_values  # noqa: E402
 from benchmarks.monte_carlo_short import LEAST_GAIN_MARGIN, gain_margin  # noqa: E402
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
 from benchmarks.planned_tests import CLOSED, OFFSET_V, SLOPE_RPM_PER_V, VESSEL  # noqa: E402

@@ -49,7 +49,7 @@ def _limits(outcomes: Sequence["Outcome"], sailed: Sequence["Outcome"]) -> str:
         f"\nAll limits were kept by the main test on {sum(one.are_kept for one in main)} of {len(outcomes)} ships, by "
         f"the scouting test on {sum(one.are_kept for one in first)} of {len(sailed)}. A limit of torque or rack acted "
         f"in the main test on {np.count_nonzero(share)} ships, on {np.count_nonzero(share > TOUCHED)} for more than "
-        f"{100.0 * TOUCHED:.2g} % of a window, at most for {100.0 * share.max():.2g} %. Speeds may pass their limits by "
+        f"{100.0 * TOUCHED:.2g} % of a window, at most for {100.0 * share.max():.2g} %. Speeds may pass theirs by "
         f"{100.0 * SPEED_NOISE:.2g} %.\n"
     )
     return text + "".join(f"\nShip {one.seed}, no main test: {one.refused}\n" for one in outcomes if one.refused)
@@ -69,7 +69,9 @@ def _numbers(sailed: Sequence["Outcome"]) -> str:
     worst = max(medians, key=lambda name: medians[name])
     held = [abs(one.error[name]) < NORMAL_95 * one.std[name] for one in sailed for name in names]
     p_values = np.array([one.p_value for one in sailed])
-    text = table(f"{len(sailed)} ships: the main test, medians over the ships", header, [_row(n, sailed) for n in names])
+    text = table(
+        f"{len(sailed)} ships: the main test, medians over the ships", header, [_row(n, sailed) for n in names]
+    )
     return text + (
         f"\nLargest median of after / known: {medians[worst]:.2f} (`{worst}`). All 95 % intervals of the main test "
         f"together hold the truth in {100.0 * np.mean(held):.1f} %; p-value of its joint fit: mean "

@@ -1,9 +1,9 @@
 """Twenty minutes at two speeds against the 3.2 hours of the thesis, both with the inertia from the builder.
 
-First predicted against predicted, then sailed against sailed: every seed is one ship that agrees with the vessel file to
-what that states (``monte_carlo_recordings.drawn_ship``), sailed in both tests as raw recordings, and identified with
-the priors of the vessel file as ``shaftprint identify`` does. Run ``python benchmarks/twenty_minutes.py --seeds 100
---long 40 --write``, about half an hour of one core; recordings that ``--outcomes FOLDER`` holds are not sailed again.
+First predicted against predicted, then sailed against sailed: every seed is one ship that agrees with the vessel file
+to what that states (``monte_carlo_recordings.drawn_ship``), sailed in both tests as raw recordings, and identified
+with the priors of the vessel file as ``shaftprint identify`` does. Run ``python benchmarks/twenty_minutes.py --seeds
+100 --long 40 --write``, about 40 minutes of one core; what ``--outcomes FOLDER`` holds is not sailed again.
 """
 
 import argparse

@@ -70,7 +70,9 @@ def test_what_cannot_be_in_a_vessel_file(tmp_path, old, new, words):
 def test_usual_speeds_are_those_of_the_vessel_file_after_a_first_test_too(limits):
     # 1.15 of 1183.8 rpm; below, 540 rpm and 1.3 times 251 rpm are 866.3 rpm, less than 0.78 of 1183.8 rpm
     levels = [1.15 * 1183.8, 0.78 * 1183.8]
-    tug = replace(limits, engine_speed_rpm=1183.8, lowest_speed_rpm=540.0, highest_speed_rpm=1800.0, set_point_rpm=251.0)
+    tug = replace(
+        limits, engine_speed_rpm=1183.8, lowest_speed_rpm=540.0, highest_speed_rpm=1800.0, set_point_rpm=251.0
+    )
     assert usual_speeds(tug) == pytest.approx((1.15, 0.78))
     first_test = replace(tug, engine_speed_rpm=1361.4)
     shares = usual_speeds(first_test, working_point_rpm=1183.8)

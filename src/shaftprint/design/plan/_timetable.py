@@ -9,8 +9,8 @@ from shaftprint.notebook import Shown
 
 # A test with fewer periods a leg has too little to tell noise from the response.
 FEWEST_PERIODS = 4
-# A short test has periods of so much of the length that is aimed at, at least: with 11 s the lines begin at 0.09 Hz, and
-# a first test of two legs of 45 s tells the peaks of the loop (decision 56).
+# A short test has periods of so much of the length that is aimed at, at least: with 11 s the lines begin at 0.09 Hz,
+# and a first test of two legs of 45 s tells the peaks of the loop.
 _SHORTEST_SHARE = 1.0 / 3.0
 
 
