@@ -29,23 +29,27 @@ from benchmarks.planned_tests import CLOSED, OFFSET_V, SLOPE_RPM_PER_V, VESSEL  
 from benchmarks.sailed_limits import SailedLimits, sailed_limits  # noqa: E402
 from benchmarks.scouted_tests_tables import scouted_table  # noqa: E402
 from shaftprint.campaign import Campaign  # noqa: E402
-from shaftprint.cli._known_ship import Stated, knowledge_of  # noqa: E402
-from shaftprint.cli._plan_options import StatedLimit  # noqa: E402
-from shaftprint.cli.output import Steps  # noqa: E402
 from shaftprint.design import (  # noqa: E402
     Knowledge,
     Leg,
     PlannedTest,
+    SetPointLine,
     Wish,
     assumed_ship,
+    limits_from_vessel,
+    limits_of_fingerprint,
+    line_of_fingerprint,
     plan_test,
+    ship_before_test,
+    ship_of_fingerprint,
 )
 from shaftprint.errors import ShaftprintError  # noqa: E402
-from shaftprint.fingerprint import write_fingerprint  # noqa: E402
-from shaftprint.identify import STAN_TUG_NOISE_AT_SPEEDS, Settings, noise_at  # noqa: E402
+from shaftprint.fingerprint import Fingerprint  # noqa: E402
+from shaftprint.identify import STAN_TUG_NOISE_AT_SPEEDS as STORED  # noqa: E402
+from shaftprint.identify import Settings, noise_at, priors_from_vessel  # noqa: E402
 from shaftprint.identify.prediction import planned_lines, predict_joint_accuracy  # noqa: E402
 from shaftprint.models import Structure, at_working_point  # noqa: E402
-from shaftprint.survey import Measurement, Survey, Trial, priors_of, run  # noqa: E402
+from shaftprint.survey import Measurement, Survey, Trial, priors_of, run, stated_working_point  # noqa: E402
 from shaftprint.tug import Tug, normalised_truth, sail  # noqa: E402
 
 DOCUMENT = ROOT / "docs" / "planning.md"
@@ -68,6 +72,12 @@ STD_OF_G = 0.1
 LEAST_FACTOR = 0.2
 NOT_KNOWN = "tau_up"
 """Parameter of which the vessel file knows what the drawn ships do not keep."""
+PRIORS = {
+    name: prior
+    for name, prior in priors_from_vessel(CLOSED, VESSEL, stated_working_point(VESSEL)).items()
+    if name != NOT_KNOWN
+}
+POINT_RPM = VESSEL.working_point.engine_speed_rpm
 SPEEDS = (1.15, 0.78)
 MAIN_V, MAIN_S = 1.0, 720.0
 # Two legs of 45 s.
@@ -124,29 +134,30 @@ def drawn_tug(seed: int) -> Tug:
             return tug
 
 
-def stated(set_point_v: float, *, after: Path | None = None) -> Stated:
-    """Return what ``shaftprint plan --free tau_up --speeds 1.15,0.78`` is told."""
-    return Stated(
-        structure=CLOSED,
-        vessel=VESSEL,
-        limits=[StatedLimit(name="set-point", value=set_point_v, unit="V")],
-        speeds=SPEEDS,
-        # after a first test the line that it measured
-        rpm_per_volt=SLOPE_RPM_PER_V if after is None else None,
-        offset_v=OFFSET_V if after is None else None,
-        priors={},
-        freed=(NOT_KNOWN,),
-        values={},
-        after=after,
-        noise_from=None,
-        noise_campaign=None,
-        vessel_name="stan-tug-1205",
+def knowledge_of(set_point_v: float, first_test: Fingerprint | None = None) -> Knowledge:
+    """Return what ``shaftprint plan --free tau_up --speeds 1.15,0.78`` knows, before or after a first test."""
+    line = SetPointLine(slope_rpm_per_v=SLOPE_RPM_PER_V, offset_v=OFFSET_V)
+    line = line if first_test is None else line_of_fingerprint(first_test)
+    limits = limits_from_vessel(VESSEL, set_point_rpm=set_point_v * abs(line.slope_rpm_per_v))
+    ship, noise = ship_before_test(CLOSED, PRIORS), {share * POINT_RPM: one for share, one in STORED.items()}
+    if first_test is not None:
+        limits = limits_of_fingerprint(limits, first_test, VESSEL)
+        ship, noise = ship_of_fingerprint(first_test, CLOSED), first_test.noise_at_speeds
+    levels = {share * POINT_RPM / limits.engine_speed_rpm: noise_at(noise, share * POINT_RPM) for share in SPEEDS}
+    return Knowledge(
+        vessel=VESSEL.name,
+        ship=ship,
+        limits=limits,
+        line=line,
+        noise={share: level.of_outputs(*CLOSED.outputs) for share, level in levels.items()},
+        noise_source="",
+        priors=PRIORS,
     )
 
 
 def scouting_campaign() -> Campaign:
     """Return the scouting test: the same for all ships, since nothing is known of any."""
-    return planned("Scouting test", knowledge_of(stated(SCOUT_V), steps=Steps(bars=None)), SCOUT_S).campaign
+    return planned("Scouting test", knowledge_of(SCOUT_V), SCOUT_S).campaign
 
 
 def planned(name: str, knowledge: Knowledge, within_s: float) -> PlannedTest:
@@ -170,14 +181,13 @@ def _settings(structure: Structure, measurement: Measurement, trial: Trial) -> S
 
 def predicted_for(values: Mapping[str, float], legs: Sequence[Leg], knowledge: Knowledge) -> dict[str, float]:
     """Return the deviations that legs have for a ship, with the stored noise, at the vessel file's working point."""
-    point_rpm = VESSEL.working_point.engine_speed_rpm
-    shares = [leg.level_rpm / point_rpm for leg in legs]
+    shares = [leg.level_rpm / POINT_RPM for leg in legs]
     pairs = [
         (
             at_working_point(CLOSED, speed_share=share),
             planned_lines(
                 leg.frequency_hz,
-                noise=noise_at(STAN_TUG_NOISE_AT_SPEEDS, share).of_outputs(*CLOSED.outputs),
+                noise=noise_at(STORED, share).of_outputs(*CLOSED.outputs),
                 amplitude=np.abs(leg.amplitudes),
                 duration_s=leg.window_s,
             ),
@@ -195,13 +205,11 @@ def outcome(seed: int, scouting: Campaign, folder: Path) -> Outcome:
     begun = Outcome(seed=seed, ship=values, gain_margin=gain_margin(tug, VESSEL))
     try:
         survey, scouted = identified(tug, scouting, seed, folder)
-        fingerprint = folder / "fingerprint.json"
-        write_fingerprint(survey.fingerprint, fingerprint)
-        test = planned("Main test", knowledge_of(stated(MAIN_V, after=fingerprint), steps=Steps(bars=None)), MAIN_S)
+        test = planned("Main test", knowledge_of(MAIN_V, survey.fingerprint), MAIN_S)
         main, true = identified(tug, test.campaign, MAIN_SEED + seed, folder)
     except ShaftprintError as error:
         return replace(begun, refused=str(error))
-    before = knowledge_of(stated(MAIN_V), steps=Steps(bars=None))
+    before = knowledge_of(MAIN_V)
     known = planned("Ship known", replace(before, ship=assumed_ship(CLOSED, values, std={})), MAIN_S)
     first, found = survey.identification, main.identification
     return replace(
