@@ -41,6 +41,7 @@ from shaftprint.vessel._sensors import (
     SpeedSensor,
 )
 from shaftprint.vessel._vessel import Vessel, load_vessel
+from shaftprint.vessel._wheel import Wheel
 
 __all__ = [
     "Engine",
@@ -61,6 +62,7 @@ __all__ = [
     "ShipSpeedSensor",
     "SpeedSensor",
     "Vessel",
+    "Wheel",
     "WorkingPoint",
     "load_vessel",
 ]

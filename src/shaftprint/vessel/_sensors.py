@@ -1,5 +1,6 @@
 """What was measured, on which channel, and what is known of each sensor."""
 
+from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self, TypeAlias
 
 import numpy as np
@@ -17,6 +18,7 @@ from shaftprint.settings import (
 )
 from shaftprint.units import M_S_PER_KNOT, plain_unit
 from shaftprint.vessel._usual import GAUGE_SCALE_STD, GAUGE_ZERO_SHARE, LATENCY_STD_S
+from shaftprint.vessel._wheel import Wheel
 
 # A gauge whose channel is in kN m has a scale of about 1000 N m a unit; this much less is a forgotten factor.
 _SMALLEST_OF_KILO = 100.0
@@ -30,7 +32,7 @@ TorqueUnit: TypeAlias = Annotated[Literal["V", "N m", "kN m"], BeforeValidator(_
 
 
 class SpeedSensor(Settings):
-    """A pick-up that gives pulses as strips on a shaft pass by."""
+    """A pick-up that gives pulses as strips on a shaft, or the teeth of a wheel, pass by."""
 
     name: Name
     """Name of the speed that it gives, such as ``n_e``."""
@@ -38,8 +40,11 @@ class SpeedSensor(Settings):
     """Name of the channel in the recording."""
     shaft: Literal["engine", "propeller"]
     """Which shaft carries the strips."""
+    wheel: Annotated[str, Field(strict=True)] | None = None
+    """Toothed wheel with gaps, ``"60-2"`` or ``"36-2-1"``, or with further teeth, ``"12+1"``; evenly spaced where not
+    given."""
     pulses_per_revolution: PositiveInteger
-    """Number of strips around the shaft."""
+    """Number of strips or teeth around the shaft by which the angle is counted; follows from ``wheel`` where given."""
     unit: Literal["V"]
     """Unit of the channel: the raw pulse voltage."""
     edge: Literal["rising", "falling"] = "rising"
@@ -51,13 +56,33 @@ class SpeedSensor(Settings):
     jitter_us: NotNegativeNumber | None = None
     """Standard deviation of the time of an edge [us]."""
 
+    @model_validator(mode="before")
+    @classmethod
+    def _teeth_of_the_wheel(cls, content: Any) -> Any:
+        """Count the teeth of a wheel."""
+        if not isinstance(content, Mapping) or not isinstance(content.get("wheel"), str):
+            return content
+        counted = Wheel.parse(content["wheel"]).counted
+        pulses = content.get("pulses_per_revolution", counted)
+        if pulses != counted:
+            raise ValueError(
+                f'expected pulses_per_revolution left out beside wheel = "{content["wheel"]}", found {pulses}.'
+            )
+        return {**content, "pulses_per_revolution": counted}
+
+    @property
+    def toothed(self) -> Wheel:
+        """The wheel; one without gaps where the pulses are evenly spaced."""
+        return Wheel(places=self.pulses_per_revolution) if self.wheel is None else Wheel.parse(self.wheel)
+
     @model_validator(mode="after")
     def _strips_fit_on_the_shaft(self) -> Self:
         errors = []
         strips = self.pulses_per_revolution
-        if self.pulse_width_deg is not None and self.pulse_width_deg * strips >= 360.0:
+        closest = self.toothed.closest
+        if self.pulse_width_deg is not None and self.pulse_width_deg * closest >= 360.0:
             errors.append(
-                f"expected pulse_width_deg below {360.0 / strips:g} for {strips} strips, "
+                f"expected pulse_width_deg below {360.0 / closest:g} for {closest} strips, "
                 f"found {self.pulse_width_deg:g}."
             )
         angles = self.strip_angles_deg

@@ -59,14 +59,17 @@ def pulse_period_speed(
     train
         Numbered pulses; the first whole sample of each pulse is taken.
     strips
-        Pulses a revolution; the angles between the strips are taken as equal.
+        Pulses a revolution; the angles between the strips are taken as equal, but for the gaps of a wheel.
     channel
         The channel, for its clock.
     start_s, step_s, count
         The grid [s]. Before the second pulse the first period is taken.
     """
     quantised = np.ceil(train.position - _ROUNDING)
-    speed = channel.rate_hz / (np.diff(quantised) * strips)
+    nominal = train.nominal_rev
+    # strips of which nothing is said are even
+    per_turn = strips if nominal.size == 1 else 1.0 / nominal[train.number[:-1] % nominal.size]
+    speed = channel.rate_hz / (np.diff(quantised) * per_turn)
     complete = np.diff(train.number) == 1
     index = np.arange(speed.size)
     speed[~complete] = np.interp(index[~complete], index[complete], speed[complete])

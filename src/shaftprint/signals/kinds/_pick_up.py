@@ -12,19 +12,23 @@ from shaftprint.signals._channels import Advance, blocks, find_channel, time_of
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps
 from shaftprint.signals._signals import Repair, StripAngles
 from shaftprint.signals.conditioning import Reading, pulse_period_speed
+from shaftprint.signals.kinds._grid_speed import speed_on_grid
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
+from shaftprint.signals.kinds._samples_a_tooth import expect_samples, fastest_turns_hz
 from shaftprint.signals.pulses import (
     PulseLevels,
     PulseTrain,
     find_edges,
     find_strips,
     number_pulses,
+    number_teeth,
     pulse_levels,
     renumbered,
     revolutions,
-    spline_speed,
+    steady_turns,
     unplaced_stretches,
 )
+from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import SpeedSensor
 
 if TYPE_CHECKING:
@@ -34,6 +38,8 @@ if TYPE_CHECKING:
 
 # Over a gap longer than this the speed cannot be told from the pulses around it.
 _LONGEST_GAP_S, _LONGEST_GAP_PULSES = 1.0, 8
+# Teeth are as wide as the spaces between them; strips are narrow.
+_UPSIDE_DOWN = 0.6
 # The end of a spline is felt so many pulses further on: by half a per cent.
 _REACH_PULSES = 4
 
@@ -77,6 +83,10 @@ class Speed(ChannelKind[SpeedSensor]):
 
     def read(self, source: Source[SpeedSensor], clock: "Clock") -> PulseReading:
         """Return the engine-side speed on the grid."""
+        vessel, wheel = source.vessel, source.sensor.toothed
+        ratio = vessel.gearbox.ratio if source.sensor.shaft == "propeller" else 1.0
+        # teeth that pass too fast come back as slow ones: what the recording shows is not enough
+        expect_samples(source.channel, wheel, rev_s_from_rpm(vessel.working_point.engine_speed_rpm) / ratio)
         return read_pick_up(
             source.channel,
             source.sensor,
@@ -140,9 +150,11 @@ def read_pick_up(
     SignalError
         If there are no pulses, too few or too many faults.
     """
-    levels = pulse_levels(channel, edge=sensor.edge)
+    wheel = sensor.toothed
+    levels = pulse_levels(channel, edge=sensor.edge, uneven_share=wheel.uneven_share)
     edges = find_edges(blocks(channel, block_samples, advance), levels)
     train, strips = numbered_strips(edges, sensor)
+    expect_samples(channel, wheel, fastest_turns_hz(channel, train, wheel))
     gaps = pulse_gaps(channel, train, sensor.pulses_per_revolution)
     ratio = gear_ratio if sensor.shaft == "propeller" else 1.0
     time_s = time_of_edges(channel, train.position)
@@ -154,8 +166,8 @@ def read_pick_up(
         )
         period = turn_s / sensor.pulses_per_revolution
     else:
-        angle = train.number.astype(np.float64) if strips is None else revolutions(train, strips.angle_rev)
-        speed = spline_speed(time_s, angle, start_s=start_s, step_s=1.0 / rate_hz, count=count)
+        angle = revolutions(train, train.nominal_rev if strips is None else strips.angle_rev)
+        speed = speed_on_grid(time_s, angle, start_s=start_s, rate_hz=rate_hz, count=count, channel=channel.name)
         period = 0.0
     bridge(speed, gaps, start_s=start_s, rate_hz=rate_hz)
     speed *= ratio
@@ -169,7 +181,7 @@ def read_pick_up(
         levels=levels,
         repairs=pulse_repairs(channel, train, gaps),
         gaps=gaps,
-        findings=_upside_down(sensor, levels.duty),
+        findings=(*_upside_down(sensor, levels.duty), *_taken_as_even(sensor, strips)),
     )
 
 
@@ -179,8 +191,12 @@ def numbered_strips(edges: FloatArray, sensor: SpeedSensor) -> tuple[PulseTrain,
     Raises
     ------
     SignalError
-        If there are too few pulses or too many faults.
+        If there are too few pulses, too many faults, or they come from another wheel.
     """
+    teeth, wheel = sensor.pulses_per_revolution, sensor.toothed
+    if wheel.missing or wheel.extra:
+        train = number_teeth(edges, wheel, channel=sensor.channel)
+        return train, find_strips(train, teeth, channel=sensor.channel) if steady_turns(train, teeth) else None
     train = number_pulses(edges, channel=sensor.channel)
     if sensor.pulses_per_revolution == 1:
         return train, None
@@ -220,6 +236,15 @@ def pulse_gaps(channel: "Channel", train: PulseTrain, strips: int) -> tuple[Gap,
     inner = long[(long > 0) & (long < train.position.size)] - 1
     if strips > 1 and inner.size:
         stretches += unplaced_stretches(train, strips, inner)
+    lost = [
+        Gap(
+            channel=channel.name,
+            start_s=time_of(channel, one.first),
+            stop_s=time_of(channel, one.last),
+            reason="has teeth in another order than before, as where a shaft stops or turns back,",
+        )
+        for one in train.lost
+    ]
     silent = [
         Gap(
             channel=channel.name,
@@ -230,7 +255,7 @@ def pulse_gaps(channel: "Channel", train: PulseTrain, strips: int) -> tuple[Gap,
         for first, last in sorted(stretches)
     ]
     reach_s = _REACH_PULSES * float(mean) / channel.rate_hz
-    widened = [replace(gap, reach_s=reach_s) for gap in (*silent, *clock_gaps(channel))]
+    widened = [replace(gap, reach_s=reach_s) for gap in (*silent, *lost, *clock_gaps(channel))]
     return tuple(sorted(widened, key=lambda gap: gap.start_s))
 
 
@@ -245,8 +270,17 @@ def _counted(train: PulseTrain, time_s: FloatArray, gaps: Sequence[Gap]) -> tupl
     return seconds, pulses
 
 
+def _taken_as_even(sensor: SpeedSensor, strips: StripAngles | None) -> tuple[str, ...]:
+    if strips is not None or sensor.pulses_per_revolution == 1:
+        return ()
+    return (
+        f"channel {sensor.channel} has too few steady turns to find the errors of the teeth of its wheel "
+        f"{sensor.wheel}, which are taken as evenly spaced",
+    )
+
+
 def _upside_down(sensor: SpeedSensor, duty: float) -> tuple[str, ...]:
-    if duty <= 0.5:
+    if duty <= _UPSIDE_DOWN:
         return ()
     other = "rising" if sensor.edge == "falling" else "falling"
     return (

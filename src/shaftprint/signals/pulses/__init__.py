@@ -3,8 +3,9 @@
 from shaftprint.signals.pulses._edges import PulseLevels, find_edges, pulse_levels, scan_edges
 from shaftprint.signals.pulses._flat_top import expect_whole_crests
 from shaftprint.signals.pulses._pulses import PulseTrain, number_pulses
-from shaftprint.signals.pulses._speed import sample_slopes, solve_slopes, spline_speed
-from shaftprint.signals.pulses._strips import find_strips, renumbered, revolutions, unplaced_stretches
+from shaftprint.signals.pulses._speed import sample_slopes, solve_slopes, spline_speed, spline_speeds
+from shaftprint.signals.pulses._strips import find_strips, renumbered, revolutions, steady_turns, unplaced_stretches
+from shaftprint.signals.pulses._teeth import number_teeth
 
 __all__ = [
     "PulseLevels",
@@ -13,6 +14,7 @@ __all__ = [
     "find_edges",
     "find_strips",
     "number_pulses",
+    "number_teeth",
     "pulse_levels",
     "renumbered",
     "revolutions",
@@ -20,5 +22,7 @@ __all__ = [
     "scan_edges",
     "solve_slopes",
     "spline_speed",
+    "spline_speeds",
+    "steady_turns",
     "unplaced_stretches",
 ]

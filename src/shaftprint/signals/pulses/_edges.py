@@ -41,7 +41,7 @@ class PulseLevels:
     """Share of the time that the channel is nearer to ``high``."""
 
 
-def pulse_levels(channel: "Channel", *, edge: str = "rising") -> PulseLevels:
+def pulse_levels(channel: "Channel", *, edge: str = "rising", uneven_share: float = 0.0) -> PulseLevels:
     """Return the levels of a pulse channel, found from stretches all over the recording.
 
     Parameters
@@ -50,6 +50,8 @@ def pulse_levels(channel: "Channel", *, edge: str = "rising") -> PulseLevels:
         A channel of pulses.
     edge
         ``"rising"`` or ``"falling"``: which edge marks the angle of the strip.
+    uneven_share
+        Share of the intervals between pulses that are longer or shorter than the others: beside a wheel's gaps.
 
     Raises
     ------
@@ -60,7 +62,7 @@ def pulse_levels(channel: "Channel", *, edge: str = "rising") -> PulseLevels:
     stretches = spots(channel)
     counts = np.concatenate(stretches).astype(np.float64)
     low, high, noise, above = _two_levels(counts)
-    if high - low <= _LEAST_SEPARATION * noise and _swings_evenly(stretches, low, high):
+    if high - low <= _LEAST_SEPARATION * noise and _swings_evenly(stretches, low, high, uneven_share):
         noise = float(np.median(np.abs(np.diff(counts, 2)))) / (_MEDIAN * _SECOND_DIFFERENCE)
     if high - low <= _LEAST_SEPARATION * noise or high == low:
         raise SignalError(
@@ -136,12 +138,14 @@ def scan_edges(  # type: ignore[no-untyped-def]
     return count
 
 
-def _swings_evenly(stretches: Sequence[Counts], low: float, high: float) -> bool:
+def _swings_evenly(stretches: Sequence[Counts], low: float, high: float, uneven_share: float) -> bool:
     """Return whether the channel goes up and down through its middle at a pace that hardly changes in any stretch."""
     levels = PulseLevels(low=low, high=high, noise=0.0, duty=0.5)
     paces = [np.diff(find_edges([stretch], levels)) for stretch in stretches]
     return all(
-        pace.size >= _FEWEST_SWINGS and np.quantile(pace, 0.95) <= _EVEN * np.quantile(pace, 0.05) for pace in paces
+        pace.size >= _FEWEST_SWINGS
+        and np.quantile(pace, 0.95 - uneven_share) <= _EVEN * np.quantile(pace, 0.05 + uneven_share)
+        for pace in paces
     )
 
 

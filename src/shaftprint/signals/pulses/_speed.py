@@ -5,6 +5,8 @@ neither averaged over a revolution nor late. The equations for the slopes at the
 de Boor, "A Practical Guide to Splines", chapter IV (cubic spline interpolation).
 """
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from shaftprint.arrays import FloatArray
@@ -28,6 +30,21 @@ def spline_speed(time_s: FloatArray, angle_rev: FloatArray, *, start_s: float, s
     speed = np.empty(count)
     sample_slopes(time_s, angle_rev, slope, start_s, step_s, speed)
     return speed
+
+
+def spline_speeds(
+    time_s: FloatArray, angle_rev: FloatArray, *, start_s: float, step_s: float, count: int, block: int
+) -> Iterator[FloatArray]:
+    """Yield the speed on a uniform grid [rev/s] in blocks, as ``spline_speed`` gives it."""
+    slope = np.empty(time_s.size)
+    solve_slopes(time_s, angle_rev, slope)
+    for first in range(0, count, block):
+        speed = np.empty(min(block, count - first))
+        begin_s = start_s + first * step_s
+        # from the knot before the block on
+        knots = slice(min(max(int(np.searchsorted(time_s, begin_s)) - 1, 0), time_s.size - 2), None)
+        sample_slopes(time_s[knots], angle_rev[knots], slope[knots], begin_s, step_s, speed)
+        yield speed
 
 
 @compiled(nogil=True)

@@ -58,8 +58,23 @@ def find_strips(train: "PulseTrain", strips: int, *, channel: str) -> StripAngle
     return StripAngles(channel=channel, angle_rev=frozen_float(angle / total), std_rev=frozen_float(deviation / total))
 
 
+def steady_turns(train: "PulseTrain", strips: int) -> bool:
+    """Return whether enough of the turns are steady for the angles to be found."""
+    _, steady = _interval_shares(train, strips)
+    turns = np.bincount(train.number[:-1][steady] % strips, minlength=strips)
+    return int(turns.min()) >= _FEWEST_REVOLUTIONS
+
+
 def revolutions(train: "PulseTrain", angles: FloatArray) -> FloatArray:
-    """Return the angle of the shaft at each pulse since pulse number 0 [rev], shape (pulses,)."""
+    """Return the angle of the shaft at each pulse since pulse number 0 [rev], shape (pulses,).
+
+    Parameters
+    ----------
+    train
+        Numbered pulses.
+    angles
+        Angle from each strip or tooth of the turn to the next [rev], shape (strips,); they sum to 1.
+    """
     strips = angles.size
     places = np.concatenate([[0.0], np.cumsum(angles[:-1])])
     turned: FloatArray = train.number // strips + places[train.number % strips]
