@@ -135,3 +135,57 @@ def test_the_zero_of_the_gauge_is_subtracted_and_a_reversed_gauge_turned():
         channel="M_s", unit="V", scale_nm_per_unit=-500.0, zero_nm=20.0, latency_s=0.0, full_scale_nm=5000.0
     )
     assert gauge.torque_nm(-2.0) == pytest.approx(980.0)
+
+
+def with_wheel(tmp_path, text):
+    path = tmp_path / "ship.toml"
+    write_template("vessel", path)
+    lines = path.read_text(encoding="utf-8").splitlines()
+    first = next(number for number, line in enumerate(lines) if line.startswith("pulses_per_revolution = 4"))
+    path.write_text("\n".join([*lines[:first], text, *lines[first + 1 :]]), encoding="utf-8")
+    return load_vessel(path)
+
+
+@pytest.mark.parametrize(
+    ("wheel", "counted", "closest"),
+    [("60", 60, 60), ("60-2", 58, 60), ("36-1", 35, 36), ("36-2-1", 33, 36), ("36-2-2-2", 30, 36), ("12+1", 12, 24)],
+)
+def test_teeth_of_a_wheel_are_counted(tmp_path, wheel, counted, closest):
+    vessel = with_wheel(tmp_path, f'wheel = "{wheel}"')
+    sensor = vessel.sensors.speed[1]
+    assert (sensor.pulses_per_revolution, sensor.toothed.closest, str(sensor.toothed)) == (counted, closest, wheel)
+    # what is written again can be read again
+    assert type(vessel).model_validate(vessel.model_dump()) == vessel
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ('wheel = "60 teeth"', r'sensors\.speed\[2\].*expected a wheel such as "60-2" .*found "60 teeth"'),
+        ('wheel = "60-"', 'expected a wheel such as "60-2"'),
+        ('wheel = "60-0"', "expected at least one tooth missing in each gap"),
+        ('wheel = "60-2+1"', "expected either gaps or further teeth, not both"),
+        ('wheel = "4-2"', "expected at least 4 evenly spaced teeth for each gap"),
+        ('wheel = "0"', "expected at least 4 evenly spaced teeth"),
+        ('wheel = "2000"', "expected at most 1000 teeth"),
+        (
+            'wheel = "60-2"\npulses_per_revolution = 60',
+            'pulses_per_revolution left out beside wheel = "60-2", found 60',
+        ),
+        ('wheel = "60-2"\npulse_width_deg = 6.0', "pulse_width_deg below 6 for 60 strips, found 6"),
+        ("wheel = 60", r"wheel \(n_e4\): expected text in quotes, found 60"),
+    ],
+)
+def test_an_impossible_wheel_is_refused(tmp_path, text, expected):
+    with pytest.raises(SettingsError, match=expected):
+        with_wheel(tmp_path, text)
+
+
+def test_least_rate_is_four_samples_a_tooth_in_round_numbers():
+    # 60 teeth at 30 turns a second, 24 at 7.9, 36 at 1.01
+    rates = [SpeedSensor.model_validate(SPEED | {"wheel": wheel}).toothed for wheel in ("60-2", "12+1", "36-1")]
+    found = [wheel.least_rate_hz(turns) for wheel, turns in zip(rates, (30.0, 7.9, 1.01), strict=True)]
+    assert found == pytest.approx([7200.0, 760.0, 150.0])
+
+
+SPEED = {"name": "n", "channel": "P", "shaft": "engine", "unit": "V"}

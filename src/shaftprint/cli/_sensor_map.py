@@ -24,6 +24,7 @@ _FIELDS = {
         "unit = {unit}",
         'shaft = "{shaft}"  # engine or propeller: check',
         "# pulses_per_revolution =        # count the strips or teeth, then take the # away",
+        '# wheel = "60-2"                 # in place of it where teeth are missing or more: 36-1, 36-2-1, 12+1',
     ),
     "shaft_torque": (
         "channel = {channel}",

@@ -47,6 +47,16 @@ def _line_quantities(line: "SetPointCalibration") -> tuple[Quantity, Quantity]:
 
 
 def _strip_quantities(strips: "StripAngles") -> list[Quantity]:
+    if strips.are_many:
+        return [
+            Quantity(
+                name=f"{strips.channel} largest error of a tooth",
+                unit="deg",
+                value=DEGREES_PER_REVOLUTION * float(strips.error_rev[strips.worst]),
+                std=DEGREES_PER_REVOLUTION * float(strips.std_rev[strips.worst]),
+                meaning="angle to the next tooth beyond that of a wheel without errors",
+            )
+        ]
     pairs = zip(strips.angle_rev.tolist(), strips.std_rev.tolist(), strict=True)
     return [
         Quantity(

@@ -64,6 +64,8 @@ class PulseReport:
     """Mean number of pulses a second [Hz]; half of it is the highest frequency without aliasing."""
     strip_angles_deg: tuple[float, ...]
     """Angle from each strip to the next [deg]."""
+    largest_error_deg: float
+    """Largest difference of one from that of even strips, or of a wheel without errors [deg]."""
 
 
 def inspect_channels(recording: "Recording", vessel: "Vessel") -> tuple[ChannelReport, ...]:
@@ -135,4 +137,5 @@ def _pulse_report(channel: "Channel", reading: PulseReading) -> PulseReport:
         high=reading.levels.high * channel.scale + channel.offset,
         per_second=reading.pulse_rate_hz,
         strip_angles_deg=(360.0,) if strips is None else tuple((strips.angle_rev * 360.0).tolist()),
+        largest_error_deg=0.0 if strips is None else float(strips.error_rev[strips.worst]) * 360.0,
     )

@@ -17,6 +17,9 @@ from shaftprint.signals._orders import TrackedOrder
 from shaftprint.signals._working_points import LegState, WorkingPoint
 from shaftprint.units import rpm_from_rev_s
 
+# More strips than this are teeth, of which the worst is named.
+_MOST_LISTED = 12
+
 _UNITS = {
     "n_set": ("rev/s", "set point of the engine speed"),
     "M_s": ("N m", "shaft torque at the gauge"),
@@ -68,6 +71,24 @@ class StripAngles:
     """Angle from each strip to the next [rev], shape (strips,); they sum to 1."""
     std_rev: FloatArray
     """Standard deviation of each angle [rev], shape (strips,)."""
+    nominal_rev: FloatArray | None = None
+    """The same of a wheel without errors [rev], shape (strips,); even strips where not given."""
+
+    @property
+    def error_rev(self) -> FloatArray:
+        """By how much each angle differs from that of even strips, or of a wheel without errors [rev]."""
+        nominal = 1.0 / self.angle_rev.size if self.nominal_rev is None else self.nominal_rev
+        return np.asarray(self.angle_rev - nominal)
+
+    @property
+    def worst(self) -> int:
+        """Which angle has the largest error."""
+        return int(np.argmax(np.abs(self.error_rev)))
+
+    @property
+    def are_many(self) -> bool:
+        """Whether they are too many to be listed one by one."""
+        return self.angle_rev.size > _MOST_LISTED
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

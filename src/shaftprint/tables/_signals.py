@@ -76,15 +76,15 @@ def strip_table(signals: "Signals") -> Table:
     """Return the angles between the reflection strips (thesis table 3.4)."""
     rows = []
     for strip in signals.strips:
-        for number, (angle, std) in enumerate(zip(strip.angle_rev, strip.std_rev, strict=True), start=1):
-            value = DEGREES_PER_REV * float(angle)
-            even = DEGREES_PER_REV / strip.angle_rev.size
+        count = strip.angle_rev.size
+        for place in [strip.worst] if strip.are_many else range(count):
+            angle, error = float(strip.angle_rev[place]), float(strip.error_rev[place])
             rows.append(
                 (
                     strip.channel,
-                    str(number),
-                    with_deviation(value, DEGREES_PER_REV * float(std)),
-                    f"{plain(PERCENT * (value / even - 1.0), 2)} %",
+                    f"{place + 1} of {count}, the worst" if strip.are_many else str(place + 1),
+                    with_deviation(DEGREES_PER_REV * angle, DEGREES_PER_REV * float(strip.std_rev[place])),
+                    f"{plain(PERCENT * error / (angle - error), 2)} %",
                 )
             )
     removed = "not removed (thesis mode)" if signals.mode == "thesis" else "removed from the speed"

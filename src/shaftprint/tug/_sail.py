@@ -38,7 +38,7 @@ from shaftprint.tug.sensors import (
     SpeedLog,
     TorqueGauge,
 )
-from shaftprint.vessel import Vessel
+from shaftprint.vessel import SAMPLES_A_TOOTH, Vessel
 
 RATE_HZ = 2000.0
 """Sample rate where the vessel file names no logger [Hz]."""
@@ -127,6 +127,7 @@ class _Crew:
                 f"campaign {campaign.name}: expected at least one sample at {self._rate_hz:g} Hz, "
                 f"found a duration of {campaign.duration_s:g} s."
             )
+        self._expect_fast_logger()
         # bus, log and pitch come last: without them the others draw the same numbers
         process, torque, set_point, *speeds, bus, log, pitch = (
             np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(6 + len(vessel.sensors.speed))
@@ -157,6 +158,19 @@ class _Crew:
         on_board = (self._helm, *self._pick_ups, self._gauge, self._control_unit, self._log, self._lever)
         self._sensors: tuple[_Sensor, ...] = tuple(sensor for sensor in on_board if sensor is not None)
         self._limited = {excitation.name: 0 for excitation in campaign.excitations}
+
+    def _expect_fast_logger(self) -> None:
+        vessel = self._vessel
+        highest_rpm = vessel.limits.highest_speed_rpm or vessel.engine.rated_speed_rpm
+        for sensor in vessel.sensors.speed:
+            turns_hz = highest_rpm / 60.0 / (vessel.gearbox.ratio if sensor.shaft == "propeller" else 1.0)
+            if self._rate_hz < SAMPLES_A_TOOTH * sensor.toothed.closest * turns_hz:
+                raise SettingsError(
+                    f"vessel {vessel.name}: expected a logger of {sensor.toothed.least_rate_hz(turns_hz):g} Hz or more "
+                    f"for channel {sensor.channel}, as the wheel {sensor.toothed} makes up to {turns_hz:.3g} turns a "
+                    f"second, found {self._rate_hz:g} Hz; raise logger.sample_rate_hz, or take a wheel with fewer "
+                    "teeth or that of a slower shaft."
+                )
 
     def _stand_by_lever(self, rng: np.random.Generator) -> PitchLever | None:
         sensor = self._vessel.sensors.pitch_set_point

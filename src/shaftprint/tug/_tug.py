@@ -115,6 +115,8 @@ class Tug:
     """Time by which the percent torque on the CAN bus is late [s]; ``None``: the vessel's."""
     strip_angles_deg: tuple[float, ...] = STRIP_ANGLES_DEG
     """Angles between the reflection strips of a pick-up with as many pulses a revolution [degree], scaled to 360."""
+    tooth_error_deg: float = 0.03
+    """Standard deviation of the place of a tooth on a wheel with gaps or further teeth [degree]."""
     noise: Noise = field(default_factory=Noise)
     """Disturbances, measurement noise and faults."""
 

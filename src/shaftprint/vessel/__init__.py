@@ -41,9 +41,10 @@ from shaftprint.vessel._sensors import (
     SpeedSensor,
 )
 from shaftprint.vessel._vessel import Vessel, load_vessel
-from shaftprint.vessel._wheel import Wheel
+from shaftprint.vessel._wheel import SAMPLES_A_TOOTH, Wheel
 
 __all__ = [
+    "SAMPLES_A_TOOTH",
     "Engine",
     "Gearbox",
     "Hull",

@@ -1,5 +1,6 @@
 """Toothed wheels as engineers write them: ``60``, ``60-2``, ``36-2-1``, ``12+1``."""
 
+import math
 import re
 from dataclasses import dataclass
 from typing import Self
@@ -7,6 +8,10 @@ from typing import Self
 # Longer than any file that names a wheel on purpose.
 _TEXT = re.compile(r"(\d{1,4})((?:-\d{1,2})*)(?:\+(\d))?")
 _MOST_PLACES = 1000
+# From tooth to tooth there must be so many samples: of a square pulse two are then high and two are low.
+SAMPLES_A_TOOTH = 4.0
+# Rates that are asked for are round numbers of so many digits.
+_DIGITS = 2
 # What lies beside a gap must tell how far the teeth stand apart.
 _TEETH_PER_GAP = 4
 
@@ -56,6 +61,18 @@ class Wheel:
     def closest(self) -> int:
         """Teeth that there would be all around if they stood as close as the closest two."""
         return 2 * self.places if self.extra else self.places
+
+    def least_rate_hz(self, turns_hz: float) -> float:
+        """Return the lowest sample rate at which teeth are seen [Hz], a round number.
+
+        Parameters
+        ----------
+        turns_hz
+            Turns of the wheel a second [Hz].
+        """
+        least_hz = SAMPLES_A_TOOTH * self.closest * turns_hz
+        step = 10.0 ** (math.floor(math.log10(least_hz)) + 1 - _DIGITS)
+        return math.ceil(least_hz / step) * step
 
     @property
     def spacings(self) -> tuple[int, ...]:

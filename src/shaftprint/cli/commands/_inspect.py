@@ -25,6 +25,7 @@ from shaftprint.signals import (
     ChannelReadings,
     ChannelReport,
     FoundTest,
+    PulseReport,
     Signals,
     channel_reports,
     contradictions,
@@ -45,6 +46,8 @@ FEWEST_LINES = 5
 CROSSOVER_RAD_S = (1.0, 12.0)
 FEWEST_AT_CROSSOVER = 2
 _MOST_GAPS = 20
+# More strips than this are teeth, of which the worst is named.
+_MOST_STRIPS = 12
 
 
 @click.command("inspect")
@@ -185,7 +188,6 @@ def _print_sensors(reports: Sequence[ChannelReport]) -> None:
 def _sensor_row(report: ChannelReport) -> tuple[str, ...]:
     pulses = report.pulses
     between = (report.lowest, report.highest) if pulses is None else (pulses.low, pulses.high)
-    angles = () if pulses is None or len(pulses.strip_angles_deg) == 1 else pulses.strip_angles_deg
     kinds = sorted({fault.kind for fault in report.faults})
     counts = [f"{sum(fault.kind == kind for fault in report.faults)} x {kind}" for kind in kinds]
     return (
@@ -193,9 +195,16 @@ def _sensor_row(report: ChannelReport) -> tuple[str, ...]:
         report.use,
         f"{between[0]:.3g} to {between[1]:.3g} {report.unit}",
         "" if pulses is None else f"{pulses.per_second:.3f}",
-        ", ".join(f"{angle:.2f}" for angle in angles),
+        "" if pulses is None else _strips_in_words(pulses),
         ", ".join(counts) or "none",
     )
+
+
+def _strips_in_words(pulses: PulseReport) -> str:
+    angles = pulses.strip_angles_deg
+    if len(angles) > _MOST_STRIPS:
+        return f"{len(angles)} teeth, errors up to {abs(pulses.largest_error_deg):.2f}"
+    return "" if len(angles) == 1 else ", ".join(f"{angle:.2f}" for angle in angles)
 
 
 def _print_test(test: _Test, clocks: Sequence[LoggerClock], ship: Vessel) -> None:

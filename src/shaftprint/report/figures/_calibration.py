@@ -77,7 +77,7 @@ def strip_chart(strips: "tuple[StripAngles, ...]", vessel: "Vessel | None" = Non
 def _strip_panel(strip: "StripAngles", vessel: "Vessel | None") -> Panel:
     count = strip.angle_rev.size
     places, even = np.arange(count, dtype=np.float64), DEGREES_PER_REV / count
-    measured = DEGREES_PER_REV * strip.angle_rev - even
+    measured = DEGREES_PER_REV * strip.error_rev
     bars = NORMAL_95 * DEGREES_PER_REV * strip.std_rev
     marks: list[Mark] = [
         Bars(places=places, lengths=measured, starts=np.zeros(count), shade=4, width=0.5),
@@ -91,7 +91,7 @@ def _strip_panel(strip: "StripAngles", vessel: "Vessel | None") -> Panel:
         title=f"channel {strip.channel}",
         marks=marks,
         x=Scale(title="strip, angle to the next [-]", names=[str(number + 1) for number in range(count)]),
-        y=Scale(title=f"angle minus {even:g}° [deg]"),
+        y=Scale(title=f"angle minus {even:g}° [deg]" if strip.nominal_rev is None else "error of the angle [deg]"),
     )
 
 

@@ -196,7 +196,11 @@ def numbered_strips(edges: FloatArray, sensor: SpeedSensor) -> tuple[PulseTrain,
     teeth, wheel = sensor.pulses_per_revolution, sensor.toothed
     if wheel.missing or wheel.extra:
         train = number_teeth(edges, wheel, channel=sensor.channel)
-        return train, find_strips(train, teeth, channel=sensor.channel) if steady_turns(train, teeth) else None
+        if not steady_turns(train, teeth):
+            return train, None
+        return train, replace(
+            find_strips(train, teeth, channel=sensor.channel), nominal_rev=frozen_float(train.nominal_rev)
+        )
     train = number_pulses(edges, channel=sensor.channel)
     if sensor.pulses_per_revolution == 1:
         return train, None

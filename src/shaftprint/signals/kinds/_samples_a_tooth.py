@@ -1,19 +1,14 @@
 """Whether a logger is fast enough for a wheel."""
 
-import math
 from typing import TYPE_CHECKING
 
 from shaftprint.errors import SignalError
+from shaftprint.vessel import SAMPLES_A_TOOTH
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
     from shaftprint.signals.pulses import PulseTrain
     from shaftprint.vessel import Wheel
-
-# From tooth to tooth there must be so many samples: of a square pulse two are then high and two are low.
-_SAMPLES_A_TOOTH = 4.0
-# Rates that are asked for are round numbers of so many digits.
-_DIGITS = 2
 
 
 def fastest_turns_hz(channel: "Channel", train: "PulseTrain", wheel: "Wheel") -> float:
@@ -33,13 +28,11 @@ def expect_samples(channel: "Channel", wheel: "Wheel", turns_hz: float) -> None:
         If there are fewer than four samples from tooth to tooth; the rate that would do is in the message.
     """
     teeth_hz = wheel.closest * turns_hz
-    if channel.rate_hz >= _SAMPLES_A_TOOTH * teeth_hz:
+    if channel.rate_hz >= SAMPLES_A_TOOTH * teeth_hz:
         return
-    power = 10.0 ** (math.floor(math.log10(_SAMPLES_A_TOOTH * teeth_hz)) + 1 - _DIGITS)
-    enough_hz = math.ceil(_SAMPLES_A_TOOTH * teeth_hz / power) * power
     raise SignalError(
-        f"channel {channel.name}: expected at least {_SAMPLES_A_TOOTH:g} samples from tooth to tooth, found "
+        f"channel {channel.name}: expected at least {SAMPLES_A_TOOTH:g} samples from tooth to tooth, found "
         f"{channel.rate_hz / teeth_hz:.2g} at {turns_hz:.3g} turns a second of the wheel {wheel} and "
-        f"{channel.rate_hz:g} Hz; log at {enough_hz:g} Hz or more, or take a wheel with fewer teeth or that "
-        "of a slower shaft."
+        f"{channel.rate_hz:g} Hz; log at {wheel.least_rate_hz(turns_hz):g} Hz or more, or take a wheel with fewer "
+        "teeth or that of a slower shaft."
     )

@@ -18,6 +18,10 @@ VOLT_PER_COUNT = 10.24 / 32768.0
 _LOW_V, _HIGH_V = 0.35, 4.6
 # The light spot is about half as wide as a strip, which gives each edge this fraction of the pulse width.
 _RAMP = 0.6
+# A pick-up for teeth has a pulse former.
+_RAMP_OF_TEETH = 0.1
+# Where the tooth between two places stands.
+_BETWEEN = 0.45
 # A doubled pulse: a reflection of this width, this far behind the middle of the strip (in pulse widths).
 _GHOST_OFFSET, _GHOST_WIDTH, _GHOST_RAMP = 1.2, 0.6, 0.3
 _NORMAL, _MISSING, _DOUBLED = 0, 1, 2
@@ -32,6 +36,7 @@ class _Strips(NamedTuple):
     middle_rev: FloatArray
     """Middle of each strip within a revolution, ascending, shape (strips,)."""
     width_rev: float
+    ramp_rev: float
     rate_hz: float
 
 
@@ -99,7 +104,7 @@ def _pulse_train(angle, speed, noise_v, strips, view, counts) -> None:  # type: 
         light = 0.0
         if kind != _MISSING:
             distance = now - middle - shift
-            light = _reflection(distance, width, _RAMP * width)
+            light = _reflection(distance, width, strips.ramp_rev)
             if kind == _DOUBLED:
                 behind = distance - _GHOST_OFFSET * width
                 light = max(light, _reflection(behind, _GHOST_WIDTH * width, _GHOST_RAMP * width))
@@ -127,17 +132,20 @@ class PickUp:
         self._rng = rng
         self._noise_v = noise.pulse_rms_v
         self.channel = sensor.channel
-        self.angle_rev = _strip_angles(sensor, tug)
+        marked_edge = _teeth_of(sensor, tug, rng) if sensor.wheel else _strips_of(sensor, tug)
+        counted = marked_edge if not sensor.toothed.extra else marked_edge[: -sensor.toothed.extra]
+        self.angle_rev = np.diff(np.append(counted, 1.0 + counted[0]))
+        """Angle from each strip or tooth that is counted to the next [rev], shape (strips,)."""
         turns = vessel.gearbox.ratio if sensor.shaft == "engine" else 1.0
         width = _pulse_width(sensor)
-        marked_edge = np.concatenate(([0.0], np.cumsum(self.angle_rev)[:-1]))
-        middle = marked_edge + (0.5 * width if sensor.edge == "rising" else -0.5 * width)
+        middle = np.sort(marked_edge) + (0.5 * width if sensor.edge == "rising" else -0.5 * width)
         # at the start every strip is ahead: the first that passes is strip 1, 2, ... at random
         self._strips = _Strips(
             turns=turns,
             phase_rev=float(rng.uniform(0.0, 1.0)),
             middle_rev=middle,
             width_rev=width,
+            ramp_rev=(_RAMP_OF_TEETH if sensor.wheel else _RAMP) * width,
             rate_hz=rate_hz,
         )
         self._view = _View(
@@ -170,18 +178,38 @@ class PickUp:
         ]
 
 
-def _strip_angles(sensor: SpeedSensor, tug: Tug) -> FloatArray:
-    """Return the angles between the strips [rev], which sum to 1: the truth's where it has as many, else equal ones."""
+def _strips_of(sensor: SpeedSensor, tug: Tug) -> FloatArray:
+    """Return where strips begin [rev], at angles that are the truth's where it has as many, else equal ones."""
     strips = sensor.pulses_per_revolution
     angles = np.array(tug.strip_angles_deg) if len(tug.strip_angles_deg) == strips else np.ones(strips)
     turn: FloatArray = angles / angles.sum()
-    return turn
+    return np.concatenate(([0.0], np.cumsum(turn)[:-1]))
+
+
+def _teeth_of(sensor: SpeedSensor, tug: Tug, rng: np.random.Generator) -> FloatArray:
+    """Return where the teeth of a wheel begin [rev], those that are counted first, with errors of their pitch.
+
+    Gaps end equal parts of the turn; further teeth stand behind the first places of such parts.
+    """
+    wheel = sensor.toothed
+    ends = [wheel.places * (part + 1) // len(wheel.missing) for part in range(len(wheel.missing))]
+    empty = {end - 1 - k for end, gap in zip(ends, wheel.missing, strict=True) for k in range(gap)}
+    teeth = [float(place) for place in range(wheel.places) if place not in empty]
+    teeth += [wheel.places * part // wheel.extra + _BETWEEN for part in range(wheel.extra)]
+    errors_rev = tug.tooth_error_deg / 360.0 * rng.standard_normal(len(teeth))
+    return np.array(teeth) / wheel.places + errors_rev
 
 
 def _pulse_width(sensor: SpeedSensor) -> float:
-    """Return the width of a pulse at half height [rev]; 7 % of a turn or a third of the pitch where it is not given."""
+    """Return the width of a pulse at half height [rev].
+
+    Where it is not given, half of the distance between the closest teeth, or 7 % of a turn or a third of the distance
+    between strips.
+    """
     if sensor.pulse_width_deg is not None:
         return sensor.pulse_width_deg / 360.0
+    if sensor.wheel:
+        return 0.5 / sensor.toothed.closest
     return min(0.07, 1.0 / (3.0 * sensor.pulses_per_revolution))
 
 
@@ -190,4 +218,4 @@ def _most_pulses(sensor: SpeedSensor, vessel: Vessel, duration_s: float) -> int:
     turns = 1.3 * vessel.engine.rated_speed_rpm / 60.0 * duration_s
     if sensor.shaft == "propeller":
         turns /= vessel.gearbox.ratio
-    return int(turns * sensor.pulses_per_revolution) + 16
+    return int(turns * (sensor.pulses_per_revolution + sensor.toothed.extra)) + 16
