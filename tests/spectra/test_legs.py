@@ -49,6 +49,7 @@ def _made(
     order=0.0,
     order_late_s=0.0,
     tracked=ORDER,
+    second=0.0,
 ):
     """Signals of the leg: u = sum of its lines, n = H u, M_s = (1 + wander) (1 + n)^2 + inertia, and noise."""
     time_s = np.arange(round(90.0 * RATE_HZ)) / RATE_HZ
@@ -58,8 +59,10 @@ def _made(
         wave = amplitude_v * np.exp(1j * (omega * (time_s - leg.start_s) + phase_rad - 0.5 * np.pi))
         set_point += size * wave.real * PER_VOLT / SPEED_REV_S
         answer = size * _speed_over_set_point(omega) * wave * PER_VOLT / SPEED_REV_S
-        speed += answer.real
-        change += (1j * omega * answer).real
+        # twice the frequency, its phase that of the square of the line
+        twice = second * (answer / np.abs(answer)) ** 2
+        speed += (answer + twice).real
+        change += (1j * omega * (answer + 2.0 * twice)).real
     if cut_v is not None:
         set_point = np.minimum(set_point, cut_v)
     load = 1.0 + wander * np.cos(2.0 * np.pi * time_s / 37.0 + 1.0)
@@ -237,6 +240,18 @@ def test_an_order_that_swings_across_the_lines_is_taken_out_of_them():
     left = 0.02 * np.sqrt(4.0 / (PERIODS * PERIOD_S * RATE_HZ)) / (0.2 * abs(PER_VOLT) / SPEED_REV_S)
     assert np.median(stds, axis=0)[-1] == pytest.approx(left, rel=0.2)
     assert np.median(bare, axis=0)[-1] > 4.0 * left
+
+
+def test_the_square_of_the_speed_is_a_load_of_the_line():
+    # n = a cos(w t) + b cos(2 w t): of n^2 there is a b cos(w t) at the line, half of b is added to its load
+    leg = LEG.model_copy(update={"harmonics": (3,), "amplitudes_v": (0.2,), "phases_rad": (1.0,)})
+    campaign = CAMPAIGN.model_copy(update={"multisines": (leg,)})
+    response = estimate_legs(_made(leg=leg, second=0.03), campaign)["M1"].response
+    speed = _speed_over_set_point(response.omega_rad_s)
+    assert response.load == pytest.approx(1.015, abs=1e-4)
+    assert np.abs(response.response[0, 0] - speed).max() < 1e-4
+    torque = (2.0 * 1.015 + 1j * response.omega_rad_s * INERTIA_S) * speed
+    assert np.abs(response.response[1, 0] - torque).max() < 2e-4
 
 
 @pytest.mark.parametrize("late_s", [-5e-3, 8e-3])

@@ -2,11 +2,12 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.arrays import ComplexArray, FloatArray, RealOrComplexArray
 from shaftprint.errors import StructureError
 from shaftprint.models._assembly import (
     block_parameters,
@@ -294,7 +295,7 @@ class Structure(Shown):
         return np.array([values.get(p.name, p.value) for p in self.parameters])
 
     def response(
-        self, values: ArrayLike, s: ArrayLike, *, factors: Mapping[str, FloatArray] | None = None
+        self, values: ArrayLike, s: ArrayLike, *, factors: Mapping[str, RealOrComplexArray] | None = None
     ) -> ComplexArray:
         """Return the response of every output.
 
@@ -305,8 +306,8 @@ class Structure(Shown):
         s
             Laplace variable [rad/s], shape (frequencies,); ``1j * omega`` on the frequency axis.
         factors
-            Factor on a parameter at each frequency, by name, shape (frequencies,): for lines that were measured under
-            different conditions. A name that the structure does not have is passed over.
+            Factor on a parameter at each frequency, by name, shape (frequencies,), real or complex: for lines that were
+            measured under different conditions. A name that the structure does not have is passed over.
 
         Returns
         -------
@@ -320,7 +321,7 @@ class Structure(Shown):
         s: ArrayLike,
         wanted: Sequence[str] | None = None,
         *,
-        factors: Mapping[str, FloatArray] | None = None,
+        factors: Mapping[str, RealOrComplexArray] | None = None,
     ) -> tuple[ComplexArray, ComplexArray]:
         """Return the response and its exact derivatives to the named parameters, the free ones by default.
 
@@ -337,7 +338,7 @@ class Structure(Shown):
         s: ArrayLike,
         wanted: Sequence[str] | None = None,
         *,
-        factors: Mapping[str, FloatArray] | None = None,
+        factors: Mapping[str, RealOrComplexArray] | None = None,
     ) -> ComplexArray:
         """Return the response and below it its derivatives, as ``gradient`` does, in one array.
 
@@ -361,10 +362,11 @@ class Structure(Shown):
             self._expect_names(wanted)
         laplace = np.atleast_1d(np.asarray(s, dtype=np.complex128))
         columns = self.columns(table)
-        chained: dict[str, FloatArray | float] = dict(self.factors)
+        chained: dict[str, RealOrComplexArray | float] = dict(self.factors)
         for name, factor in (factors or {}).items():
             if name in columns:
-                columns[name] = columns[name] * factor
+                # blocks calculate with complex values alike
+                columns[name] = cast("FloatArray", columns[name] * factor)
                 chained[name] = chained[name] * factor if name in chained else factor
         independent = {name: table[..., column : column + 1] for column, name in enumerate(self.names)}
         ties = [tie for tie in self.ties if any(argument in names for argument in tie.arguments)]

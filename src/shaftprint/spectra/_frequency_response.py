@@ -10,6 +10,7 @@ from shaftprint.arrays import (
     BoolArray,
     ComplexArray,
     FloatArray,
+    RealOrComplexArray,
     frozen_bool,
     frozen_complex,
     frozen_float,
@@ -53,8 +54,9 @@ class FrequencyResponse(Shown, Labelled):
     """Which lines a fit should use by default, shape (lines,); all when not given."""
     remarks: Mapping[str, str] = field(default_factory=dict)
     """Why a line is not used, by line name."""
-    load: FloatArray = field(default_factory=lambda: np.empty(0))
-    """Propeller load of each line's window over that at the working point [-], shape (lines,); 1 when not given."""
+    load: RealOrComplexArray = field(default_factory=lambda: np.empty(0))
+    """Propeller load of each line over that at the working point [-], shape (lines,); 1 when not given. Complex where
+    the square of a speed of many lines adds to it."""
     common: Mapping[str, ComplexArray] = field(default_factory=dict)
     """Causes that move all outputs of a line together, by name: change of the response when the cause changes by its
     standard deviation, shape (outputs, inputs, lines). The covariance contains them."""
@@ -142,7 +144,7 @@ class FrequencyResponse(Shown, Labelled):
             ("covariance", frozen_float(self.covariance), (count, 2 * channels, 2 * channels)),
             ("degrees_of_freedom", frozen_float(dof), one_a_line),
             ("used", frozen_bool(used), one_a_line),
-            ("load", frozen_float(load), one_a_line),
+            ("load", frozen_complex(load) if np.iscomplexobj(load) else frozen_float(load), one_a_line),
         ):
             _expect_shape(name, array, shape)
             object.__setattr__(self, name, array)

@@ -58,7 +58,8 @@ def _leg(signals: "Signals", leg: "Leg", state: "LegState") -> Spectra:
     measured = _measured(signals, leg, state, sensor)
     expected = np.array([leg.lines[harmonic] for harmonic in measured.harmonics]) * abs(moved.per_volt)
     finding = check_leg(measured, expected=expected / moved.reference, moved=moved)
-    lines = [line for line in measured.lines if line.window.line not in finding.silent]
+    kept = [place for place, line in enumerate(measured.lines) if line.window.line not in finding.silent]
+    lines = [measured.lines[place] for place in kept]
     if not lines:
         raise ResponseError(
             f"{leg.name}: expected a set point that moves at the lines of the campaign, found none of them between "
@@ -69,10 +70,11 @@ def _leg(signals: "Signals", leg: "Leg", state: "LegState") -> Spectra:
     missing = leg.periods - measured.window.state.periods
     if missing > 0:
         remarks[leg.name] = f"{measured.window.state.periods} of {leg.periods} periods are in the recording"
-    load = np.ones(len(lines))
+    load = np.array([_load(line, measured.square[place], sensor) for place, line in zip(kept, lines, strict=True)])
     response = replace(
-        response_of_lines(signals, lines, excitation=moved, sensor=sensor, load=load),
+        response_of_lines(signals, lines, excitation=moved, sensor=sensor, load=np.ones(len(lines))),
         used=used,
+        load=load,
         remarks=remarks | finding.silent,
         averaging_s=sensor.averaging_s,
         hold_s=sensor.hold_s,
@@ -92,6 +94,12 @@ def _leg(signals: "Signals", leg: "Leg", state: "LegState") -> Spectra:
         speed=sensor.name,
         remarks=remarks | finding.silent,
     )
+
+
+def _load(line: "LineMeasurement", square: complex, sensor: "SpeedSignal") -> complex:
+    """Return the load slope at a line over that of the linear propeller, 2: what the square of the speed adds to it."""
+    speed = line.amplitude[line.channels.index(sensor.name)] / sensor.gain(line.window.frequency_hz)
+    return complex(1.0 + 0.5 * square / speed)
 
 
 def _judged(

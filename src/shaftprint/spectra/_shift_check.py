@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import ComplexArray, FloatArray, RealOrComplexArray
 from shaftprint.reasons import Reason
 from shaftprint.units import MILLI
 
@@ -63,15 +63,14 @@ def shift_reasons(response: "FrequencyResponse") -> tuple[Reason, ...]:
     )
 
 
-def _chi_squares(omega_rad_s: FloatArray, ratio: FloatArray, std: FloatArray, load: FloatArray) -> FloatArray:
+def _chi_squares(omega_rad_s: FloatArray, ratio: ComplexArray, std: FloatArray, load: RealOrComplexArray) -> FloatArray:
     """Return the lowest chi-square for each delay, shape (delays,); infinite where the best fit is impossible."""
     chi_square = np.full(_DELAYS_S.size, np.inf)
     for index, delay_s in enumerate(_DELAYS_S):
         seen = ratio * np.exp(1j * omega_rad_s * delay_s) / std
-        # the real part is the load, the imaginary part the inertia
-        load_row, inertia_row = load / std, omega_rad_s / std
-        k = float(load_row @ seen.real / (load_row @ load_row))
-        tau = float(inertia_row @ seen.imag / (inertia_row @ inertia_row))
+        # slope of the load and inertia, both real
+        rows = np.stack([load / std + 0j, 1j * omega_rad_s / std])
+        k, tau = np.linalg.solve((rows @ rows.conj().T).real, (rows.conj() @ seen).real).tolist()
         if _LOADS[0] < k < _LOADS[1] and 0.0 <= tau < _LONGEST_S:
-            chi_square[index] = np.sum((seen.real - k * load_row) ** 2 + (seen.imag - tau * inertia_row) ** 2)
+            chi_square[index] = np.sum(np.abs(seen - [k, tau] @ rows) ** 2)
     return chi_square

@@ -11,7 +11,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray, frozen_bool, frozen_float
+from shaftprint.arrays import (
+    BoolArray,
+    ComplexArray,
+    FloatArray,
+    IntArray,
+    RealOrComplexArray,
+    frozen_bool,
+    frozen_float,
+)
 from shaftprint.identify.likelihood._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify.likelihood._fitted_response import FittedResponse, channel_names, channels_of
 from shaftprint.identify.likelihood._tails import Tails, excess_freedom
@@ -53,7 +61,7 @@ class Experiment(Shown, Term):
     """Which lines of the response are fitted, shape (lines of the response,); of the others nothing is used."""
     s: ComplexArray
     """Laplace variable of the fitted lines [rad/s], shape (lines,), complex."""
-    factors: Mapping[str, FloatArray]
+    factors: Mapping[str, RealOrComplexArray]
     """Factor on a parameter at each fitted line, shape (lines,): the propeller load of its window acts on ``k_q``."""
     data: FloatArray
     """[Re, Im] of the fitted lines, shape (lines, size)."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.arrays import BoolArray, RealOrComplexArray
 from shaftprint.models import Structure
 from shaftprint.spectra import FrequencyResponse
 
@@ -15,12 +15,12 @@ def with_load(structure: Structure, load: float) -> Structure:
 
 def load_factors(
     structure: Structure, response: FrequencyResponse, chosen: BoolArray | None = None
-) -> dict[str, FloatArray]:
+) -> dict[str, RealOrComplexArray]:
     """Return what the propeller load of each line's window does to the parameters of a structure.
 
     A propeller whose torque is ``M_s0 (1 + delta) (n / n_0)^2`` has the slopes ``k_q (1 + delta)`` and
     ``kappa (1 + delta)`` in values normalised with one working point, and nothing else changes. A parameter is such a
-    slope by its role.
+    slope by its role. The square of a speed of many lines gives each line a complex slope (``spectra/legs``).
     """
     load = response.load if chosen is None else response.load[chosen]
     return {} if np.all(load == 1.0) else dict.fromkeys(_loaded(structure), load)

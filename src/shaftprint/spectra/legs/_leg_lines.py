@@ -2,8 +2,15 @@
 
 The propeller takes ``load (1 + n)^2`` of the torque, which the structures know as ``load (1 + 2 n)``. The square of a
 sum of lines falls on sums and differences of all of them. It is known, since the speed is measured: it is taken out of
-the torque in time, with the load 1 that the leg has by definition. Left in, it moved ``tau_dn`` by five standard
-deviations in a simulated tug.
+the torque in time, with the load 1 that the leg has by definition, so that it is no noise between the lines. Left in,
+it moved ``tau_dn`` by five standard deviations in a simulated tug.
+
+At a line the square stays in the torque, for it acts on the loop as well: at odd harmonics it is of third order, and
+the governor answers it like any load. With ``q`` its amplitude and ``n`` that of the speed the propeller takes
+``(2 + q / n) n`` there: a load slope of its own at each line, complex (the describing function of the propeller; Gelb
+and Vander Velde, "Multiple-input describing functions and nonlinear system design", 1968, chapter 1). It goes with the
+response as the load of the line. Without it a simulated tug of 1 V had ``t_d`` and ``omega_n`` half a deviation too
+large in 12 minutes, ``K_p`` and ``K_p / K_i`` as much too small.
 
 The noise is that of the bins between the lines, which differ from period to period (Pintelon and Schoukens, "System
 Identification: A Frequency Domain Approach", chapter on non-parametric noise models from periodic excitation). The 36
@@ -52,6 +59,8 @@ class LegLines:
     """Lines, ascending."""
     lines: tuple[LineMeasurement, ...]
     """What each of them tells."""
+    square: ComplexArray
+    """Amplitude of the square of the speed's deviation at each of them, over the working point, shape (lines,)."""
 
 
 def measure_leg(
@@ -82,6 +91,8 @@ def measure_leg(
     """
     linear, found = _linear_window(window, orders, references, excitation=excitation, speed=speed)
     spectrum, periods = linear.spectrum(), window.state.periods
+    deviation = (window.of(speed) - 1.0).ravel()
+    square = np.fft.rfft(deviation**2)[periods * np.array(harmonics)] * (2.0 / deviation.size)
     leg = _LegSpectrum(
         window=linear,
         excitation=excitation,
@@ -95,8 +106,8 @@ def measure_leg(
         # of a sum of lines each answers for its share of the variance, so that all together answer for the whole
         overall=linear.values.reshape(len(linear.values), -1).var(axis=1) / len(harmonics),
     )
-    lines = tuple(_line(leg, harmonic) for harmonic in harmonics)
-    return LegLines(window=linear, harmonics=tuple(harmonics), lines=lines)
+    lines = tuple(_line(leg, harmonic, of_square) for harmonic, of_square in zip(harmonics, square, strict=True))
+    return LegLines(window=linear, harmonics=tuple(harmonics), lines=lines, square=square)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -147,11 +158,12 @@ def _linear_window(
     )
 
 
-def _line(leg: _LegSpectrum, harmonic: int) -> LineMeasurement:
-    """Return what the leg tells at one of its lines."""
+def _line(leg: _LegSpectrum, harmonic: int, square: complex) -> LineMeasurement:
+    """Return what the leg tells at one of its lines, the square of the speed in its torque."""
     state = leg.window.state
     place = harmonic * state.periods
-    amplitude = leg.spectrum[:, place]
+    amplitude = leg.spectrum[:, place].copy()
+    amplitude[leg.torque] += square
     cost = None if leg.orders is None else leg.orders.at(place)
     noise = _noise(leg.spectrum, leg.beside, place, cost, speed=leg.speed, torque=leg.torque)
     not_fitted = (_NOT_FITTED, amplitude.size)
