@@ -24,7 +24,7 @@ from shaftprint.survey import (
     of_legs,
     priors_of,
 )
-from shaftprint.tug import Tug, sail
+from shaftprint.tug import Noise, Tug, sail
 from shaftprint.vessel import load_vessel
 
 pytestmark = pytest.mark.slow
@@ -202,3 +202,19 @@ def test_one_leg_can_be_chosen(trial, voyage):
     assert found.value("tau_dn") == pytest.approx(true["tau_dn"], rel=3e-3)
     with pytest.raises(StructureError, match="leg M3: expected one of M1, M2"):
         of_legs(both, ["M3"])
+
+
+def test_what_the_square_of_the_speed_does_to_the_loop_is_the_load_of_each_line(tmp_path):
+    trial = load_trial("stan-tug-1205", "5min")
+    silent = Tug(noise=Noise().without(process=True, measurement=True, faults=True))
+    truth = sail(trial.vessel, trial.campaign, tmp_path / "silent.nc", seed=1, tug=silent)
+    measurement = measure(tmp_path / "silent.nc", trial)
+    response = measurement.legs[0].spectra.response
+    true = as_measured(truth, measurement.signals)
+    values = GAUGE.vector({name: value for name, value in true.items() if name in GAUGE.names})
+    near = (response.frequency_hz > 0.9) & (response.frequency_hz < 1.5)
+    linear = GAUGE.response(values, 1j * response.omega_rad_s)
+    loaded = GAUGE.response(values, 1j * response.omega_rad_s, factors={"k_q": response.load})
+    off, left = (np.abs(response.response[:, 0] / model - 1.0)[0, near] for model in (linear, loaded))
+    assert off.max() > 0.01
+    assert left.max() < 1e-3
