@@ -9,6 +9,7 @@ from tests.made_signals import made_channels
 from shaftprint.campaign import Campaign, Multisine
 from shaftprint.signals import LegState, SetPointCalibration, Signals, TrackedOrder, WorkingPoint
 from shaftprint.spectra import estimate_legs
+from shaftprint.spectra.lines import LineNoise
 
 SPEED_REV_S, TORQUE_NM, RATE_HZ = 14.0, 830.0, 100.0
 INERTIA_S = 0.27
@@ -252,6 +253,17 @@ def test_the_square_of_the_speed_is_a_load_of_the_line():
     assert np.abs(response.response[0, 0] - speed).max() < 1e-4
     torque = (2.0 * 1.015 + 1j * response.omega_rad_s * INERTIA_S) * speed
     assert np.abs(response.response[1, 0] - torque).max() < 2e-4
+
+
+def test_a_share_of_the_speed_in_the_torque_brings_the_noise_of_the_speed():
+    rng = np.random.default_rng(4)
+    root = rng.standard_normal((3, 3)) + 1j * rng.standard_normal((3, 3))
+    noise = LineNoise(covariance=root @ root.conj().T, complex_samples=36.0)
+    drawn = root @ (rng.standard_normal((3, 200_000)) + 1j * rng.standard_normal((3, 200_000))) / np.sqrt(2.0)
+    drawn[2] += (0.3 - 0.8j) * drawn[1]
+    sampled = drawn @ drawn.conj().T / 200_000
+    mixed = noise.with_share_of(1, 2, 0.3 - 0.8j).covariance
+    assert np.abs(sampled - mixed).max() < 0.02 * np.abs(mixed).max()
 
 
 @pytest.mark.parametrize("late_s", [-5e-3, 8e-3])

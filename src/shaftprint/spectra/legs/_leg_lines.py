@@ -163,9 +163,12 @@ def _line(leg: _LegSpectrum, harmonic: int, square: complex) -> LineMeasurement:
     state = leg.window.state
     place = harmonic * state.periods
     amplitude = leg.spectrum[:, place].copy()
+    share = square / amplitude[leg.speed]
     amplitude[leg.torque] += square
     cost = None if leg.orders is None else leg.orders.at(place)
     noise = _noise(leg.spectrum, leg.beside, place, cost, speed=leg.speed, torque=leg.torque)
+    # the fit is given the share as a number: what it adds to the torque has the noise of the speed
+    noise = noise.with_share_of(leg.speed, leg.torque, complex(share))
     not_fitted = (_NOT_FITTED, amplitude.size)
     return LineMeasurement(
         window=_window(leg.window, harmonic),

@@ -75,6 +75,22 @@ class LineNoise:
         covariance[torque, torque] += variance
         return replace(self, covariance=covariance)
 
+    def with_share_of(self, speed: int, torque: int, share: complex) -> "LineNoise":
+        """Return the covariance where a share of one channel was added to another, noise and all.
+
+        Parameters
+        ----------
+        speed
+            Place of the channel of which a share is added.
+        torque
+            Place of the channel to which it is added.
+        share
+            How much of it.
+        """
+        mixing = np.eye(len(self.covariance), dtype=np.complex128)
+        mixing[torque, speed] = share
+        return replace(self, covariance=mixing @ self.covariance @ mixing.conj().T)
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Neighbours:
