@@ -143,7 +143,7 @@ def refusal(case: Case, seed: int, folder: Path) -> Refusal:
     truth = sail(TRIAL.vessel, case.campaign(TRIAL.campaign), path, seed=seed, tug=case.tug)
     survey = run(path, TRIAL.vessel, TRIAL.campaign, judge=False)
     path.unlink()
-    words = " ".join(survey.remarks)
+    words = survey.fingerprint.verdict.reason
     offered = tuple(leg.name for leg in survey.measurement.legs if f"--leg {leg.name}" in words)
     (free,) = fit([structure(NAME)], survey.measurement, settings={NAME: Settings()}, rng=np.random.default_rng(1))
     return Refusal(

@@ -36,7 +36,11 @@ class Refusal:
 
 
 def generator_table(cases: Sequence[tuple[str, Sequence[Outcome]]]) -> str:
-    """Return one row a fault of the generator: what the intervals of all numbers together say."""
+    """Return one row a fault of the generator: what the intervals of all numbers together say.
+
+    The change by the fault is that of the error over its deviation, against the first case with the same seeds: rms
+    of the number that changes most.
+    """
     rows = []
     for name, outcomes in cases:
         z = np.array([[one.error[number] / one.std[number] for number in one.error] for one in outcomes])
@@ -45,12 +49,12 @@ def generator_table(cases: Sequence[tuple[str, Sequence[Outcome]]]) -> str:
         rows.append([
             name, f"{len(outcomes)}", _stated(outcomes, "K_p"), _stated(outcomes, "t_d"),
             f"{rms.min():.2f} to {rms.max():.2f}", f"{mean.min():+.2f} to {mean.max():+.2f}",
-            f"{covers.min():.0f} to {covers.max():.0f} %", f"{covers.mean():.1f} %",
+            f"{covers.min():.0f} to {covers.max():.0f} %", f"{covers.mean():.1f} %", _change(outcomes, cases[0][1]),
             f"{p_values.mean():.2f}", f"{100.0 * np.mean(p_values < LOWEST_P_VALUE):.0f} %",
         ])  # fmt: skip
     header = [
         "fault", "recordings", "stated std of `K_p`", "of `t_d`", "rms z", "mean z", "covers, each number",
-        "covers, all", "mean p", "p < 0.05",
+        "covers, all", "change by the fault", "mean p", "p < 0.05",
     ]  # fmt: skip
     return table("Generator and recorder", header, rows) if rows else ""
 
@@ -84,6 +88,18 @@ def governor_table(cases: Sequence[tuple[str, Sequence[Refusal]]], *, rejected: 
         "intervals of one speed that cover",
     ]  # fmt: skip
     return table(f"Governor, refused where p < {rejected:g}", header, rows) if rows else ""
+
+
+def _change(outcomes: Sequence[Outcome], without: Sequence[Outcome]) -> str:
+    ideal = {one.seed: one for one in without}
+    pairs = [(one, ideal[one.seed]) for one in outcomes if one.seed in ideal]
+    if outcomes is without or not pairs:
+        return ""
+    changes = [
+        [one.error[name] / one.std[name] - other.error[name] / other.std[name] for name in one.error]
+        for one, other in pairs
+    ]
+    return f"{np.sqrt(np.mean(np.square(changes), axis=0)).max():.2f}"
 
 
 def _stated(outcomes: Sequence[Outcome], name: str) -> str:

@@ -8,6 +8,7 @@ ReasonKind: TypeAlias = Literal[
     "channel clock",
     "clipping",
     "gauge steadiness",
+    "legs apart",
     "gauge scale",
     "set-point shape",
     "set-point scale",

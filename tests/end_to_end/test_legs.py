@@ -12,7 +12,7 @@ from shaftprint.errors import StructureError
 from shaftprint.identify import STAN_TUG_NOISE, Settings
 from shaftprint.recording import cut, read_recording, write_recording
 from shaftprint.survey import (
-    apart_sentences,
+    apart_reasons,
     comparisons_of,
     fingerprint_of,
     fit,
@@ -23,6 +23,7 @@ from shaftprint.survey import (
     measure,
     of_legs,
     priors_of,
+    run,
 )
 from shaftprint.tug import Noise, Tug, sail
 from shaftprint.vessel import load_vessel
@@ -134,12 +135,34 @@ def test_a_governor_that_is_another_at_the_other_speed_is_refused(trial, voyage,
     assert found.p_value < 1e-3
     alone = legs_alone(found, mixed, settings=settings, rng=np.random.default_rng(1))
     assert all(one.fit.p_value > 0.01 for one in alone)
-    (sentence,) = apart_sentences(found, alone)
+    (reason,) = apart_reasons(found, alone)
+    sentence = reason.sentence
     assert sentence.startswith("One model does not explain all legs: p = ")
     if "governor_delay_s" in changed:
         assert "What differs most: " in sentence
         assert "t_d" in sentence
     assert sentence.endswith("The result of one speed is had with --leg M1 or --leg M2.")
+
+
+def test_the_verdict_on_scheduled_gains_begins_with_the_speeds_and_offers_one(trial, tmp_path):
+    """Gains that go with the square root of the speed, 28 % between 1.15 and 0.70 of the working speed."""
+    path = tmp_path / "scheduled.nc"
+    truth = sail(trial.vessel, trial.campaign, path, tug=Tug(governor_gain_exponent=0.5), seed=22)
+    survey = run(path, trial.vessel, trial.campaign, judge=False)
+    verdict = survey.fingerprint.verdict
+    assert not verdict.trustworthy
+    # what the joint fit makes of the inertia comes after it
+    assert verdict.reasons[0].kind == "legs apart"
+    assert verdict.reason.startswith("One model does not explain all legs: p = ")
+    assert "The result of one speed is had with --leg M1" in verdict.reason
+    upper = run(path, trial.vessel, trial.campaign, judge=False, legs=("M1",))
+    assert upper.fingerprint.verdict.trustworthy
+    assert [reason.kind for reason in upper.fingerprint.verdict.reasons] == []
+    # the gain of the governor is that of the speed of this leg
+    (gain,) = (one for one in upper.identification.parameters if one.name == "K_p")
+    share = upper.signals.working_point.engine_speed_rev_s * 60.0 / 1183.8
+    true = as_measured(truth, upper.signals)["K_p"] * share**0.5
+    assert abs(gain.value - true) < 3.5 * gain.std
 
 
 def test_structures_are_compared_on_all_legs(trial, voyage):

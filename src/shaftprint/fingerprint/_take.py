@@ -34,6 +34,7 @@ from shaftprint.identify import Identification, assess, profile
 from shaftprint.identify.fit import Estimate
 from shaftprint.identify.uncertainty import Budget, Interval, budget
 from shaftprint.models import Combination
+from shaftprint.reasons import Reason
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
@@ -55,6 +56,7 @@ def take_fingerprint(
     now: datetime,
     tested_at: datetime | None = None,
     legs: Sequence[LegRecord] = (),
+    reasons: Sequence[Reason] = (),
     noise: Sequence[NoiseSpectrum] = (),
 ) -> Fingerprint:
     """Return the fingerprint of an identified line.
@@ -73,6 +75,8 @@ def take_fingerprint(
         When the recording began, where that is known.
     legs, noise
         Legs that were fitted, and the noise at each speed, where they are known.
+    reasons
+        What else speaks against the fit, such as legs that do not belong to one model.
 
     Raises
     ------
@@ -97,7 +101,7 @@ def take_fingerprint(
         identification,
         profile=profiled,
         signal_to_noise=signal_to_noise,
-        reasons=contradictions(physical, signals.working_point, vessel),
+        reasons=(*contradictions(physical, signals.working_point, vessel), *reasons),
         further=[_estimate(q) for q in (*physical, *margin, conditions.engine_speed, conditions.shaft_torque)],
         assumptions=assumptions_of(identification, vessel),
     )

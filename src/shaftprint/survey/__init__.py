@@ -7,7 +7,7 @@ rooms that they come from.
 
 from shaftprint.survey._fits import comparisons_of, fit, priors_of, stated_working_point
 from shaftprint.survey._legs import LegMeasurement, LegTest, leg_pairs, leg_tests, legs_of, structure_at
-from shaftprint.survey._legs_apart import LegAlone, apart_sentences, legs_alone
+from shaftprint.survey._legs_apart import LegAlone, apart_reasons, legs_alone
 from shaftprint.survey._limit_hints import hints_of
 from shaftprint.survey._measurement import Measurement, measure, of_legs, pairs_of, response_of, responses_of
 from shaftprint.survey._noise import noise_at_speeds
@@ -32,7 +32,7 @@ __all__ = [
     "Survey",
     "ThesisMode",
     "Trial",
-    "apart_sentences",
+    "apart_reasons",
     "comparisons_of",
     "failed_steps",
     "fingerprint_of",

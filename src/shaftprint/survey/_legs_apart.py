@@ -10,6 +10,7 @@ import numpy as np
 
 from shaftprint.digits import p_value_text, plain, plain_letters, with_deviation
 from shaftprint.identify import Identification, Requirements, Settings, identify
+from shaftprint.reasons import Reason
 from shaftprint.survey._measurement import SINES, Measurement, pairs_of
 from shaftprint.units import rpm_from_rev_s
 
@@ -67,16 +68,26 @@ def legs_alone(
     )
 
 
-def apart_sentences(joint: Identification, alone: Sequence[LegAlone]) -> tuple[str, ...]:
-    """Return that the legs do not belong to one model, how well each fits alone, and what differs most."""
-    if not alone:
+def apart_reasons(joint: Identification, alone: Sequence[LegAlone]) -> tuple[Reason, ...]:
+    """Return that the legs do not belong to one model, how well each fits alone, what differs most, and what to do.
+
+    Where no leg fits alone it is not the difference of the speeds that speaks against the fit: nothing is returned.
+
+    Parameters
+    ----------
+    joint
+        The fit to all legs.
+    alone
+        From `legs_alone`.
+    """
+    explained = [one.name for one in alone if (one.fit.p_value or 0.0) >= Requirements().lowest_p_value]
+    if not explained:
         return ()
     each = ", ".join(
         f"{one.name} ({plain(rpm_from_rev_s(one.working_point.engine_speed_rev_s), 0)} rpm) "
         f"p = {p_value_text(one.fit.p_value)}"
         for one in alone
     )
-    explained = [one.name for one in alone if (one.fit.p_value or 0.0) >= Requirements().lowest_p_value]
     names = " or ".join(f"--leg {name}" for name in explained if name != SINES)
     sentence = (
         f"One model does not explain all legs: p = {p_value_text(joint.p_value)}; each alone: {each}. Something of "
@@ -86,7 +97,7 @@ def apart_sentences(joint: Identification, alone: Sequence[LegAlone]) -> tuple[s
     differences = _differences(alone)
     told = f" What differs most: {'; '.join(differences)}." if differences else ""
     way_out = f" The result of one speed is had with {names}." if names else ""
-    return (plain_letters(f"{sentence}{told}{way_out}"),)
+    return (Reason(kind="legs apart", sentence=plain_letters(f"{sentence}{told}{way_out}")),)
 
 
 def _differences(alone: Sequence[LegAlone]) -> list[str]:

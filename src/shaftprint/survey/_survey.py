@@ -28,11 +28,12 @@ from shaftprint.identify import Identification, Settings
 from shaftprint.identify.comparison import StructureComparison
 from shaftprint.models import Structure
 from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.reasons import Reason
 from shaftprint.signals import Mode, Signals
 from shaftprint.spectra import Spectra
 from shaftprint.survey._fits import comparisons_of, fit, priors_of
 from shaftprint.survey._legs import LegTest, leg_tests
-from shaftprint.survey._legs_apart import LegAlone, apart_sentences, legs_alone
+from shaftprint.survey._legs_apart import LegAlone, apart_reasons, legs_alone
 from shaftprint.survey._limit_hints import hints_of
 from shaftprint.survey._measurement import Measurement, measure, of_legs
 from shaftprint.survey._noise import noise_at_speeds
@@ -173,9 +174,8 @@ def run(
         measurement = replace(measurement, began=tested_at)
     by_name = settings_by_name(chosen, measurement, trial, settings or _with_priors)
     fits = fit(chosen, measurement, settings=by_name, rng=rng, progress=progress)
-    survey = _of_fits(fits, measurement, trial, now=now, progress=progress)
     alone = legs_alone(fits[0], measurement, settings=by_name, rng=rng)
-    survey = replace(survey, legs_alone=alone, remarks=apart_sentences(fits[0], alone))
+    survey = _of_fits(fits, measurement, trial, now=now, progress=progress, alone=alone)
     return judged(survey, rng=rng, progress=progress) if judge else survey
 
 
@@ -195,6 +195,7 @@ def _fingerprint(
     tests: Sequence[LegTest],
     *,
     now: datetime | None,
+    reasons: Sequence[Reason] = (),
 ) -> Fingerprint:
     return take_fingerprint(
         identification,
@@ -206,6 +207,7 @@ def _fingerprint(
         now=now or datetime.now(UTC),
         tested_at=measurement.began,
         legs=_fitted_legs(measurement, tests),
+        reasons=reasons,
         noise=_measured_noise(measurement, trial),
     )
 
@@ -243,12 +245,25 @@ def survey_of(
 
 
 def _of_fits(
-    fits: Sequence[Identification], measurement: Measurement, trial: Trial, *, now: datetime | None, progress: Progress
+    fits: Sequence[Identification],
+    measurement: Measurement,
+    trial: Trial,
+    *,
+    now: datetime | None,
+    progress: Progress,
+    alone: Sequence[LegAlone] = (),
 ) -> Survey:
     progress.begin("Finding the intervals")
     tests = leg_tests(fits[0], measurement.working_points)
-    fingerprint = _fingerprint(fits[0], measurement, trial, tests, now=now)
-    return Survey(trial=trial, measurement=measurement, fits=tuple(fits), fingerprint=fingerprint, leg_tests=tests)
+    fingerprint = _fingerprint(fits[0], measurement, trial, tests, now=now, reasons=apart_reasons(fits[0], alone))
+    return Survey(
+        trial=trial,
+        measurement=measurement,
+        fits=tuple(fits),
+        fingerprint=fingerprint,
+        leg_tests=tests,
+        legs_alone=tuple(alone),
+    )
 
 
 def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SILENT) -> Survey:

@@ -26,6 +26,10 @@ _WORDS: "Mapping[ReasonKind, tuple[str, str]]" = {
         "The torque gauge or the load did not stay the same during the test.",
         "Check gauge and telemetry, and repeat the test in calm, deep water.",
     ),
+    "legs apart": (
+        "The line is not the same at all speeds of the test.",
+        "Identify each speed alone; ask an engineer whether the governor has gains or delays that go with the speed.",
+    ),
     "gauge scale": (
         "The scale of the torque gauge is in doubt.",
         "Calibrate the torque gauge or correct its scale in the vessel file, then identify once more.",
