@@ -174,11 +174,11 @@ def _of_one_speed(tug: Tug, truth: Truth, measurement: Any, name: str, trial: Tr
 def kept(
     case: Case, seeds: range, path: Path | None, make: Callable[[int, Path], Any], kind: type[Any]
 ) -> Iterator[Any]:
-    """Give what each recording gave, from the file where it stands there already."""
+    """Give what each recording gave, from the file where it stands there already; without seeds all of the file."""
     lines = path.read_text(encoding="utf-8").splitlines() if path and path.exists() else []
     earlier = {one.seed: one for one in (kind(**json.loads(line)) for line in lines)}
     with tempfile.TemporaryDirectory() as folder:
-        for seed in seeds[: case.most]:
+        for seed in seeds[: case.most] or sorted(earlier):
             if seed not in earlier:
                 earlier[seed] = make(seed, Path(folder))
                 if path:
@@ -199,7 +199,7 @@ def _refusal_of(case: Case) -> Callable[[int, Path], Refusal]:
 def main() -> None:
     """Sail and identify the chosen rows."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=4, help="recordings of each row")
+    parser.add_argument("--seeds", type=int, default=4, help="recordings of each row; 0: those that are kept")
     parser.add_argument("--case", choices=[*GENERATOR, *GOVERNOR], action="append", help="some rows alone")
     parser.add_argument("--outcomes", type=Path, help="folder in which outcomes of recordings are kept")
     parser.add_argument("--write", action="store_true", help=f"put the tables into {DOCUMENT.relative_to(ROOT)}")
