@@ -11,6 +11,9 @@ time                      s since the start of the recording
 ========================= ============================================================
 """
 
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TypeVar
 
 import numpy as np
@@ -26,9 +29,16 @@ _SPELLINGS = {
     "volt": "V", "volts": "V", "v": "V", "nm": "N m", "n·m": "N m", "n*m": "N m", "n.m": "N m", "newton metre": "N m",
     "newton-meter": "N m", "newton meters": "N m",
     "knm": "kN m", "kn·m": "kN m", "kn.m": "kN m", "percent": "%", "pct": "%", "kt": "kn", "kts": "kn", "knot": "kn",
-    "knots": "kn", "sec": "s", "secs": "s", "second": "s", "seconds": "s", "m s-1": "m/s",
+    "knots": "kn", "rpm": "rpm", "1/min": "rpm", "min-1": "rpm", "min^-1": "rpm", "rev/min": "rpm", "r/min": "rpm",
+    "u/min": "rpm", "rps": "rev/s", "rad/sec": "rad/s", "milliampere": "mA", "ma": "mA",
+    "sec": "s", "secs": "s", "second": "s", "seconds": "s", "m s-1": "m/s",
     "m s^-1": "m/s", "mps": "m/s", "hertz": "Hz", "hz": "Hz",
 }  # fmt: skip
+
+REV_S_PER_UNIT: Mapping[str, float] = MappingProxyType(
+    {"rev/s": 1.0, "rpm": 1.0 / SECONDS_PER_MINUTE, "rad/s": 0.5 / math.pi, "deg/s": 1.0 / 360.0}
+)
+"""Rotational speed for one unit of those in which instruments give it [rev/s]."""
 
 _Number = TypeVar("_Number", float, NDArray[np.float64])
 

@@ -85,9 +85,9 @@ def short_trip(vessel, short_campaign, tmp_path_factory):
 def identified(vessel):
     """The way from a raw recording to the gauge-aware fit; ``g`` is known to 0.1, everything else is not."""
 
-    def find(path, campaign, seed=1):
+    def find(path, campaign, seed=1, ship=vessel):
         with read_recording(path) as recording:
-            signals = prepare_signals(recording, vessel, campaign)
+            signals = prepare_signals(recording, ship, campaign)
         spectra = estimate_spectra(signals, campaign)
         fit = identify(
             structure("GAUGE-CLOSED"),

@@ -28,7 +28,7 @@ class Content:
     rate_hz: float
     """Values a second of that clock [Hz]."""
     values: FloatArray
-    """Speed in rev/s of a pulse channel, else the channel's own unit, shape (samples,)."""
+    """Speed in rev/s of a speed channel, else the channel's own unit, shape (samples,)."""
 
     @property
     def time_s(self) -> FloatArray:
@@ -44,7 +44,7 @@ def content_of(channel: "Channel", sensor: "SpeedSensor | None" = None, *, rate_
     channel
         The channel.
     sensor
-        What the vessel file says about it where it holds pulses: then the speed of that shaft is shown.
+        What the vessel file says about it where it holds pulses or a speed: then the speed of that shaft is shown.
     rate_hz
         Rate of the grid [Hz]; that of the channel where it is slower and holds no pulses.
 
@@ -55,10 +55,11 @@ def content_of(channel: "Channel", sensor: "SpeedSensor | None" = None, *, rate_
     """
     if channel.count == 0:
         raise SignalError(f"channel {channel.name}: expected samples, found none.")
-    if sensor is None and channel.rate_hz <= rate_hz:
+    pulses = sensor if sensor is not None and sensor.gives_pulses else None
+    if pulses is None and channel.rate_hz <= rate_hz:
         counts = np.concatenate(list(blocks(channel, DEFAULT_BLOCK_SAMPLES))).astype(np.float64)
         values, rate_hz = joined(counts) * channel.scale + channel.offset, channel.rate_hz
-    elif sensor is None:
+    elif pulses is None:
         step = channel.rate_hz / rate_hz
         grid = SampleGrid(first=0.0, step=step, count=int((channel.count - 1) / step) + 1)
         limits = fault_limits(channel, holds=False)
@@ -66,7 +67,7 @@ def content_of(channel: "Channel", sensor: "SpeedSensor | None" = None, *, rate_
     else:
         values = read_pick_up(
             channel,
-            sensor,
+            pulses,
             gear_ratio=1.0,
             mode="shaftprint",
             start_s=channel.start_s,
@@ -74,4 +75,6 @@ def content_of(channel: "Channel", sensor: "SpeedSensor | None" = None, *, rate_
             count=int(channel.duration_s * rate_hz),
             block_samples=DEFAULT_BLOCK_SAMPLES,
         ).values
+    if sensor is not None and pulses is None:
+        values = sensor.speed_rev_s(values)
     return Content(name=channel.name, start_s=channel.start_s, rate_hz=rate_hz, values=frozen_float(values))

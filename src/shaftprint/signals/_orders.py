@@ -39,7 +39,8 @@ def tracked_orders(vessel: "Vessel", speeds: Mapping[str, "SpeedSignal"]) -> tup
 
 
 def _tracked(order: "Order", vessel: "Vessel", speeds: Mapping[str, "SpeedSignal"]) -> TrackedOrder:
-    own = [one for one in vessel.sensors.speed if one.shaft == order.shaft and one.name in speeds]
+    # the scale of an instrument is no more exact than a gear ratio
+    own = [one for one in vessel.sensors.speed if one.shaft == order.shaft and one.name in speeds and one.gives_pulses]
     finest = max(own, key=lambda one: one.pulses_per_revolution, default=None)
     return TrackedOrder(
         name=order.name,

@@ -9,7 +9,7 @@ from shaftprint.signals._channel_readings import ChannelReadings
 from shaftprint.signals._gaps import Coverage, Gap, within
 from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning import Reading
-from shaftprint.signals.kinds import PulseReading
+from shaftprint.signals.kinds import SpeedReading
 
 if TYPE_CHECKING:
     from shaftprint.arrays import FloatArray
@@ -33,9 +33,9 @@ class Readings:
     """What the reader should know of the channels."""
 
     @property
-    def pick_ups(self) -> tuple[PulseReading, ...]:
+    def pick_ups(self) -> tuple[SpeedReading, ...]:
         """The speed channels; the first is the one that is identified."""
-        return tuple(reading for reading in self.by_name.values() if isinstance(reading, PulseReading))
+        return tuple(reading for reading in self.by_name.values() if isinstance(reading, SpeedReading))
 
     @property
     def set_point(self) -> "FloatArray":
@@ -83,8 +83,8 @@ def usable_readings(channels: ChannelReadings) -> Readings:
                 failed.append(f"{source.name} was left out: {error}")
     used = tuple(source for source in sources if source.name in by_name)
     readings = {source.name: by_name[source.name] for source in used}
-    pick_ups = [reading for reading in readings.values() if isinstance(reading, PulseReading)]
-    others = [reading for reading in readings.values() if not isinstance(reading, PulseReading)]
+    pick_ups = [reading for reading in readings.values() if isinstance(reading, SpeedReading)]
+    others = [reading for reading in readings.values() if not isinstance(reading, SpeedReading)]
     return Readings(
         clock=clock,
         sources=used,

@@ -36,6 +36,7 @@ from shaftprint.tug.sensors import (
     PickUp,
     PitchLever,
     SpeedLog,
+    SpeedMeter,
     TorqueGauge,
 )
 from shaftprint.vessel import SAMPLES_A_TOOTH, Vessel
@@ -148,14 +149,16 @@ class _Crew:
             rng=torque,
         )
         self._helm = Helm(tug, vessel, campaign, rate_hz=self._rate_hz, rng=set_point)
-        self._pick_ups = [
+        self._speeds: list[PickUp | SpeedMeter] = [
             PickUp(sensor, tug, vessel, duration_s=duration_s, rate_hz=self._rate_hz, rng=rng)
+            if sensor.gives_pulses
+            else SpeedMeter(sensor, tug, vessel, rate_hz=self._rate_hz, rng=rng)
             for sensor, rng in zip(vessel.sensors.speed, speeds, strict=True)
         ]
         self._control_unit = self._watch_bus(float(first[RACK]), bus)
         self._log = self._read_log(float(first[WAY]), log)
         self._lever = self._stand_by_lever(pitch)
-        on_board = (self._helm, *self._pick_ups, self._gauge, self._control_unit, self._log, self._lever)
+        on_board = (self._helm, *self._speeds, self._gauge, self._control_unit, self._log, self._lever)
         self._sensors: tuple[_Sensor, ...] = tuple(sensor for sensor in on_board if sensor is not None)
         self._limited = {excitation.name: 0 for excitation in campaign.excitations}
 
@@ -163,6 +166,8 @@ class _Crew:
         vessel = self._vessel
         highest_rpm = vessel.limits.highest_speed_rpm or vessel.engine.rated_speed_rpm
         for sensor in vessel.sensors.speed:
+            if not sensor.gives_pulses:
+                continue
             turns_hz = highest_rpm / 60.0 / (vessel.gearbox.ratio if sensor.shaft == "propeller" else 1.0)
             if self._rate_hz < SAMPLES_A_TOOTH * sensor.toothed.closest * turns_hz:
                 raise SettingsError(
@@ -225,7 +230,8 @@ class _Crew:
                 angle_deg=tuple((360.0 * pick_up.angle_rev).tolist()),
                 start_deg=360.0 * pick_up.phase_rev,
             )
-            for pick_up in self._pick_ups
+            for pick_up in self._speeds
+            if isinstance(pick_up, PickUp)
         )
         lengths = {e.name: (e.stop_s - e.start_s) * self._rate_hz for e in self._campaign.excitations}
         return tell_truth(
@@ -248,13 +254,15 @@ class _Crew:
             scale=VOLT_PER_COUNT,
             long_name="speed set point behind the potentiometer",
         )
-        for sensor in sensors.speed:
+        for sensor, speed in zip(sensors.speed, self._speeds, strict=True):
+            teeth = f"pick-up on the {sensor.shaft} shaft, {sensor.pulses_per_revolution} per revolution"
             writer.declare(
                 sensor.channel,
                 unit=sensor.unit,
                 rate_hz=self._rate_hz,
-                scale=VOLT_PER_COUNT,
-                long_name=f"pick-up on the {sensor.shaft} shaft, {sensor.pulses_per_revolution} per revolution",
+                scale=speed.scale,
+                offset=speed.offset,
+                long_name=teeth if sensor.gives_pulses else f"speed of the {sensor.shaft} shaft",
             )
         writer.declare(
             sensors.shaft_torque.channel,

@@ -117,6 +117,8 @@ class Tug:
     """Angles between the reflection strips of a pick-up with as many pulses a revolution [degree], scaled to 360."""
     tooth_error_deg: float = 0.03
     """Standard deviation of the place of a tooth on a wheel with gaps or further teeth [degree]."""
+    speed_meter_noise: float = 2e-4
+    """Standard deviation of an instrument that gives a speed, over 1.3 times the rated speed."""
     noise: Noise = field(default_factory=Noise)
     """Disturbances, measurement noise and faults."""
 

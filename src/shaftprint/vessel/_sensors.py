@@ -1,5 +1,6 @@
 """What was measured, on which channel, and what is known of each sensor."""
 
+import math
 from collections.abc import Mapping
 from typing import Annotated, Any, Literal, Self, TypeAlias
 
@@ -16,7 +17,7 @@ from shaftprint.settings import (
     PositiveNumber,
     Settings,
 )
-from shaftprint.units import M_S_PER_KNOT, plain_unit
+from shaftprint.units import M_S_PER_KNOT, REV_S_PER_UNIT, plain_unit
 from shaftprint.vessel._usual import GAUGE_SCALE_STD, GAUGE_ZERO_SHARE, LATENCY_STD_S
 from shaftprint.vessel._wheel import Wheel
 
@@ -31,8 +32,18 @@ def _plain(unit: Any) -> Any:
 TorqueUnit: TypeAlias = Annotated[Literal["V", "N m", "kN m"], BeforeValidator(_plain)]
 
 
+SpeedUnit: TypeAlias = Annotated[
+    Literal["V", "mA", "rpm", "rev/s", "rad/s", "deg/s", "Hz", "m/s"], BeforeValidator(_plain)
+]
+
+
 class SpeedSensor(Settings):
-    """A pick-up that gives pulses as strips on a shaft, or the teeth of a wheel, pass by."""
+    """A pick-up that gives pulses as strips on a shaft, or the teeth of a wheel, pass by; or an instrument's speed.
+
+    The pulses themselves are in V, without ``rpm_per_unit``. A speed is in a unit of speed; in Hz, the frequency of the
+    pulses of ``wheel`` or ``pulses_per_revolution``; in m/s, at ``diameter_m``; or in V or mA with a line, ``n =
+    rpm_per_unit * reading + rpm_at_zero``.
+    """
 
     name: Name
     """Name of the speed that it gives, such as ``n_e``."""
@@ -43,10 +54,19 @@ class SpeedSensor(Settings):
     wheel: Annotated[str, Field(strict=True)] | None = None
     """Toothed wheel with gaps, ``"60-2"`` or ``"36-2-1"``, or with further teeth, ``"12+1"``; evenly spaced where not
     given."""
-    pulses_per_revolution: PositiveInteger
-    """Number of strips or teeth around the shaft by which the angle is counted; follows from ``wheel`` where given."""
-    unit: Literal["V"]
-    """Unit of the channel: the raw pulse voltage."""
+    pulses_per_revolution: PositiveInteger = 1
+    """Number of strips or teeth around the shaft by which the angle is counted; follows from ``wheel`` where given.
+    Needed for pulses and their frequency."""
+    unit: SpeedUnit
+    """Unit of the channel."""
+    diameter_m: PositiveNumber | None = None
+    """Diameter at which a speed in m/s is that of the surface, as of a roller on the shaft [m]."""
+    rpm_per_unit: Number | None = None
+    """Speed of the shaft for one volt or milliampere of an instrument [rpm per unit]."""
+    rpm_at_zero: Number | None = None
+    """Speed of the shaft at no volt or milliampere, found by extending the line [rpm]; 0 where not given."""
+    latency_s: NotNegativeNumber = 0.0
+    """Time by which a speed is late, that of an instrument or its filter [s]; none for pulses."""
     edge: Literal["rising", "falling"] = "rising"
     """Which edge of a pulse marks the angle of the strip."""
     pulse_width_deg: PositiveNumber | None = None
@@ -69,6 +89,56 @@ class SpeedSensor(Settings):
                 f'expected pulses_per_revolution left out beside wheel = "{content["wheel"]}", found {pulses}.'
             )
         return {**content, "pulses_per_revolution": counted}
+
+    @property
+    def gives_pulses(self) -> bool:
+        """Whether the channel holds the pulses themselves, not a speed."""
+        return self.unit == "V" and self.rpm_per_unit is None
+
+    def speed_rev_s(self, reading: ArrayLike) -> FloatArray:
+        """Return the speed of the shaft [rev/s] for readings of an instrument in the channel's unit, of any shape."""
+        value = np.asarray(reading, dtype=np.float64)
+        if self.unit in ("V", "mA"):
+            rpm = REV_S_PER_UNIT["rpm"]
+            return rpm * ((self.rpm_per_unit or 0.0) * value + (self.rpm_at_zero or 0.0))
+        if self.unit == "Hz":
+            # as many edges as there are teeth, those between the places too
+            return value / (self.toothed.counted + self.toothed.extra)
+        if self.unit == "m/s":
+            return value / (math.pi * (self.diameter_m or 1.0))
+        return value * REV_S_PER_UNIT[self.unit]
+
+    @model_validator(mode="after")
+    def _unit_has_what_it_needs(self) -> Self:
+        is_scaled = self.unit in ("V", "mA")
+        wanted = {
+            "pulses_per_revolution or wheel": (
+                self.gives_pulses or self.unit == "Hz",
+                bool({"pulses_per_revolution", "wheel"} & self.model_fields_set),
+            ),
+            "diameter_m": (self.unit == "m/s", self.diameter_m is not None),
+            "rpm_per_unit": (self.unit == "mA", bool(self.rpm_per_unit)),
+        }
+        errors = [
+            f"expected {field} for a channel in {self.unit}, found none."
+            for field, (is_needed, is_given) in wanted.items()
+            if is_needed and not is_given
+        ]
+        errors += [
+            f'expected {field} left out for a channel in "{self.unit}", found {value:g}.'
+            for field, value, fits in (
+                ("diameter_m", self.diameter_m, self.unit == "m/s"),
+                ("rpm_per_unit", self.rpm_per_unit, is_scaled),
+                ("rpm_at_zero", self.rpm_at_zero, is_scaled and self.rpm_per_unit is not None),
+                ("latency_s", self.latency_s or None, not self.gives_pulses),
+            )
+            if value is not None and not fits
+        ]
+        if is_scaled and self.rpm_per_unit == 0.0 and not errors:
+            errors.append("expected rpm_per_unit other than 0, found 0.")
+        if errors:
+            raise ValueError(" ".join(errors))
+        return self
 
     @property
     def toothed(self) -> Wheel:

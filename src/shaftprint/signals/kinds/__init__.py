@@ -7,6 +7,7 @@ from shaftprint.signals.kinds._pick_up import PulseReading, read_pick_up
 from shaftprint.signals.kinds._rack import rack_signal, read_rack
 from shaftprint.signals.kinds._set_point import read_voltage
 from shaftprint.signals.kinds._ship_speed import read_ship_speed, ship_speed_signal
+from shaftprint.signals.kinds._speed_reading import SpeedReading
 from shaftprint.signals.kinds._torque import expect_moving_torque
 
 __all__ = [
@@ -15,6 +16,7 @@ __all__ = [
     "ChannelKind",
     "PulseReading",
     "Source",
+    "SpeedReading",
     "SteadyState",
     "compare_speeds",
     "expect_moving_torque",

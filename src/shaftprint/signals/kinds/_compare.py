@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.errors import SignalError
-from shaftprint.signals.kinds._pick_up import PulseReading
+from shaftprint.signals.kinds._speed_reading import SpeedReading
 
 if TYPE_CHECKING:
     from shaftprint.vessel import Vessel
@@ -17,7 +17,7 @@ LARGEST_DIFFERENCE = 1e-2
 _FINDING = 1e-3
 
 
-def compare_speeds(speeds: Sequence[PulseReading], vessel: "Vessel") -> tuple[str, ...]:
+def compare_speeds(speeds: Sequence[SpeedReading], vessel: "Vessel") -> tuple[str, ...]:
     """Compare the mean of every speed with that of the first.
 
     Returns

@@ -1,4 +1,4 @@
-"""From one pulse channel to one speed signal."""
+"""From one speed channel to one speed signal: pulses here, instruments in their own file."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,8 +13,10 @@ from shaftprint.signals._gaps import Gap, bridge, clock_gaps
 from shaftprint.signals._signals import Repair, StripAngles
 from shaftprint.signals.conditioning import Reading, pulse_period_speed
 from shaftprint.signals.kinds._grid_speed import speed_on_grid
+from shaftprint.signals.kinds._instrument_speed import read_instrument
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.kinds._samples_a_tooth import expect_samples, fastest_turns_hz
+from shaftprint.signals.kinds._speed_reading import SpeedReading
 from shaftprint.signals.pulses import (
     PulseLevels,
     PulseTrain,
@@ -45,30 +47,20 @@ _REACH_PULSES = 4
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class PulseReading(Reading):
+class PulseReading(SpeedReading):
     """What one pulse channel gives: the speed on the grid and its pulses."""
 
-    name: str
-    """Name of the sensor."""
-    channel: str
-    """Name of the channel."""
-    pulse_rate_hz: float
-    """Mean number of pulses a second [Hz]."""
-    period_s: float
-    """Time over which a value is a mean and is held, and by which it is late [s]; 0 where the spline removes it."""
-    strips: StripAngles | None
-    """Angles between the strips, where there are several."""
     levels: PulseLevels
     """The two levels between which the channel jumps."""
 
 
 class Speed(ChannelKind[SpeedSensor]):
-    """Speed of the engine from the pulses of a pick-up [rev/s]; the first one counts."""
+    """Speed of the engine from the pulses of a pick-up or from an instrument [rev/s]; the first one counts."""
 
     sensor, name, use, needed = "speed", "n", "speed", True
 
     def sources(self, recording: "Recording", vessel: "Vessel") -> tuple[Source[SpeedSensor], ...]:
-        """Return the pulse channels in the order of the vessel file."""
+        """Return the speed channels in the order of the vessel file."""
         return tuple(
             Source(
                 kind=self,
@@ -81,9 +73,11 @@ class Speed(ChannelKind[SpeedSensor]):
             for sensor in vessel.sensors.speed
         )
 
-    def read(self, source: Source[SpeedSensor], clock: "Clock") -> PulseReading:
+    def read(self, source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
         """Return the engine-side speed on the grid."""
         vessel, wheel = source.vessel, source.sensor.toothed
+        if not source.sensor.gives_pulses:
+            return read_instrument(source.channel, source.sensor, clock, gear_ratio=vessel.gearbox.ratio)
         ratio = vessel.gearbox.ratio if source.sensor.shaft == "propeller" else 1.0
         # teeth that pass too fast come back as slow ones: what the recording shows is not enough
         expect_samples(source.channel, wheel, rev_s_from_rpm(vessel.working_point.engine_speed_rpm) / ratio)
@@ -101,7 +95,7 @@ class Speed(ChannelKind[SpeedSensor]):
 
     def signal(self, source: Source[SpeedSensor], reading: Reading, steady: SteadyState) -> SpeedSignal | None:
         """Return the speed over that of the working point."""
-        if not isinstance(reading, PulseReading):
+        if not isinstance(reading, SpeedReading):
             return None
         return SpeedSignal(
             name=source.name,

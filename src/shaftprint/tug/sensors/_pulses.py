@@ -118,6 +118,9 @@ def _pulse_train(angle, speed, noise_v, strips, view, counts) -> None:  # type: 
 class PickUp:
     """Stream of the raw counts of one speed pick-up."""
 
+    scale, offset = VOLT_PER_COUNT, 0.0
+    """Voltage of one count and of none [V]."""
+
     def __init__(
         self,
         sensor: SpeedSensor,

@@ -1,0 +1,115 @@
+"""Speed of a shaft from an instrument that gives a speed: rpm, Hz, rad/s, m/s, or volts and milliamperes with a line.
+
+A channel as fast as the signals is repaired and filtered as torque is. A slower one is joined by a cubic spline, which
+shows a sine too small by the same factor as the spline through pulses of that rate.
+"""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy
+
+from shaftprint.errors import SignalError
+from shaftprint.signals._channels import blocks, time_of
+from shaftprint.signals._gaps import Gap, bridge, clock_gaps, joined, runs_of
+from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
+from shaftprint.signals.kinds._speed_reading import SpeedReading
+from shaftprint.vessel import SpeedSensor
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel
+    from shaftprint.signals._clock import Clock
+
+# Signals of 4 to 20 mA beyond these have failed (NAMUR recommendation NE 43).
+_LIVE_ZERO_MA, _FAILED_MA = 4.0, (3.6, 21.0)
+# A line through zero speed at 4 mA, to this share of the speed at 20 mA.
+_AT_ZERO = 0.02
+# Over a gap longer than this a slow channel says nothing.
+_LONGEST_GAP_VALUES = 3
+# The end of a spline is felt so many values further on: by half a per cent.
+_REACH_VALUES = 4
+
+
+def read_instrument(channel: "Channel", sensor: SpeedSensor, clock: "Clock", *, gear_ratio: float) -> SpeedReading:
+    """Return the engine-side speed of an instrument on the grid.
+
+    Parameters
+    ----------
+    channel, sensor
+        The channel and what the vessel file says about it.
+    clock
+        The grid.
+    gear_ratio
+        Engine speed over propeller-shaft speed.
+
+    Raises
+    ------
+    SignalError
+        If the channel holds no numbers, or a speed below zero throughout.
+    """
+    latency_s = clock.latency_s(sensor.latency_s)
+    if channel.rate_hz >= clock.rate_hz:
+        reading = conditioned(
+            channel,
+            instrument_limits(channel, sensor),
+            clock.grid(channel, latency_s),
+            mode=clock.mode,
+            block_samples=clock.block_samples(channel),
+            advance=clock.advance,
+        )
+    else:
+        reading = _splined(channel, sensor, clock, latency_s)
+    speed = sensor.speed_rev_s(reading.values) * (gear_ratio if sensor.shaft == "propeller" else 1.0)
+    if not speed.mean() > 0.0:
+        raise SignalError(
+            f"channel {channel.name}: expected a speed ahead, found a mean of {60.0 * speed.mean():.4g} rpm at the "
+            "engine; correct unit, rpm_per_unit and rpm_at_zero in the vessel file, or the sign of the channel."
+        )
+    gaps = (replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in reading.gaps)
+    return SpeedReading(
+        values=speed,
+        repairs=reading.repairs,
+        gaps=tuple(gaps),
+        name=sensor.name,
+        channel=channel.name,
+        pulse_rate_hz=channel.rate_hz,
+    )
+
+
+def instrument_limits(channel: "Channel", sensor: SpeedSensor) -> FaultLimits:
+    """Return what counts as a fault of an instrument: of 4 to 20 mA what is clearly outside."""
+    limits = fault_limits(channel, holds=False)
+    if sensor.unit != "mA":
+        return limits
+    zero, full = sensor.speed_rev_s([_LIVE_ZERO_MA, 20.0])
+    if abs(zero) > _AT_ZERO * abs(full):
+        return limits
+    ends = sorted((end - channel.offset) / channel.scale for end in _FAILED_MA)
+    return replace(limits, lowest=ends[0], highest=ends[1])
+
+
+def _splined(channel: "Channel", sensor: SpeedSensor, clock: "Clock", latency_s: float) -> Reading:
+    """Return a channel that is slower than the grid, in its own unit on the grid."""
+    counts = np.concatenate([part.astype(np.float64) for part in blocks(channel, clock.block_samples(channel))])
+    limits = instrument_limits(channel, sensor)
+    missing = np.isnan(counts) | (counts <= limits.lowest) | (counts >= limits.highest)
+    if missing.all():
+        raise SignalError(f"channel {channel.name}: expected numbers, found none; check the export of the logger.")
+    values = joined(np.where(missing, np.nan, counts)) * channel.scale + channel.offset
+    time_s = channel.start_s - latency_s + np.arange(values.size) / channel.rate_hz
+    grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
+    on_grid = scipy.interpolate.CubicSpline(time_s, values)(grid_s.clip(time_s[0], time_s[-1]))
+    gaps = [
+        Gap(
+            channel=channel.name,
+            start_s=time_of(channel, first),
+            stop_s=time_of(channel, stop),
+            reason="has no values",
+            reach_s=_REACH_VALUES / channel.rate_hz,
+        )
+        for first, stop in runs_of(missing)
+        if stop - first > _LONGEST_GAP_VALUES
+    ]
+    bridge(on_grid, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)
+    return Reading(values=on_grid, repairs=[], gaps=(*gaps, *clock_gaps(channel)))

@@ -1,0 +1,63 @@
+"""An instrument that gives the speed of a shaft itself: in a unit of speed, in Hz, or as volts or milliamperes."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shaftprint.arrays import FloatArray
+from shaftprint.tug._tug import Tug
+from shaftprint.tug.plant import Stretch
+from shaftprint.tug.sensors._faults import Fault
+from shaftprint.vessel import SpeedSensor, Vessel
+
+# Counts at 30 % above rated speed, which no engine reaches.
+_HIGHEST_COUNT = 32_000
+
+
+class SpeedMeter:
+    """Stream of the raw counts of one speed, a latency late, with white noise."""
+
+    def __init__(
+        self, sensor: SpeedSensor, tug: Tug, vessel: Vessel, *, rate_hz: float, rng: np.random.Generator
+    ) -> None:
+        self.channel = sensor.channel
+        self._turns = vessel.gearbox.ratio if sensor.shaft == "engine" else 1.0
+        highest_rev_s = 1.3 * vessel.engine.rated_speed_rpm / 60.0 * self._turns / vessel.gearbox.ratio
+        self._per_rev_s, self._at_rest = _line(sensor)
+        self.offset = self._at_rest
+        """Value of no count, in the unit of the channel."""
+        self.scale = self._per_rev_s * highest_rev_s / _HIGHEST_COUNT
+        """Value of one count, in the unit of the channel."""
+        self._noise_rev_s = tug.speed_meter_noise * highest_rev_s
+        self._late = sensor.latency_s * rate_hz
+        self._rng = rng
+        self._tail: FloatArray | None = None
+
+    def next(self, stretch: Stretch) -> NDArray[np.int16]:
+        """Return the counts of the next stretch, shape (steps,)."""
+        speed = self._turns * stretch.shaft_speed_rev_s
+        kept = math.ceil(self._late) + 1
+        # before the start the line ran steadily
+        tail = np.full(kept, speed[0]) if self._tail is None else self._tail
+        longer = np.concatenate([tail, speed])
+        self._tail = longer[-kept:]
+        shown = np.interp(kept + np.arange(speed.size) - self._late, np.arange(longer.size), longer)
+        shown += self._noise_rev_s * self._rng.standard_normal(shown.size)
+        counts: FloatArray = np.rint(shown * self._per_rev_s / self.scale)
+        return counts.clip(-32768, 32767).astype(np.int16)
+
+    def faults(self) -> list[Fault]:
+        """Return no fault."""
+        return []
+
+
+def _line(sensor: SpeedSensor) -> tuple[float, float]:
+    """Return what the channel shows for one turn a second, and at rest, in its unit."""
+    if sensor.unit in ("V", "mA"):
+        rpm_per_unit, rpm_at_zero = sensor.rpm_per_unit or 1.0, sensor.rpm_at_zero or 0.0
+        return 60.0 / rpm_per_unit, -rpm_at_zero / rpm_per_unit
+    pulses = sensor.toothed.counted + sensor.toothed.extra
+    circumference_m = math.pi * (sensor.diameter_m or 0.0)
+    shown = {"rpm": 60.0, "rev/s": 1.0, "rad/s": 2.0 * math.pi, "deg/s": 360.0, "Hz": pulses, "m/s": circumference_m}
+    return float(shown[sensor.unit]), 0.0

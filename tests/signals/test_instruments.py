@@ -1,0 +1,151 @@
+"""Speeds that an instrument gives: what a unit means, latency, slow channels, and what has failed."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from shaftprint.errors import SettingsError, SignalError
+from shaftprint.recording import Recording
+from shaftprint.settings import write_template
+from shaftprint.signals import content_of, prepare_signals
+from shaftprint.vessel import SpeedSensor, Vessel, load_vessel
+
+# What instruments show at 20 turns a second.
+WAYS = {
+    "rpm": ({}, 1200.0),
+    "rev/s": ({}, 20.0),
+    "rad/s": ({}, 125.66370614),
+    "deg/s": ({}, 7200.0),
+    "Hz": ({"pulses_per_revolution": 120}, 2400.0),
+    "Hz of a wheel": ({"wheel": "60-2"}, 1160.0),
+    "Hz of a wheel with more": ({"wheel": "12+1"}, 260.0),
+    "m/s": ({"diameter_m": 0.25}, 15.70796327),
+    "mA": ({"rpm_per_unit": 125.0, "rpm_at_zero": -500.0}, 13.6),
+    "V": ({"rpm_per_unit": -240.0, "rpm_at_zero": 0.0}, -5.0),
+}
+
+
+def sensor(way, **more):
+    fields, _ = WAYS[way]
+    return SpeedSensor.model_validate(
+        {"name": "n_x", "channel": "X", "shaft": "engine", "unit": way.split(" ")[0]} | fields | more
+    )
+
+
+def shown_for(way, speed_rev_s):
+    """The reading for a speed, by the straight line through the one at 20 rev/s."""
+    _, at_20 = WAYS[way]
+    at_rest = 4.0 if way == "mA" else 0.0
+    return at_rest + (at_20 - at_rest) * speed_rev_s / 20.0
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_units_mean_what_they_say(way):
+    assert sensor(way).speed_rev_s([WAYS[way][1]]) == pytest.approx([20.0], rel=1e-9)
+    assert not sensor(way).gives_pulses
+
+
+def test_units_are_read_as_people_write_them():
+    for written in ("1/min", "min-1", "RPM", "r/min"):
+        content = {"name": "n", "channel": "X", "shaft": "engine", "unit": written}
+        assert SpeedSensor.model_validate(content).unit == "rpm"
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ('unit = "V"\n', "expected pulses_per_revolution or wheel for a channel in V, found none"),
+        ('unit = "Hz"\n', "expected pulses_per_revolution or wheel for a channel in Hz, found none"),
+        ('unit = "m/s"\n', "expected diameter_m for a channel in m/s, found none"),
+        ('unit = "mA"\n', "expected rpm_per_unit for a channel in mA, found none"),
+        ('unit = "rpm"\ndiameter_m = 0.2\n', 'expected diameter_m left out for a channel in "rpm", found 0.2'),
+        ('unit = "rpm"\nrpm_per_unit = 2.0\n', 'expected rpm_per_unit left out for a channel in "rpm", found 2'),
+        ('unit = "V"\nrpm_per_unit = 0.0\n', "expected rpm_per_unit other than 0, found 0"),
+        (
+            'unit = "V"\npulses_per_revolution = 4\nlatency_s = 0.1\n',
+            'expected latency_s left out for a channel in "V", found 0.1',
+        ),
+        ('unit = "km/h"\n', r"unit \(n_e4\): expected 'V', 'mA', 'rpm', 'rev/s', 'rad/s', 'deg/s', 'Hz' or 'm/s'"),
+    ],
+)
+def test_what_a_unit_needs_is_asked_for(tmp_path, text, expected):
+    path = tmp_path / "ship.toml"
+    write_template("vessel", path)
+    whole = path.read_text(encoding="utf-8")
+    last = 'pulses_per_revolution = 4\nunit = "V"\n'
+    assert whole.count(last) == 1
+    path.write_text(whole.replace(last, text), encoding="utf-8")
+    with pytest.raises(SettingsError, match=expected):
+        load_vessel(path)
+
+
+def vessel_with(vessel, *speeds):
+    content = vessel.model_dump()
+    content["sensors"]["speed"] = [speed.model_dump() for speed in speeds]
+    return Vessel.model_validate(content)
+
+
+def recording_with(ship, values, make_channel, *, unit, rate_hz):
+    recording = replace(ship, prepared=ship).recording()
+    channels = dict(recording.channels) | {"X": make_channel(values, name="X", unit=unit, rate_hz=rate_hz)}
+    return Recording(path=Path("ship.nc"), sha256="0" * 64, format="memory", channels=channels)
+
+
+@pytest.mark.parametrize("way", ["rpm", "mA", "V", "Hz of a wheel"])
+def test_a_speed_is_followed_with_its_latency_taken_off(way, vessel, ship, campaign, make_channel):
+    late = np.interp(ship.time_s - 0.05, ship.time_s, ship.speed_rev_s)
+    noise = 1.0 + 1e-4 * np.random.default_rng(3).standard_normal(late.size)
+    one = sensor(way, latency_s=0.05)
+    raw = recording_with(ship, shown_for(way, late * noise), make_channel, unit=one.unit, rate_hz=2000.0)
+    signals = prepare_signals(raw, vessel_with(vessel, one), campaign)
+    speed = signals.speeds["n_x"]
+    true = np.interp(np.arange(speed.values.size) / 200.0, ship.time_s, ship.speed_rev_s)
+    inside = slice(40, -40)
+    # steps of the staircase have corners, which the filter rounds off
+    assert np.sqrt(np.mean((speed.values[inside] / true[inside] - 1.0) ** 2)) < 1e-3
+    assert speed.values[inside].mean() == pytest.approx(true[inside].mean(), rel=1e-5)
+    assert speed.nyquist_hz == 1000.0
+    assert signals.strips == ()
+
+
+def test_a_slow_speed_is_joined_by_a_spline(vessel, ship, campaign, make_channel):
+    # 20 values a second: the fastest line of the campaign, 0.15 Hz, is far below
+    shown = 60.0 * ship.speed_rev_s[::100]
+    raw = recording_with(ship, shown, make_channel, unit="rpm", rate_hz=20.0)
+    signals = prepare_signals(raw, vessel_with(vessel, sensor("rpm")), campaign)
+    speed = signals.speeds["n_x"]
+    true = np.interp(np.arange(speed.values.size) / 200.0, ship.time_s, ship.speed_rev_s)
+    sines = slice(200 * 118, 200 * 159)
+    assert speed.values[sines] == pytest.approx(true[sines], rel=1e-4)
+    assert speed.nyquist_hz == 10.0
+    # by the law of the cardinal spline: a sine at three tenths of the rate is 0.963 of itself
+    assert speed.gain(6.0) == pytest.approx(0.963, abs=1e-3)
+
+
+def test_pick_up_and_instrument_are_held_against_each_other(vessel, ship, campaign, make_channel):
+    shown = 1.03 * 60.0 * ship.speed_rev_s
+    raw = recording_with(ship, shown, make_channel, unit="rpm", rate_hz=2000.0)
+    pick_up = vessel.sensors.speed[0]
+    with pytest.raises(SignalError, match=r"channels PTM_e and X: .* found n_x / n_e = 1\.03"):
+        prepare_signals(raw, vessel_with(vessel, pick_up, sensor("rpm")), campaign)
+
+
+def test_a_current_loop_that_breaks_is_a_gap(vessel, ship, campaign, make_channel):
+    shown = shown_for("mA", ship.speed_rev_s)
+    shown[round(100.0 * 2000) : round(105.0 * 2000)] = 0.0
+    raw = recording_with(ship, shown, make_channel, unit="mA", rate_hz=2000.0)
+    signals = prepare_signals(raw, vessel_with(vessel, sensor("mA")), campaign)
+    assert [(gap.channel, round(gap.start_s, 2), round(gap.stop_s, 2)) for gap in signals.gaps] == [("X", 100.0, 105.0)]
+
+
+def test_a_speed_below_zero_is_refused(vessel, ship, campaign, make_channel):
+    raw = recording_with(ship, -60.0 * ship.speed_rev_s, make_channel, unit="rpm", rate_hz=2000.0)
+    with pytest.raises(SignalError, match=r"channel X: expected a speed ahead, found a mean of -1\d{3} rpm"):
+        prepare_signals(raw, vessel_with(vessel, sensor("rpm")), campaign)
+
+
+def test_two_recordings_can_be_compared_by_a_speed_channel(make_channel):
+    channel = make_channel(np.full(4000, 1200.0), name="X", unit="rpm")
+    assert content_of(channel, sensor("rpm"), rate_hz=50.0).values == pytest.approx(np.full(100, 20.0), rel=1e-6)
