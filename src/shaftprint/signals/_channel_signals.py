@@ -115,7 +115,10 @@ class SpeedSignal(ChannelSignal):
     """
 
     pulse_rate_hz: float
-    """Mean number of pulses a second: the rate at which the speed is really sampled [Hz]."""
+    """Mean number of pulses a second, or of an instrument's values: the rate at which the speed is really sampled [Hz].
+    """
+    by_angle: bool = True
+    """Whether that rate goes with the speed, as that of pulses does and that of an instrument does not."""
     delay_s: float = 0.0
     """Total delay of the value behind the true speed [s]; 0 where values are stamped at mid-period."""
 

@@ -32,8 +32,8 @@ def _about(signal: ChannelSignal, state: LegState, rate_hz: float, start_s: floa
     point = state.working_point
     speed_rev_s, speed_std = point.engine_speed_rev_s, point.engine_speed_std_rev_s
     if isinstance(signal, SpeedSignal):
-        # a pick-up gives so many pulses a revolution, whatever the speed
-        faster = speed_rev_s / float(signal.values.mean())
+        # a pick-up gives so many pulses a revolution, whatever the speed; an instrument so many values a second
+        faster = speed_rev_s / float(signal.values.mean()) if signal.by_angle else 1.0
         return replace(
             signal,
             reference=speed_rev_s,

@@ -104,6 +104,7 @@ class Speed(ChannelKind[SpeedSensor]):
             reference=steady.working_point.engine_speed_rev_s,
             reference_std=steady.working_point.engine_speed_std_rev_s,
             pulse_rate_hz=reading.pulse_rate_hz,
+            by_angle=isinstance(reading, PulseReading),
             averaging_s=reading.period_s,
             hold_s=reading.period_s,
             delay_s=reading.period_s,
