@@ -16,7 +16,7 @@ def test_template_can_be_loaded(run, tmp_path, kind, load):
 
 
 @pytest.mark.parametrize(
-    ("name", "minutes", "speeds"), [("12min", 12.35, 2), ("5min", 5.4, 2), ("short", 14.3, 0), ("thesis", 190.8, 0)]
+    ("name", "minutes", "speeds"), [("12min", 12.35, 2), ("5min", 5.3, 2), ("short", 14.3, 0), ("thesis", 190.8, 0)]
 )
 def test_tests_to_begin_with(run, tmp_path, name, minutes, speeds):
     path = tmp_path / "test.toml"
