@@ -63,7 +63,7 @@ def _numbers(sailed: Sequence["Outcome"]) -> str:
     names = list(sailed[0].known)
     header = [
         "number", "scouted, stated", "ship known, planned", "after scouting", "after / known", "quarters",
-        "rms error / known", "main test: rms z, covers", "scouting test: rms z, covers",
+        "stated / known", "rms error / known", "main test: rms z, covers", "scouting test: rms z, covers",
     ]  # fmt: skip
     medians = {name: float(np.median(_of(name, "expected", sailed) / _of(name, "known", sailed))) for name in names}
     worst = max(medians, key=lambda name: medians[name])
@@ -91,6 +91,7 @@ def _row(name: str, sailed: Sequence["Outcome"]) -> list[str]:
         *deviations,
         f"{np.median(expected / known):.2f}",
         f"{quarters[0]:.2f} to {quarters[1]:.2f}",
+        f"{np.median(std / known):.2f}",
         f"{np.sqrt(np.mean((error / known) ** 2)):.2f}",
         _covers(error / std),
         _covers(first_error / first_std),
