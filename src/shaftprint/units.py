@@ -30,10 +30,15 @@ _SPELLINGS = {
     "newton-meter": "N m", "newton meters": "N m",
     "knm": "kN m", "kn·m": "kN m", "kn.m": "kN m", "percent": "%", "pct": "%", "kt": "kn", "kts": "kn", "knot": "kn",
     "knots": "kn", "rpm": "rpm", "1/min": "rpm", "min-1": "rpm", "min^-1": "rpm", "rev/min": "rpm", "r/min": "rpm",
-    "u/min": "rpm", "rps": "rev/s", "rad/sec": "rad/s", "milliampere": "mA", "ma": "mA",
+    "u/min": "rpm", "rps": "rev/s", "rad/sec": "rad/s", "count": "counts",
+    "cts": "counts", "degree": "deg", "degrees": "deg", "°": "deg",
+    "°/s": "deg/s", "milliampere": "mA", "ma": "mA",
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "m s-1": "m/s",
     "m s^-1": "m/s", "mps": "m/s", "hertz": "Hz", "hz": "Hz",
 }  # fmt: skip
+
+ANGLES_REV: Mapping[str, float] = MappingProxyType({"rev": 1.0, "deg": 1.0 / 360.0, "rad": 0.5 / math.pi})
+"""Turns of a shaft for one unit of those in which angles are given [rev]."""
 
 REV_S_PER_UNIT: Mapping[str, float] = MappingProxyType(
     {"rev/s": 1.0, "rpm": 1.0 / SECONDS_PER_MINUTE, "rad/s": 0.5 / math.pi, "deg/s": 1.0 / 360.0}

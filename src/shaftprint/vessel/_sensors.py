@@ -17,7 +17,7 @@ from shaftprint.settings import (
     PositiveNumber,
     Settings,
 )
-from shaftprint.units import M_S_PER_KNOT, REV_S_PER_UNIT, plain_unit
+from shaftprint.units import ANGLES_REV, M_S_PER_KNOT, REV_S_PER_UNIT, plain_unit
 from shaftprint.vessel._usual import GAUGE_SCALE_STD, GAUGE_ZERO_SHARE, LATENCY_STD_S
 from shaftprint.vessel._wheel import Wheel
 
@@ -33,7 +33,8 @@ TorqueUnit: TypeAlias = Annotated[Literal["V", "N m", "kN m"], BeforeValidator(_
 
 
 SpeedUnit: TypeAlias = Annotated[
-    Literal["V", "mA", "rpm", "rev/s", "rad/s", "deg/s", "Hz", "m/s"], BeforeValidator(_plain)
+    Literal["V", "mA", "rpm", "rev/s", "rad/s", "deg/s", "Hz", "m/s", "deg", "rad", "rev", "counts"],
+    BeforeValidator(_plain),
 ]
 
 
@@ -42,7 +43,8 @@ class SpeedSensor(Settings):
 
     The pulses themselves are in V, without ``rpm_per_unit``. A speed is in a unit of speed; in Hz, the frequency of the
     pulses of ``wheel`` or ``pulses_per_revolution``; in m/s, at ``diameter_m``; or in V or mA with a line, ``n =
-    rpm_per_unit * reading + rpm_at_zero``.
+    rpm_per_unit * reading + rpm_at_zero``. An encoder's angle is in deg, rad or rev, or in counts of which
+    ``counts_per_revolution`` make a turn; it may begin again after ``rolls_over_at``.
     """
 
     name: Name
@@ -65,6 +67,11 @@ class SpeedSensor(Settings):
     """Speed of the shaft for one volt or milliampere of an instrument [rpm per unit]."""
     rpm_at_zero: Number | None = None
     """Speed of the shaft at no volt or milliampere, found by extending the line [rpm]; 0 where not given."""
+    counts_per_revolution: PositiveNumber | None = None
+    """Counts of an encoder in one turn of the shaft."""
+    rolls_over_at: PositiveNumber | None = None
+    """What an encoder turns until its angle begins again, in the unit of the channel, such as 65536 counts; one turn
+    where not given."""
     latency_s: NotNegativeNumber = 0.0
     """Time by which a speed is late, that of an instrument or its filter [s]; none for pulses."""
     edge: Literal["rising", "falling"] = "rising"
@@ -95,12 +102,30 @@ class SpeedSensor(Settings):
         """Whether the channel holds the pulses themselves, not a speed."""
         return self.unit == "V" and self.rpm_per_unit is None
 
+    @property
+    def gives_angle(self) -> bool:
+        """Whether the channel holds the angle of an encoder."""
+        return self.unit in ANGLES_REV or self.unit == "counts"
+
+    @property
+    def rev_per_unit(self) -> float:
+        """Turns of the shaft for one unit of an encoder's angle [rev per unit]."""
+        return 1.0 / (self.counts_per_revolution or 1.0) if self.unit == "counts" else ANGLES_REV[self.unit]
+
+    @property
+    def rolls_over(self) -> float:
+        """What an encoder turns until its angle begins again, in the unit of the channel."""
+        return 1.0 / self.rev_per_unit if self.rolls_over_at is None else self.rolls_over_at
+
     def speed_rev_s(self, reading: ArrayLike) -> FloatArray:
         """Return the speed of the shaft [rev/s] for readings of an instrument in the channel's unit, of any shape."""
         value = np.asarray(reading, dtype=np.float64)
         if self.unit in ("V", "mA"):
             rpm = REV_S_PER_UNIT["rpm"]
             return rpm * ((self.rpm_per_unit or 0.0) * value + (self.rpm_at_zero or 0.0))
+        if self.gives_angle:
+            # differences of the angle have been taken
+            return value
         if self.unit == "Hz":
             # as many edges as there are teeth, those between the places too
             return value / (self.toothed.counted + self.toothed.extra)
@@ -118,6 +143,7 @@ class SpeedSensor(Settings):
             ),
             "diameter_m": (self.unit == "m/s", self.diameter_m is not None),
             "rpm_per_unit": (self.unit == "mA", bool(self.rpm_per_unit)),
+            "counts_per_revolution": (self.unit == "counts", self.counts_per_revolution is not None),
         }
         errors = [
             f"expected {field} for a channel in {self.unit}, found none."
@@ -130,6 +156,8 @@ class SpeedSensor(Settings):
                 ("diameter_m", self.diameter_m, self.unit == "m/s"),
                 ("rpm_per_unit", self.rpm_per_unit, is_scaled),
                 ("rpm_at_zero", self.rpm_at_zero, is_scaled and self.rpm_per_unit is not None),
+                ("counts_per_revolution", self.counts_per_revolution, self.unit == "counts"),
+                ("rolls_over_at", self.rolls_over_at, self.gives_angle),
                 ("latency_s", self.latency_s or None, not self.gives_pulses),
             )
             if value is not None and not fits
