@@ -30,9 +30,10 @@ _SPELLINGS = {
     "newton-meter": "N m", "newton meters": "N m",
     "knm": "kN m", "kn·m": "kN m", "kn.m": "kN m", "percent": "%", "pct": "%", "kt": "kn", "kts": "kn", "knot": "kn",
     "knots": "kn", "rpm": "rpm", "1/min": "rpm", "min-1": "rpm", "min^-1": "rpm", "rev/min": "rpm", "r/min": "rpm",
-    "u/min": "rpm", "rps": "rev/s", "rad/sec": "rad/s", "count": "counts",
-    "cts": "counts", "degree": "deg", "degrees": "deg", "°": "deg",
-    "°/s": "deg/s", "milliampere": "mA", "ma": "mA",
+    "u/min": "rpm", "rps": "rev/s", "rad/sec": "rad/s", "milliampere": "mA", "ma": "mA",
+    "degree": "deg", "degrees": "deg", "°": "deg", "°/s": "deg/s", "radian": "rad", "radians": "rad", "turn": "rev",
+    "turns": "rev", "revolution": "rev", "revolutions": "rev", "count": "counts", "cts": "counts", "tick": "counts",
+    "ticks": "counts",
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "m s-1": "m/s",
     "m s^-1": "m/s", "mps": "m/s", "hertz": "Hz", "hz": "Hz",
 }  # fmt: skip

@@ -10,7 +10,7 @@ from shaftprint.errors import SignalError
 from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, blocks
 from shaftprint.signals._gaps import joined
 from shaftprint.signals.conditioning import SampleGrid, conditioned, fault_limits
-from shaftprint.signals.kinds import read_pick_up
+from shaftprint.signals.kinds import read_pick_up, speed_channel
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
@@ -44,7 +44,8 @@ def content_of(channel: "Channel", sensor: "SpeedSensor | None" = None, *, rate_
     channel
         The channel.
     sensor
-        What the vessel file says about it where it holds pulses or a speed: then the speed of that shaft is shown.
+        What the vessel file says about it where it holds pulses, a speed or the angle of an encoder: then the speed of
+        that shaft is shown.
     rate_hz
         Rate of the grid [Hz]; that of the channel where it is slower and holds no pulses.
 
@@ -55,6 +56,8 @@ def content_of(channel: "Channel", sensor: "SpeedSensor | None" = None, *, rate_
     """
     if channel.count == 0:
         raise SignalError(f"channel {channel.name}: expected samples, found none.")
+    if sensor is not None and sensor.gives_angle:
+        channel, sensor = speed_channel(channel, sensor), None
     pulses = sensor if sensor is not None and sensor.gives_pulses else None
     if pulses is None and channel.rate_hz <= rate_hz:
         counts = np.concatenate(list(blocks(channel, DEFAULT_BLOCK_SAMPLES))).astype(np.float64)

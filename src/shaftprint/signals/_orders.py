@@ -24,7 +24,7 @@ class TrackedOrder:
 
 
 def tracked_orders(vessel: "Vessel", speeds: Mapping[str, "SpeedSignal"]) -> tuple[TrackedOrder, ...]:
-    """Return the orders of a vessel, each with the pick-up of its own shaft that gives most pulses in a turn.
+    """Return the orders of a vessel, each with the pick-up of its own shaft that shows most angles in a turn.
 
     Where its shaft has none, the one that is identified is taken, through the gear ratio of the vessel file.
 
@@ -40,8 +40,8 @@ def tracked_orders(vessel: "Vessel", speeds: Mapping[str, "SpeedSignal"]) -> tup
 
 def _tracked(order: "Order", vessel: "Vessel", speeds: Mapping[str, "SpeedSignal"]) -> TrackedOrder:
     # the scale of an instrument is no more exact than a gear ratio
-    own = [one for one in vessel.sensors.speed if one.shaft == order.shaft and one.name in speeds and one.gives_pulses]
-    finest = max(own, key=lambda one: one.pulses_per_revolution, default=None)
+    own = [one for one in vessel.sensors.speed if one.shaft == order.shaft and one.name in speeds and one.counts_turns]
+    finest = max(own, key=lambda one: speeds[one.name].pulse_rate_hz, default=None)
     return TrackedOrder(
         name=order.name,
         per_turn=order.per_engine_turn,

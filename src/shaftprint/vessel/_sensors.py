@@ -39,7 +39,7 @@ SpeedUnit: TypeAlias = Annotated[
 
 
 class SpeedSensor(Settings):
-    """A pick-up that gives pulses as strips on a shaft, or the teeth of a wheel, pass by; or an instrument's speed.
+    """A pick-up that gives pulses as strips on a shaft, or the teeth of a wheel, pass by; an instrument; an encoder.
 
     The pulses themselves are in V, without ``rpm_per_unit``. A speed is in a unit of speed; in Hz, the frequency of the
     pulses of ``wheel`` or ``pulses_per_revolution``; in m/s, at ``diameter_m``; or in V or mA with a line, ``n =
@@ -70,8 +70,8 @@ class SpeedSensor(Settings):
     counts_per_revolution: PositiveNumber | None = None
     """Counts of an encoder in one turn of the shaft."""
     rolls_over_at: PositiveNumber | None = None
-    """What an encoder turns until its angle begins again, in the unit of the channel, such as 65536 counts; one turn
-    where not given."""
+    """What an encoder turns until its angle begins again, in the unit of the channel, such as 65536 counts; where not
+    given, one turn if the angle stays within it, else it goes on."""
     latency_s: NotNegativeNumber = 0.0
     """Time by which a speed is late, that of an instrument or its filter [s]; none for pulses."""
     edge: Literal["rising", "falling"] = "rising"
@@ -108,14 +108,14 @@ class SpeedSensor(Settings):
         return self.unit in ANGLES_REV or self.unit == "counts"
 
     @property
+    def counts_turns(self) -> bool:
+        """Whether turns of the shaft are counted, by pulses or an angle, so that the mean speed has no error."""
+        return self.gives_pulses or self.gives_angle
+
+    @property
     def rev_per_unit(self) -> float:
         """Turns of the shaft for one unit of an encoder's angle [rev per unit]."""
         return 1.0 / (self.counts_per_revolution or 1.0) if self.unit == "counts" else ANGLES_REV[self.unit]
-
-    @property
-    def rolls_over(self) -> float:
-        """What an encoder turns until its angle begins again, in the unit of the channel."""
-        return 1.0 / self.rev_per_unit if self.rolls_over_at is None else self.rolls_over_at
 
     def speed_rev_s(self, reading: ArrayLike) -> FloatArray:
         """Return the speed of the shaft [rev/s] for readings of an instrument in the channel's unit, of any shape."""
@@ -123,9 +123,6 @@ class SpeedSensor(Settings):
         if self.unit in ("V", "mA"):
             rpm = REV_S_PER_UNIT["rpm"]
             return rpm * ((self.rpm_per_unit or 0.0) * value + (self.rpm_at_zero or 0.0))
-        if self.gives_angle:
-            # differences of the angle have been taken
-            return value
         if self.unit == "Hz":
             # as many edges as there are teeth, those between the places too
             return value / (self.toothed.counted + self.toothed.extra)

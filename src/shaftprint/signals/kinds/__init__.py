@@ -1,6 +1,7 @@
 """The kinds of channels: how each is read, conditioned and made a signal."""
 
 from shaftprint.signals.kinds._compare import LARGEST_DIFFERENCE, compare_speeds
+from shaftprint.signals.kinds._encoder_speed import speed_channel
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.kinds._kinds import KINDS, find_sources
 from shaftprint.signals.kinds._pick_up import PulseReading, read_pick_up
@@ -27,4 +28,5 @@ __all__ = [
     "read_ship_speed",
     "read_voltage",
     "ship_speed_signal",
+    "speed_channel",
 ]

@@ -1,7 +1,7 @@
-"""Speed of a shaft from its angle: an encoder's counts or degrees, which begin again after so many.
+"""Speed of a shaft from the angle that an encoder shows, in degrees, radians, turns or counts.
 
-From sample to sample the angle turns by less than half of what it takes to begin again, so that the difference says how
-often it did. Differences over time are a mean speed of one sample, stamped in its middle.
+What the shaft turns from one sample to the next is its mean speed in between. An angle that begins again turns by less
+than half of its range from sample to sample, so that the difference says whether it did.
 """
 
 from dataclasses import replace
@@ -11,69 +11,240 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
-from shaftprint.recording import Channel
-from shaftprint.signals._channels import blocks
+from shaftprint.signals._channels import time_of
+from shaftprint.signals._gaps import Gap, bridge, clock_gaps, joined, runs_of
+from shaftprint.signals.conditioning import Reading, conditioned, fault_limits
+from shaftprint.signals.kinds._angle_range import angle_range, expect_small_steps, wrapped
+from shaftprint.signals.kinds._kind import Source
+from shaftprint.signals.kinds._speed_reading import SpeedReading
+from shaftprint.signals.pulses import spline_speed
+from shaftprint.units import rev_s_from_rpm, rpm_from_rev_s
 from shaftprint.vessel import SpeedSensor
 
 if TYPE_CHECKING:
+    from shaftprint.recording import Channel
+    from shaftprint.recording import Counts as RawCounts
     from shaftprint.signals._clock import Clock
 
-# Nearer to half a range the sense of turning is a guess.
-_LARGEST_STEP = 0.4
-# That so many samples of a thousand turn further is no spike.
-_QUANTILE = 0.999
+# Mean speeds of so long a time tell a shaft that stands still, or turns back, by this share of the usual speed.
+_WINDOW_S, _STANDING = 1.0, 0.02
+# Nine tenths of the time, in which a shaft may stand, are slower than what is usual.
+_USUAL = 0.9
+# Over a gap longer than this a slow channel says nothing; the end of a spline is felt so many values further on.
+_LONGEST_GAP_VALUES, _REACH_VALUES = 3, 4
+# No engine runs so far below idle or above rated speed. So far from the working point counts may be entered wrongly.
+_SLOWEST, _FASTEST, _FAR = 0.7, 1.3, 1.5
 
 
-def speed_channel(channel: Channel, sensor: SpeedSensor, clock: "Clock") -> tuple[Channel, tuple[str, ...]]:
-    """Return the speed of the shaft as a channel in rev/s, one sample shorter, with what the reader should know.
-
-    Parameters
-    ----------
-    channel, sensor
-        The angle and what the vessel file says about it.
-    clock
-        How it is read.
+def read_encoder(source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
+    """Return the engine-side speed of an encoder on the grid.
 
     Raises
     ------
     SignalError
-        If the angle begins again too often to be followed, or does not move.
+        If the angle stands still, begins again elsewhere than the vessel file says, or turns too far from sample to
+        sample, or its counts are fewer than the samples of the grid.
     """
-    counts = np.concatenate([part.astype(np.float64) for part in blocks(channel, clock.block_samples(channel))])
-    turned = turned_rev(channel, sensor, counts * channel.scale + channel.offset)
-    mean = float(np.nanmean(turned)) if np.isfinite(turned).any() else 0.0
-    if mean == 0.0:
-        raise SignalError(f"channel {channel.name}: expected an angle that turns, found one that stands still.")
-    speed = np.copysign(channel.rate_hz, mean) * turned
+    channel, sensor = source.channel, source.sensor
+    ratio = source.vessel.gearbox.ratio if sensor.shaft == "propeller" else 1.0
+    # what turns too fast comes back as slow: what the recording shows is not enough
+    turns_hz = rev_s_from_rpm(source.vessel.working_point.engine_speed_rpm) / ratio
+    expect_small_steps(channel, sensor, turns_hz)
+    values_hz = _values_hz(channel, sensor, clock, turns_hz)
+    turning = speed_channel(channel, sensor)
+    latency_s = clock.latency_s(sensor.latency_s)
+    if channel.rate_hz >= clock.rate_hz:
+        reading = conditioned(
+            turning,
+            fault_limits(turning, holds=False),
+            clock.grid(turning, latency_s),
+            mode=clock.mode,
+            block_samples=clock.block_samples(turning),
+            advance=clock.advance,
+        )
+        _sharpen(reading.values, step=clock.rate_hz / channel.rate_hz)
+    else:
+        reading = _splined(turning, clock, latency_s)
+    usual, ahead = _usual(reading.values, clock, channel.name)
+    speed = ahead * reading.values
+    stops = _stops(speed, usual, clock, channel.name)
+    bridge(speed, stops, start_s=clock.start_s, rate_hz=clock.rate_hz)
+    gaps = [replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in reading.gaps]
     backwards = f"channel {channel.name} counts down while the ship moves ahead: its sign was turned"
-    made = replace(
+    return SpeedReading(
+        name=sensor.name,
+        channel=channel.name,
+        values=ratio * speed,
+        repairs=reading.repairs,
+        gaps=tuple(sorted([*gaps, *stops], key=lambda gap: gap.start_s)),
+        findings=(backwards,) if ahead < 0.0 else (),
+        pulse_rate_hz=values_hz,
+    )
+
+
+def speed_channel(channel: "Channel", sensor: SpeedSensor) -> "Channel":
+    """Return the speed of the shaft [rev/s] as a channel: sample ``k`` is the mean from angle ``k - 1`` to angle ``k``.
+
+    Sample 0, before the first angle, repeats sample 1.
+
+    Raises
+    ------
+    SignalError
+        If the angle begins again elsewhere than the vessel file says.
+    """
+    whole = angle_range(channel, sensor)
+    counts_of_range = None if whole is None else abs(whole / channel.scale)
+
+    def steps(start: int, stop: int) -> "RawCounts":
+        first = max(start - 1, 0)
+        # the sample before comes by itself: blocks are then read from border to border
+        turned = _turned(np.concatenate([channel.read(first, start), channel.read(start, stop)]), counts_of_range)
+        if start > 0 or stop == 0:
+            return turned
+        return np.concatenate([_turned(channel.read(0, min(2, channel.count)), counts_of_range), turned])
+
+    return replace(
         channel,
         unit="rev/s",
-        start_s=channel.start_s + 0.5 / channel.rate_hz,
-        count=speed.size,
-        scale=1.0,
+        start_s=channel.start_s - 0.5 / channel.rate_hz,
+        scale=channel.scale * sensor.rev_per_unit * channel.rate_hz,
         offset=0.0,
-        source=lambda start, stop: speed[start:stop],
+        source=steps,
     )
-    return made, (backwards,) if mean < 0.0 else ()
 
 
-def turned_rev(channel: Channel, sensor: SpeedSensor, angle: FloatArray) -> FloatArray:
-    """Return by how much the shaft turns from each sample to the next [rev], shape (samples - 1,).
+def _turned(counts: "RawCounts", whole: float | None) -> FloatArray:
+    """Return the steps of raw counts, shape (counts - 1,); not a number where one of the two is none."""
+    values = np.where(np.isfinite(counts), counts, np.nan)
+    return wrapped(np.diff(values), whole)
+
+
+def judge_encoder(source: Source[SpeedSensor], reading: Reading) -> tuple[str, ...]:
+    """Return a finding where the speed is far from that of the working point, as with wrong counts of a turn.
 
     Raises
     ------
     SignalError
-        If that is more than four tenths of the range of the angle.
+        If no engine of the vessel file runs at such a speed.
     """
-    whole = sensor.rolls_over
-    step = np.diff(angle)
-    step -= whole * np.rint(step / whole)
-    largest = float(np.nanquantile(np.abs(step), _QUANTILE)) if np.isfinite(step).any() else 0.0
-    if largest > _LARGEST_STEP * whole:
+    sensor, vessel = source.sensor, source.vessel
+    found_rpm, expected_rpm = rpm_from_rev_s(float(np.median(reading.values))), vessel.working_point.engine_speed_rpm
+    idle_rpm, rated_rpm = vessel.engine.idle_speed_rpm, vessel.engine.rated_speed_rpm
+    counts = "unit"
+    would_do = ""
+    if sensor.unit == "counts":
+        counts = "counts_per_revolution"
+        number = (sensor.counts_per_revolution or 0.0) * found_rpm / expected_rpm
+        would_do = f", of which about {number:.0f} would give the {expected_rpm:.0f} rpm of the working point"
+    if not _SLOWEST * idle_rpm < found_rpm < _FASTEST * rated_rpm:
         raise SignalError(
-            f"channel {channel.name}: expected an angle that turns by less than {_LARGEST_STEP:g} of its range of "
-            f"{whole:g} {channel.unit} from sample to sample, found {largest / whole:.2f}; log faster than "
-            f"{channel.rate_hz:g} Hz, or correct rolls_over_at in the vessel file."
+            f"channel {sensor.channel}: expected an engine between {idle_rpm:g} rpm, idle, and {rated_rpm:g} rpm, "
+            f"rated, found {found_rpm:.0f} rpm for half of the time; correct shaft in the vessel file, or {counts}"
+            f"{would_do}."
         )
-    return np.asarray(step * sensor.rev_per_unit)
+    if 1.0 / _FAR < found_rpm / expected_rpm < _FAR:
+        return reading.findings
+    return (
+        *reading.findings,
+        f"channel {sensor.channel} shows {found_rpm:.0f} rpm at the engine where the working point of the vessel file "
+        f"has {expected_rpm:.0f} rpm: check {counts} and shaft there",
+    )
+
+
+def _values_hz(channel: "Channel", sensor: SpeedSensor, clock: "Clock", turns_hz: float) -> float:
+    """Return how often a second the angle is really known [Hz].
+
+    Raises
+    ------
+    SignalError
+        If counts come more seldom than the samples of the grid, whose steps would be taken for speed.
+    """
+    if sensor.unit != "counts":
+        return channel.rate_hz
+    counts_hz = turns_hz / sensor.rev_per_unit
+    if counts_hz < clock.rate_hz:
+        raise SignalError(
+            f"channel {channel.name}: expected {clock.rate_hz:g} counts a second or more, one for each sample of the "
+            f"signals, found {counts_hz:.3g} at the working point; record the pulses themselves, as a voltage."
+        )
+    return min(channel.rate_hz, counts_hz)
+
+
+def _sharpen(speed: FloatArray, *, step: float) -> None:
+    """Take out of a speed on the grid, in place, that it is a mean over a time of ``step`` samples of the grid.
+
+    Such a mean shows a sine of ``x`` periods in its time by ``sinc(x) = 1 - (pi x)^2 / 6 + ...`` too small.
+    """
+    speed[1:-1] -= step**2 / 24.0 * np.diff(speed, 2)
+
+
+def _splined(turning: "Channel", clock: "Clock", latency_s: float) -> Reading:
+    """Return the speed of a channel that is slower than the grid: the slope of the spline through its angles."""
+    counts = np.asarray(turning.read(0, turning.count), dtype=np.float64)
+    missing = np.isnan(counts)
+    if missing.all():
+        raise SignalError(f"channel {turning.name}: expected numbers, found none; check the export of the logger.")
+    step_rev = joined(counts) * turning.scale / turning.rate_hz
+    angle_rev = np.concatenate([[0.0], np.cumsum(step_rev[1:])])
+    # angles stand at the ends of the times over which the speed is a mean
+    time_s = turning.start_s + (np.arange(angle_rev.size) + 0.5) / turning.rate_hz
+    begin_s = clock.start_s + latency_s
+    speed = spline_speed(time_s, angle_rev, start_s=begin_s, step_s=1.0 / clock.rate_hz, count=clock.count)
+    gaps = [
+        Gap(
+            channel=turning.name,
+            start_s=time_of(turning, first),
+            stop_s=time_of(turning, stop),
+            reason="has no values",
+            reach_s=_REACH_VALUES / turning.rate_hz,
+        )
+        for first, stop in runs_of(missing)
+        if stop - first > _LONGEST_GAP_VALUES
+    ]
+    bridge(speed, gaps, start_s=begin_s, rate_hz=clock.rate_hz)
+    return Reading(values=speed, repairs=[], gaps=(*gaps, *clock_gaps(turning)))
+
+
+def _usual(speed: FloatArray, clock: "Clock", channel: str) -> tuple[float, float]:
+    """Return how fast the shaft usually turns [rev/s], and the sign with which it mostly does.
+
+    Raises
+    ------
+    SignalError
+        If it stands still.
+    """
+    means = _means(speed, clock)
+    usual = float(np.quantile(np.abs(means), _USUAL))
+    moving = means[np.abs(means) > _STANDING * usual]
+    if not moving.size:
+        raise SignalError(
+            f"channel {channel}: expected an angle that turns, found one that stands still; check the encoder, its "
+            "coupling and its counter."
+        )
+    return usual, float(np.sign(np.median(moving))) or 1.0
+
+
+def _stops(speed: FloatArray, usual: float, clock: "Clock", channel: str) -> list[Gap]:
+    """Return where the shaft stands still or turns back: nothing of a propulsion line can be measured there."""
+    means = _means(speed, clock)
+    length_s = _WINDOW_S if means.size > 1 else speed.size / clock.rate_hz
+    gaps = []
+    for first, stop in runs_of(means < _STANDING * usual):
+        turns_back = means[first:stop].min() < -_STANDING * usual
+        gaps.append(
+            Gap(
+                channel=channel,
+                start_s=clock.start_s + first / clock.rate_hz,
+                stop_s=clock.start_s + (stop - 1) / clock.rate_hz + length_s,
+                reason="shows a shaft that turns back" if turns_back else "stands still",
+            )
+        )
+    return gaps
+
+
+def _means(speed: FloatArray, clock: "Clock") -> FloatArray:
+    """Return the mean speeds of all windows of a second, shape (windows,)."""
+    width = min(round(_WINDOW_S * clock.rate_hz), speed.size)
+    turned = np.concatenate([[0.0], np.cumsum(speed)])
+    means: FloatArray = (turned[width:] - turned[:-width]) / width
+    return means

@@ -1,4 +1,4 @@
-"""Speed of a shaft from an instrument that gives a speed or an angle: rpm, Hz, m/s, volts with a line, counts.
+"""Speed of a shaft from an instrument that gives a speed: rpm, Hz, rad/s, m/s, or volts and milliamperes with a line.
 
 A channel as fast as the signals is repaired and filtered as torque is. A slower one is joined by a cubic spline, which
 shows a sine too small by the same factor as the spline through pulses of that rate.
@@ -14,7 +14,6 @@ from shaftprint.errors import SignalError
 from shaftprint.signals._channels import blocks, time_of
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps, joined, runs_of
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
-from shaftprint.signals.kinds._encoder_speed import speed_channel
 from shaftprint.signals.kinds._speed_reading import SpeedReading
 from shaftprint.vessel import SpeedSensor
 
@@ -50,9 +49,6 @@ def read_instrument(channel: "Channel", sensor: SpeedSensor, clock: "Clock", *, 
         If the channel holds no numbers, or a speed below zero throughout.
     """
     latency_s = clock.latency_s(sensor.latency_s)
-    findings: tuple[str, ...] = ()
-    if sensor.gives_angle:
-        channel, findings = speed_channel(channel, sensor, clock)
     if channel.rate_hz >= clock.rate_hz:
         reading = conditioned(
             channel,
@@ -75,7 +71,6 @@ def read_instrument(channel: "Channel", sensor: SpeedSensor, clock: "Clock", *, 
         values=speed,
         repairs=reading.repairs,
         gaps=tuple(gaps),
-        findings=findings,
         name=sensor.name,
         channel=channel.name,
         pulse_rate_hz=channel.rate_hz,

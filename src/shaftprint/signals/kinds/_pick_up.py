@@ -1,4 +1,4 @@
-"""From one speed channel to one speed signal: pulses here, instruments in their own file."""
+"""From one speed channel to one speed signal: pulses here, instruments and encoders in files of their own."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -12,6 +12,7 @@ from shaftprint.signals._channels import Advance, blocks, find_channel, time_of
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps
 from shaftprint.signals._signals import Repair, StripAngles
 from shaftprint.signals.conditioning import Reading, pulse_period_speed
+from shaftprint.signals.kinds._encoder_speed import judge_encoder, read_encoder
 from shaftprint.signals.kinds._grid_speed import speed_on_grid
 from shaftprint.signals.kinds._instrument_speed import read_instrument
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
@@ -55,7 +56,7 @@ class PulseReading(SpeedReading):
 
 
 class Speed(ChannelKind[SpeedSensor]):
-    """Speed of the engine from the pulses of a pick-up or from an instrument [rev/s]; the first one counts."""
+    """Speed of the engine from pulses, an instrument or an encoder [rev/s]; the first one counts."""
 
     sensor, name, use, needed = "speed", "n", "speed", True
 
@@ -76,6 +77,8 @@ class Speed(ChannelKind[SpeedSensor]):
     def read(self, source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
         """Return the engine-side speed on the grid."""
         vessel, wheel = source.vessel, source.sensor.toothed
+        if source.sensor.gives_angle:
+            return read_encoder(source, clock)
         if not source.sensor.gives_pulses:
             return read_instrument(source.channel, source.sensor, clock, gear_ratio=vessel.gearbox.ratio)
         ratio = vessel.gearbox.ratio if source.sensor.shaft == "propeller" else 1.0
@@ -92,6 +95,10 @@ class Speed(ChannelKind[SpeedSensor]):
             block_samples=clock.block_samples(source.channel),
             advance=clock.advance,
         )
+
+    def judge(self, source: Source[SpeedSensor], reading: Reading) -> tuple[str, ...]:
+        """Return what the reader should know; of an encoder also where its speed is far from what is expected."""
+        return judge_encoder(source, reading) if source.sensor.gives_angle else reading.findings
 
     def signal(self, source: Source[SpeedSensor], reading: Reading, steady: SteadyState) -> SpeedSignal | None:
         """Return the speed over that of the working point."""
