@@ -53,6 +53,28 @@ def test_shapes_and_units_of_a_foreign_recording(run, tmp_path):
     assert found["ship_speed"] == {"channel": "GPS", "unit": "kn", "cycle_s": 1.0}
 
 
+def test_encoders_and_speeds_are_proposed_in_their_unit(run, tmp_path):
+    seconds = np.arange(20_000) / 1000.0
+    channels = {
+        "Shaft encoder": ("counts", np.floor(4096.0 * 5.0 * seconds) % 65_536.0),
+        "Crank angle": ("deg", 7200.0 * seconds % 360.0),
+        "Rudder angle": ("deg", np.sin(seconds)),
+        "Engine speed": ("rpm", 1200.0 + np.sin(seconds)),
+    }
+    path = tmp_path / "foreign.nc"
+    with RecordingWriter(path) as writer:
+        for name, (unit, values) in channels.items():
+            writer.declare(name, unit=unit, rate_hz=1000.0, dtype="float64")
+            writer.append(name, values)
+    result = run("inspect", path)
+    assert [(speed["channel"], speed["unit"], speed["shaft"]) for speed in _map(result)["sensors"]["speed"]] == [
+        ("Shaft encoder", "counts", "propeller"),
+        ("Crank angle", "deg", "engine"),
+        ("Engine speed", "rpm", "engine"),
+    ]
+    assert result.output.count("# counts_per_revolution =") == 2
+
+
 def test_sensors_that_no_channel_looks_like_are_named(run, tmp_path):
     path = tmp_path / "cabin.nc"
     with RecordingWriter(path) as writer:

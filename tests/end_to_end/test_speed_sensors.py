@@ -1,4 +1,4 @@
-"""A quarter of an hour of the tug from toothed wheels and from an instrument: the response of the even wheel."""
+"""A quarter of an hour of the tug from toothed wheels, an instrument, encoders: the response of the even wheel."""
 
 import numpy as np
 import pytest
@@ -37,6 +37,11 @@ def even(measured):
         pytest.param({"wheel": "36-1"}, id="36-1"),
         pytest.param({"wheel": "36-2-1"}, id="36-2-1"),
         pytest.param({"unit": "rpm", "shaft": "engine", "latency_s": 0.02}, id="rpm"),
+        pytest.param({"unit": "deg"}, id="deg"),
+        pytest.param(
+            {"unit": "counts", "shaft": "engine", "counts_per_revolution": 2048.0, "rolls_over_at": 65_536.0},
+            id="counts",
+        ),
     ],
 )
 def test_every_sensor_gives_the_response_of_the_even_wheel(measured, even, fields):

@@ -7,14 +7,17 @@ from typing import Literal, TypeAlias
 
 from shaftprint.escape import toml_string
 from shaftprint.recording import Channel
+from shaftprint.units import ANGLES_REV, REV_S_PER_UNIT
 
-Use: TypeAlias = Literal["speed", "shaft_torque", "set_point", "rack", "ship_speed"]
+Use: TypeAlias = Literal["speed", "instrument", "encoder", "shaft_torque", "set_point", "rack", "ship_speed"]
 
 _SET_POINT = re.compile(r"set[ _-]*p|setpoint|demand|lever|throttle|soll|u_set|command", re.IGNORECASE)
 _TORQUE = re.compile(r"torque|m_s\b|\bms\b|koppel|drehmoment|strain", re.IGNORECASE)
 _PULSES = re.compile(r"ptm|pulse|tacho|pick|rpm|speed|\bn_?e", re.IGNORECASE)
+_ENCODER = re.compile(r"enc|crank|shaft|counter|turn", re.IGNORECASE)
 _ENGINE = re.compile(r"eng|motor|_e\b|crank|flywheel", re.IGNORECASE)
 
+_SPEEDS = ("speed", "instrument", "encoder")
 # Torque for one unit of a channel that is a torque already [N m].
 _SCALES = {"N m": 1.0, "kN m": 1000.0}
 _FIELDS = {
@@ -25,6 +28,21 @@ _FIELDS = {
         'shaft = "{shaft}"  # engine or propeller: check',
         "# pulses_per_revolution =        # count the strips or teeth, then take the # away",
         '# wheel = "60-2"                 # in place of it where teeth are missing or more: 36-1, 36-2-1, 12+1',
+    ),
+    "instrument": (
+        'name = "{name}"',
+        "channel = {channel}",
+        "unit = {unit}",
+        'shaft = "{shaft}"  # engine or propeller: check',
+        "# latency_s =                    # of the instrument or its filter [s]",
+    ),
+    "encoder": (
+        'name = "{name}"',
+        "channel = {channel}",
+        "unit = {unit}",
+        'shaft = "{shaft}"  # engine or propeller: check',
+        "# counts_per_revolution =        # of a channel in counts, then take the # away",
+        "# rolls_over_at =                # where it begins again, if not after one turn",
     ),
     "shaft_torque": (
         "channel = {channel}",
@@ -77,7 +95,7 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
         use = uses[item.channel.name]
         if use is None or use in single:
             continue
-        if use == "speed":
+        if use in _SPEEDS:
             speeds += 1
             lines.append("[[sensors.speed]]")
         else:
@@ -89,7 +107,7 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
         if needed not in single:
             lines += [f"# [sensors.{needed}]: no channel looks like it", ""]
     if not speeds:
-        lines += ["# [[sensors.speed]]: no channel holds pulses", ""]
+        lines += ["# [[sensors.speed]]: no channel holds pulses, a speed or an angle", ""]
     rate = max((item.channel.rate_hz for item in seen), default=0.0)
     return [*lines, "[logger]", f"sample_rate_hz = {rate!r}"]
 
@@ -107,6 +125,10 @@ def _use(item: Seen) -> Use | None:
         return "shaft_torque"
     if unit in _SCALES:
         return "shaft_torque"
+    if unit in REV_S_PER_UNIT and _PULSES.search(name):
+        return "instrument"
+    if unit == "counts" or (unit in ANGLES_REV and _ENCODER.search(name)):
+        return "encoder"
     if item.is_pulses and unit in ("V", "") and (_PULSES.search(name) or unit == "V"):
         return "speed"
     return None

@@ -31,6 +31,7 @@ from shaftprint.tug.sensors import (
     LOWEST_PERCENT,
     VOLT_PER_COUNT,
     ControlUnit,
+    Encoder,
     Fault,
     Helm,
     PickUp,
@@ -39,7 +40,7 @@ from shaftprint.tug.sensors import (
     SpeedMeter,
     TorqueGauge,
 )
-from shaftprint.vessel import SAMPLES_A_TOOTH, Vessel
+from shaftprint.vessel import SAMPLES_A_TOOTH, SpeedSensor, Vessel
 
 RATE_HZ = 2000.0
 """Sample rate where the vessel file names no logger [Hz]."""
@@ -149,11 +150,8 @@ class _Crew:
             rng=torque,
         )
         self._helm = Helm(tug, vessel, campaign, rate_hz=self._rate_hz, rng=set_point)
-        self._speeds: list[PickUp | SpeedMeter] = [
-            PickUp(sensor, tug, vessel, duration_s=duration_s, rate_hz=self._rate_hz, rng=rng)
-            if sensor.gives_pulses
-            else SpeedMeter(sensor, tug, vessel, rate_hz=self._rate_hz, rng=rng)
-            for sensor, rng in zip(vessel.sensors.speed, speeds, strict=True)
+        self._speeds = [
+            self._stand_by_shaft(sensor, rng) for sensor, rng in zip(vessel.sensors.speed, speeds, strict=True)
         ]
         self._control_unit = self._watch_bus(float(first[RACK]), bus)
         self._log = self._read_log(float(first[WAY]), log)
@@ -176,6 +174,14 @@ class _Crew:
                     f"second, found {self._rate_hz:g} Hz; raise logger.sample_rate_hz, or take a wheel with fewer "
                     "teeth or that of a slower shaft."
                 )
+
+    def _stand_by_shaft(self, sensor: SpeedSensor, rng: np.random.Generator) -> PickUp | SpeedMeter | Encoder:
+        tug, vessel = self._tug, self._vessel
+        if sensor.gives_pulses:
+            duration_s = self._campaign.duration_s
+            return PickUp(sensor, tug, vessel, duration_s=duration_s, rate_hz=self._rate_hz, rng=rng)
+        kind = Encoder if sensor.gives_angle else SpeedMeter
+        return kind(sensor, tug, vessel, rate_hz=self._rate_hz, rng=rng)
 
     def _stand_by_lever(self, rng: np.random.Generator) -> PitchLever | None:
         sensor = self._vessel.sensors.pitch_set_point
@@ -255,6 +261,7 @@ class _Crew:
             long_name="speed set point behind the potentiometer",
         )
         for sensor, speed in zip(sensors.speed, self._speeds, strict=True):
+            what = f"{'angle' if sensor.gives_angle else 'speed'} of the {sensor.shaft} shaft"
             teeth = f"pick-up on the {sensor.shaft} shaft, {sensor.pulses_per_revolution} per revolution"
             writer.declare(
                 sensor.channel,
@@ -262,7 +269,7 @@ class _Crew:
                 rate_hz=self._rate_hz,
                 scale=speed.scale,
                 offset=speed.offset,
-                long_name=teeth if sensor.gives_pulses else f"speed of the {sensor.shaft} shaft",
+                long_name=teeth if sensor.gives_pulses else what,
             )
         writer.declare(
             sensors.shaft_torque.channel,

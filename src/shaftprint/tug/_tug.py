@@ -119,6 +119,8 @@ class Tug:
     """Standard deviation of the place of a tooth on a wheel with gaps or further teeth [degree]."""
     speed_meter_noise: float = 2e-4
     """Standard deviation of an instrument that gives a speed, over 1.3 times the rated speed."""
+    encoder_error_deg: float = 0.01
+    """Standard deviation of the angle that an encoder shows, beside the size of its counts [degree]."""
     noise: Noise = field(default_factory=Noise)
     """Disturbances, measurement noise and faults."""
 

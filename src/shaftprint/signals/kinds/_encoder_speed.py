@@ -11,7 +11,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
-from shaftprint.signals._channels import time_of
+from shaftprint.signals._channels import Counts, time_of
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps, joined, runs_of
 from shaftprint.signals.conditioning import Reading, conditioned, fault_limits
 from shaftprint.signals.kinds._angle_range import angle_range, expect_small_steps, wrapped
@@ -23,7 +23,6 @@ from shaftprint.vessel import SpeedSensor
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
-    from shaftprint.recording import Counts as RawCounts
     from shaftprint.signals._clock import Clock
 
 # Mean speeds of so long a time tell a shaft that stands still, or turns back, by this share of the usual speed.
@@ -95,7 +94,7 @@ def speed_channel(channel: "Channel", sensor: SpeedSensor) -> "Channel":
     whole = angle_range(channel, sensor)
     counts_of_range = None if whole is None else abs(whole / channel.scale)
 
-    def steps(start: int, stop: int) -> "RawCounts":
+    def steps(start: int, stop: int) -> Counts:
         first = max(start - 1, 0)
         # the sample before comes by itself: blocks are then read from border to border
         turned = _turned(np.concatenate([channel.read(first, start), channel.read(start, stop)]), counts_of_range)
@@ -113,7 +112,7 @@ def speed_channel(channel: "Channel", sensor: SpeedSensor) -> "Channel":
     )
 
 
-def _turned(counts: "RawCounts", whole: float | None) -> FloatArray:
+def _turned(counts: Counts, whole: float | None) -> FloatArray:
     """Return the steps of raw counts, shape (counts - 1,); not a number where one of the two is none."""
     values = np.where(np.isfinite(counts), counts, np.nan)
     return wrapped(np.diff(values), whole)
@@ -184,10 +183,10 @@ def _splined(turning: "Channel", clock: "Clock", latency_s: float) -> Reading:
     missing = np.isnan(counts)
     if missing.all():
         raise SignalError(f"channel {turning.name}: expected numbers, found none; check the export of the logger.")
-    step_rev = joined(counts) * turning.scale / turning.rate_hz
-    angle_rev = np.concatenate([[0.0], np.cumsum(step_rev[1:])])
+    step_rev: FloatArray = joined(counts) * turning.scale / turning.rate_hz
+    angle_rev = np.concatenate([np.zeros(1), np.cumsum(step_rev[1:], dtype=np.float64)])
     # angles stand at the ends of the times over which the speed is a mean
-    time_s = turning.start_s + (np.arange(angle_rev.size) + 0.5) / turning.rate_hz
+    time_s = turning.start_s + (np.arange(angle_rev.size, dtype=np.float64) + 0.5) / turning.rate_hz
     begin_s = clock.start_s + latency_s
     speed = spline_speed(time_s, angle_rev, start_s=begin_s, step_s=1.0 / clock.rate_hz, count=clock.count)
     gaps = [

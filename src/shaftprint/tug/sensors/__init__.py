@@ -4,6 +4,7 @@ Each takes the stretches of a voyage of ``shaftprint.tug.plant`` in order and gi
 """
 
 from shaftprint.tug.sensors._control_unit import LOWEST_PERCENT, ControlUnit
+from shaftprint.tug.sensors._encoder import Encoder
 from shaftprint.tug.sensors._faults import Fault, draw_dropouts, draw_times
 from shaftprint.tug.sensors._gauge import TorqueGauge, shaft_orders
 from shaftprint.tug.sensors._helm import PITCH_INPUT, Helm, PitchLever
@@ -16,6 +17,7 @@ __all__ = [
     "PITCH_INPUT",
     "VOLT_PER_COUNT",
     "ControlUnit",
+    "Encoder",
     "Fault",
     "Helm",
     "PickUp",

@@ -1,0 +1,62 @@
+"""An encoder that shows the angle of a shaft: counts of its counter, or an angle in 16 bits."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import SettingsError
+from shaftprint.tug._tug import Tug
+from shaftprint.tug.plant import Stretch
+from shaftprint.tug.sensors._faults import Fault
+from shaftprint.vessel import SpeedSensor, Vessel
+
+# Values of a channel of 16 bits; the lowest stands for an angle of 0.
+_VALUES, _LOWEST = 65_536, -32_768
+
+
+class Encoder:
+    """Stream of the raw counts of one angle, a latency late, with white noise."""
+
+    def __init__(
+        self, sensor: SpeedSensor, tug: Tug, vessel: Vessel, *, rate_hz: float, rng: np.random.Generator
+    ) -> None:
+        self.channel = sensor.channel
+        turn = 1.0 / sensor.rev_per_unit
+        whole = turn if sensor.rolls_over_at is None else sensor.rolls_over_at
+        self.scale = 1.0 if sensor.unit == "counts" else whole / _VALUES
+        """Value of one count, in the unit of the channel."""
+        self.offset = -_LOWEST * self.scale
+        """Value of no count, in the unit of the channel."""
+        if whole > _VALUES * self.scale:
+            raise SettingsError(
+                f"vessel {vessel.name}: expected rolls_over_at of at most {_VALUES} counts for channel "
+                f"{sensor.channel}, which is simulated in 16 bits, found {whole:g}."
+            )
+        self._turns = vessel.gearbox.ratio if sensor.shaft == "engine" else 1.0
+        self._counts_per_rev, self._counts = turn / self.scale, whole / self.scale
+        self._phase_rev = float(rng.uniform())
+        self._error_rev = tug.encoder_error_deg / 360.0
+        self._rate_hz, self._late = rate_hz, sensor.latency_s * rate_hz
+        self._rng = rng
+        self._tail: FloatArray | None = None
+
+    def next(self, stretch: Stretch) -> NDArray[np.int16]:
+        """Return the counts of the next stretch, shape (steps,)."""
+        angle = self._turns * stretch.shaft_angle_rev
+        kept = math.ceil(self._late) + 1
+        if self._tail is None:
+            # before the start the line ran steadily
+            step = self._turns * stretch.shaft_speed_rev_s[0] / self._rate_hz
+            self._tail = angle[0] + step * np.arange(-kept, 0)
+        longer = np.concatenate([self._tail, angle])
+        self._tail = longer[-kept:]
+        shown = np.interp(kept + np.arange(angle.size) - self._late, np.arange(longer.size), longer)
+        shown += self._phase_rev + self._error_rev * self._rng.standard_normal(shown.size)
+        counts: FloatArray = np.floor(shown * self._counts_per_rev) % self._counts
+        return (counts + _LOWEST).astype(np.int16)
+
+    def faults(self) -> list[Fault]:
+        """Return no fault."""
+        return []
