@@ -12,7 +12,7 @@ from shaftprint.signals import TrackedOrder, prepare_signals, tracked_orders
 from shaftprint.spectra import estimate_spectra
 from shaftprint.spectra.orders import fit_orders
 from shaftprint.tug import Tug, linearised_response, sail
-from shaftprint.vessel import load_vessel
+from shaftprint.vessel import Vessel, load_vessel
 
 RATE_HZ, SPEED_REV_S = 100.0, 20.0
 SHAFT = TrackedOrder(name="shaft order 1", per_turn=0.25, speed="n_e")
@@ -149,6 +149,17 @@ def test_an_order_turns_with_the_finest_pick_up_of_its_shaft(sensors, expected):
     orders = {one.name: one for one in tracked_orders(vessel, dict.fromkeys(sensors))}
     shaft, engine = orders["shaft order 1"], orders["engine order 1/2"]
     assert (shaft.speed, shaft.through_gears, engine.speed, engine.through_gears) == expected
+
+
+def test_an_encoder_counts_the_turns_of_its_shaft_and_an_instrument_does_not():
+    content = load_vessel("stan-tug-1205").model_dump()
+    pick_up = content["sensors"]["speed"][0]
+    for unit, through_gears in (("deg", False), ("rpm", True)):
+        one = {"name": "n_x", "channel": "X", "shaft": "propeller", "unit": unit}
+        content["sensors"]["speed"] = [pick_up, one]
+        vessel = Vessel.model_validate(content)
+        orders = {order.name: order for order in tracked_orders(vessel, dict.fromkeys(("n_e", "n_x")))}
+        assert orders["shaft order 1"].through_gears == through_gears
 
 
 def test_in_thesis_mode_orders_stay_in_and_a_line_on_one_says_so(made):

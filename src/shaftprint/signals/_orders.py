@@ -1,5 +1,6 @@
 """Orders of the shaft line with the pick-up by which their angle is known."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -41,7 +42,7 @@ def tracked_orders(vessel: "Vessel", speeds: Mapping[str, "SpeedSignal"]) -> tup
 def _tracked(order: "Order", vessel: "Vessel", speeds: Mapping[str, "SpeedSignal"]) -> TrackedOrder:
     # the scale of an instrument is no more exact than a gear ratio
     own = [one for one in vessel.sensors.speed if one.shaft == order.shaft and one.name in speeds and one.counts_turns]
-    finest = max(own, key=lambda one: speeds[one.name].pulse_rate_hz, default=None)
+    finest = max(own, key=lambda one: math.inf if one.gives_angle else one.pulses_per_revolution, default=None)
     return TrackedOrder(
         name=order.name,
         per_turn=order.per_engine_turn,
