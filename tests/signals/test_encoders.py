@@ -242,6 +242,19 @@ def test_a_test_of_the_ship_gives_the_speed_of_the_engine(way, vessel, ship, cam
     assert all(one.channel != "X" for one in signals.repairs)
 
 
+def test_pick_up_and_encoder_are_held_against_each_other(vessel, ship, campaign, make_channel):
+    recording = replace(ship, prepared=ship).recording()
+    values = np.floor(5000.0 * ship.angle_rev)
+    channels = dict(recording.channels) | {"X": make_channel(values, name="X", unit="counts")}
+    raw = Recording(path=Path("ship.nc"), sha256="0" * 64, format="memory", channels=channels)
+    wrong = sensor("counts without end", "engine", counts_per_revolution=6000.0)
+    content = vessel.model_dump()
+    content["sensors"]["speed"] = [content["sensors"]["speed"][0], wrong.model_dump()]
+    both = r"PTM_e and X: .* n_x / n_e = 0\.8333; check gearbox\.ratio, pulses_per_revolution and counts_per_revolution"
+    with pytest.raises(SignalError, match=both):
+        prepare_signals(raw, Vessel.model_validate(content), campaign)
+
+
 def test_two_recordings_can_be_compared_by_an_encoder(make_channel):
     turning = Turning(ripple=0.0, swing_hz=0.2, duration_s=30.0)
     channel = make_channel(shown("counts", sampled(turning)), name="X", unit="counts")

@@ -49,6 +49,13 @@ def compare_speeds(speeds: Sequence[SpeedReading], vessel: "Vessel") -> tuple[st
                 f"instead of {vessel.gearbox.ratio:g}"
             )
         if abs(ratio - 1.0) > LARGEST_DIFFERENCE:
-            raise SignalError(f"{message}; check gearbox.ratio and pulses_per_revolution in the vessel file.")
+            raise SignalError(f"{message}; check gearbox.ratio{_counted(vessel)} in the vessel file.")
         findings.append(message)
     return tuple(findings)
+
+
+def _counted(vessel: "Vessel") -> str:
+    """Return the fields by which turns are counted, to follow another field."""
+    if any(sensor.unit == "counts" for sensor in vessel.sensors.speed):
+        return ", pulses_per_revolution and counts_per_revolution"
+    return " and pulses_per_revolution"
