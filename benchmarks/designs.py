@@ -52,6 +52,7 @@ SAME_LIMITS = replace(
     motoring=((1000.0, 0.42 * USUAL.brake_torque_nm),),
     noise_sigmas=0.0,
     highest_frequency_hz=7.0,
+    gauge=None,
 )
 SIGNAL_S = 630.0
 SETTLE_S = 12.0

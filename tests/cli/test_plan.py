@@ -118,6 +118,8 @@ def test_json_is_whole_where_the_wish_cannot_be_met(run, tmp_path):
         (("--limit", "sett-point=1V"), "Did you mean set-point?"),
         (("--limit", "rate=600rpm"), "expected a positive number in rpm/s such as rate=600rpm/s"),
         (("--limit", "torque=-5Nm"), "expected a positive number in Nm or N m or kNm"),
+        (("--limit", "full-scale=5kN"), "expected a positive number in Nm or N m or kNm such as full-scale=10kNm"),
+        (("--limit", "ripple=60Nm"), "expected a positive number in % or no unit such as ripple=60%"),
         (("--speeds", "0.78;1.15"), "expected speeds over that of the working point, such as 0.78,1.15"),
         (("--speeds", "0.78,0"), "expected speeds"),
     ],
@@ -141,6 +143,13 @@ def test_an_option_that_cannot_be_meant_says_what_was_expected(run, tmp_path, wo
         ((*SHIP, *LINE, "--within", "20s"), 1, "give more time or fewer speeds"),
         ((*SHIP, *LINE, "--within", "5min", "--speeds", "0.3"), 1, "choose another"),
         ((*SHIP, *LINE, "--within", "5min", "--structure", "OL5"), 1, "a plan needs the closed loop"),
+        # at 1.15 of the speed the shaft carries 2281 N m; one sample in 10,000 has 1.25 * 60 % of it on top
+        (
+            (*SHIP, *LINE, "--within", "5min", "--limit", "full-scale=3.9kNm", "--limit", "ripple=60%"),
+            1,
+            "full_scale_nm of [sensors.shaft_torque]: expected more than 3992 N m for a leg at 1361.37 rpm, whose "
+            "shaft torque is 2281 N m with orders and noise of 75 % on it, found a gauge that shows up to 3900 N m",
+        ),
         ((*SHIP, *LINE, "--within", "5min", "--after", "nothing.json"), 1, "expected a fingerprint in JSON"),
         ((*SHIP, *LINE, "--within", "5min", "--noise-from", "nothing.nc"), 2, "--noise-from needs --noise-campaign"),
     ],

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import click
 
-from shaftprint.design import Limits, Wish
+from shaftprint.design import GaugeRange, Limits, Wish
 from shaftprint.spelling import meant
 from shaftprint.units import SECONDS_PER_MINUTE
 
@@ -41,6 +41,8 @@ LIMITS: Final[Mapping[str, LimitKind]] = {
     "noise-margin": LimitKind(field="noise_sigmas", units={"": 1.0}, example="noise-margin=4"),
     "torque": LimitKind(field="", units={"Nm": 1.0, "N m": 1.0, "kNm": 1e3}, example="torque=1100Nm"),
     "motoring": LimitKind(field="", units={"Nm": 1.0, "N m": 1.0, "kNm": 1e3}, example="motoring=250Nm"),
+    "full-scale": LimitKind(field="", units={"Nm": 1.0, "N m": 1.0, "kNm": 1e3}, example="full-scale=10kNm"),
+    "ripple": LimitKind(field="", units={"%": 0.01, "": 1.0}, example="ripple=60%"),
 }
 """Limits by the name that is typed."""
 
@@ -130,7 +132,18 @@ def limits_with(limits: Limits, stated: Sequence[StatedLimit]) -> Limits:
             changed["full_load"] = tuple((speed, min(torque, limit.value)) for speed, torque in limits.full_load)
         elif limit.name == "motoring":
             changed["motoring"] = ((limits.engine_speed_rpm, limit.value),)
-    return replace(limits, **changed)
+    return replace(limits, gauge=_gauge_with(limits.gauge, {one.name: one.value for one in stated}), **changed)
+
+
+def _gauge_with(gauge: GaugeRange | None, stated: Mapping[str, float]) -> GaugeRange | None:
+    """Return the range of the gauge with what the user states; its ripple is in shares of the load."""
+    if gauge is None:
+        return None
+    full_nm, ripple = stated.get("full-scale"), stated.get("ripple")
+    if full_nm is not None:
+        zero_nm = 0.5 * (gauge.lowest_nm + gauge.highest_nm)
+        gauge = replace(gauge, lowest_nm=zero_nm - full_nm, highest_nm=zero_nm + full_nm)
+    return gauge if ripple is None else replace(gauge, ripple=ripple)
 
 
 def seconds_of(text: str) -> float:

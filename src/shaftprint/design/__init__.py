@@ -33,6 +33,7 @@ from shaftprint.design.files import (
 )
 from shaftprint.design.inputs import (
     AssumedShip,
+    GaugeRange,
     Knowledge,
     Limits,
     SetPointLine,
@@ -91,6 +92,7 @@ __all__ = [
     "AssumedShip",
     "Brief",
     "Effort",
+    "GaugeRange",
     "Knowledge",
     "Leg",
     "LengthCurve",

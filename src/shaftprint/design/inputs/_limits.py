@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, TypeAlias
 
+from shaftprint.design.inputs._gauge_range import GaugeRange, gauge_range_of
 from shaftprint.errors import DesignError
 from shaftprint.notebook import Shown
 
@@ -58,6 +59,8 @@ class Limits(Shown):
     """Ranges of engine speed in which the line must not stay [rpm]."""
     highest_frequency_hz: float = HIGHEST_FREQUENCY_HZ
     """Highest frequency of a line [Hz]."""
+    gauge: GaugeRange | None = None
+    """What the torque gauge can show; None: not held against anything."""
 
     def __post_init__(self) -> None:
         """Check that the numbers leave room.
@@ -132,6 +135,7 @@ def limits_from_vessel(vessel: "Vessel", *, set_point_rpm: float) -> Limits:
         demand_resolution_rpm=limits.demand_resolution_rpm,
         demand_cycle_s=limits.demand_cycle_s,
         barred_rpm=limits.barred_speeds_rpm,
+        gauge=gauge_range_of(vessel),
     )
 
 

@@ -14,8 +14,9 @@ from shaftprint.errors import DesignError
 from shaftprint.identify import NoiseLevels
 from shaftprint.models import Role, Structure
 
-SIGNALS = ("set point", "rate", "speed", "brake torque", "torque demand")
-"""What limits are stated of, in the order of ``motion``; the rate is the set point's, over the working point [1/s]."""
+SIGNALS = ("set point", "rate", "speed", "brake torque", "torque demand", "shaft torque")
+"""What limits are stated of, in the order of ``motion``; the rate is the set point's, over the working point [1/s], and
+the shaft torque that at the gauge."""
 
 _SPEED, _TORQUE = "n", "M_s"
 _GOVERNOR = structure_of("GOVERNOR")
@@ -61,7 +62,7 @@ def motion(structure: Structure, table: FloatArray, omega_rad_s: FloatArray) -> 
     if structure.named_as(ShipRole.PROPORTIONAL_GAIN) is not None:
         of_set_point, of_speed = _demand(structure, table, s)
         demand = of_set_point + of_speed * speed
-    return np.stack([one, s * one, speed, brake_torque, demand], axis=1)
+    return np.stack([one, s * one, speed, brake_torque, demand, shaft_torque], axis=1)
 
 
 def motion_noise(structure: Structure, values: FloatArray, noise: NoiseLevels) -> FloatArray:
@@ -81,6 +82,7 @@ def motion_noise(structure: Structure, values: FloatArray, noise: NoiseLevels) -
     if structure.named_as(ShipRole.PROPORTIONAL_GAIN) is not None:
         rows[:, 4] = 0.0
         rows[:, 4, 0] = _demand(structure, values[None, :], s)[1][0]
+    rows[:, 5, 1] = 1.0
     spread = rows @ density @ rows.conj().swapaxes(1, 2)
     return np.asarray(np.trapezoid(spread.real, hertz, axis=0))
 

@@ -72,6 +72,7 @@ def expected_operation(
         speed_rpm=point.engine_speed_rpm * (1.0 + outputs["n"]),
         brake_torque_nm=brake_nm * (1.0 + brake),
         torque_demand_nm=brake_nm * (1.0 + demand),
+        shaft_torque_nm=point.shaft_torque_nm * (1.0 + outputs["M_s"]),
     )
 
 

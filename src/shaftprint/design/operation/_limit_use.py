@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray
-from shaftprint.design.inputs import NO_MOTORING, Curve, Limits, limits_from_vessel
+from shaftprint.design.inputs import FULL_SCALE, NO_MOTORING, Curve, GaugeRange, Limits, limits_from_vessel
 from shaftprint.design.operation._operation import Operation
 from shaftprint.digits import plain, plain_letters
 from shaftprint.notebook import Shown
@@ -138,6 +138,9 @@ def _rules(operation: Operation, limits: Limits) -> Iterator[_Rule]:
         yield _above("motoring torque", "N m", operation.brake_torque_nm, motoring)
         if demand is not None:
             yield _above("zero fuel", "N m", demand, motoring)
+    if limits.gauge is not None and operation.shaft_torque_nm is not None:
+        load = limits.brake_torque_nm * (speed / limits.engine_speed_rpm) ** 2
+        yield _within_range(limits.gauge, operation.shaft_torque_nm, load)
     for low, high in limits.barred_rpm:
         end = np.where(speed < 0.5 * (low + high), low, high)
         yield _Rule(
@@ -157,6 +160,14 @@ def _below(name: str, unit: str, value: FloatArray, highest: FloatArray | float)
 def _above(name: str, unit: str, value: FloatArray, lowest: FloatArray | float) -> _Rule:
     allowed = np.broadcast_to(lowest, value.shape)
     return _Rule(name=name, unit=unit, value=value, allowed=allowed, left=value - allowed)
+
+
+def _within_range(gauge: GaugeRange, torque_nm: FloatArray, load_nm: FloatArray) -> _Rule:
+    """Return what the gauge shows as a rule: orders and noise go with the brake torque of the load."""
+    ripple_nm = gauge.ripple * gauge.shaft_over_brake * load_nm
+    below = _below(FULL_SCALE, "N m", torque_nm, gauge.highest_nm - ripple_nm)
+    above = _above(FULL_SCALE, "N m", torque_nm, gauge.lowest_nm + ripple_nm)
+    return below if below.left.min() <= above.left.min() else above
 
 
 def _torque(curve: Curve, speed_rpm: FloatArray) -> FloatArray:

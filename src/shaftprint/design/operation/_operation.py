@@ -29,13 +29,16 @@ class Operation(Shown):
     torque_demand_nm: FloatArray | None = None
     """Brake torque that the governor asks for, before delay and lag of the engine [N m], shape (samples,); None where
     it is not known."""
+    shaft_torque_nm: FloatArray | None = None
+    """Shaft torque at the gauge without orders and noise [N m], shape (samples,); None where they are not apart."""
 
     def __post_init__(self) -> None:
         """Make the arrays read-only."""
         for name in ("time_s", "set_point_rpm", "speed_rpm", "brake_torque_nm"):
             object.__setattr__(self, name, frozen_float(getattr(self, name)))
-        if self.torque_demand_nm is not None:
-            object.__setattr__(self, "torque_demand_nm", frozen_float(self.torque_demand_nm))
+        for name in ("torque_demand_nm", "shaft_torque_nm"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, frozen_float(getattr(self, name)))
 
     @property
     def rate_rpm_per_s(self) -> FloatArray:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.design.inputs import AssumedShip, Limits, Wish
+from shaftprint.design.inputs import FULL_SCALE, AssumedShip, Limits, Wish
 from shaftprint.design.motion import Bound, bounds_of_leg, expect_motion, motion, motion_noise
 from shaftprint.design.plan import SailedTest, Timetable, odd_harmonics
 from shaftprint.design.search import Uses
@@ -114,6 +114,10 @@ class Brief:
         lines = harmonics or self.harmonics[leg]
         omega = 2.0 * np.pi * np.array(lines) / self.period_s
         return Uses.of(motion(self.structures[leg], table, omega), self.bounds[leg], lines, fold)
+
+    def without_gauge(self) -> "Brief":
+        """Return the same without the full scale of the gauge among what binds the legs."""
+        return replace(self, bounds=tuple(tuple(one for one in leg if one.name != FULL_SCALE) for leg in self.bounds))
 
     @property
     def seconds(self) -> tuple[float, ...]:

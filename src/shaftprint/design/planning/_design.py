@@ -4,8 +4,8 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
-from shaftprint.design.inputs import AssumedShip, Limits, Wish, numbers_of_line
+from shaftprint.arrays import ComplexArray, FloatArray
+from shaftprint.design.inputs import FULL_SCALE, AssumedShip, Limits, Wish, numbers_of_line
 from shaftprint.design.plan import Plan, SailedTest, Timetable
 from shaftprint.design.planning._brief import Brief
 from shaftprint.design.planning._finish import SHARE_HELD, plan_of_lines
@@ -89,8 +89,33 @@ def design_campaign(
 
 
 def best_plan(brief: Brief, effort: Effort, rng: np.random.Generator, start: FloatArray | None = None) -> Plan:
-    """Return the best plan of several random starts, or that of one start."""
+    """Return the best plan of several random starts, or that of one start.
+
+    The full scale of the gauge is looked for only where a plan that knows nothing of it would pass it: on most ships
+    engine and governor keep the torque far below, and their plans are the same with it and without.
+    """
     table = brief.ship.draws(effort.peak_draws, rng)
+    starts = None if start is None else [start]
+    free = brief.without_gauge()
+    plan, found = _best_of_starts(free, effort, rng, table, starts)
+    if free.bounds == brief.bounds:
+        return plan
+    held = plan_of_lines(brief, found, table)
+    if all(peaks.uses[FULL_SCALE] < max(peaks.uses.values()) for peaks in held.peaks):
+        return held
+    return _best_of_starts(brief, effort, rng, table, starts)[0]
+
+
+def _best_of_starts(
+    brief: Brief, effort: Effort, rng: np.random.Generator, table: FloatArray, starts: Sequence[FloatArray] | None
+) -> tuple[Plan, list[ComplexArray]]:
+    """Return the best plan of some starts, random ones where there are none, and the amplitudes that it was made of.
+
+    Parameters
+    ----------
+    table
+        Possible ships, the assumed one first, shape (rows, parameters).
+    """
     possibilities, criterion = _wanted(brief, table[: effort.accuracy_draws])
     problem = Problem(
         possibilities=possibilities,
@@ -99,11 +124,11 @@ def best_plan(brief: Brief, effort: Effort, rng: np.random.Generator, start: Flo
         criterion=criterion,
         power=effort.powers[-1],
     )
-    starts = [random_start(problem, rng) for _ in range(effort.restarts)] if start is None else [start]
-    results = [search(problem, one, effort, share_held=SHARE_HELD) for one in starts]
+    begun = [random_start(problem, rng) for _ in range(effort.restarts)] if starts is None else starts
+    found = [problem.split(search(problem, one, effort, share_held=SHARE_HELD)[1]) for one in begun]
     # the search holds few ships and a smooth norm; which start was best is seen when all peaks have been looked at
-    plans = [plan_of_lines(brief, problem.split(unknowns), table) for _, unknowns in results]
-    return min(plans, key=_missing)
+    plans = [(plan_of_lines(brief, amplitudes, table), amplitudes) for amplitudes in found]
+    return min(plans, key=lambda pair: _missing(pair[0]))
 
 
 def _missing(plan: Plan) -> float:
