@@ -109,7 +109,8 @@ def test_gauge_that_is_too_small_for_the_load_is_one_sentence():
     limits = limits_from_vessel(with_gauge(4000.0), set_point_rpm=100.0)
     words = (
         r"vessel file of Stan Tug 1205, port, full_scale_nm of \[sensors.shaft_torque\]: expected more than 4036 N m "
-        r"for a leg at 1420.56 rpm, whose shaft torque is 2484 N m with orders and noise of 62.5 % on it, found a gauge that shows up to 4000 N m; choose"
+        r"for a leg at 1420.56 rpm, whose shaft torque is 2484 N m with orders and noise of 62.5 % on it, found "
+        r"a gauge that shows up to 4000 N m; choose"
     )
     with pytest.raises(DesignError, match=words):
         bounds_of_leg(limits, 1.2, QUIET)

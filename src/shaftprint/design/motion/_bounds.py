@@ -93,8 +93,8 @@ def _bounds_of_gauge(gauge: GaugeRange, brake_torque_nm: float, speed_rpm: float
     if not gauge.highest_nm > needed_nm:
         raise DesignError(
             f"vessel file of {gauge.vessel}, full_scale_nm of [sensors.shaft_torque]: expected more than "
-            f"{needed_nm:.0f} N m for a leg at {speed_rpm:g} rpm, whose shaft torque is {torque_nm:.0f} N m with orders "
-            f"and noise of {100.0 * gauge.rare_ripple:g} % on it, found a gauge that shows up to "
+            f"{needed_nm:.0f} N m for a leg at {speed_rpm:g} rpm, whose shaft torque is {torque_nm:.0f} N m with "
+            f"orders and noise of {100.0 * gauge.rare_ripple:g} % on it, found a gauge that shows up to "
             f"{gauge.highest_nm:g} N m; choose a larger range of the telemetry and state it there, or slower legs."
         )
     bounds = []
