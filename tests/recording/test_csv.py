@@ -148,7 +148,10 @@ def test_a_hint_that_makes_no_sense_is_refused(tmp_path, hints, expected):
 
 def test_a_time_alone_is_no_recording(tmp_path):
     with pytest.raises(RecordingError, match="expected a channel besides the time, found none"):
-        read_recording(_file(tmp_path, "time [s]\n0\n1\n"), delimiter=";")
+        read_recording(_file(tmp_path, "time [s]\n0\n1\n"), sample_rate_hz=100.0)
+    for hints in ({}, {"delimiter": ";"}):
+        with pytest.raises(RecordingError, match="column time: expected the times of at least 10 edges, found 2"):
+            read_recording(_file(tmp_path, "time [s]\n0\n1\n"), **hints)
 
 
 def test_rounded_times_are_uniform_and_a_changing_rate_is_not(tmp_path):

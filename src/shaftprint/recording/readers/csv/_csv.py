@@ -1,4 +1,4 @@
-"""Text with one row a sample: a header such as ``time [s];M_s [V]``, then numbers with point or comma."""
+"""Text with one row a sample, or an edge: a header such as ``time [s];M_s [V]``, then numbers with point or comma."""
 
 import contextlib
 import gzip
@@ -21,6 +21,7 @@ from shaftprint.recording.readers._clock import SampleClock, on_clock, uniform_c
 from shaftprint.recording.readers._epoch import from_second_zero
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers.csv._dates import dates, seconds_from
+from shaftprint.recording.readers.csv._edge_list import edge_channels
 from shaftprint.recording.readers.csv._header import (
     WHITE_SPACE,
     Header,
@@ -65,7 +66,7 @@ def read(path: Path, **hints: object) -> Recording:
 
     Hints: ``columns``, titles such as ``time [s],M_s [N m]``, where the file has none or others; ``sample_rate_hz``
     where it has no times; ``delimiter`` and ``decimal`` where it leaves them open; ``encoding`` if it is not UTF-8.
-    Empty fields become values that are not numbers.
+    Empty fields become values that are not numbers. A list of edges becomes pulses.
 
     Raises
     ------
@@ -219,8 +220,18 @@ def _clock(path: Path, header: Header, spool: Spool, count: int, rate_hz: float 
 def _recording(
     path: Path, header: Header, spool: Spool, count: int, began: datetime | None, rate_hz: float | None
 ) -> Recording:
+    edges = edge_channels(path, header, spool, count) if rate_hz is None else None
+    channels = _sampled(path, header, spool, count, rate_hz) if edges is None else edges
+    moved, epoch = from_second_zero(channels)
+    return Recording(
+        path=path, sha256=sha256_of(path), format=NAME, channels=moved, began=began or epoch, release=spool.close
+    )
+
+
+def _sampled(path: Path, header: Header, spool: Spool, count: int, rate_hz: float | None) -> dict[str, Channel]:
+    """Return the columns as channels with one row a sample."""
     clock = _clock(path, header, spool, count, rate_hz)
-    channels = {
+    return {
         name: on_clock(
             Channel(
                 name=name,
@@ -235,7 +246,3 @@ def _recording(
         for number, (name, unit) in enumerate(zip(header.names, header.units, strict=True))
         if number != header.time_column
     }
-    moved, epoch = from_second_zero(channels)
-    return Recording(
-        path=path, sha256=sha256_of(path), format=NAME, channels=moved, began=began or epoch, release=spool.close
-    )

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 from shaftprint.errors import RecordingError
@@ -101,7 +102,7 @@ def read_header(
             f'{where}: expected a column "time [s]", found "{"; ".join(titles)[:80]}"; '
             "name it so with columns=, or pass sample_rate_hz= (--columns and --sample-rate of shaftprint convert)."
         )
-    if time is not None and len(names) == 1:
+    if time is not None and len(names) == 1 and has_rate:
         raise RecordingError(f"{where}: expected a channel besides the time, found none.")
     decimal = decimal or _decimal(path, rows, delimiter, time if second is None else None)
     if decimal == delimiter:
@@ -124,6 +125,9 @@ def looks_like_a_table(lines: Sequence[str]) -> bool:
 
 def _layout(path: Path, lines: Sequence[str], delimiter: str | None, width: int) -> tuple[str, int]:
     """Return the delimiter and the number of lines before the first row of numbers, of which there are ``width``."""
+    lone = None if delimiter or width else _row_below_lone_time(lines)
+    if lone is not None:
+        return _MARKS[0], lone
     candidates = (delimiter,) if delimiter else _DELIMITERS
     places = {candidate: _first_row(lines, candidate, width) for candidate in candidates}
     for candidate, first in places.items():
@@ -147,6 +151,14 @@ def _layout(path: Path, lines: Sequence[str], delimiter: str | None, width: int)
             f'"{title.strip()[:80]}"; pass delimiter= (--delimiter of shaftprint convert).'
         )
     return delimiter or marks[0], 1
+
+
+def _row_below_lone_time(lines: Sequence[str]) -> int | None:
+    """Return the place of the first number of a column of times alone, below its title; nothing where there is none."""
+    for row, (title, line) in enumerate(pairwise(lines), start=1):
+        if _bare(title.lstrip("\ufeff").lstrip("#%").strip().strip('"')).lower() in _TIMES:
+            return row if _NUMBER.fullmatch(line.strip()) else None
+    return None
 
 
 def _expect_titles_above(path: Path, lines: Sequence[str], first: int, delimiter: str) -> None:

@@ -1,0 +1,135 @@
+"""Lists of edges: a row for each change of a level, as logic analysers write them, or the time of each pulse alone."""
+
+from pathlib import Path
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, IntArray
+from shaftprint.errors import RecordingError
+from shaftprint.recording._channel import Channel
+from shaftprint.recording._spool import Spool
+from shaftprint.recording.readers._clock import uniform_clock
+from shaftprint.recording.readers._edges import pulses_at
+from shaftprint.recording.readers.csv._header import Header
+
+PULSES = "pulses"
+"""Name of the channel of a file that holds times alone."""
+
+_BLOCK = 1_000_000
+# With fewer edges a file is a table of another kind.
+_FEWEST = 10
+# Samples stay on a level for longer than one row; of a list of edges so large a share of the rows changes something.
+_CHANGING = 0.9
+
+
+def edge_channels(path: Path, header: Header, spool: Spool, count: int) -> dict[str, Channel] | None:
+    """Return the channels of a list of edges, named as its columns; nothing where the file is none.
+
+    Columns of a list hold two levels, and the times are not those of a clock, or something changes with every row. A
+    column of times alone holds those of rising edges.
+
+    Parameters
+    ----------
+    path, header
+        The file and its titles.
+    spool
+        Its columns.
+    count
+        Number of rows.
+
+    Raises
+    ------
+    RecordingError
+        If times are missing or descend.
+    """
+    if header.time_column is None:
+        return None
+    columns = [column for column in range(len(header.names)) if column != header.time_column]
+    changes = []
+    for column in columns:
+        found = _changes(spool, column, count)
+        if found is None:
+            return None
+        changes.append(found)
+    times_alone = not columns
+    if not times_alone and not _are_edges(path, header, spool, count, changes):
+        return None
+    time_s = _times(path, header, spool, count)
+    if times_alone:
+        return {PULSES: _pulses_of(time_s)}
+    return {
+        header.names[column]: pulses_at(
+            header.names[column],
+            time_s[rows],
+            first_level=_first_level(spool, column, rows),
+            start_s=float(time_s[0]),
+            stop_s=float(time_s[-1]),
+        )
+        for column, rows in zip(columns, changes, strict=True)
+    }
+
+
+def _changes(spool: Spool, column: int, count: int) -> IntArray | None:
+    """Return the rows that differ from those before them; nothing where a column holds more than two values."""
+    read = spool.source(column)
+    rows: list[IntArray] = [np.empty(0, dtype=np.int64)]
+    levels: set[float] = set()
+    for start in range(0, count, _BLOCK):
+        values = read(max(start - 1, 0), min(start + _BLOCK, count))
+        # not a number is a value of its own each time
+        levels |= set(np.unique(values)[:3].tolist())
+        if len(levels) > 2 or not np.isfinite(values).all():
+            return None
+        rows.append(max(start, 1) + np.flatnonzero(np.diff(values)))
+    return np.concatenate(rows)
+
+
+def _are_edges(path: Path, header: Header, spool: Spool, count: int, changes: list[IntArray]) -> bool:
+    """Return whether columns of two levels are a list of edges, not samples."""
+    if max(rows.size for rows in changes) < _FEWEST:
+        return False
+    if np.unique(np.concatenate(changes)).size > _CHANGING * count:
+        return True
+    time = header.time_column or 0
+    try:
+        uniform_clock(path, header.names[time], count, spool.source(time))
+    except RecordingError:
+        return True
+    return False
+
+
+def _times(path: Path, header: Header, spool: Spool, count: int) -> FloatArray:
+    """Return the times of all rows [s]."""
+    time = header.time_column or 0
+    time_s: FloatArray = spool.source(time)(0, count)
+    where = f"{path}, column {header.names[time]}"
+    if count < _FEWEST:
+        raise RecordingError(f"{where}: expected the times of at least {_FEWEST} edges, found {count}.")
+    missing = np.flatnonzero(~np.isfinite(time_s))
+    if missing.size:
+        raise RecordingError(f"{where}: expected the times of edges, found none in row {missing[0] + 1}.")
+    earlier = np.flatnonzero(np.diff(time_s) < 0.0)
+    if earlier.size:
+        row = int(earlier[0]) + 1
+        raise RecordingError(
+            f"{where}: expected ascending times of edges, found {time_s[row]:.9g} s behind {time_s[row - 1]:.9g} s in "
+            f"row {row + 1}; cut the file there."
+        )
+    return time_s
+
+
+def _first_level(spool: Spool, column: int, changes: IntArray) -> int:
+    """Return the level of the first row: whether it is the higher one, or, of one that never changes, not zero."""
+    read = spool.source(column)
+    first = float(read(0, 1)[0])
+    other = float(read(int(changes[0]), int(changes[0]) + 1)[0]) if changes.size else 0.0
+    return int(first > other)
+
+
+def _pulses_of(time_s: FloatArray) -> Channel:
+    """Return pulses that rise at some times and fall half way to the next, or half of the usual time behind."""
+    apart = np.diff(time_s)
+    usual = float(np.median(apart))
+    high = 0.5 * np.minimum(np.append(apart, usual), usual)
+    edge_s: FloatArray = np.column_stack([time_s, time_s + high]).ravel()
+    return pulses_at(PULSES, edge_s, first_level=0, start_s=float(time_s[0]), stop_s=float(time_s[-1]))
