@@ -43,6 +43,7 @@ def test_flanks_stand_where_the_list_says(tmp_path, title):
         path.write_text(path.read_text(encoding="utf-8").replace(",", ";"), encoding="utf-8")
     with read_recording(path) as recording:
         (channel,) = recording.channels.values()
+        assert recording.format == "CSV, list of edges"
         assert (channel.name, channel.unit, channel.start_s) == ("Channel 0", "V", 0.0)
         assert set(np.round(channel.values(0, 20), 12)) == {0.0}
         # of a list to the nanosecond; samples are some 50 microseconds apart

@@ -3,11 +3,12 @@
 from pathlib import Path
 
 import click
+import numpy as np
 
 from shaftprint.cli._options import NAMES
 from shaftprint.cli._terminal import answer
 from shaftprint.cli.output import expect_no_input, print_tables
-from shaftprint.clocks import align, logger_clocks, merged
+from shaftprint.clocks import Alignment, ClockMap, align, logger_clocks, merged
 from shaftprint.recording import Recording, read_recording, write_recording
 from shaftprint.signals import Content, content_of
 from shaftprint.tables import clock_map_table
@@ -22,9 +23,13 @@ RATE_HZ = 50.0
 @click.argument("other", type=click.Path(path_type=Path))
 @click.option(
     "--shared",
-    required=True,
     metavar="CHANNEL=CHANNEL",
     help="The channel of REFERENCE and that of OTHER which show the same, such as PTM_e=EngineSpeed.",
+)
+@click.option(
+    "--same-clock",
+    is_flag=True,
+    help="In place of it: both count seconds from the same instant on one clock, as a counter card in the logger does.",
 )
 @click.option("--vessel", help=f"Vessel file, {NAMES} stan-tug-1205: says which channels hold pulses.")
 @click.option("--latency", "latency_ms", type=float, default=0.0, help="How late OTHER shows it [ms]; 0 by default.")
@@ -34,33 +39,47 @@ RATE_HZ = 50.0
 def command(
     reference: Path,
     other: Path,
-    shared: str,
+    shared: str | None,
     vessel: str | None,
     latency_ms: float,
     latency_std_ms: float,
     output: Path,
     *,
+    same_clock: bool,
     force: bool,
 ) -> None:
     """Bring the recordings of two loggers onto the clock of the first.
 
-    The offset and drift of OTHER's clock are found from a channel that both have logged. Samples are not moved: the
-    channels of OTHER get another start and rate in the file that is written.
+    The offset and drift of OTHER's clock are found from a channel that both have logged, unless they have one clock.
+    Samples are not moved: the channels of OTHER get another start and rate in the file that is written.
     """
     expect_no_input(output, reference, other)
+    if (shared is None) != same_clock:
+        raise click.UsageError("expected one of --shared and --same-clock.")
     ship = None if vessel is None else load_vessel(vessel)
-    names = _names(shared)
+    names = None if shared is None else _names(shared)
     with read_recording(reference) as still, read_recording(other) as moving:
-        alignment = align(
-            _content(moving, names[1], ship),
-            _content(still, names[0], ship),
-            latency_s=1e-3 * latency_ms,
-            latency_std_s=1e-3 * latency_std_ms,
-        )
+        if names is None:
+            alignment = _one_clock(moving)
+        else:
+            alignment = align(
+                _content(moving, names[1], ship),
+                _content(still, names[0], ship),
+                latency_s=1e-3 * latency_ms,
+                latency_std_s=1e-3 * latency_std_ms,
+            )
         both = merged(still, [(moving, alignment)])
         print_tables([clock_map_table(logger_clocks(both))])
         write_recording(output, both.channels.values(), attributes=both.attributes, overwrite=force)
     answer(output)
+
+
+def _one_clock(other: Recording) -> Alignment:
+    """Return the alignment of a logger that has the clock of the other."""
+    starts_s = [channel.start_s for channel in other.channels.values()]
+    stops_s = [channel.start_s + channel.duration_s for channel in other.channels.values()]
+    same = ClockMap(offset_s=0.0, drift=0.0, middle_s=0.0, covariance=np.zeros((2, 2)))
+    return Alignment(map=same, span_s=(min(starts_s), max(stops_s)))
 
 
 def _names(shared: str) -> tuple[str, str]:

@@ -224,7 +224,12 @@ def _recording(
     channels = _sampled(path, header, spool, count, rate_hz) if edges is None else edges
     moved, epoch = from_second_zero(channels)
     return Recording(
-        path=path, sha256=sha256_of(path), format=NAME, channels=moved, began=began or epoch, release=spool.close
+        path=path,
+        sha256=sha256_of(path),
+        format=NAME if edges is None else f"{NAME}, list of edges",
+        channels=moved,
+        began=began or epoch,
+        release=spool.close,
     )
 
 
