@@ -178,4 +178,7 @@ def test_after_a_first_test_its_numbers_noise_and_line_are_taken(run, demo, tmp_
     assert test.plan.ship.by_name["tau_dn"] == first.quantity("tau_dn").value
     assert test.plan.ship.covariance[place, place] == pytest.approx(first.quantity("tau_dn").std ** 2)
     assert test.plan.noise[0].frequency_hz[0] == first.noise[0].frequency_hz[0]
+    # one sample in a hundred of the tug's orders and noise is above 0.49 of the load
+    assert first.torque_ripple == pytest.approx(0.49, abs=0.05)
+    assert test.plan.limits.gauge.ripple == first.torque_ripple
     assert "noise of the first test" in " ".join(result.stdout.split())

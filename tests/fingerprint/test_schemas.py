@@ -36,13 +36,20 @@ def path(tmp_path):
 
 @pytest.fixture(scope="module")
 def of_legs(fingerprint):
-    return fingerprint.model_copy(update={"legs": LEGS, "noise": noise_spectra({1361.4: LEVELS})})
+    return fingerprint.model_copy(
+        update={"legs": LEGS, "noise": noise_spectra({1361.4: LEVELS}), "torque_ripple": 0.51}
+    )
 
 
 def write_changed(fingerprint, path, change):
     content = json.loads(fingerprint.model_dump_json())
     change(content)
     path.write_text(json.dumps(content), encoding="utf-8")
+
+
+def test_file_without_ripple_is_read(of_legs, path):
+    write_changed(of_legs, path, lambda content: content.pop("torque_ripple"))
+    assert read_fingerprint(path).torque_ripple is None
 
 
 def test_legs_and_noise_come_back_as_they_were(of_legs, path):
@@ -57,6 +64,7 @@ def test_legs_and_noise_come_back_as_they_were(of_legs, path):
     assert np.array_equal(levels.at([0.2]), LEVELS.at([0.2]))
     content = json.loads(path.read_text(encoding="utf-8"))
     assert content["schema_version"] == "2.0"
+    assert content["torque_ripple"] == 0.51
     assert content["noise"][0]["density_imaginary"][0] == [[0.0, 5e-7], [-5e-7, 0.0]]
 
 

@@ -1,7 +1,7 @@
 """What ``plan`` knows of a ship: from its vessel file, a first test, a recording, and what the user states."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import click
@@ -93,7 +93,7 @@ def knowledge_of(stated: Stated, *, steps: Steps) -> Knowledge:
     options = stated.options
     recorded = None if options.noise_from is None else _recorded(stated, steps)
     line = _line(stated, recorded)
-    limits = _limits(stated, line)
+    limits = _limits(stated, line, recorded)
     point_rpm, vessel_rpm = limits.engine_speed_rpm, stated.vessel.working_point.engine_speed_rpm
     shares = options.speeds
     # after a first test the working point is that of the test, at which its numbers are normalised
@@ -126,6 +126,8 @@ class _Recorded:
     """From volts to engine speed, about the vessel file's working point."""
     noise: Mapping[float, NoiseLevels]
     """Noise by engine speed [rpm]."""
+    torque_ripple: float | None
+    """Torque of orders and noise at the gauge over the load; None where it was not seen."""
 
 
 def _recorded(stated: Stated, steps: Steps) -> _Recorded:
@@ -140,7 +142,9 @@ def _recorded(stated: Stated, steps: Steps) -> _Recorded:
         slope_rpm_per_v=rpm_from_rev_s(slope),
         offset_v=(speed_rev_s - calibration.intercept_rev_s) / slope if slope else 0.0,
     )
-    return _Recorded(line=line, noise=noise_at_speeds(measurement, trial.campaign))
+    return _Recorded(
+        line=line, noise=noise_at_speeds(measurement, trial.campaign), torque_ripple=measurement.torque_ripple
+    )
 
 
 def _noise(stated: Stated, recorded: _Recorded | None) -> tuple[Mapping[float, NoiseLevels], str]:
@@ -171,7 +175,7 @@ def _line(stated: Stated, recorded: _Recorded | None) -> SetPointLine:
     return SetPointLine(slope_rpm_per_v=slope, offset_v=offset_v)
 
 
-def _limits(stated: Stated, line: SetPointLine) -> Limits:
+def _limits(stated: Stated, line: SetPointLine, recorded: _Recorded | None) -> Limits:
     set_point_rpm = set_point_rpm_of(stated.options.limits, line.slope_rpm_per_v)
     if set_point_rpm is None:
         raise click.UsageError(
@@ -181,6 +185,8 @@ def _limits(stated: Stated, line: SetPointLine) -> Limits:
     limits = limits_from_vessel(stated.vessel, set_point_rpm=set_point_rpm)
     if stated.first_test is not None:
         limits = limits_of_fingerprint(limits, stated.first_test, stated.vessel)
+    if recorded is not None and recorded.torque_ripple is not None and limits.gauge is not None:
+        limits = replace(limits, gauge=replace(limits.gauge, ripple=recorded.torque_ripple))
     return limits_with(limits, stated.options.limits)
 
 

@@ -5,7 +5,7 @@ from datetime import datetime
 from typing import Final, Literal, Self
 
 import numpy as np
-from pydantic import AwareDatetime, Field, model_validator
+from pydantic import AwareDatetime, Field, NonNegativeFloat, model_validator
 
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import ShipRole
@@ -109,6 +109,9 @@ class Fingerprint(Shown, Labelled, FrozenRecord):
     """Legs of the test that were fitted, in order of time; empty for a test of sines."""
     noise: tuple[NoiseSpectrum, ...] = ()
     """Noise under the test lines at each engine speed; empty where it was not measured."""
+    torque_ripple: NonNegativeFloat | None = None
+    """Torque of orders and noise at the gauge over the load, which one raw sample in a hundred passes; None where it
+    was not measured."""
     structure: str
     """Name of the model structure."""
     parameters: tuple[Quantity, ...]

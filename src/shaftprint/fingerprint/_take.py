@@ -58,6 +58,7 @@ def take_fingerprint(
     legs: Sequence[LegRecord] = (),
     reasons: Sequence[Reason] = (),
     noise: Sequence[NoiseSpectrum] = (),
+    torque_ripple: float | None = None,
 ) -> Fingerprint:
     """Return the fingerprint of an identified line.
 
@@ -75,6 +76,8 @@ def take_fingerprint(
         When the recording began, where that is known.
     legs, noise
         Legs that were fitted, and the noise at each speed, where they are known.
+    torque_ripple
+        What orders and noise put on top of the shaft torque over the load, where it was measured.
     reasons
         What else speaks against the fit, such as legs that do not belong to one model.
 
@@ -115,6 +118,7 @@ def take_fingerprint(
         conditions=conditions,
         legs=tuple(legs),
         noise=tuple(noise),
+        torque_ripple=torque_ripple,
         structure=identification.structure.name,
         parameters=tuple(reported.quantity(e) for e in identification.parameters),
         held={p.name: p.value for p in identification.structure.parameters if p.held},

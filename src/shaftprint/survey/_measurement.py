@@ -26,6 +26,7 @@ from shaftprint.spectra import (
 )
 from shaftprint.survey._legs import LegMeasurement, legs_of, structure_at
 from shaftprint.survey._progress import SILENT, Progress
+from shaftprint.survey._ripple import torque_ripple
 from shaftprint.survey._trial import Trial
 
 SINES = "sines"
@@ -50,6 +51,9 @@ class Measurement(Shown):
     """What every raw channel of the recording reaches, by its name."""
     began: datetime | None = None
     """When the recording began, where its file or its user says so."""
+    torque_ripple: float | None = None
+    """What orders of the shaft line and the noise of the gauge put on top of the shaft torque, over the load: one raw
+    sample in a hundred passes it; None where it was not seen."""
 
     @property
     def working_points(self) -> dict[str, WorkingPoint]:
@@ -75,6 +79,7 @@ def measure(
         watch = watch_levels(opened)
         signals = prepare_signals(watch.recording, trial.vessel, trial.campaign, mode=mode, progress=progress.reach)
         levels = watch.levels()
+        ripple = torque_ripple(opened, signals, trial)
     progress.begin("Measuring the test lines")
     method = ExactBin() if mode == "thesis" else WholePeriodSine()
     legs = legs_of(signals, trial.campaign)
@@ -98,6 +103,7 @@ def measure(
         further=further,
         levels=levels,
         began=began,
+        torque_ripple=ripple,
     )
 
 

@@ -209,6 +209,7 @@ def _fingerprint(
         legs=_fitted_legs(measurement, tests),
         reasons=reasons,
         noise=_measured_noise(measurement, trial),
+        torque_ripple=measurement.torque_ripple,
     )
 
 

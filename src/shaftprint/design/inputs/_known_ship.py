@@ -65,12 +65,18 @@ def ship_of_fingerprint(fingerprint: "Fingerprint", structure: "Structure") -> A
 
 
 def limits_of_fingerprint(limits: "Limits", fingerprint: "Fingerprint", vessel: "Vessel") -> "Limits":
-    """Return limits about the working point that a first test has measured, at which its numbers are normalised."""
-    gearbox, conditions = vessel.gearbox, fingerprint.conditions
+    """Return limits about the working point that a first test has measured, at which its numbers are normalised.
+
+    The gauge has the ripple that the test has shown, where it has shown one.
+    """
+    gearbox, conditions, gauge = vessel.gearbox, fingerprint.conditions, limits.gauge
+    if gauge is not None and fingerprint.torque_ripple is not None:
+        gauge = replace(gauge, ripple=fingerprint.torque_ripple)
     return replace(
         limits,
         engine_speed_rpm=conditions.engine_speed.value,
         brake_torque_nm=conditions.shaft_torque.value / (gearbox.ratio * gearbox.efficiency),
+        gauge=gauge,
     )
 
 

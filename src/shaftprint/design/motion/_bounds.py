@@ -68,11 +68,10 @@ def bounds_of_leg(limits: Limits, speed_share: float, noise: FloatArray) -> tupl
             weights = {signal: sign, "speed": -slope * speed_rpm / torque_nm}
             stated.append((name, weights, at_mean_nm / torque_nm - sign))
     bounds = tuple(_bound(name, weights, room, limits, noise, speed_rpm) for name, weights, room in stated)
-    return (
-        bounds
-        if limits.gauge is None
-        else (*bounds, *_bounds_of_gauge(limits.gauge, torque_nm, speed_rpm, min(step, high / speed_rpm - 1.0)))
-    )
+    if limits.gauge is None:
+        return bounds
+    fastest = min(step, high / speed_rpm - 1.0)
+    return (*bounds, *_bounds_of_gauge(limits.gauge, torque_nm, speed_rpm, fastest))
 
 
 def _bounds_of_gauge(gauge: GaugeRange, brake_torque_nm: float, speed_rpm: float, reach: float) -> tuple[Bound, Bound]:
