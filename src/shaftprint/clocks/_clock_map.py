@@ -62,7 +62,7 @@ class ClockMap:
     def applied(self, channel: "Channel") -> "Channel":
         """Return a channel of the other logger on the reference clock: the same samples, another start and rate."""
         start_s = self.reference_s(np.asarray(channel.start_s)).item()
-        return replace(channel, start_s=start_s, rate_hz=channel.rate_hz / (1.0 + self.drift))
+        return channel.on_other_clock(start_s=start_s, rate_hz=channel.rate_hz / (1.0 + self.drift))
 
     def then(self, following: "ClockMap") -> Self:
         """Return the map to the clock that a following map leads to; errors of the two are independent."""

@@ -3,6 +3,7 @@
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -18,6 +19,8 @@ from shaftprint.recording import CLOCK_MAPS, Channel, Recording
 OFF_GRID = 0.51
 # Clocks of parts that one logger wrote are the same to this.
 SAME_RATE = 1e-6
+# The period of a sender is known from its messages only.
+SAME_SENDER = 1e-2
 
 
 def merged(reference: Recording, others: Sequence[tuple[Recording, Alignment]]) -> Recording:
@@ -126,6 +129,8 @@ def joined(parts: Sequence[Recording], *, follow_on: bool = False) -> Recording:
 def _chain(parts: Sequence[tuple[Recording, Channel]], follow_on: bool) -> Channel:
     """Return one channel from its parts."""
     first = parts[0][1]
+    if any(channel.is_uneven for _, channel in parts):
+        return _chain_of_messages(parts, follow_on)
     counts = [first.count]
     for recording, channel in parts[1:]:
         _expect_same(recording, channel, first)
@@ -150,10 +155,43 @@ def _chain(parts: Sequence[tuple[Recording, Channel]], follow_on: bool) -> Chann
     return replace(first, count=int(edges[-1]), source=source)
 
 
-def _expect_same(recording: Recording, channel: Channel, first: Channel) -> None:
+def _chain_of_messages(parts: Sequence[tuple[Recording, Channel]], follow_on: bool) -> Channel:
+    """Return one channel of messages from its parts; what is missing between two parts is a hole."""
+    first = parts[0][1]
+    moved = [first]
+    for recording, channel in parts[1:]:
+        _expect_same(recording, channel, first, same_rate=SAME_SENDER)
+        ends_s = moved[-1].start_s + moved[-1].duration_s
+        start_s = ends_s if follow_on else channel.start_s
+        if start_s < ends_s - 1.0 / first.rate_hz:
+            raise ClockError(
+                f"{recording.path}, channel {channel.name}: expected it to begin after {ends_s:.4f} s, where the part "
+                f"before it ends, found {start_s:.4f} s; say that the parts follow on where each file begins at zero."
+            )
+        moved.append(channel.on_other_clock(start_s=start_s, rate_hz=channel.rate_hz))
+    edges = np.cumsum([0, *(channel.count for channel in moved)])
+
+    def pieces(of: str, start: int, stop: int) -> NDArray[Any]:
+        chosen = [
+            getattr(channel, of)(max(start - begin, 0), min(stop - begin, channel.count))
+            for begin, channel in zip(edges, moved, strict=False)
+            if begin < stop and begin + channel.count > start
+        ]
+        return np.concatenate(chosen) if chosen else getattr(first, of)(0, 0)
+
+    return replace(
+        first,
+        count=int(edges[-1]),
+        source=partial(pieces, "read"),
+        stamps=partial(pieces, "stamps_s"),
+        is_uneven=True,
+    )
+
+
+def _expect_same(recording: Recording, channel: Channel, first: Channel, same_rate: float = SAME_RATE) -> None:
     channel_format = (channel.unit, channel.scale, channel.offset, channel.read(0, 0).dtype)
     first_format = (first.unit, first.scale, first.offset, first.read(0, 0).dtype)
-    if channel_format != first_format or abs(channel.rate_hz / first.rate_hz - 1.0) > SAME_RATE:
+    if channel_format != first_format or abs(channel.rate_hz / first.rate_hz - 1.0) > same_rate:
         raise ClockError(
             f"{recording.path}, channel {channel.name}: expected {first.rate_hz:g} Hz, unit, scale and offset "
             f"{first_format[:3]} as in the part before it, found {channel.rate_hz:g} Hz and {channel_format[:3]}; "

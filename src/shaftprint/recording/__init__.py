@@ -5,7 +5,7 @@ quantity              unit     meaning
 ===================== ======== ====================================================================
 counts                1        what the logger stored, int16 or float64
 value                 ``unit`` ``counts * scale + offset``, in the unit that the file gives
-time                  s        ``start_s + sample / rate_hz`` on the channel's own clock
+time                  s        ``start_s + sample / rate_hz`` on the channel's own clock; of messages as the file has it
 rate                  Hz       samples a second of one channel
 ===================== ======== ====================================================================
 
@@ -17,6 +17,7 @@ from shaftprint.recording._cut import cut
 from shaftprint.recording._from_arrays import Samples, recording_from_arrays
 from shaftprint.recording._level_watch import LevelWatch, watch_levels
 from shaftprint.recording._levels import Levels
+from shaftprint.recording._messages import Messages, judge_messages, messages_of
 from shaftprint.recording._read import read_recording
 from shaftprint.recording._recording import CLOCK_MAPS, Recording
 from shaftprint.recording._write import write_recording
@@ -41,6 +42,7 @@ __all__ = [
     "ClockJump",
     "LevelWatch",
     "Levels",
+    "Messages",
     "Reader",
     "ReaderFunction",
     "Recording",
@@ -48,6 +50,8 @@ __all__ = [
     "Samples",
     "cut",
     "expect_known_ending",
+    "judge_messages",
+    "messages_of",
     "read_recording",
     "recording_from_arrays",
     "watch_levels",

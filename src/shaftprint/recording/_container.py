@@ -6,6 +6,15 @@ FORMAT = "shaftprint recording"
 VERSION = 1
 """Root attribute ``format_version``; a reader refuses later ones."""
 
+VERSION_WITH_TIMES = 2
+"""Version of a file in which a channel has times of its own."""
+
+TIMES = "times"
+"""Attribute of such a channel: name of the data set with its times [s]."""
+
+UNEVEN = "is_uneven"
+"""Attribute of such a channel: 1 where its samples lie at those times alone, on no clock."""
+
 GROUP = "channels"
 """The group that holds one data set a channel."""
 

@@ -68,4 +68,4 @@ def _cut_channel(recording: Recording, channel: Channel, from_s: float | None, t
 
 def _samples_before(channel: Channel, time_s: float) -> int:
     """Return the number of samples before a time; a sample at it is not before."""
-    return math.ceil((time_s - channel.start_s) * channel.rate_hz - _ROUNDING)
+    return math.ceil(channel.sample_at(time_s) - _ROUNDING)

@@ -43,7 +43,7 @@ class Recording(Shown):
     def summary(self) -> Summary:
         """Return file, format, date and channels, each with its unit, rate and length."""
         channels = {
-            name: f"{one.unit}, {one.rate_hz:g} Hz, {one.count / one.rate_hz:,.1f} s from {one.start_s:g} s"
+            name: f"{one.unit}, {one.rate_hz:g} Hz, {one.duration_s:,.1f} s from {one.start_s:g} s"
             for name, one in self.channels.items()
         }
         facts = {

@@ -48,10 +48,12 @@ def write_recording(
                 offset=channel.offset,
                 long_name=channel.long_name,
                 dtype="int16" if is_counts else "float64",
+                times="by rate" if channel.stamps is None else "uneven" if channel.is_uneven else "beside the rate",
             )
         # block by block, not channel by channel: some formats keep all channels of a moment in one record
         for start in range(0, max((channel.count for channel in written), default=0), CHUNK_SAMPLES):
             for channel in written:
                 stop = min(start + CHUNK_SAMPLES, channel.count)
                 if start < stop:
-                    writer.append(channel.name, channel.read(start, stop))
+                    time_s = None if channel.stamps is None else channel.stamps_s(start, stop)
+                    writer.append(channel.name, channel.read(start, stop), time_s)

@@ -10,11 +10,12 @@ from typing import Any, Literal, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.files import written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._channel_writer import ChannelWriter
-from shaftprint.recording._container import FORMAT, GROUP, VERSION
+from shaftprint.recording._container import FORMAT, GROUP, VERSION, VERSION_WITH_TIMES
 from shaftprint.recording._hdf5_output import Hdf5Output
 from shaftprint.recording._seal import add_seal
 
@@ -117,6 +118,7 @@ class RecordingWriter:
         offset: float = 0.0,
         long_name: str = "",
         dtype: Literal["int16", "float64"] = "int16",
+        times: Literal["by rate", "beside the rate", "uneven"] = "by rate",
     ) -> None:
         """Announce a channel before its first samples.
 
@@ -136,6 +138,9 @@ class RecordingWriter:
             What the channel is, in words.
         dtype
             ``float64`` for values that never were counts; scale 1 and offset 0 then.
+        times
+            Whether the samples lie on the clock of the rate, have times of their own near it too, or have those alone,
+            as messages on a bus do.
 
         Raises
         ------
@@ -154,14 +159,18 @@ class RecordingWriter:
             offset=offset,
             long_name=long_name,
             source=lambda start, stop: np.zeros(0, dtype=dtype),
+            stamps=None if times == "by rate" else lambda start, stop: np.zeros(0),
+            is_uneven=times == "uneven",
         )
         try:
             with self._output.calls():
+                if channel.stamps is not None:
+                    self._output.file.attrs.modify("format_version", VERSION_WITH_TIMES)
                 self._open[name] = ChannelWriter(self._output.file[GROUP], channel, np.dtype(dtype))
         except OSError as error:
             raise self._cannot_be_written(error) from None
 
-    def append(self, name: str, counts: NDArray[Any]) -> None:
+    def append(self, name: str, counts: NDArray[Any], time_s: FloatArray | None = None) -> None:
         """Add samples to a channel.
 
         Parameters
@@ -170,11 +179,14 @@ class RecordingWriter:
             A declared channel.
         counts
             Raw counts of its type, shape (samples,), any number of them.
+        time_s
+            Their times [s], shape (samples,), where it was declared to have its own.
 
         Raises
         ------
         RecordingError
-            If the channel was not declared, the counts are of another type, or the disk is full.
+            If the channel was not declared, the counts are of another type, times are missing or too many, or the disk
+            is full.
         """
         if name not in self._open:
             raise RecordingError(
@@ -186,9 +198,15 @@ class RecordingWriter:
                 f"{self._path}, channel {name}: expected a vector of {channel.dtype}, "
                 f"found {counts.dtype} of shape {counts.shape}."
             )
+        if channel.has_times != (time_s is not None) or (time_s is not None and time_s.shape != counts.shape):
+            expected = f"{counts.size} times" if channel.has_times else "no times, as it was declared,"
+            raise RecordingError(
+                f"{self._path}, channel {name}: expected {expected} for {counts.size} samples, "
+                f"found {'none' if time_s is None else time_s.size}."
+            )
         try:
             with self._output.calls():
-                channel.append(counts)
+                channel.append(counts, time_s)
         except OSError as error:
             raise self._cannot_be_written(error) from None
 

@@ -165,6 +165,8 @@ class MessageSignal(ChannelSignal):
     """Step of the channel, in the unit of the quantity."""
     gaps: tuple[Gap, ...] = ()
     """Where nothing was available for long, in order of time; straight lines there."""
+    times: FloatArray | None = None
+    """Time of each value [s], the known latency taken off, shape (samples,); None where rate and start say it."""
 
     @property
     def coverage(self) -> Coverage:
@@ -174,4 +176,13 @@ class MessageSignal(ChannelSignal):
     @property
     def stop_s(self) -> float:
         """Time after the last value, each counted with its period, in seconds of the recording."""
+        if self.times is not None:
+            return float(self.times[-1]) + 1.0 / self.rate_hz
         return self.start_s + self.values.size / self.rate_hz
+
+    @property
+    def time_s(self) -> FloatArray:
+        """Time of each value, in seconds of the recording, shape (samples,)."""
+        if self.times is not None:
+            return self.times
+        return self.start_s + np.arange(self.values.size) / self.rate_hz

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.errors import SignalError
+from shaftprint.recording import judge_messages
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel, Recording
@@ -22,7 +23,13 @@ _SPOT_SAMPLES = 65_536
 
 
 def find_channel(
-    recording: "Recording", name: str, *, unit: str, use: str, way_out: str = "correct the name there"
+    recording: "Recording",
+    name: str,
+    *,
+    unit: str,
+    use: str,
+    way_out: str = "correct the name there",
+    takes_messages: bool = False,
 ) -> "Channel":
     """Return a channel that holds samples in the expected unit.
 
@@ -38,11 +45,13 @@ def find_channel(
         What the channel is needed for, in words.
     way_out
         What to do where the channel is missing, in words.
+    takes_messages
+        Whether messages at times of their own will do.
 
     Raises
     ------
     SignalError
-        If the channel is missing, empty, or in another unit.
+        If the channel is missing, empty, in another unit, or on no clock where it has to be.
     """
     if name not in recording.channels:
         raise SignalError(
@@ -62,7 +71,31 @@ def find_channel(
         )
     if channel.count == 0:
         raise SignalError(f"{recording.path}, channel {name}: expected samples, found none.")
+    if not takes_messages:
+        expect_one_clock(channel, f"the {use}")
     return channel
+
+
+def expect_one_clock(channel: "Channel", use: str) -> None:
+    """Refuse messages at times of their own where a filter needs samples at one rate.
+
+    Parameters
+    ----------
+    channel
+        The channel.
+    use
+        What it is needed for, in words.
+
+    Raises
+    ------
+    SignalError
+        If its samples lie on no clock.
+    """
+    if channel.is_uneven:
+        raise SignalError(
+            f"channel {channel.name}: expected samples at one rate for {use}, found "
+            f"{judge_messages(channel).sentence}; log it at one rate, or resample the file."
+        )
 
 
 def blocks(channel: "Channel", block_samples: int, advance: Advance | None = None) -> Iterator[Counts]:

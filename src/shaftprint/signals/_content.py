@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
-from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, blocks
+from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES, blocks, expect_one_clock
 from shaftprint.signals._gaps import joined
 from shaftprint.signals.conditioning import SampleGrid, conditioned, fault_limits
 from shaftprint.signals.kinds import read_pick_up, speed_channel
@@ -59,9 +59,14 @@ def content_of(channel: "Channel", sensor: "SpeedSensor | None" = None, *, rate_
     if sensor is not None and sensor.gives_angle:
         channel, sensor = speed_channel(channel, sensor), None
     pulses = sensor if sensor is not None and sensor.gives_pulses else None
-    if pulses is None and channel.rate_hz <= rate_hz:
+    if pulses is not None:
+        expect_one_clock(channel, "pulses")
+    if pulses is None and (channel.is_uneven or channel.rate_hz <= rate_hz):
         counts = np.concatenate(list(blocks(channel, DEFAULT_BLOCK_SAMPLES))).astype(np.float64)
-        values, rate_hz = joined(counts) * channel.scale + channel.offset, channel.rate_hz
+        values, rate_hz = joined(counts) * channel.scale + channel.offset, min(channel.rate_hz, rate_hz)
+        if channel.is_uneven:
+            even_s = channel.start_s + np.arange(int(channel.duration_s * rate_hz)) / rate_hz
+            values = np.interp(even_s, channel.time_s(0, channel.count), values)
     elif pulses is None:
         step = channel.rate_hz / rate_hz
         grid = SampleGrid(first=0.0, step=step, count=int((channel.count - 1) / step) + 1)

@@ -176,8 +176,7 @@ class Signals(Shown, Labelled):
             clock = "time_s"
             if isinstance(one, MessageSignal):
                 clock = f"time_of_{name}_s"
-                message_s = one.start_s + np.arange(one.values.size) / one.rate_hz
-                coordinates[clock] = Variable(dims=(clock,), values=message_s, unit="s", meaning=f"time of {name}")
+                coordinates[clock] = Variable(dims=(clock,), values=one.time_s, unit="s", meaning=f"time of {name}")
             unit, meaning = _UNITS.get(name, ("rev/s", "speed") if isinstance(one, SpeedSignal) else ("", name))
             variables[name] = Variable(
                 dims=(clock,), values=one.values, unit=unit, meaning=f"{meaning}, channel {one.channel}"

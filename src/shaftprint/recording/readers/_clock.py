@@ -1,16 +1,14 @@
-"""Finding one uniform clock in a column of times, and the places where it has holes or jumps."""
+"""Finding one uniform clock in a column of times, with holes or jumps in it, or the period of who sends as it likes."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from shaftprint.arrays import FloatArray, IntArray
 from shaftprint.errors import RecordingError
-from shaftprint.recording._channel import Channel, ClockJump
+from shaftprint.recording._channel import Channel, ClockJump, Times
 
 _BLOCK = 1_000_000
 
@@ -22,6 +20,12 @@ _STEP_TOLERANCE = 0.5
 _MOST_HOLES, _MOST_HOLES_SHARE = 3, 1e-3
 # A hole is whole samples long to this part of a step, where times are printed exactly.
 _WHOLE = 0.02
+
+# Times that are off the clock by more than this part of a step, and by more than their printing explains, are kept.
+_JITTER, _BY_PRINTING = 0.02, 1.5
+_MOST_DECIMALS, _PRINTED = 6, 1e-3
+# With fewer times a sender is not known; of one, most steps are near its period.
+_FEWEST_MESSAGES, _MOST_NEAR = 100, 0.5
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -46,33 +50,104 @@ class SampleClock:
     """Time of the first sample [s]."""
     holes: tuple[Hole, ...] = ()
     """Where samples are missing or the clock jumps, in order of time."""
+    stamps: Times | None = None
+    """Gives the times of the rows [start, stop) [s], where they say more than the rate."""
+    is_uneven: bool = False
+    """Whether the times are those of messages, which lie on no clock; the rate is then that of their sender."""
 
 
 def on_clock(channel: Channel, clock: SampleClock) -> Channel:
     """Return a channel with its rows at their places on the clock: values that are not numbers fill the holes."""
     if not clock.holes:
-        return channel
+        return replace(channel, stamps=clock.stamps, is_uneven=clock.is_uneven)
     rows = np.array([0, *(hole.row for hole in clock.holes), channel.count])
     before = np.cumsum([0, *(hole.missing for hole in clock.holes)])
 
-    def read(start: int, stop: int) -> NDArray[Any]:
+    def spread(of_rows: Times, start: int, stop: int) -> FloatArray:
         values = np.full(stop - start, np.nan)
         for first, last, shift in zip(rows[:-1].tolist(), rows[1:].tolist(), before.tolist(), strict=True):
             begin, end = max(start - shift, first), min(stop - shift, last)
             if begin < end:
-                values[begin + shift - start : end + shift - start] = channel.values(begin, end)
+                values[begin + shift - start : end + shift - start] = of_rows(begin, end)
         return values
 
+    stamps = clock.stamps
     jumps = tuple(
         ClockJump(sample=hole.row + int(shift), jump_s=hole.jump_s)
         for hole, shift in zip(clock.holes, before[1:], strict=True)
         if hole.jump_s != 0.0
     )
     count = channel.count + int(before[-1])
-    return replace(channel, count=count, source=read, scale=1.0, offset=0.0, clock_jumps=jumps)
+    return replace(
+        channel,
+        count=count,
+        source=partial(spread, channel.values),
+        scale=1.0,
+        offset=0.0,
+        clock_jumps=jumps,
+        stamps=None if stamps is None else partial(spread, stamps),
+    )
 
 
-def uniform_clock(path: Path, name: str, count: int, read: Callable[[int, int], FloatArray]) -> SampleClock:
+def clock_of_times(path: Path, name: str, count: int, read: Times) -> SampleClock:
+    """Return the clock of a column of times, or the times themselves where they are those of messages.
+
+    A bus, a network or a program that polls passes values on about when their sender likes. Where such times stay
+    within half a step of a clock, the clock is returned with the times beside it; where they do not, the times with
+    the period of their sender, the mean of the steps that are near the median.
+
+    Parameters
+    ----------
+    path, name, count, read
+        As for `uniform_clock`.
+
+    Raises
+    ------
+    RecordingError
+        If the times are neither those of a clock nor those of messages: they go back, or have no usual step.
+    """
+    try:
+        clock, off_s = _uniform_clock(path, name, count, read)
+    except RecordingError:
+        messages = _message_clock(count, read)
+        if messages is None:
+            raise
+        return messages
+    printed_s = _BY_PRINTING * _printed_step(read(0, min(count, 1000))) / np.sqrt(12.0)
+    return replace(clock, stamps=read) if off_s > max(_JITTER / clock.rate_hz, printed_s) else clock
+
+
+def _message_clock(count: int, read: Times) -> SampleClock | None:
+    """Return what is known of times that lie on no clock; nothing where they are no messages of one sender."""
+    if count < _FEWEST_MESSAGES:
+        return None
+    step = float(np.median(np.diff(read(0, min(count, _BLOCK)))))
+    if not step > 0.0:
+        return None
+    near, seconds = 0, 0.0
+    for start in range(0, count - 1, _BLOCK):
+        steps = np.diff(read(start, min(start + _BLOCK + 1, count)))
+        # written so that a time that is not a number counts as wrong
+        if not np.all(steps >= 0.0):
+            return None
+        usual = np.abs(steps - step) <= _STEP_TOLERANCE * step
+        near, seconds = near + int(np.count_nonzero(usual)), seconds + float(steps[usual].sum())
+    first, last = float(read(0, 1)[0]), float(read(count - 1, count)[0])
+    if near < _MOST_NEAR * (count - 1) or (last - first) * near > 2.0 * count * seconds:
+        return None
+    return SampleClock(rate_hz=float(f"{near / seconds:.6g}"), start_s=first, stamps=read, is_uneven=True)
+
+
+def _printed_step(times: FloatArray) -> float:
+    """Return the last decimal with which times are printed [s]; 0 where they have more than six."""
+    for decimals in range(_MOST_DECIMALS + 1):
+        places = times * 10.0**decimals
+        if np.all(np.abs(places - np.rint(places)) < _PRINTED):
+            return 10.0**-decimals
+    return 0.0
+
+
+def uniform_clock(path: Path, name: str, count: int, read: Times) -> SampleClock:
     """Return the clock of a column of times, which must be uniform but for a few holes.
 
     The rate is the number of steps over the whole time, rounded to nine digits because printed times are
@@ -93,6 +168,12 @@ def uniform_clock(path: Path, name: str, count: int, read: Callable[[int, int], 
         If there are fewer than two times, or steps are not the others' at more places than a logger loses data at;
         the message names the row.
     """
+    clock, _ = _uniform_clock(path, name, count, read)
+    return clock
+
+
+def _uniform_clock(path: Path, name: str, count: int, read: Times) -> tuple[SampleClock, float]:
+    """Return the clock, and the standard deviation of the times about it [s]."""
     if count < 2:
         raise RecordingError(f"{path}, {name}: expected at least 2 rows of times, found {count}.")
     first, last = float(read(0, 1)[0]), float(read(count - 1, count)[0])
@@ -107,21 +188,25 @@ def uniform_clock(path: Path, name: str, count: int, read: Callable[[int, int], 
     missing = np.cumsum([0, *(hole.missing for hole in holes)])
     jumped = np.cumsum([0.0, *(hole.jump_s for hole in holes)])
     mean_step = (last - float(jumped[-1]) - first) / (count - 1 + int(missing[-1]))
+    squares = total = 0.0
     for start in range(0, count, _BLOCK):
         stop = min(start + _BLOCK, count)
         row = np.arange(start, stop)
         stretch = np.searchsorted(rows, row, side="right") - 1 if holes else np.zeros(row.size, dtype=np.intp)
-        off = np.abs(read(start, stop) - jumped[stretch] - (first + mean_step * (row + missing[stretch])))
+        away = read(start, stop) - jumped[stretch] - (first + mean_step * (row + missing[stretch]))
+        squares, total = squares + float(away @ away), total + float(away.sum())
+        off = np.abs(away)
         worst = int(np.argmax(off))
         if off[worst] > _STEP_TOLERANCE * mean_step:
             raise RecordingError(
                 f"{path}, {name}: expected a uniform clock, found row {start + worst + 1} off by {off[worst]:g} s; "
                 "the sample rate changes within the file."
             )
-    return SampleClock(rate_hz=float(f"{1.0 / mean_step:.9g}"), start_s=first, holes=holes)
+    clock = SampleClock(rate_hz=float(f"{1.0 / mean_step:.9g}"), start_s=first, holes=holes)
+    return clock, float(np.sqrt(max(squares / count - (total / count) ** 2, 0.0)))
 
 
-def _holes(path: Path, name: str, count: int, read: Callable[[int, int], FloatArray], step: float) -> tuple[Hole, ...]:
+def _holes(path: Path, name: str, count: int, read: Times, step: float) -> tuple[Hole, ...]:
     """Return the places where a step is not the others'.
 
     Raises
@@ -152,7 +237,7 @@ def _holes(path: Path, name: str, count: int, read: Callable[[int, int], FloatAr
     return tuple(holes)
 
 
-def _odd_steps(count: int, read: Callable[[int, int], FloatArray], step: float) -> tuple[IntArray, FloatArray]:
+def _odd_steps(count: int, read: Times, step: float) -> tuple[IntArray, FloatArray]:
     """Return the rows before which a step is not the others', and those steps [s]."""
     rows, jumps = [np.empty(0, dtype=np.int64)], [np.empty(0)]
     for start in range(0, count - 1, _BLOCK):

@@ -1,7 +1,6 @@
 """Clocks that count from 1970, brought to the beginning of the recording."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
 from shaftprint.recording._channel import Channel
@@ -25,7 +24,9 @@ def from_second_zero(channels: Mapping[str, Channel]) -> tuple[dict[str, Channel
     first = min(starts)
     began = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(seconds=first) if first < _LATEST_S else None
     moved = {
-        name: replace(channel, start_s=channel.start_s - first) if channel.start_s >= first else channel
+        name: channel.on_other_clock(start_s=channel.start_s - first, rate_hz=channel.rate_hz)
+        if channel.start_s >= first
+        else channel
         for name, channel in channels.items()
     }
     return moved, began

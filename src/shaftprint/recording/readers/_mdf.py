@@ -14,7 +14,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers._clock import SampleClock, on_clock, uniform_clock
+from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
@@ -155,7 +155,7 @@ def _clock(path: Path, file: Any, group: int, rate_hz: float | None) -> SampleCl
         return np.asarray(times, dtype=np.float64)
 
     with told_as_damage(path, NAME):
-        return uniform_clock(path, f"master {channel.name}", count, read)
+        return clock_of_times(path, f"master {channel.name}", count, read)
 
 
 def _channel(
@@ -186,7 +186,9 @@ def _channel(
                 raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are missing; is the file cut?")
             if is_counts:
                 return np.ascontiguousarray(values, dtype=np.int16)
-            numbers = np.array(values, dtype=np.float64)
+            # a copy into a new array: the library's type of numbers carries the conversion, and would apply it again
+            numbers = np.empty(len(values))
+            numbers[:] = values
             if invalid is not None:
                 numbers[np.asarray(invalid, dtype=bool)] = np.nan
             return numbers

@@ -1,5 +1,6 @@
 """The native container: HDF5 laid out as NetCDF-4, counts in int16, each channel on its own clock."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -7,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from shaftprint.errors import RecordingError
-from shaftprint.recording._channel import Channel
-from shaftprint.recording._container import FORMAT, GROUP, OWN, VERSION
+from shaftprint.recording._channel import Channel, Times
+from shaftprint.recording._container import CHUNK_SAMPLES, FORMAT, GROUP, OWN, TIMES, UNEVEN, VERSION_WITH_TIMES
 from shaftprint.recording._recording import Recording
 from shaftprint.recording._seal import has_seal, hashed
 from shaftprint.recording.readers._damage import told_as_damage
@@ -56,14 +57,15 @@ def _recording(path: Path, file: Any, sha256: str) -> Recording:
     if file.attrs.get("format") != FORMAT:
         raise RecordingError(f'{path}: expected the attribute format "{FORMAT}", found another; is the file damaged?')
     version = int(file.attrs.get("format_version", 0))
-    if version != VERSION:
+    if not 1 <= version <= VERSION_WITH_TIMES:
         raise RecordingError(
-            f"{path}: expected version {VERSION} of the {FORMAT} format, found {version}; use a later shaftprint."
+            f"{path}: expected version 1 to {VERSION_WITH_TIMES} of the {FORMAT} format, found {version}; use a later "
+            "shaftprint."
         )
     if GROUP not in file:
         raise RecordingError(f'{path}: expected a group "{GROUP}", found none.')
     channels = {
-        name: _channel(path, name, dataset)
+        name: _channel(path, name, dataset, file[GROUP])
         for name, dataset in file[GROUP].items()
         if "sample_rate_hz" in dataset.attrs
     }
@@ -85,7 +87,7 @@ def _facts(attributes: Any) -> dict[str, str | float]:
     return texts | numbers
 
 
-def _channel(path: Path, name: str, dataset: Any) -> Channel:
+def _channel(path: Path, name: str, dataset: Any, group: Any) -> Channel:
     attributes = dataset.attrs
     needed = ["units", "sample_rate_hz", "start_s"]
     if dataset.dtype.kind == "i":
@@ -103,16 +105,6 @@ def _channel(path: Path, name: str, dataset: Any) -> Channel:
             "write it as numbers, or leave it out."
         )
     expect_storage(path, name, dataset)
-
-    def source(start: int, stop: int) -> NDArray[Any]:
-        if not dataset:
-            raise RecordingError(f"{path}, channel {name}: the recording has been closed already.")
-        try:
-            counts: NDArray[Any] = dataset[start:stop]
-        except (OSError, RuntimeError) as error:
-            raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are damaged ({error}).") from None
-        return counts
-
     return Channel(
         name=name,
         unit=str(attributes["units"]),
@@ -122,5 +114,47 @@ def _channel(path: Path, name: str, dataset: Any) -> Channel:
         scale=float(attributes.get("scale_factor", 1.0)),
         offset=float(attributes.get("add_offset", 0.0)),
         long_name=str(attributes.get("long_name", "")),
-        source=source,
+        source=_source(path, name, dataset),
+        stamps=_times(path, name, dataset, group),
+        is_uneven=bool(attributes.get(UNEVEN, 0)),
     )
+
+
+def _source(path: Path, name: str, dataset: Any) -> Callable[[int, int], NDArray[Any]]:
+    def source(start: int, stop: int) -> NDArray[Any]:
+        if not dataset:
+            raise RecordingError(f"{path}, channel {name}: the recording has been closed already.")
+        try:
+            counts: NDArray[Any] = dataset[start:stop]
+        except (OSError, RuntimeError) as error:
+            raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are damaged ({error}).") from None
+        return counts
+
+    return source
+
+
+def _times(path: Path, name: str, dataset: Any, group: Any) -> Times | None:
+    """Return what gives the times of a channel that has its own; they never go back.
+
+    Raises
+    ------
+    RecordingError
+        If they are missing, or not one for each sample.
+    """
+    stated = dataset.attrs.get(TIMES)
+    if stated is None:
+        return None
+    times = group.get(str(stated))
+    if times is None or getattr(times, "shape", None) != dataset.shape or times.dtype.kind != "f":
+        found = "none" if times is None else f"shape {getattr(times, 'shape', None)}"
+        raise RecordingError(
+            f"{path}, channel {name}: expected {dataset.size} times in {stated}, found {found}; is the file damaged?"
+        )
+    expect_storage(path, str(stated), times)
+    source = _source(path, str(stated), times)
+    for start in range(0, dataset.size, CHUNK_SAMPLES):
+        if not np.all(np.diff(source(start, min(start + CHUNK_SAMPLES + 1, dataset.size))) >= 0.0):
+            raise RecordingError(
+                f"{path}, channel {name}: expected times that never go back, found others; is the file damaged?"
+            )
+    return source

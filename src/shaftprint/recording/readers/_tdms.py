@@ -13,7 +13,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers._clock import SampleClock, on_clock, uniform_clock
+from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._extra import library
 from shaftprint.recording.readers._gather import Gathered, unique_names
@@ -122,7 +122,7 @@ def _clock(path: Path, channel: Any, time: Any, rate_hz: float | None, began: np
             start += float((start_time - began) / np.timedelta64(1, "us")) * 1e-6
         return SampleClock(rate_hz=float(f"{1.0 / increment:.12g}"), start_s=start)
     if time is not None and len(time) == len(channel):
-        clock = uniform_clock(path, f"channel {time.name}", len(time), lambda start, stop: _times(time, start, stop))
+        clock = clock_of_times(path, f"channel {time.name}", len(time), lambda start, stop: _times(time, start, stop))
         is_date = np.dtype(time.dtype).kind == "M"
         return replace(clock, start_s=0.0) if is_date else clock
     if rate_hz is not None:

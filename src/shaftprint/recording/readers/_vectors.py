@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Source
-from shaftprint.recording.readers._clock import SampleClock, on_clock, uniform_clock
+from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._gather import Gathered, unique_names
 from shaftprint.recording.readers._units import seconds_in
 from shaftprint.units import plain_unit
@@ -123,6 +123,8 @@ def _clock(
         clock_key = (time.group, time.name)
         if clock_key not in clocks:
             clocks[clock_key] = _clock_of_times(path, time)
+        if clocks[clock_key].is_uneven:
+            return clocks[clock_key]
         rates[time.name], starts = clocks[clock_key].rate_hz, [clocks[clock_key].start_s]
     attributes = {key.lower(): value for key, value in vector.attributes.items() if isinstance(value, int | float)}
     for source in (attributes, scalars.get(vector.group, {}), scalars.get("", {})):
@@ -142,8 +144,10 @@ def _clock(
         listed = ", ".join(f"{name} {value:g} Hz" for name, value in rates.items())
         raise RecordingError(f"{path}: expected one sample rate, found {listed}.")
     starts += [float(group[key]) for group in (scalars.get("", {}),) for key in _STARTS if key in group]
-    holes = () if time is None else clocks[(time.group, time.name)].holes
-    return SampleClock(rate_hz=rate, start_s=starts[0] if starts else 0.0, holes=holes)
+    start_s = starts[0] if starts else 0.0
+    if time is None:
+        return SampleClock(rate_hz=rate, start_s=start_s)
+    return replace(clocks[(time.group, time.name)], rate_hz=rate, start_s=start_s)
 
 
 def _said(path: Path, source: Mapping[str, object]) -> dict[str, float]:
@@ -196,7 +200,7 @@ def _clock_of_times(path: Path, time: Vector) -> SampleClock:
     def read(start: int, stop: int) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
         return time.source(start, stop).astype(np.float64) * scale + factor * time.offset
 
-    return uniform_clock(path, f"variable {time.name}", time.count, read)
+    return clock_of_times(path, f"variable {time.name}", time.count, read)
 
 
 def _seconds(time: Vector) -> float | None:

@@ -35,9 +35,11 @@ def write_mdf4(path: str | Path, channels: Iterable[Channel], *, overwrite: bool
     """
     path = Path(path)
     asammdf = library(path, "asammdf", "MDF")
-    groups: dict[tuple[float, float, int], list[Channel]] = {}
-    for channel in channels:
-        groups.setdefault((channel.rate_hz, channel.start_s, channel.count), []).append(channel)
+    groups: dict[tuple[object, ...], list[Channel]] = {}
+    for number, channel in enumerate(channels):
+        clock = (channel.rate_hz, channel.start_s, channel.count)
+        # times of its own are written for each channel: whether two share theirs would have to be read
+        groups.setdefault(clock if channel.stamps is None else (*clock, number), []).append(channel)
     try:
         with written_whole(path, overwrite=overwrite) as part:
             file = asammdf.MDF(version=_VERSION)
@@ -58,11 +60,11 @@ def write_mdf4(path: str | Path, channels: Iterable[Channel], *, overwrite: bool
 def _append(asammdf: Any, file: Any, number: int, group: list[Channel]) -> None:
     count = group[0].count
     first = min(CHUNK_SAMPLES, count)
-    times = group[0].time_s(0, first)
+    times = group[0].stamps_s(0, first)
     file.append([_signal(asammdf, channel, first, times) for channel in group], comment="shaftprint")
     for start in range(first, count, CHUNK_SAMPLES):
         stop = min(start + CHUNK_SAMPLES, count)
-        columns = [group[0].time_s(start, stop), *(channel.read(start, stop) for channel in group)]
+        columns = [group[0].stamps_s(start, stop), *(channel.read(start, stop) for channel in group)]
         file.extend(number, [(column, None) for column in columns])
 
 

@@ -18,6 +18,12 @@ def on_one_clock(path: Path, channels: Iterable[Channel]) -> tuple[Channel, ...]
     shared = tuple(channels)
     if not shared:
         raise RecordingError(f"{path}: expected at least one channel to write, found none.")
+    uneven = next((channel for channel in shared if channel.is_uneven), None)
+    if uneven is not None:
+        raise RecordingError(
+            f"{path}: expected channels on one clock, found messages at times of their own in {uneven.name}; "
+            "write .nc or .mf4, which keep them."
+        )
     clocks = {(channel.rate_hz, channel.start_s, channel.count) for channel in shared}
     if len(clocks) > 1:
         listed = ", ".join(

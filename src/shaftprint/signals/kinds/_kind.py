@@ -93,6 +93,8 @@ class ChannelKind(ABC, Generic[SensorT]):
     """Whether no test goes without it."""
     own_clock: ClassVar[bool] = False
     """Whether its values stay at their own times instead of the common grid."""
+    takes_messages: ClassVar[bool] = False
+    """Whether messages at times of their own will do."""
     absence: ClassVar[str] = ""
     """Why there may be no signal though the channel was logged."""
 
@@ -110,7 +112,14 @@ class ChannelKind(ABC, Generic[SensorT]):
         way_out = "correct the name there"
         if not self.needed:
             way_out += f", or take [sensors.{self.sensor}] out where it was not logged"
-        channel = find_channel(recording, sensor.channel, unit=sensor.unit, use=self.use, way_out=way_out)
+        channel = find_channel(
+            recording,
+            sensor.channel,
+            unit=sensor.unit,
+            use=self.use,
+            way_out=way_out,
+            takes_messages=self.takes_messages,
+        )
         return (Source(kind=self, name=self.name, channel=channel, sensor=sensor, vessel=vessel),)
 
     def limits(self, source: Source[SensorT]) -> "FaultLimits | None":

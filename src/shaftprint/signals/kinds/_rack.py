@@ -1,7 +1,8 @@
 """Fuel rack from the percent torque on the CAN bus, at the times of the messages.
 
 It is not brought on the common grid: between messages that come every 10 to 100 ms nothing is known, and whatever an
-interpolation put there would bend the response. Spectra are measured on the channel's own clock.
+interpolation put there would bend the response. Spectra are measured on the channel's own clock, or at the times of the
+messages where the file has them.
 """
 
 from collections.abc import Iterator
@@ -18,6 +19,7 @@ from shaftprint.signals._gaps import Coverage, Gap, clock_gaps, joined, runs_of
 from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning import Reading
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
+from shaftprint.signals.kinds._message_reading import MessageReading, read_messages
 from shaftprint.signals.levels import SteadyStretch, find_working_point
 from shaftprint.vessel import RackSensor
 
@@ -40,6 +42,7 @@ class Rack(ChannelKind[RackSensor]):
     """Fuel rack that the governor gives [fraction]: 1 gives rated torque at rated speed."""
 
     sensor, name, use, role, own_clock = "rack", "X", "fuel rack", ChannelRole.SIDE, True
+    takes_messages = True
 
     def read(self, source: Source[RackSensor], clock: "Clock") -> Reading:
         """Return the rack at the times of its messages."""
@@ -55,6 +58,7 @@ class Rack(ChannelKind[RackSensor]):
             steady.stretches,
             latency_s=steady.clock.latency_s(source.sensor.latency_s),
             gaps=reading.gaps,
+            time_s=reading.time_s if isinstance(reading, MessageReading) else None,
             load=steady.working_point.shaft_torque_nm / torque_nm,
         )
 
@@ -77,14 +81,35 @@ def read_rack(channel: "Channel", sensor: RackSensor, *, block_samples: int) -> 
         If the rate is not that of the messages, no torque is ever available, or the channel never moves.
     """
     group = _samples_together(channel, sensor)
+    if channel.is_uneven or (channel.stamps is not None and not _is_held(channel, sensor)):
+        return _read_messages(channel, sensor)
     percent = np.concatenate(list(_means(channel, group, block_samples)))
     repairs, gaps = _bridge(percent, channel, group)
+    _expect_moving(percent, channel)
+    return Reading(values=_PERCENT * percent, repairs=repairs, gaps=tuple(gaps))
+
+
+def _expect_moving(percent: FloatArray, channel: "Channel") -> None:
     if np.ptp(percent) == 0.0:
         raise SignalError(
             f"channel {channel.name}: expected a percent torque that moves, found {percent[0]:g} % from beginning to "
             "end; check the message it was taken from, or take [sensors.rack] out of the vessel file."
         )
-    return Reading(values=_PERCENT * percent, repairs=repairs, gaps=tuple(gaps))
+
+
+def _read_messages(channel: "Channel", sensor: RackSensor) -> MessageReading:
+    """Return the messages that hold a torque, at their own times; nothing is put between them."""
+    reading = read_messages(channel, highest=_HIGHEST_PERCENT)
+    if not reading.values.size:
+        raise _nothing_available(channel)
+    _expect_moving(reading.values, channel)
+    kept_s = reading.messages.value_period_s
+    if not _is_held(channel, sensor) and kept_s > _HELD_RATE * sensor.cycle_s:
+        raise SignalError(
+            f"channel {channel.name}: expected a new value every {sensor.cycle_s:g} s, as cycle_s says, found each "
+            f"sent again for {kept_s:.3g} s; set cycle_s to that in the vessel file."
+        )
+    return replace(reading, values=_PERCENT * reading.values)
 
 
 def rack_signal(
@@ -95,6 +120,7 @@ def rack_signal(
     *,
     latency_s: float,
     gaps: tuple[Gap, ...] = (),
+    time_s: FloatArray | None = None,
     load: float = 1.0,
 ) -> MessageSignal:
     """Return the fuel rack with its clock, its sampling and its working point.
@@ -111,6 +137,8 @@ def rack_signal(
         Time by which the channel is taken to be late [s].
     gaps
         Where no torque was available.
+    time_s
+        Time of each value, where those are messages at times of their own [s], shape (values,).
     load
         Torque of the working point over that of the stretches; the rack follows it.
 
@@ -119,13 +147,14 @@ def rack_signal(
     SignalError
         If the channel does not cover any of the stretches, or the rack is not positive there.
     """
-    group = _samples_together(channel, sensor)
-    held = channel.rate_hz * sensor.cycle_s >= _HELD_RATE
+    held = _is_held(channel, sensor)
+    group = _samples_together(channel, sensor) if time_s is None else 1
     rate_hz, start_s = channel.rate_hz / group, time_of(channel, 0.5 * (group - 1)) - latency_s
+    times = start_s + np.arange(fraction.size) / rate_hz if time_s is None else time_s - latency_s
     resolution = _PERCENT * sensor.resolution_percent
     covered = Coverage(gaps=gaps)
     uninterrupted = [stretch for stretch in stretches if not covered.missing(stretch.start_s, stretch.stop_s)]
-    inside = [_between(fraction, rate_hz, start_s, stretch) for stretch in uninterrupted]
+    inside = [_between(fraction, times, rate_hz, stretch) for stretch in uninterrupted]
     mean, std = _working_point(inside, rate_hz, resolution)
     if not mean > 0.0:
         value = "none there" if np.isnan(mean) else f"{mean / _PERCENT:.3g} %"
@@ -138,7 +167,8 @@ def rack_signal(
         channel=channel.name,
         values=frozen_float(fraction),
         rate_hz=rate_hz,
-        start_s=start_s,
+        start_s=float(times[0]),
+        times=None if time_s is None else frozen_float(times),
         resolution=resolution,
         cycle_s=sensor.cycle_s if held else 1.0 / channel.rate_hz,
         averaging_s=group / channel.rate_hz if group > 1 else 0.0,
@@ -147,6 +177,11 @@ def rack_signal(
         reference_std=std * load,
         gaps=tuple(replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in gaps),
     )
+
+
+def _is_held(channel: "Channel", sensor: RackSensor) -> bool:
+    """Return whether the channel holds each message until the next one, on the clock of a logger."""
+    return channel.rate_hz * sensor.cycle_s >= _HELD_RATE
 
 
 def _samples_together(channel: "Channel", sensor: RackSensor) -> int:
@@ -181,11 +216,7 @@ def _bridge(percent: FloatArray, channel: "Channel", group: int) -> tuple[list[R
     """Put straight lines where no torque was available; what is longer than 2 s is a gap."""
     missing = np.isnan(percent)
     if missing.all():
-        raise SignalError(
-            f"channel {channel.name}: expected percent torque, found only values above {_HIGHEST_PERCENT:g} %, which "
-            "mean that none is available, or no numbers; use another recording, or take [sensors.rack] out of the "
-            "vessel file."
-        )
+        raise _nothing_available(channel)
     repairs, gaps = [], []
     for first, stop in runs_of(missing):
         start_s, stop_s = time_of(channel, first * group), time_of(channel, stop * group)
@@ -197,9 +228,18 @@ def _bridge(percent: FloatArray, channel: "Channel", group: int) -> tuple[list[R
     return repairs, [*gaps, *clock_gaps(channel)]
 
 
-def _between(fraction: FloatArray, rate_hz: float, start_s: float, stretch: SteadyStretch) -> FloatArray:
-    first, stop = (round((instant - start_s) * rate_hz) for instant in (stretch.start_s, stretch.stop_s))
-    return fraction[max(first, 0) : max(stop, 0)]
+def _nothing_available(channel: "Channel") -> SignalError:
+    return SignalError(
+        f"channel {channel.name}: expected percent torque, found only values above {_HIGHEST_PERCENT:g} %, which "
+        "mean that none is available, or no numbers; use another recording, or take [sensors.rack] out of the "
+        "vessel file."
+    )
+
+
+def _between(fraction: FloatArray, times: FloatArray, rate_hz: float, stretch: SteadyStretch) -> FloatArray:
+    half_a_value_s = 0.5 / rate_hz
+    first, stop = np.searchsorted(times, np.array([stretch.start_s, stretch.stop_s]) - half_a_value_s)
+    return fraction[first:stop]
 
 
 def _working_point(inside: list[FloatArray], rate_hz: float, resolution: float) -> tuple[float, float]:

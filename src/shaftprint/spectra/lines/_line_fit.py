@@ -106,6 +106,32 @@ def cut_window(
     )
 
 
+def cut_window_at(
+    window: "Window", name: str, values: FloatArray, *, time_s: FloatArray, rate_hz: float
+) -> WindowSamples:
+    """Cut the samples of a window out of a channel whose values have times of their own.
+
+    Parameters
+    ----------
+    window
+        The window; the channel covers it.
+    name
+        Name of the channel.
+    values, time_s
+        Its values and their times [s], ascending, each of shape (samples,).
+    rate_hz
+        How many values come in a second, as a rule [Hz].
+    """
+    first, stop = np.searchsorted(time_s, [window.start_s, window.stop_s])
+    return WindowSamples(
+        window=window,
+        rate_hz=rate_hz,
+        time_s=time_s[first:stop] - window.start_s,
+        channels=(name,),
+        values=values[np.newaxis, first:stop],
+    )
+
+
 def window_slice(window: "Window", count: int, *, rate_hz: float, start_s: float) -> slice | None:
     """Return which of so many samples are in a window, ``start <= t < stop``, or None where some of them are not there.
 

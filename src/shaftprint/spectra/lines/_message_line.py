@@ -11,10 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import ComplexArray
-from shaftprint.spectra.lines._line_fit import LineFit, SineMethod, WindowSamples, cut_window
+from shaftprint.spectra.lines._line_fit import LineFit, SineMethod, WindowSamples, cut_window, cut_window_at
 from shaftprint.spectra.lines._modulation import without_modulation
 from shaftprint.spectra.lines._noise import ShaftRelation, line_noise
 from shaftprint.spectra.lines._signal_to_noise import NEIGHBOUR_BINS, LineVariances, line_variances
+from shaftprint.spectra.lines._sine_fit import WholePeriodSine
 
 if TYPE_CHECKING:
     from shaftprint.signals import MessageSignal
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 
 # Taking sidebands out leaves less, or by chance a little more.
 _ENLARGED = 2.0
+
+# By so many periods the first message of a channel may come after the beginning of a window, and the last too early.
+_LATE = 1.0
 
 # Samples nearer to each other than this part of a period count as one.
 _PHASES = 1000
@@ -41,6 +45,8 @@ class MessageWindow:
     """Number of messages in the window."""
     remark: str
     """Why the line cannot be measured; empty where it can."""
+    has_own_times: bool = False
+    """Whether the messages have times of their own, not those of a rate."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -77,6 +83,7 @@ def cut_messages(signal: "MessageSignal", window: "Window") -> MessageWindow:
         step=signal.resolution / signal.reference,
         count=window.duration_s / signal.cycle_s,
         remark="",
+        has_own_times=signal.times is not None,
     )
     highest = signal.highest_hz
     if frequency > highest:
@@ -87,9 +94,7 @@ def cut_messages(signal: "MessageSignal", window: "Window") -> MessageWindow:
     missing = signal.coverage.missing(window.start_s, window.stop_s)
     if missing:
         return replace(result, remark=f"{signal.name} is not measured: {missing}")
-    cut = cut_window(
-        window, {signal.name: signal.values / signal.reference}, rate_hz=signal.rate_hz, start_s=signal.start_s
-    )
+    cut = _cut(signal, window)
     if cut is None:
         span = f"{signal.start_s:.1f} to {signal.stop_s:.1f} s"
         return replace(
@@ -98,6 +103,17 @@ def cut_messages(signal: "MessageSignal", window: "Window") -> MessageWindow:
     if np.ptp(cut.values) == 0.0:
         return replace(result, remark=f"{signal.name} is not measured: it moves by less than the step of its channel")
     return replace(result, samples=cut)
+
+
+def _cut(signal: "MessageSignal", window: "Window") -> WindowSamples | None:
+    """Return the messages in a window over their working point; None where they do not reach from end to end."""
+    values = signal.values / signal.reference
+    if signal.times is None:
+        return cut_window(window, {signal.name: values}, rate_hz=signal.rate_hz, start_s=signal.start_s)
+    late_s = _LATE / signal.rate_hz
+    if signal.start_s > window.start_s + late_s or signal.stop_s < window.stop_s - late_s:
+        return None
+    return cut_window_at(window, signal.name, values, time_s=signal.times, rate_hz=signal.rate_hz)
 
 
 def measure_messages(
@@ -124,7 +140,8 @@ def measure_messages(
     """
     if messages.samples is None:
         return None
-    fit = method.fit(messages.samples)
+    # bins need samples at one rate
+    fit = (WholePeriodSine() if messages.has_own_times else method).fit(messages.samples)
     message_spectrum = _residual_at_bins(fit, samples, spectrum.shape[1])
     together = np.concatenate([spectrum, message_spectrum])
     cleaned = without_modulation(together, samples.of("M_s"), relation, periods=samples.window.periods)

@@ -17,7 +17,7 @@ from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording, sha256_of
 from shaftprint.recording._spool import Spool
-from shaftprint.recording.readers._clock import SampleClock, on_clock, uniform_clock
+from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._epoch import from_second_zero
 from shaftprint.recording.readers._hints import rate_hint
 from shaftprint.recording.readers.csv._dates import dates, seconds_from
@@ -209,7 +209,7 @@ def _clock(path: Path, header: Header, spool: Spool, count: int, rate_hz: float 
     if header.time_column is None:
         return SampleClock(rate_hz=cast(float, rate_hz), start_s=0.0)
     name = f"column {header.names[header.time_column]}"
-    clock = uniform_clock(path, name, count, spool.source(header.time_column))
+    clock = clock_of_times(path, name, count, spool.source(header.time_column))
     if rate_hz is not None and abs(clock.rate_hz / rate_hz - 1.0) > _RATE_AGREEMENT:
         raise RecordingError(
             f"{path}: expected one sample rate, found {clock.rate_hz:g} Hz in {name} and {rate_hz:g} Hz in the hint."

@@ -15,7 +15,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel, Source
 from shaftprint.recording._recording import Recording
-from shaftprint.recording.readers._clock import SampleClock, on_clock, uniform_clock
+from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._damage import told_as_damage
 from shaftprint.recording.readers._extra import expect_library
 from shaftprint.recording.readers._gather import Gathered
@@ -80,7 +80,7 @@ def _channel(path: Path, unpacked: UnpackedChannel, folder: Path, opened: Opened
     clock = SampleClock(rate_hz=unpacked.rate_hz, start_s=unpacked.start_s)
     if unpacked.rate_hz == 0.0:
         times = _floats(folder / f"{unpacked.number}.times", opened, unpacked.name)
-        clock = uniform_clock(path, f"times of {unpacked.name}", unpacked.count, times)
+        clock = clock_of_times(path, f"times of {unpacked.name}", unpacked.count, times)
     channel = Channel(
         name=unpacked.name,
         unit=plain_unit(unpacked.unit),
