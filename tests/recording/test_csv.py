@@ -159,8 +159,8 @@ def test_rounded_times_are_uniform_and_a_changing_rate_is_not(tmp_path):
     with read_recording(_file(tmp_path, "time [s],a [V]\n" + rounded)) as recording:
         assert recording.channel("a").rate_hz == 3000.0
     changing = "".join(f"{t:.6f},1\n" for t in np.cumsum([0.01] * 300 + [0.012] * 300))
-    with pytest.raises(RecordingError, match=r"expected a uniform clock, found row .* the sample rate changes"):
-        read_recording(_file(tmp_path, "time [s],a [V]\n" + changing))
+    with read_recording(_file(tmp_path, "time [s],a [V]\n" + changing)) as recording:
+        assert recording.channel("a").is_uneven
 
 
 def test_temporary_files_are_deleted(tmp_path, monkeypatch):

@@ -76,7 +76,7 @@ def test_times_without_a_hole_give_the_clock_as_before():
     assert clock_of(3.0 + np.arange(5000) / 600.0).holes == ()
 
 
-def test_messages_that_come_as_they_like_are_refused():
+def test_messages_that_come_as_they_like_have_no_clock():
     times = np.cumsum(np.random.default_rng(3).uniform(0.005, 0.035, 5000))
     with pytest.raises(RecordingError, match=r"column time: expected a step of 0\.0\d+ s, found .* before row"):
         clock_of(times)

@@ -243,7 +243,7 @@ def test_sender_is_judged_by_what_was_put_in(tmp_path):
     assert (hole.start_s, hole.stop_s) == pytest.approx((99.98, 100.5), abs=0.025)
     assert found.step == 1.0
     assert found.value_period_s == found.period_s
-    assert found.sentence == "a message every 20 ms +/- 4 ms, 1.1 % lost, 1 hole of up to 0.522 s"
+    assert found.sentence == "a message every 20 ms +/- 3.9 ms, 1.1 % lost, 1 hole of up to 0.52 s"
 
 
 @pytest.mark.parametrize("kept", [1, 2, 5])

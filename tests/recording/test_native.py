@@ -274,7 +274,7 @@ def test_a_flipped_bit_is_found(native):
 @pytest.mark.parametrize(
     ("spoil", "expected"),
     [
-        (lambda f: f.attrs.update({"format_version": 2}), "expected version 1 .* found 2; use a later shaftprint"),
+        (lambda f: f.attrs.update({"format_version": 3}), "expected version 1 to 2 .* found 3; use a later shaftprint"),
         (lambda f: f.pop("channels"), 'expected a group "channels", found none'),
         (lambda f: f["channels/M_s"].attrs.pop("units"), "channel M_s: expected the attributes .* none named units"),
         (lambda f: f["channels/M_s"].attrs.pop("add_offset"), "none named add_offset"),

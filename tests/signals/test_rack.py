@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from shaftprint.errors import SignalError
+from shaftprint.recording import Channel
 from shaftprint.signals import inspect_channels, prepare_signals
 from shaftprint.signals.kinds import rack_signal, read_rack
 from shaftprint.signals.levels import SteadyStretch
@@ -46,7 +47,10 @@ def percent_of(time_s):
 def signal_of(channel, sensor=SENSOR, stretches=None, block_samples=BLOCK):
     stretches = stretches or (stretch(0.0, 60.0),)
     read = read_rack(channel, sensor, block_samples=block_samples)
-    return rack_signal(read.values, channel, sensor, stretches, latency_s=sensor.latency_s, gaps=read.gaps)
+    times = read.time_s if channel.is_uneven else None
+    return rack_signal(
+        read.values, channel, sensor, stretches, latency_s=sensor.latency_s, gaps=read.gaps, time_s=times
+    )
 
 
 def test_messages_stay_on_their_own_clock(messages):
@@ -107,6 +111,108 @@ def test_gap_in_held_values_leaves_the_good_samples(messages):
     # two groups of ten have no good sample; the third is the mean of the five that it has
     assert (repair.count, repair.time_s) == (20, pytest.approx(5.013))
     assert fraction[1002] == pytest.approx(0.01 * np.rint(percent[10_025]))
+
+
+def came(percent, times, *, rate_hz=50.0):
+    """Messages at times of their own, as a CAN logger stamps them."""
+    values, times = np.rint(np.asarray(percent, dtype=float)), np.asarray(times)
+    return Channel(
+        name="X_percent",
+        unit="%",
+        rate_hz=rate_hz,
+        start_s=float(times[0]),
+        count=times.size,
+        source=lambda first, stop: values[first:stop],
+        stamps=lambda first, stop: times[first:stop],
+        is_uneven=True,
+    )
+
+
+FAST = SENSOR.model_copy(update={"cycle_s": 0.02})
+
+
+def stamps(count=3000, seed=4):
+    """20 ms with 15 % of jitter about the cycle, 1 % lost."""
+    rng = np.random.default_rng(seed)
+    times = 0.0137 + 0.02 * np.arange(count) + 0.003 * np.sqrt(3.0) * rng.uniform(-1.0, 1.0, count)
+    return np.delete(times, rng.permutation(count)[: count // 100])
+
+
+def test_messages_keep_their_own_times_and_values():
+    times = stamps()
+    found = signal_of(came(percent_of(times), times), FAST)
+    assert found.values == pytest.approx(0.01 * np.rint(percent_of(times)), abs=1e-12)
+    assert found.time_s == pytest.approx(times - 0.01, abs=1e-12)
+    assert (found.rate_hz, found.cycle_s, found.hold_s, found.averaging_s) == (50.0, 0.02, 0.0, 0.0)
+    assert found.start_s == found.time_s[0]
+    assert found.stop_s == pytest.approx(found.time_s[-1] + 0.02)
+    assert found.gaps == ()
+
+
+def test_messages_without_a_value_are_left_out_not_bridged():
+    times = stamps()
+    spoilt = percent_of(times)
+    spoilt[100:103] = 130.0
+    spoilt[500] = np.nan
+    spoilt[1000:1030] = 129.0
+    read = read_rack(came(spoilt, times), FAST, block_samples=BLOCK)
+    good = np.setdiff1d(np.arange(times.size), [100, 101, 102, 500, *range(1000, 1030)])
+    assert np.array_equal(read.time_s, times[good])
+    assert read.values == pytest.approx(0.01 * np.rint(percent_of(times[good])), abs=1e-12)
+    # three in a row are no hole, thirty are
+    (gap,) = read.gaps
+    assert (gap.start_s, gap.stop_s, gap.reason) == (times[999], times[1030], "has no messages")
+    (finding,) = read.findings
+    assert finding.startswith("Channel X_percent has times of its own: a message every 20 ms +/- 4.3 ms, 2.2 % lost")
+    assert finding.endswith(f", 1 hole of up to {times[1030] - times[999]:.3g} s.")
+
+
+def test_working_point_of_messages_is_that_of_the_steady_stretch():
+    times = stamps()
+    percent = np.where((times > 20.0) & (times < 40.0), 40.0, 70.0) + np.random.default_rng(5).standard_normal(
+        times.size
+    )
+    found = signal_of(came(percent, times), FAST, stretches=(stretch(20.1, 39.9),))
+    assert abs(found.reference - 0.4) < 4.0 * found.reference_std
+    # noise of 1 % and steps of 1 % on 980 messages
+    assert found.reference_std == pytest.approx(0.01 * np.sqrt(13.0 / 12.0 / 980.0), rel=0.4)
+
+
+@pytest.mark.parametrize(
+    ("make", "sensor", "message"),
+    [
+        (lambda t: np.full(t.size, 130.0), FAST, r"found only values above 125 %"),
+        (lambda t: np.full(t.size, 40.0), FAST, r"expected a percent torque that moves, found 40 %"),
+        (percent_of, SENSOR, None),
+        (percent_of, SENSOR.model_copy(update={"cycle_s": 0.03}), r"expected 33\.3333 samples a second.* found 50"),
+        (
+            lambda t: 10.0 * percent_of(np.floor(t / 0.1) * 0.1) - 390.0,
+            FAST,
+            r"each sent again for 0\.1 s; set cycle_s",
+        ),
+    ],
+    ids=["none", "still", "held", "another rate", "sent again"],
+)
+def test_messages_that_cannot_be_used_are_refused(make, sensor, message):
+    times = stamps()
+    channel = came(np.clip(make(times), -125.0, 130.0), times)
+    if message is None:
+        # a value every 50 ms that is asked for every 20 ms: as old as it may be, by half of 50 ms on average
+        assert signal_of(channel, sensor).hold_s == 0.05
+        return
+    with pytest.raises(SignalError, match=message):
+        signal_of(channel, sensor)
+
+
+def test_messages_in_place_of_samples_are_refused(ship, vessel, campaign):
+    recording = ship.recording()
+    times = 0.02 * np.arange(12_500) + 0.004 * np.sin(np.arange(12_500.0))
+    bus = replace(came(np.zeros(times.size), times), name="M_s", unit="V")
+    recording = replace(recording, channels=dict(recording.channels) | {"M_s": bus})
+    with pytest.raises(
+        SignalError, match=r"channel M_s: expected samples at one rate for the .*torque.*, found a message"
+    ):
+        prepare_signals(recording, vessel, campaign)
 
 
 REFUSALS = {

@@ -7,7 +7,7 @@ import pytest
 from tests.made_signals import with_channels
 
 from shaftprint.errors import ResponseError
-from shaftprint.signals import MessageSignal
+from shaftprint.signals import Gap, MessageSignal
 from shaftprint.spectra import (
     ExactBin,
     FrequencyResponse,
@@ -128,6 +128,68 @@ def test_what_a_logger_holds_is_divided_out(ship):
     assert np.abs(found.response[2, 0] / plant(found.frequency_hz)[2] - 1.0).max() < 0.006
     plain = estimate_response(with_channels(signals, X=replace(rack, hold_s=0.0)), campaign)
     assert np.abs(plain.response[2, 0, -1] / plant(3.1)[2] - 1.0) > 0.4
+
+
+def sent_times(rng, *, jitter_s=0.003, lost=0.01, length_s=899.0):
+    """Messages of a sender that keeps a cycle of 20 ms but for 15 % of it; one in a hundred is lost."""
+    count = round(length_s / 0.02)
+    times = 0.0137 + 0.02 * np.arange(count) + np.sqrt(3.0) * jitter_s * rng.uniform(-1.0, 1.0, count)
+    return times[rng.random(count) >= lost]
+
+
+def messages_at(times, deviation, **changes):
+    given = {"times": times, "rate_hz": 50.0, "start_s": float(times[0]), "cycle_s": 0.02}
+    return rack_of(deviation, **(given | changes))
+
+
+def test_messages_at_times_of_their_own_show_the_response_exactly(ship):
+    signals, campaign = ship()
+    times = sent_times(np.random.default_rng(6))
+    rack = messages_at(times, waves(times, lambda hz: plant(hz)[2]))
+    found = estimate_response(with_channels(signals, X=rack), campaign)
+    assert found.response[:, 0] == pytest.approx(plant(found.frequency_hz), rel=1e-8)
+    # taken for samples of a clock, the fast line is 2 % too small
+    by_rate = estimate_response(with_channels(signals, X=replace(rack, times=None)), campaign)
+    assert np.abs(by_rate.response[2, 0, -1] / plant(3.1)[2] - 1.0) > 0.01
+    # bins need one rate: the older ways measure messages by least squares too
+    older = estimate_response(with_channels(signals, X=rack), campaign, method=ExactBin())
+    assert older.response[2, 0] == pytest.approx(found.response[2, 0], rel=0.02)
+
+
+@pytest.mark.slow
+def test_messages_are_unbiased_and_as_uncertain_as_stated(ship):
+    """15 % of jitter, 1 % lost, steps of 1 % of the torque, noise of the rack: the error over 60 logs."""
+    signals, campaign = ship()
+    rng = np.random.default_rng(8)
+    step = 0.025
+    errors, stated = [], []
+    for _ in range(60):
+        times = sent_times(rng)
+        rough = waves(times, lambda hz: plant(hz)[2]) + 0.02 * rng.standard_normal(times.size)
+        rack = messages_at(times, step * np.rint(rough / step), resolution=WORKING_POINT * step)
+        found = estimate_response(with_channels(signals, X=rack), campaign)
+        errors.append(found.response[2, 0] - plant(found.frequency_hz)[2])
+        stated.append(found.covariance[:, 2, 2] + found.covariance[:, 5, 5])
+    std = np.sqrt(np.mean(stated, axis=0))
+    # a mean of 60 is known to 0.13 of their deviation
+    assert (np.abs(np.mean(errors, axis=0)) < 0.4 * std).all()
+    ratio = np.mean(np.abs(errors) ** 2, axis=0) / np.mean(stated, axis=0)
+    assert ratio == pytest.approx(np.full(4, 0.85), abs=0.35)
+
+
+def test_a_hole_costs_the_windows_that_it_touches(ship):
+    signals, campaign = ship()
+    times = sent_times(np.random.default_rng(6))
+    times = times[(times < 500.0) | (times > 500.4)]
+    hole = Gap(channel="X_percent", start_s=500.0, stop_s=500.4, reason="has no messages")
+    rack = messages_at(times, waves(times, lambda hz: plant(hz)[2]), gaps=(hole,))
+    found = estimate_response(with_channels(signals, X=rack), campaign)
+    assert measured(found)[2].tolist() == [True, False, True, True]
+    assert found.remarks["S2"] == "X is not measured: channel X_percent has no messages from 500.00 to 500.40 s"
+    late = messages_at(times[20_000:], rack.values[20_000:] / WORKING_POINT - 1.0)
+    found = estimate_response(with_channels(signals, X=late), campaign)
+    assert measured(found)[2].tolist() == [False, True, True, True]
+    assert "the window is not inside 40" in found.remarks["S1"]
 
 
 def correlated(coloured, make_signals, make_campaign, *, slope, repeats):
