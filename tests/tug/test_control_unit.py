@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 
+from shaftprint.errors import SettingsError
 from shaftprint.recording import read_recording
 from shaftprint.tug import Noise, Tug, sail, simulate_signals
 from shaftprint.tug.plant import Stretch
-from shaftprint.tug.sensors import ControlUnit
+from shaftprint.tug.sensors import Bus, ControlUnit
 from shaftprint.vessel import RackSensor, Vessel
 
 Make = Callable[..., Any]
@@ -108,7 +109,7 @@ def test_stretches_shorter_than_a_message_lose_none() -> None:
         parts = [unit.next(stretch_of(rack[start : start + size], start)) for start in range(0, 3000, size)]
         counts.append(np.concatenate(parts))
         # of a ramp of 20 % a second
-        expected = 40.0 + 20.0 * (unit.start_s + 0.05 * np.arange(counts[-1].size) - 0.02)
+        expected = 40.0 + 20.0 * (unit.times.start_s + 0.05 * np.arange(counts[-1].size) - 0.02)
         assert counts[-1] * 0.01 - 125.0 == pytest.approx(np.maximum(expected, 40.0), abs=0.0051)
         assert unit.faults() == []
     assert counts[0].size == 30
@@ -125,3 +126,52 @@ def test_latency_may_be_longer_than_the_cycle(vessel_with_bus: Vessel, ask: Make
         time_s, percent = bus.time_s(0, bus.count), bus.values(0, bus.count)
     # step at 5 s, set-point latency 51.8 ms, then the bus
     assert time_s[np.flatnonzero(percent > 41.0)[0]] == pytest.approx(5.0518 + 0.4, abs=0.05)
+
+
+def test_messages_with_jitter_and_losses_carry_the_rack_of_their_own_times(
+    vessel_with_bus: Vessel, ask: Make, sine: Make, quiet: Noise, tmp_path: Path
+) -> None:
+    campaign = ask(61.0, sines=[sine(0.8, 0.6)])
+    ship = with_sensor(vessel_with_bus, cycle_s=0.02, resolution_percent=0.01)
+    tug = Tug(noise=quiet, message_jitter=0.15, messages_lost=0.05)
+    sail(ship, campaign, tmp_path / "bus.nc", tug=tug, seed=1)
+    with read_recording(tmp_path / "bus.nc") as recording:
+        bus = recording.channel("X_percent")
+        assert bus.is_uneven
+        time_s, percent = bus.time_s(0, bus.count), bus.values(0, bus.count)
+    true = simulate_signals(ship, campaign, tug=tug, rate_hz=2000.0)
+    expected = 100.0 * np.interp(time_s - 0.01, true.time_s, true.rack_given)
+    assert np.abs(percent - expected).max() < 0.00501
+    assert bus.count == pytest.approx(0.95 * 61.0 / 0.02, rel=0.01)
+    # as far from the cycle as was asked for
+    place = (time_s - time_s.mean()) / 0.02
+    away = 0.02 * (place - np.rint(place))
+    assert away.std() == pytest.approx(0.003, rel=0.05)
+    assert 0.0 <= time_s[0] < 0.05 < 60.9 < time_s[-1] < 61.0
+
+
+def test_times_of_messages_do_not_depend_on_how_the_voyage_is_cut() -> None:
+    sensor = RackSensor(channel="X", unit="%", cycle_s=0.02, latency_s=0.03, resolution_percent=0.01)
+    rack = 0.4 + 1e-4 * np.arange(6000.0)
+    results = []
+    for size in (6000, 11, 1):
+        unit = ControlUnit(
+            sensor, latency_s=0.03, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1),
+            bus=Bus(jitter=0.25, lost=0.2),
+        )  # fmt: skip
+        parts = [unit.messages(stretch_of(rack[start : start + size], start)) for start in range(0, 6000, size)]
+        counts, times = (np.concatenate(column) for column in zip(*parts, strict=True))
+        assert counts * 0.01 - 125.0 == pytest.approx(np.maximum(40.0 + 20.0 * (times - 0.03), 40.0), abs=0.0051)
+        results.append((counts, times))
+    for counts, times in results[1:]:
+        assert np.array_equal(times, results[0][1])
+        assert np.array_equal(counts, results[0][0])
+
+
+@pytest.mark.parametrize("changes", [{"message_jitter": 0.3}, {"messages_lost": 1.0}, {"message_jitter": -0.1}])
+def test_a_bus_that_cannot_be_is_refused(
+    vessel_with_bus: Vessel, ask: Make, tmp_path: Path, changes: dict[str, float]
+) -> None:
+    with pytest.raises(SettingsError, match="expected"):
+        sail(vessel_with_bus, ask(5.0), tmp_path / "bus.nc", tug=Tug(**changes), seed=1)
+    assert not list(tmp_path.iterdir())

@@ -30,6 +30,7 @@ from shaftprint.tug.plant import (
 from shaftprint.tug.sensors import (
     LOWEST_PERCENT,
     VOLT_PER_COUNT,
+    Bus,
     ControlUnit,
     Encoder,
     Fault,
@@ -194,7 +195,9 @@ class _Crew:
         if sensor is None:
             return None
         latency_s = rack_latency_s(self._tug, sensor)
-        return ControlUnit(sensor, latency_s=latency_s, first_rack=first_rack, rate_hz=self._rate_hz, rng=rng)
+        return ControlUnit(
+            sensor, latency_s=latency_s, first_rack=first_rack, rate_hz=self._rate_hz, rng=rng, bus=Bus.of(self._tug)
+        )
 
     def _read_log(self, first_speed_m_s: float, rng: np.random.Generator) -> SpeedLog | None:
         sensor = self._vessel.sensors.ship_speed
@@ -290,11 +293,13 @@ class _Crew:
 
     def _declare_slow_channels(self, writer: RecordingWriter) -> None:
         if self._control_unit is not None:
+            times = self._control_unit.times
             writer.declare(
                 self._control_unit.channel,
                 unit="%",
-                rate_hz=1.0 / self._control_unit.cycle_s,
-                start_s=self._control_unit.start_s,
+                rate_hz=1.0 / times.cycle_s,
+                start_s=times.start_s,
+                times="by rate" if times.is_regular else "uneven",
                 scale=self._control_unit.scale,
                 offset=LOWEST_PERCENT,
                 long_name="demand percent torque of the engine's control unit, from its CAN bus",
@@ -311,7 +316,10 @@ class _Crew:
 
     def _write(self, writer: RecordingWriter, stretch: Stretch) -> None:
         for sensor in self._sensors:
-            writer.append(sensor.channel, sensor.next(stretch))
+            if isinstance(sensor, ControlUnit) and not sensor.times.is_regular:
+                writer.append(sensor.channel, *sensor.messages(stretch))
+            else:
+                writer.append(sensor.channel, sensor.next(stretch))
         times = stretch.time_s[stretch.limited]
         for excitation in self._campaign.excitations:
             inside = (times >= excitation.start_s) & (times < excitation.stop_s)

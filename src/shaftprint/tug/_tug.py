@@ -113,6 +113,11 @@ class Tug:
     """What the torque gauge shows beyond the zero that the vessel file knows of [N m]."""
     rack_latency_s: float | None = None
     """Time by which the percent torque on the CAN bus is late [s]; ``None``: the vessel's."""
+    message_jitter: float = 0.0
+    """Standard deviation of the time of a message on the CAN bus about its cycle, over the cycle; evenly spread, below
+    0.28. Messages with jitter or losses are recorded with times of their own."""
+    messages_lost: float = 0.0
+    """Share of the messages on the CAN bus that the logger misses."""
     strip_angles_deg: tuple[float, ...] = STRIP_ANGLES_DEG
     """Angles between the reflection strips of a pick-up with as many pulses a revolution [degree], scaled to 360."""
     tooth_error_deg: float = 0.03

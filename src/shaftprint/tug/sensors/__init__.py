@@ -3,6 +3,7 @@
 Each takes the stretches of a voyage of ``shaftprint.tug.plant`` in order and gives the counts of its channel.
 """
 
+from shaftprint.tug.sensors._bus import Bus
 from shaftprint.tug.sensors._control_unit import LOWEST_PERCENT, ControlUnit
 from shaftprint.tug.sensors._encoder import Encoder
 from shaftprint.tug.sensors._faults import Fault, draw_dropouts, draw_times
@@ -16,6 +17,7 @@ __all__ = [
     "LOWEST_PERCENT",
     "PITCH_INPUT",
     "VOLT_PER_COUNT",
+    "Bus",
     "ControlUnit",
     "Encoder",
     "Fault",

@@ -1,0 +1,76 @@
+"""When the messages of a CAN bus come: on the cycle of their sender, early or late by chance, and some never."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.errors import SettingsError
+from shaftprint.tug._tug import Tug
+
+# Evenly spread by half a cycle either way: with more, a message would overtake the one before.
+_MOST_JITTER = 0.5 / np.sqrt(3.0)
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Bus:
+    """How regularly a logger sees the messages of a bus."""
+
+    jitter: float = 0.0
+    """Standard deviation of the time of a message about its cycle, over the cycle."""
+    lost: float = 0.0
+    """Share of the messages that are missing."""
+
+    @classmethod
+    def of(cls, tug: Tug) -> "Bus":
+        """Return the bus of a simulated ship.
+
+        Raises
+        ------
+        SettingsError
+            If messages would overtake each other, or none would be left.
+        """
+        if not 0.0 <= tug.message_jitter < _MOST_JITTER:
+            raise SettingsError(
+                f"message_jitter: expected 0 to {_MOST_JITTER:.3f} of a cycle, found {tug.message_jitter:g}."
+            )
+        if not 0.0 <= tug.messages_lost < 1.0:
+            raise SettingsError(f"messages_lost: expected a share from 0 to below 1, found {tug.messages_lost:g}.")
+        return cls(jitter=tug.message_jitter, lost=tug.messages_lost)
+
+    @property
+    def is_regular(self) -> bool:
+        """Whether every message comes, and at its cycle."""
+        return self.jitter == 0.0 and self.lost == 0.0
+
+
+class MessageTimes:
+    """Stream of the times of one message; the result does not depend on how the time is cut into stretches."""
+
+    def __init__(self, bus: Bus, *, cycle_s: float, rng: np.random.Generator) -> None:
+        self.cycle_s = cycle_s
+        """Time from one message to the next [s]."""
+        self.start_s = float(rng.uniform(0.0, cycle_s))
+        """Time of the first message, were it at its cycle [s]: the bus does not wait for the logger."""
+        self.is_regular = bus.is_regular
+        """Whether every message comes, and at its cycle."""
+        self._bus, self._rng = bus, rng
+        self._sent = 0
+        self._waiting: FloatArray = np.empty((0, 2))
+
+    def before(self, stop_s: float) -> FloatArray:
+        """Return the times of the messages that come before a time [s] and were not returned yet, shape (messages,)."""
+        most = max(int((stop_s - self.start_s) / self.cycle_s) + 2 - self._sent, 0)
+        cycle = np.arange(self._sent, self._sent + most)
+        drawn = np.zeros((most, 2))
+        if not self.is_regular:
+            new = self._rng.uniform(size=(max(most - len(self._waiting), 0), 2))
+            self._waiting = np.concatenate([self._waiting, new])
+            drawn = self._waiting[:most]
+        jitter_s = self._bus.jitter * self.cycle_s * np.sqrt(12.0) * (drawn[:, 0] - 0.5)
+        time_s = self.start_s + self.cycle_s * cycle + (0.0 if self.is_regular else jitter_s)
+        come = time_s < stop_s
+        self._sent += int(np.count_nonzero(come))
+        self._waiting = self._waiting[int(np.count_nonzero(come)) :]
+        is_logged = (time_s >= 0.0) & (drawn[:, 1] >= self._bus.lost)
+        return np.asarray(time_s[come & is_logged])
