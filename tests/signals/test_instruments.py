@@ -125,6 +125,40 @@ def test_a_slow_speed_is_joined_by_a_spline(vessel, ship, campaign, make_channel
     assert speed.gain(6.0) == pytest.approx(0.963, abs=1e-3)
 
 
+def test_messages_are_joined_by_a_spline_through_their_own_times(vessel, ship, campaign, make_channel):
+    """SPN 190: 0.125 rpm every 20 ms, 15 % of jitter, 1 % lost, and nothing at all from 200.0 to 201.0 s."""
+    rng = np.random.default_rng(5)
+    times = 0.0137 + 0.02 * np.arange(12_490) + 0.003 * np.sqrt(3.0) * rng.uniform(-1.0, 1.0, 12_490)
+    times = times[(rng.random(times.size) > 0.01) & ((times < 200.0) | (times > 201.0))]
+    shown = 0.125 * np.rint(60.0 * np.interp(times - 0.02, ship.time_s, ship.speed_rev_s) / 0.125)
+    # "not available" is beyond the range of the message
+    shown[5000] = np.nan
+    bus = replace(
+        make_channel(shown, name="X", unit="rpm", rate_hz=50.0, start_s=float(times[0])),
+        stamps=lambda first, stop: times[first:stop],
+        is_uneven=True,
+    )
+    raw = recording_with(ship, shown, make_channel, unit="rpm", rate_hz=50.0)
+    raw = replace(raw, channels=dict(raw.channels) | {"X": bus})
+    signals = prepare_signals(raw, vessel_with(vessel, sensor("rpm", latency_s=0.02)), campaign)
+    speed = signals.speeds["n_x"]
+    true = np.interp(signals.start_s + np.arange(speed.values.size) / 200.0, ship.time_s, ship.speed_rev_s)
+    sines = slice(200 * 118, 200 * 159)
+    # steps of 0.125 rpm, which a spline between them hardly enlarges
+    assert np.abs(speed.values[sines] - true[sines]).max() < 0.125 / 60.0
+    assert (speed.values[sines] - true[sines]).mean() == pytest.approx(0.0, abs=0.01 / 60.0)
+    assert speed.nyquist_hz == 25.0
+    (gap,) = signals.gaps
+    assert (gap.start_s, gap.stop_s) == (pytest.approx(199.98, abs=0.03), pytest.approx(200.98, abs=0.03))
+    assert any("X has times of its own: a message every 20 ms" in finding for finding in signals.findings)
+    pulses = replace(bus, name="PTM_e", unit="V")
+    raw = replace(raw, channels=dict(raw.channels) | {"PTM_e": pulses})
+    with pytest.raises(
+        SignalError, match=r"channel PTM_e: expected samples at one rate for the speed n_e, found a mess"
+    ):
+        prepare_signals(raw, vessel, campaign)
+
+
 def test_pick_up_and_instrument_are_held_against_each_other(vessel, ship, campaign, make_channel):
     shown = 1.03 * 60.0 * ship.speed_rev_s
     raw = recording_with(ship, shown, make_channel, unit="rpm", rate_hz=2000.0)

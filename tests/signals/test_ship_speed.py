@@ -110,3 +110,16 @@ def test_what_the_log_did_not_give_is_a_gap():
     # a ship that gains speed evenly is on the straight line all the same
     grid = 10.0 + np.arange(2000) / 50.0
     assert found.values == pytest.approx(4.0 + 0.05 * (grid - 9.0 + 0.3), rel=1e-12)
+
+
+def test_a_receiver_that_sends_when_it_likes_is_taken_at_its_times():
+    """A value every 0.2 s, up to 60 ms late, none from 30 to 33 s, of a ship that gains 0.02 m/s a second."""
+    time = 9.0 + np.arange(230) / 5.0 + np.random.default_rng(1).uniform(0.0, 0.06, 230)
+    time = time[(time < 30.0) | (time > 33.0)]
+    values = 5.0 + 0.02 * (time - 0.3)
+    uneven = replace(log(values), start_s=float(time[0]), stamps=lambda first, stop: time[first:stop], is_uneven=True)
+    reading = read_ship_speed(uneven, sensor(), CLOCK, latency_s=0.3)
+    grid = 10.0 + np.arange(2000) / 50.0
+    assert reading.values == pytest.approx(5.0 + 0.02 * grid, rel=1e-12)
+    (gap,) = reading.gaps
+    assert (gap.start_s, gap.stop_s) == pytest.approx((time[time < 30.0][-1] - 0.3, time[time > 33.0][0] - 0.3))

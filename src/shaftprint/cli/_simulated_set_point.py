@@ -210,6 +210,12 @@ def file_drive(
     """
     with read_recording(path) as recording:
         channels = {name: _channel(recording.channels, name, path) for name in structure.inputs}
+        uneven = [name for name, channel in channels.items() if channel.is_uneven]
+        if uneven:
+            raise RecordingError(
+                f"{path}: expected inputs at one rate, found messages at times of their own in {', '.join(uneven)}; "
+                "resample the file."
+            )
         clocks = {(channel.rate_hz, channel.start_s, channel.count) for channel in channels.values()}
         if len(clocks) != 1:
             raise RecordingError(f"{path}: expected one clock for {', '.join(channels)}, found {len(clocks)}.")

@@ -68,25 +68,26 @@ def _remark(reached: "Levels") -> str:
 
 def clock_table(recording: "Recording") -> Table:
     """Return by which clock each raw channel runs: first sample, rate and length; channels alike share a row."""
-    groups: dict[tuple[float, float, int], list[str]] = {}
+    groups: dict[tuple[float, float, int, float], list[str]] = {}
     for channel in recording.channels.values():
-        groups.setdefault((channel.start_s, channel.rate_hz, channel.count), []).append(channel.name)
+        clock = (channel.start_s, channel.rate_hz, channel.count, channel.start_s + channel.duration_s)
+        groups.setdefault(clock, []).append(channel.name)
     rows = tuple(
         (
             ", ".join(names),
             rounded(rate, 7),
             f"{plain(start, 3)}",
-            f"{plain(start + count / rate, 3)}",
+            f"{plain(end, 3)}",
             f"{count:,}".replace(",", "\u202f"),
         )
-        for (start, rate, count), names in groups.items()
+        for (start, rate, count, end), names in groups.items()
     )
     return Table(
         title="Clocks of the raw channels",
         columns=(*texts("channels"), *numbers("rate [Hz]", "first sample [s]", "end [s]", "samples")),
         rows=rows,
         note="Channels of one file share the clock of its logger; where there were several loggers, their clock maps "
-        "follow.",
+        "follow. The rate of messages with times of their own is that of their sender.",
     )
 
 

@@ -20,7 +20,7 @@ from shaftprint.design import limit_uses, recorded_operation, stated_limits
 from shaftprint.errors import ShaftprintError, SignalError
 from shaftprint.fingerprint import clock_findings, clock_influences
 from shaftprint.limits import limit_hints
-from shaftprint.recording import Levels, LevelWatch, Recording, read_recording, watch_levels
+from shaftprint.recording import Levels, LevelWatch, Recording, judge_messages, read_recording, watch_levels
 from shaftprint.signals import (
     ChannelReadings,
     ChannelReport,
@@ -167,9 +167,24 @@ def _print_channels(opened: Recording, levels_of: Mapping[str, Levels]) -> list[
         *numbers("lowest", "mean", "highest", "not a number"),
     )
     print_table(Table(title="Channels, raw", columns=columns, rows=tuple(rows)))
+    _print_messages(opened)
     if opened.began is not None:
         echo(f"Second 0 is {opened.began.isoformat(sep=' ')} by the logger's clock.\n")
     return seen
+
+
+def _print_messages(opened: Recording) -> None:
+    """Print how the messages came of channels that have times of their own."""
+    sentences = []
+    for name, channel in opened.channels.items():
+        if channel.stamps is None:
+            continue
+        messages = judge_messages(channel)
+        steps = f", steps of {messages.step:.3g} {channel.unit}".rstrip() if messages.step else ""
+        place = "" if channel.is_uneven else ", within half a step of a clock"
+        sentences.append(f"{name}: {messages.sentence}{steps}{place}")
+    if sentences:
+        print_findings("Channels with times of their own", sentences)
 
 
 def _print_sensors(reports: Sequence[ChannelReport]) -> None:

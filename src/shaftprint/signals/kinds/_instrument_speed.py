@@ -1,7 +1,8 @@
 """Speed of a shaft from an instrument that gives a speed: rpm, Hz, rad/s, m/s, or volts and milliamperes with a line.
 
 A channel as fast as the signals is repaired and filtered as torque is. A slower one is joined by a cubic spline, which
-shows a sine too small by the same factor as the spline through pulses of that rate.
+shows a sine too small by the same factor as the spline through pulses of that rate. Messages at times of their own are
+joined the same way.
 """
 
 from dataclasses import replace
@@ -14,6 +15,7 @@ from shaftprint.errors import SignalError
 from shaftprint.signals._channels import blocks, time_of
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps, joined, runs_of
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
+from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.kinds._speed_reading import SpeedReading
 from shaftprint.vessel import SpeedSensor
 
@@ -29,6 +31,8 @@ _AT_ZERO = 0.02
 _LONGEST_GAP_VALUES = 3
 # The end of a spline is felt so many values further on: by half a per cent.
 _REACH_VALUES = 4
+# A cubic spline goes through four values.
+_FEWEST_MESSAGES = 4
 
 
 def read_instrument(channel: "Channel", sensor: SpeedSensor, clock: "Clock", *, gear_ratio: float) -> SpeedReading:
@@ -49,7 +53,7 @@ def read_instrument(channel: "Channel", sensor: SpeedSensor, clock: "Clock", *, 
         If the channel holds no numbers, or a speed below zero throughout.
     """
     latency_s = clock.latency_s(sensor.latency_s)
-    if channel.rate_hz >= clock.rate_hz:
+    if channel.rate_hz >= clock.rate_hz and not channel.is_uneven:
         reading = conditioned(
             channel,
             instrument_limits(channel, sensor),
@@ -74,6 +78,7 @@ def read_instrument(channel: "Channel", sensor: SpeedSensor, clock: "Clock", *, 
         name=sensor.name,
         channel=channel.name,
         pulse_rate_hz=channel.rate_hz,
+        findings=reading.findings,
     )
 
 
@@ -91,14 +96,26 @@ def instrument_limits(channel: "Channel", sensor: SpeedSensor) -> FaultLimits:
 
 def _splined(channel: "Channel", sensor: SpeedSensor, clock: "Clock", latency_s: float) -> Reading:
     """Return a channel that is slower than the grid, in its own unit on the grid."""
-    counts = np.concatenate([part.astype(np.float64) for part in blocks(channel, clock.block_samples(channel))])
     limits = instrument_limits(channel, sensor)
+    grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
+    if channel.stamps is not None:
+        ends = sorted(end * channel.scale + channel.offset for end in (limits.lowest, limits.highest))
+        messages = read_messages(channel, lowest=ends[0], highest=ends[1])
+        # two messages at one time give no spline
+        time_s, first = np.unique(messages.time_s - latency_s, return_index=True)
+        if time_s.size < _FEWEST_MESSAGES:
+            raise _no_numbers(channel)
+        spline = scipy.interpolate.CubicSpline(time_s, messages.values[first])
+        gaps = tuple(replace(gap, reach_s=_REACH_VALUES / channel.rate_hz) for gap in messages.gaps)
+        values = spline(grid_s.clip(time_s[0], time_s[-1]))
+        bridge(values, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)
+        return replace(messages, values=values, gaps=gaps)
+    counts = np.concatenate([part.astype(np.float64) for part in blocks(channel, clock.block_samples(channel))])
     missing = np.isnan(counts) | (counts <= limits.lowest) | (counts >= limits.highest)
     if missing.all():
-        raise SignalError(f"channel {channel.name}: expected numbers, found none; check the export of the logger.")
+        raise _no_numbers(channel)
     values = joined(np.where(missing, np.nan, counts)) * channel.scale + channel.offset
     time_s = channel.start_s - latency_s + np.arange(values.size) / channel.rate_hz
-    grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
     on_grid = scipy.interpolate.CubicSpline(time_s, values)(grid_s.clip(time_s[0], time_s[-1]))
     gaps = [
         Gap(
@@ -113,3 +130,7 @@ def _splined(channel: "Channel", sensor: SpeedSensor, clock: "Clock", latency_s:
     ]
     bridge(on_grid, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)
     return Reading(values=on_grid, repairs=[], gaps=(*gaps, *clock_gaps(channel)))
+
+
+def _no_numbers(channel: "Channel") -> SignalError:
+    return SignalError(f"channel {channel.name}: expected numbers, found none; check the export of the logger.")

@@ -25,23 +25,23 @@ class MessageReading(Reading):
     """What they tell of their sender."""
 
 
-def read_messages(channel: "Channel", *, highest: float = np.inf) -> MessageReading:
+def read_messages(channel: "Channel", *, lowest: float = -np.inf, highest: float = np.inf) -> MessageReading:
     """Return the messages of a channel that hold a value, with the holes between them.
 
     Parameters
     ----------
     channel
         A channel with ``stamps``.
-    highest
-        Largest value [unit]: what is above says that there is none.
+    lowest, highest
+        Smallest and largest value [unit]: what is beyond says that there is none.
     """
     blocks = range(0, channel.count, DEFAULT_BLOCK_SAMPLES)
     spans = [(start, min(start + DEFAULT_BLOCK_SAMPLES, channel.count)) for start in blocks]
     values = np.concatenate([channel.values(*span) for span in spans])
     time_s = np.concatenate([channel.stamps_s(*span) for span in spans])
     # written so that what is not a number counts as missing
-    is_value = values <= highest
-    values, time_s = values[is_value & np.isfinite(values)], time_s[is_value & np.isfinite(values)]
+    is_value = (values >= lowest) & (values <= highest) & np.isfinite(values)
+    values, time_s = values[is_value], time_s[is_value]
     messages = messages_of(time_s, values, period_s=1.0 / channel.rate_hz)
     gaps = tuple(
         Gap(channel=channel.name, start_s=hole.start_s, stop_s=hole.stop_s, reason="has no messages")

@@ -66,7 +66,13 @@ class Speed(ChannelKind[SpeedSensor]):
             Source(
                 kind=self,
                 name=sensor.name,
-                channel=find_channel(recording, sensor.channel, unit=sensor.unit, use=f"{self.use} {sensor.name}"),
+                channel=find_channel(
+                    recording,
+                    sensor.channel,
+                    unit=sensor.unit,
+                    use=f"{self.use} {sensor.name}",
+                    takes_messages=not sensor.gives_pulses,
+                ),
                 sensor=sensor,
                 vessel=vessel,
                 spare=sensor is not vessel.sensors.speed[0],

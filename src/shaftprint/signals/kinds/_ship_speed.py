@@ -4,6 +4,7 @@ Tests underway look at the ship below half a hertz, far below the rate of a log:
 and what that does to a sine is known.
 """
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +16,7 @@ from shaftprint.signals._channels import blocks, time_of
 from shaftprint.signals._gaps import Gap, clock_gaps, joined, runs_of
 from shaftprint.signals.conditioning import Reading
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, steady_parts
+from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.levels import SteadyStretch, mean_of_stretches
 from shaftprint.vessel import ShipSpeedSensor
 
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
 _NO_WAY_M_S = 0.2
 
 _HELD_RATE = 2.0
+_SAME_SENDER = 1e-2
 # A ship gains little speed in so short a time.
 _LONGEST_GAP_S = 2.0
 
@@ -34,6 +37,7 @@ class ShipSpeed(ChannelKind[ShipSpeedSensor]):
     """Speed of the ship from its log [m/s], where the ship has way on."""
 
     sensor, name, use, role = "ship_speed", "v_s", "speed of the ship", ChannelRole.SIDE
+    takes_messages = True
     absence = "the ship had no way on"
 
     def read(self, source: Source[ShipSpeedSensor], clock: "Clock") -> Reading:
@@ -65,18 +69,23 @@ def read_ship_speed(channel: "Channel", sensor: ShipSpeedSensor, clock: "Clock",
     SignalError
         If the channel is slower than the vessel file says, or does not cover the test.
     """
-    if channel.rate_hz * sensor.cycle_s < 1.0 - 1e-6:
+    # the period of a sender is known from its messages only
+    if channel.rate_hz * sensor.cycle_s < 1.0 - (_SAME_SENDER if channel.is_uneven else 1e-6):
         raise SignalError(
             f"channel {channel.name}: expected {1.0 / sensor.cycle_s:g} values a second or more, as cycle_s = "
             f"{sensor.cycle_s:g} says, found {channel.rate_hz:g}; correct cycle_s in the vessel file."
         )
-    counts = np.concatenate([part.astype(np.float64) for part in blocks(channel, clock.block_samples(channel))])
-    speed = sensor.m_s_per_unit * (counts * channel.scale + channel.offset)
+    messages = read_messages(channel) if channel.is_uneven else None
+    if messages is None:
+        counts = np.concatenate([part.astype(np.float64) for part in blocks(channel, clock.block_samples(channel))])
+        speed = sensor.m_s_per_unit * (counts * channel.scale + channel.offset)
+        time = channel.start_s - latency_s + np.arange(speed.size) / channel.rate_hz
+    else:
+        speed, time = sensor.m_s_per_unit * messages.values, messages.time_s - latency_s
     if np.isnan(speed).all():
         raise SignalError(
             f"channel {channel.name}: expected numbers, found none; take [sensors.ship_speed] out of the vessel file."
         )
-    time = channel.start_s - latency_s + np.arange(speed.size) / channel.rate_hz
     grid = clock.start_s + np.arange(clock.count) / clock.rate_hz
     margin = latency_s + 2.0 * sensor.cycle_s
     if grid[0] < time[0] - margin or grid[-1] > time[-1] + margin:
@@ -84,6 +93,13 @@ def read_ship_speed(channel: "Channel", sensor: ShipSpeedSensor, clock: "Clock",
             f"channel {channel.name}: expected the speed of the ship from {grid[0]:.1f} to {grid[-1]:.1f} s, found it "
             f"from {time[0]:.1f} to {time[-1]:.1f} s; take [sensors.ship_speed] out where it was not logged throughout."
         )
+    if messages is not None:
+        late = (
+            replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s, reach_s=sensor.cycle_s)
+            for gap in messages.gaps
+            if gap.stop_s - gap.start_s > _LONGEST_GAP_S
+        )
+        return replace(messages, values=np.interp(grid, time, speed), gaps=tuple(late))
     gaps = [
         Gap(
             channel=channel.name,
