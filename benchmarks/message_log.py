@@ -3,9 +3,9 @@
 The simulated Stan Tug 1205 sails the shipped campaign ``short``. Its control unit sends the percent torque every 20 ms,
 1 % a bit; the messages come with 15 % of jitter, one in a hundred is lost. The raw recording is prepared and identified
 with GAUGE-ECU and what the vessel file knows. Printed are, for each number, the mean error, its scatter, the standard
-deviation that the fits state, and how often the 95 % interval holds the truth. Run ``python -m benchmarks.message_log
---tests 100``, about 7 seconds a test; ``--exact`` sends messages without jitter and losses, ``--mdf`` takes the way by an
-MDF 4 file.
+deviation that the fits state, and how often the 95 % interval holds the truth. ``python -m benchmarks.message_log
+--tests 100`` takes about 7 seconds a test; ``--exact`` sends messages without jitter and losses, ``--mdf`` writes them
+into an MDF 4 file first.
 """
 
 import argparse

@@ -39,6 +39,26 @@ def test_values_that_are_not_numbers_are_counted(run, tmp_path):
     assert _cells(output, "empty")[-4:] == ["nan", "nan", "nan", "0"]
 
 
+def test_messages_are_judged_without_a_vessel_file(run, tmp_path):
+    path = tmp_path / "bus.nc"
+    rng = np.random.default_rng(1)
+    times = 0.02 * np.arange(5000) + rng.uniform(-0.004, 0.004, 5000)
+    times = np.delete(times, [*range(700, 5000, 100), *range(2000, 2050)])
+    with RecordingWriter(path) as writer:
+        writer.declare("X", unit="%", rate_hz=50.0, offset=-125.0, times="uneven")
+        writer.append("X", np.rint(165.0 + 9.0 * np.sin(times)).astype(np.int16), times)
+        writer.declare("M_s", unit="V", rate_hz=100.0)
+        writer.append("M_s", np.arange(10_000, dtype=np.int16))
+    output = run("inspect", path).output
+    assert (
+        "Channels with times of their own\n"
+        "  * X: a message every 20 ms +/- 3.3 ms, 1.8 % lost, 1 hole of up to 1.02 s, steps of 1 %\n"
+    ) in output
+    assert "M_s: " not in output
+    # the proposal takes the period of the sender for the cycle
+    assert "cycle_s = 0.02" in output
+
+
 def test_sensors_with_a_vessel_file(run, recording):
     result = run("inspect", recording, "--vessel", "stan-tug-1205")
     assert result.exit_code == 0
