@@ -16,6 +16,7 @@ from shaftprint.vessel import SpeedSensor, Vessel, load_vessel
 # What is shown for one turn, and where it begins again (never, where that is 0), with what the vessel file says.
 WAYS = {
     "degrees": (360.0, 360.0, {"unit": "deg"}),
+    "degrees about zero": (360.0, 360.0, {"unit": "deg"}),
     "degrees of two turns": (360.0, 720.0, {"unit": "deg", "rolls_over_at": 720.0}),
     "degrees without end": (360.0, 0.0, {"unit": "deg"}),
     "radians": (2.0 * np.pi, 2.0 * np.pi, {"unit": "rad"}),
@@ -32,6 +33,8 @@ def shown(way, angle_rev):
     value = per_rev * angle_rev
     if fields["unit"] == "counts":
         value = np.floor(value)
+    if way == "degrees about zero":
+        return (value + 180.0) % 360.0 - 180.0
     return value % whole if whole else value
 
 
@@ -45,7 +48,7 @@ def vessel_with(vessel, one):
     return Vessel.model_validate(content)
 
 
-def read(values, one, vessel, make_channel, *, rate_hz=2000.0, start_s=0.0):
+def read(values, one, vessel, make_channel, *, rate_hz=2000.0, start_s=0.0, chunk_s=None):
     """What the channel of an encoder gives on a grid of 200 Hz, beside a gauge and a set point."""
     beside = np.random.default_rng(1).standard_normal(round(values.size / rate_hz * 2000.0))
     channels = {
@@ -54,7 +57,7 @@ def read(values, one, vessel, make_channel, *, rate_hz=2000.0, start_s=0.0):
         "U_setpoint": make_channel(beside, name="U_setpoint"),
     }
     recording = Recording(path=Path("ship.nc"), sha256="0" * 64, format="memory", channels=channels)
-    readings = read_channels(recording, vessel_with(vessel, one))
+    readings = read_channels(recording, vessel_with(vessel, one), chunk_s=chunk_s)
     if "n_x" in readings.problems:
         raise readings.problems["n_x"]
     source = next(source for source in readings.sources if source.name == "n_x")
@@ -120,6 +123,16 @@ def test_latency_and_times_of_the_channel_are_kept(vessel, make_channel):
     true = GEAR_RATIO * turning.speed_at(0.2 + np.arange(reading.values.size) / 200.0)
     # a sample of the logger would be 1.6e-4
     assert reading.values[100:5800] == pytest.approx(true[100:5800], rel=2e-5)
+
+
+def test_the_size_of_the_pieces_that_are_read_changes_nothing(vessel, make_channel):
+    values = shown("counts", sampled(Turning(duration_s=20.0)))
+    values[[999, 1000, 20_000]] += 9000.0
+    whole, pieces = (
+        read(values, sensor("counts"), vessel, make_channel, chunk_s=chunk_s) for chunk_s in (None, 0.0505)
+    )
+    assert np.array_equal(whole.values, pieces.values)
+    assert whole.repairs == pieces.repairs
 
 
 def test_an_encoder_that_counts_down_is_turned_and_said_so(vessel, make_channel):
