@@ -97,19 +97,9 @@ def instrument_limits(channel: "Channel", sensor: SpeedSensor) -> FaultLimits:
 def _splined(channel: "Channel", sensor: SpeedSensor, clock: "Clock", latency_s: float) -> Reading:
     """Return a channel that is slower than the grid, in its own unit on the grid."""
     limits = instrument_limits(channel, sensor)
-    grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
     if channel.stamps is not None:
-        ends = sorted(end * channel.scale + channel.offset for end in (limits.lowest, limits.highest))
-        messages = read_messages(channel, lowest=ends[0], highest=ends[1])
-        # two messages at one time give no spline
-        time_s, first = np.unique(messages.time_s - latency_s, return_index=True)
-        if time_s.size < _FEWEST_MESSAGES:
-            raise _no_numbers(channel)
-        spline = scipy.interpolate.CubicSpline(time_s, messages.values[first])
-        gaps = tuple(replace(gap, reach_s=_REACH_VALUES / channel.rate_hz) for gap in messages.gaps)
-        values = spline(grid_s.clip(time_s[0], time_s[-1]))
-        bridge(values, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)
-        return replace(messages, values=values, gaps=gaps)
+        return _splined_messages(channel, limits, clock, latency_s)
+    grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
     counts = np.concatenate([part.astype(np.float64) for part in blocks(channel, clock.block_samples(channel))])
     missing = np.isnan(counts) | (counts <= limits.lowest) | (counts >= limits.highest)
     if missing.all():
@@ -130,6 +120,21 @@ def _splined(channel: "Channel", sensor: SpeedSensor, clock: "Clock", latency_s:
     ]
     bridge(on_grid, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)
     return Reading(values=on_grid, repairs=[], gaps=(*gaps, *clock_gaps(channel)))
+
+
+def _splined_messages(channel: "Channel", limits: FaultLimits, clock: "Clock", latency_s: float) -> Reading:
+    """Return messages at times of their own, in their own unit on the grid."""
+    ends = sorted(end * channel.scale + channel.offset for end in (limits.lowest, limits.highest))
+    messages = read_messages(channel, lowest=ends[0], highest=ends[1])
+    # two messages at one time give no spline
+    time_s, first = np.unique(messages.time_s - latency_s, return_index=True)
+    if time_s.size < _FEWEST_MESSAGES:
+        raise _no_numbers(channel)
+    grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
+    on_grid = scipy.interpolate.CubicSpline(time_s, messages.values[first])(grid_s.clip(time_s[0], time_s[-1]))
+    gaps = tuple(replace(gap, reach_s=_REACH_VALUES / channel.rate_hz) for gap in messages.gaps)
+    bridge(on_grid, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)
+    return replace(messages, values=on_grid, gaps=gaps)
 
 
 def _no_numbers(channel: "Channel") -> SignalError:
