@@ -184,3 +184,24 @@ def test_a_speed_below_zero_is_refused(vessel, ship, campaign, make_channel):
 def test_two_recordings_can_be_compared_by_a_speed_channel(make_channel):
     channel = make_channel(np.full(4000, 1200.0), name="X", unit="rpm")
     assert content_of(channel, sensor("rpm"), rate_hz=50.0).values == pytest.approx(np.full(100, 20.0), rel=1e-6)
+
+
+def test_messages_can_be_compared_with_another_recording(make_channel):
+    """A speed that gains 30 rpm a second, in messages that come when they like; pulses in their place are refused."""
+    times = 3.0 + 0.02 * np.arange(2000) + np.random.default_rng(1).uniform(0.0, 0.008, 2000)
+    values = 1200.0 + 30.0 * times
+    bus = replace(
+        make_channel(values, name="X", unit="rpm", rate_hz=50.0, start_s=float(times[0])),
+        stamps=lambda first, stop: times[first:stop],
+        is_uneven=True,
+    )
+    shown = content_of(bus, sensor("rpm"), rate_hz=20.0)
+    assert (shown.rate_hz, shown.start_s) == (20.0, times[0])
+    assert shown.values[:-2] == pytest.approx(20.0 + 0.5 * shown.time_s[:-2], rel=1e-9)
+    pulses = SpeedSensor.model_validate(
+        {"name": "n", "channel": "X", "shaft": "engine", "unit": "V", "pulses_per_revolution": 1}
+    )
+    with pytest.raises(
+        SignalError, match="channel X: expected samples at one rate for pulses or an angle, found a mess"
+    ):
+        content_of(bus, pulses, rate_hz=20.0)

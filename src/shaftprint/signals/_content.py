@@ -56,11 +56,11 @@ def content_of(channel: "Channel", sensor: "SpeedSensor | None" = None, *, rate_
     """
     if channel.count == 0:
         raise SignalError(f"channel {channel.name}: expected samples, found none.")
+    if sensor is not None and sensor.counts_turns:
+        expect_one_clock(channel, "pulses or an angle")
     if sensor is not None and sensor.gives_angle:
         channel, sensor = speed_channel(channel, sensor), None
     pulses = sensor if sensor is not None and sensor.gives_pulses else None
-    if pulses is not None:
-        expect_one_clock(channel, "pulses")
     if pulses is None and (channel.is_uneven or channel.rate_hz <= rate_hz):
         counts = np.concatenate(list(blocks(channel, DEFAULT_BLOCK_SAMPLES))).astype(np.float64)
         values, rate_hz = joined(counts) * channel.scale + channel.offset, min(channel.rate_hz, rate_hz)

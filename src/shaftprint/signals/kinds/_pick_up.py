@@ -71,7 +71,7 @@ class Speed(ChannelKind[SpeedSensor]):
                     sensor.channel,
                     unit=sensor.unit,
                     use=f"{self.use} {sensor.name}",
-                    takes_messages=not sensor.gives_pulses,
+                    takes_messages=not sensor.counts_turns,
                 ),
                 sensor=sensor,
                 vessel=vessel,
