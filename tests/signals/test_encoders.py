@@ -48,11 +48,11 @@ def vessel_with(vessel, one):
     return Vessel.model_validate(content)
 
 
-def read(values, one, vessel, make_channel, *, rate_hz=2000.0, start_s=0.0, chunk_s=None):
+def read(values, one, vessel, make_channel, *, rate_hz=2000.0, start_s=0.0, chunk_s=None, **more):
     """What the channel of an encoder gives on a grid of 200 Hz, beside a gauge and a set point."""
     beside = np.random.default_rng(1).standard_normal(round(values.size / rate_hz * 2000.0))
     channels = {
-        "X": make_channel(values, name="X", unit=one.unit, rate_hz=rate_hz, start_s=start_s),
+        "X": make_channel(values, name="X", unit=one.unit, rate_hz=rate_hz, start_s=start_s, **more),
         "M_s": make_channel(beside, name="M_s"),
         "U_setpoint": make_channel(beside, name="U_setpoint"),
     }
@@ -168,6 +168,47 @@ def test_a_standstill_ends_in_a_sentence(way, vessel, make_channel):
     assert gap.sentence.startswith("channel X stands still from ")
     assert (gap.start_s, gap.stop_s) == pytest.approx((10.0, 14.0), abs=0.3)
     assert reading.repairs == []
+
+
+def message_times(rate_hz, duration_s=40.0, seed=1):
+    """Times of messages that tremble by 15 % of their period, one in a hundred of them lost."""
+    rng = np.random.default_rng(seed)
+    every = (np.arange(round(duration_s * rate_hz)) + 0.5 + 0.15 * rng.standard_normal()) / rate_hz
+    every = np.sort(every + 0.15 / rate_hz * rng.standard_normal(every.size))
+    return every[rng.random(every.size) > 0.01]
+
+
+def messages(time_s, rate_hz):
+    """What makes a channel of messages."""
+    return {
+        "rate_hz": rate_hz,
+        "start_s": float(time_s[0]),
+        "stamps": lambda start, stop: time_s[start:stop],
+        "is_uneven": True,
+    }
+
+
+@pytest.mark.parametrize("way", ["degrees", "turns", "counts"])
+def test_messages_are_angles_at_their_own_times(way, vessel, make_channel):
+    turning = Turning(ripple=0.0, swing_hz=1.0)
+    time_s = message_times(50.0)
+    values = shown(way, np.interp(time_s, turning.fine_s, turning.fine_rev))
+    reading = read(values, sensor(way), vessel, make_channel, **messages(time_s, 50.0))
+    true = GEAR_RATIO * turning.speed_at(time_s[0] + np.arange(reading.values.size) / 200.0)
+    inside = slice(200, -400)
+    assert reading.values[inside].mean() == pytest.approx(true[inside].mean(), rel=1e-5)
+    # a count in 4096 at either end of 20 ms, which the spline makes larger between close messages
+    limit = 1e-2 if way == "counts" else 1e-4
+    assert np.abs(reading.values[inside] / true[inside] - 1.0).max() < limit
+    assert reading.gaps == ()
+    assert reading.findings[0].startswith("Channel X has times of its own: ")
+
+
+def test_messages_too_far_apart_for_a_turn_are_refused(vessel, make_channel):
+    time_s = message_times(12.0)
+    values = shown("degrees", np.interp(time_s, Turning().fine_s, Turning().fine_rev))
+    with pytest.raises(SignalError, match=r"X: expected an angle that turns by less than 0\.4 .* at 12 Hz; log at"):
+        read(values, sensor("degrees"), vessel, make_channel, **messages(time_s, 12.0))
 
 
 def test_an_angle_that_never_moves_is_refused(vessel, make_channel):

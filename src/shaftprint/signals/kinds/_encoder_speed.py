@@ -1,11 +1,12 @@
 """Speed of a shaft from the angle that an encoder shows, in degrees, radians, turns or counts.
 
 What the shaft turns from one sample to the next is its mean speed in between. An angle that begins again turns by less
-than half of its range from sample to sample, so that the difference says whether it did.
+than half of its range from sample to sample, so that the difference says whether it did. Where samples are few, or
+messages at times of their own, the spline through the angles is differentiated, as that of pulses is.
 """
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,6 +17,7 @@ from shaftprint.signals._gaps import Gap, bridge, clock_gaps, joined, runs_of
 from shaftprint.signals.conditioning import Reading, conditioned, fault_limits
 from shaftprint.signals.kinds._angle_range import angle_range, expect_small_steps, wrapped
 from shaftprint.signals.kinds._kind import Source
+from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.kinds._speed_reading import SpeedReading
 from shaftprint.signals.pulses import spline_speed
 from shaftprint.units import rev_s_from_rpm, rpm_from_rev_s
@@ -31,6 +33,8 @@ _WINDOW_S, _STANDING = 1.0, 0.02
 _USUAL = 0.9
 # Over a gap longer than this a slow channel says nothing; the end of a spline is felt so many values further on.
 _LONGEST_GAP_VALUES, _REACH_VALUES = 3, 4
+# A spline goes through three angles.
+_FEWEST_ANGLES = 3
 # No engine runs so far below idle or above rated speed. So far from the working point counts may be entered wrongly.
 _SLOWEST, _FASTEST, _FAR = 0.7, 1.3, 1.5
 
@@ -50,9 +54,11 @@ def read_encoder(source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
     turns_hz = rev_s_from_rpm(source.vessel.working_point.engine_speed_rpm) / ratio
     expect_small_steps(channel, sensor, turns_hz)
     values_hz = _values_hz(channel, sensor, clock, turns_hz)
-    turning = speed_channel(channel, sensor)
     latency_s = clock.latency_s(sensor.latency_s)
-    if channel.rate_hz >= clock.rate_hz:
+    if channel.is_uneven or channel.rate_hz < clock.rate_hz:
+        reading = _splined(channel, sensor, clock, latency_s)
+    else:
+        turning = speed_channel(channel, sensor)
         reading = conditioned(
             turning,
             fault_limits(turning, holds=False),
@@ -62,8 +68,6 @@ def read_encoder(source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
             advance=clock.advance,
         )
         _sharpen(reading.values, step=clock.rate_hz / channel.rate_hz)
-    else:
-        reading = _splined(turning, clock, latency_s)
     usual, ahead = _usual(reading.values, clock, channel.name)
     speed = ahead * reading.values
     stops = _stops(speed, usual, clock, channel.name)
@@ -76,7 +80,7 @@ def read_encoder(source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
         values=ratio * speed,
         repairs=reading.repairs,
         gaps=tuple(sorted([*gaps, *stops], key=lambda gap: gap.start_s)),
-        findings=(backwards,) if ahead < 0.0 else (),
+        findings=(*reading.findings, backwards) if ahead < 0.0 else reading.findings,
         pulse_rate_hz=values_hz,
     )
 
@@ -177,31 +181,66 @@ def _sharpen(speed: FloatArray, *, step: float) -> None:
     speed[1:-1] -= step**2 / 24.0 * np.diff(speed, 2)
 
 
-def _splined(turning: "Channel", clock: "Clock", latency_s: float) -> Reading:
-    """Return the speed of a channel that is slower than the grid: the slope of the spline through its angles."""
+def _splined(channel: "Channel", sensor: SpeedSensor, clock: "Clock", latency_s: float) -> Reading:
+    """Return the speed of a channel that is slower than the grid, or of messages: the slope of a spline of its angles.
+
+    Raises
+    ------
+    SignalError
+        If there are too few angles.
+    """
+    reading = _message_angles(channel, sensor) if channel.stamps is not None else _angles(channel, sensor)
+    if reading.time_s.size < _FEWEST_ANGLES:
+        raise SignalError(f"channel {channel.name}: expected numbers, found none; check the export of the logger.")
+    begin_s = clock.start_s + latency_s
+    speed = spline_speed(
+        reading.time_s, reading.angle_rev, start_s=begin_s, step_s=1.0 / clock.rate_hz, count=clock.count
+    )
+    gaps = tuple(replace(gap, reach_s=_REACH_VALUES / channel.rate_hz) for gap in reading.gaps)
+    bridge(speed, gaps, start_s=begin_s, rate_hz=clock.rate_hz)
+    return Reading(values=speed, repairs=[], gaps=(*gaps, *clock_gaps(channel)), findings=reading.findings)
+
+
+class _Angles(NamedTuple):
+    """Angles of a shaft at times of the channel, counted on through every turn."""
+
+    time_s: FloatArray
+    angle_rev: FloatArray
+    gaps: tuple[Gap, ...]
+    findings: tuple[str, ...]
+
+
+def _angles(channel: "Channel", sensor: SpeedSensor) -> _Angles:
+    """Return the angles of even samples, straight lines where some are missing."""
+    turning = speed_channel(channel, sensor)
     counts = np.asarray(turning.read(0, turning.count), dtype=np.float64)
     missing = np.isnan(counts)
     if missing.all():
-        raise SignalError(f"channel {turning.name}: expected numbers, found none; check the export of the logger.")
-    step_rev: FloatArray = joined(counts) * turning.scale / turning.rate_hz
+        return _Angles(np.empty(0), np.empty(0), (), ())
+    step_rev = joined(counts) * turning.scale / turning.rate_hz
     angle_rev = np.concatenate([np.zeros(1), np.cumsum(step_rev[1:], dtype=np.float64)])
-    # angles stand at the ends of the times over which the speed is a mean
-    time_s = turning.start_s + (np.arange(angle_rev.size, dtype=np.float64) + 0.5) / turning.rate_hz
-    begin_s = clock.start_s + latency_s
-    speed = spline_speed(time_s, angle_rev, start_s=begin_s, step_s=1.0 / clock.rate_hz, count=clock.count)
-    gaps = [
+    time_s = channel.start_s + np.arange(angle_rev.size, dtype=np.float64) / channel.rate_hz
+    gaps = (
         Gap(
-            channel=turning.name,
+            channel=channel.name,
             start_s=time_of(turning, first),
             stop_s=time_of(turning, stop),
             reason="has no values",
-            reach_s=_REACH_VALUES / turning.rate_hz,
         )
         for first, stop in runs_of(missing)
         if stop - first > _LONGEST_GAP_VALUES
-    ]
-    bridge(speed, gaps, start_s=begin_s, rate_hz=clock.rate_hz)
-    return Reading(values=speed, repairs=[], gaps=(*gaps, *clock_gaps(turning)))
+    )
+    return _Angles(time_s, angle_rev, tuple(gaps), ())
+
+
+def _message_angles(channel: "Channel", sensor: SpeedSensor) -> _Angles:
+    """Return the angles of messages at their own times."""
+    messages = read_messages(channel)
+    # two messages at one time give no spline
+    time_s, first = np.unique(messages.time_s, return_index=True)
+    step = wrapped(np.diff(messages.values[first]), angle_range(channel, sensor))
+    angle_rev = sensor.rev_per_unit * np.concatenate([np.zeros(1), np.cumsum(step, dtype=np.float64)])
+    return _Angles(time_s, angle_rev, messages.gaps, messages.findings)
 
 
 def _usual(speed: FloatArray, clock: "Clock", channel: str) -> tuple[float, float]:

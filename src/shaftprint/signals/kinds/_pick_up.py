@@ -71,7 +71,7 @@ class Speed(ChannelKind[SpeedSensor]):
                     sensor.channel,
                     unit=sensor.unit,
                     use=f"{self.use} {sensor.name}",
-                    takes_messages=not sensor.counts_turns,
+                    takes_messages=not sensor.gives_pulses,
                 ),
                 sensor=sensor,
                 vessel=vessel,
