@@ -83,3 +83,27 @@ def test_sensors_that_no_channel_looks_like_are_named(run, tmp_path):
     output = run("inspect", path).output
     for words in ("[sensors.shaft_torque]: no", "[sensors.set_point]: no", "[[sensors.speed]]: no channel holds"):
         assert words in output
+
+
+def test_signals_of_a_control_unit_are_known_by_their_numbers(run, tmp_path):
+    """As a DBC file gave them: SPN 513 is nearer to what the governor gives than 512."""
+    channels = {
+        "EEC1_a": ("%", "SPN 512: driver's demand"),
+        "EEC1_b": ("%", "SPN 513: actual"),
+        "EEC1_c": ("rpm", "SPN 190"),
+        "EEC2_a": ("%", "SPN 91"),
+        "EEC2_b": ("%", "SPN 92"),
+        "LFE": ("L/h", "SPN 183"),
+    }
+    path = tmp_path / "bus.nc"
+    with RecordingWriter(path) as writer:
+        for name, (unit, long_name) in channels.items():
+            writer.declare(name, unit=unit, rate_hz=50.0, dtype="float64", long_name=long_name)
+            writer.append(name, 40.0 + np.sin(np.arange(1000.0)))
+    result = run("inspect", path)
+    found = _map(result)["sensors"]
+    assert found["rack"] == {"channel": "EEC1_b", "unit": "%", "cycle_s": 0.02}
+    assert [(speed["channel"], speed["unit"]) for speed in found["speed"]] == [("EEC1_c", "rpm")]
+    assert set(found) == {"rack", "speed"}
+    said = [line for line in result.output.splitlines() if line.endswith("; no sensor takes it")]
+    assert [line.split("'")[1] for line in said] == ["EEC2_a", "EEC2_b", "LFE"]

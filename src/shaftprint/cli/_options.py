@@ -2,6 +2,7 @@
 
 import hashlib
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import Any
 
 import click
@@ -51,7 +52,7 @@ def campaign_option(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options ``--sample-rate``, ``--columns``, ``--delimiter``, ``--decimal`` and ``--encoding``."""
+    """Add ``--sample-rate``, ``--columns``, ``--delimiter``, ``--decimal``, ``--encoding`` and ``--dbc``."""
     rate = click.option("--sample-rate", type=float, help="Samples a second, where the file has no clock [Hz].")
     columns = click.option(
         "--columns", metavar="NAME,...", help='Titles of a text file without them, such as "time [s],u,y [rad/s]".'
@@ -59,7 +60,8 @@ def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     delimiter = click.option("--delimiter", help="What stands between the columns of a text file.")
     decimal = click.option("--decimal", type=click.Choice([".", ","]), help="Decimal sign of a text file.")
     encoding = click.option("--encoding", help="Encoding of a text file that is not UTF-8, such as cp1252.")
-    return rate(columns(delimiter(decimal(encoding(command)))))
+    dbc = click.option("--dbc", type=click.Path(path_type=Path), help="DBC file: what raw messages of a CAN bus hold.")
+    return rate(columns(delimiter(decimal(encoding(dbc(command))))))
 
 
 def cut_options(command: Callable[..., Any]) -> Callable[..., Any]:

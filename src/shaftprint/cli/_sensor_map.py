@@ -17,6 +17,17 @@ _PULSES = re.compile(r"ptm|pulse|tacho|pick|rpm|speed|\bn_?e", re.IGNORECASE)
 _ENCODER = re.compile(r"enc|crank|shaft|counter|turn", re.IGNORECASE)
 _ENGINE = re.compile(r"eng|motor|_e\b|crank|flywheel", re.IGNORECASE)
 
+# What an engine's control unit sends, by its number (SAE J1939-71). Of several torques the first is nearest to what the
+# governor gives: engine demand, actual torque, driver's demand.
+_SPN = re.compile(r"SPN (\d+)")
+_TORQUE_NUMBERS = (2432, 513, 512)
+_SPEED_NUMBER = 190
+_NO_SENSOR = {
+    91: "position of the accelerator pedal, a set point in %",
+    92: "load of the engine in % of what it can give at its speed",
+    183: "fuel rate",
+}
+
 _SPEEDS = ("speed", "instrument", "encoder")
 # Torque for one unit of a channel that is a torque already [N m].
 _SCALES = {"N m": 1.0, "kN m": 1000.0}
@@ -87,7 +98,7 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
     seen
         The channels of a recording.
     """
-    uses = {item.channel.name: _use(item) for item in seen}
+    uses = {item.channel.name: _use(item) for item in seen} | _uses_by_number(seen)
     lines = []
     single: set[str] = set()
     speeds = 0
@@ -106,10 +117,40 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
     for needed in ("shaft_torque", "set_point"):
         if needed not in single:
             lines += [f"# [sensors.{needed}]: no channel looks like it", ""]
+    lines += _without_sensor(seen)
     if not speeds:
         lines += ["# [[sensors.speed]]: no channel holds pulses, a speed or an angle", ""]
     rate = max((item.channel.rate_hz for item in seen), default=0.0)
     return [*lines, "[logger]", f"sample_rate_hz = {rate!r}"]
+
+
+def _number(channel: Channel) -> int | None:
+    """Return the number of a J1939 signal (SPN), as a DBC file gave it; None of other channels."""
+    found = _SPN.match(channel.long_name)
+    return None if found is None else int(found[1])
+
+
+def _uses_by_number(seen: Sequence[Seen]) -> dict[str, Use | None]:
+    """Return what J1939 signals are used for, by name: speed, one of the torques, nothing of the others."""
+    numbers = {item.channel.name: _number(item.channel) for item in seen}
+    torque = next((number for number in _TORQUE_NUMBERS if number in numbers.values()), None)
+    uses: dict[str, Use | None] = {name: None for name, number in numbers.items() if number is not None}
+    for name, number in numbers.items():
+        if number == _SPEED_NUMBER:
+            uses[name] = "instrument"
+        elif number is not None and number == torque:
+            uses[name] = "rack"
+    return uses
+
+
+def _without_sensor(seen: Sequence[Seen]) -> list[str]:
+    """Return lines on the J1939 signals that the vessel file has no sensor for."""
+    lines = [
+        f"# {item.channel.name!r}: SPN {number}, {_NO_SENSOR[number]}; no sensor takes it"
+        for item in seen
+        if (number := _number(item.channel)) in _NO_SENSOR and number is not None
+    ]
+    return [*lines, ""] if lines else []
 
 
 def _use(item: Seen) -> Use | None:

@@ -2,6 +2,8 @@
 
 import contextlib
 import re
+from collections.abc import Mapping
+from dataclasses import dataclass
 from datetime import datetime
 from functools import partial
 from pathlib import Path
@@ -14,6 +16,14 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import RecordingError
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._recording import Recording
+from shaftprint.recording.readers._bus_logging import (
+    BusSignal,
+    bus_signals,
+    is_bus_logging,
+    message_of,
+    signal_of,
+    taken_apart,
+)
 from shaftprint.recording.readers._clock import SampleClock, clock_of_times, on_clock
 from shaftprint.recording.readers._damage import expect_plausible, told_as_damage
 from shaftprint.recording.readers._extra import library
@@ -43,29 +53,34 @@ def is_mine(path: Path) -> bool:
 def read(path: Path, **hints: object) -> Recording:
     """Open an MDF file; samples are read and converted as channels are asked for them.
 
-    Samples that the file marks as invalid become values that are not numbers. Hint: ``sample_rate_hz`` for groups
-    without times.
+    Samples that the file marks as invalid become values that are not numbers. Hints: ``sample_rate_hz`` for groups
+    without times; ``dbc``, the DBC file that says what the raw messages of a CAN bus hold.
 
     Raises
     ------
     RecordingError
         If the file is damaged or no channel can be used.
     """
-    rate = rate_hint(path, hints)
+    rate = rate_hint(path, hints, {"dbc": (str, Path)})
+    dbc = None if hints.get("dbc") is None else Path(str(hints["dbc"]))
+    signals = {} if dbc is None else bus_signals(dbc)
     asammdf = library(path, "asammdf", NAME)
     _close_in_silence(asammdf)
     _expect_version(path)
     handle = path.open("rb")
     try:
         with told_as_damage(path, NAME):
-            file = asammdf.MDF(handle, process_bus_logging=False)
+            file = asammdf.MDF(handle, process_bus_logging=dbc is not None)
     except BaseException:
         handle.close()
         raise
-    opened = Opened(path, partial(_close, file, handle))
+    files = [file]
+    opened = Opened(path, partial(_close, files, handle))
     try:
         with told_as_damage(path, NAME):
-            gathered = _gather(path, file, opened, rate)
+            if dbc is not None:
+                files.append(taken_apart(path, file, dbc))
+            gathered = _gather(path, files, opened, rate, signals)
             began = file.start_time
             is_dated = isinstance(began, datetime) and began.year > 1970
             return gathered.recording(f"{NAME} {file.version}", opened.close, began if is_dated else None)
@@ -74,8 +89,9 @@ def read(path: Path, **hints: object) -> Recording:
         raise
 
 
-def _close(file: Any, handle: BinaryIO) -> None:
-    file.close()
+def _close(files: list[Any], handle: BinaryIO) -> None:
+    for file in files:
+        file.close()
     handle.close()
 
 
@@ -101,32 +117,65 @@ def _close_in_silence(asammdf: Any) -> None:
         kind.__del__ = close
 
 
-def _gather(path: Path, file: Any, opened: Opened, rate_hz: float | None) -> Gathered:
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Place:
+    """Where a channel stands: in the file itself, or in what was taken out of its raw messages."""
+
+    file: Any
+    records: MdfRecords
+    group: int
+    index: int
+
+    @property
+    def described(self) -> Any:
+        return self.file.groups[self.group].channels[self.index]
+
+    @property
+    def label(self) -> str:
+        """Name of the group."""
+        return message_of(self.file.groups[self.group]) or f"group {self.group}"
+
+
+def _gather(
+    path: Path, files: list[Any], opened: Opened, rate_hz: float | None, signals: Mapping[str, BusSignal]
+) -> Gathered:
     gathered = Gathered(path=path)
-    places = [
-        (group, index)
+    raw = [group for group, described in enumerate(files[0].groups) if is_bus_logging(described)]
+    if not signals:
+        for group in raw:
+            gathered.left_out[f"group {group}"] = (
+                "raw messages of a bus; give the DBC file that says what they hold, dbc= (--dbc of shaftprint convert)."
+            )
+    places = [place for place in _places(files[0]) if place.group not in raw]
+    places += [place for file in files[1:] for place in _places(file)]
+    names = unique_names([(place.label, place.described.name) for place in places])
+    clocks: dict[tuple[int, int], SampleClock | RecordingError] = {}
+    for place, name in zip(places, names, strict=True):
+        key = (id(place.file), place.group)
+        if key not in clocks:
+            try:
+                clocks[key] = _clock(path, place.file, place.group, rate_hz)
+            except RecordingError as error:
+                clocks[key] = error
+
+        def make(place: _Place = place, name: str = name, key: tuple[int, int] = key) -> Channel:
+            clock = clocks[key]
+            if isinstance(clock, RecordingError):
+                raise clock
+            return _channel(path, place, opened, name, clock, signal_of(place.described, signals))
+
+        gathered.add(name, make)
+    return gathered
+
+
+def _places(file: Any) -> list[_Place]:
+    records = MdfRecords(file)
+    return [
+        _Place(file=file, records=records, group=group, index=index)
         for group, channel_group in enumerate(file.groups)
         for index, channel in enumerate(channel_group.channels)
         if file.masters_db.get(group) != index and int(channel.channel_type) not in _MASTERS
     ]
-    names = unique_names([(f"group {group}", file.groups[group].channels[index].name) for group, index in places])
-    records = MdfRecords(file)
-    clocks: dict[int, SampleClock | RecordingError] = {}
-    for (group, index), name in zip(places, names, strict=True):
-        if group not in clocks:
-            try:
-                clocks[group] = _clock(path, file, group, rate_hz)
-            except RecordingError as error:
-                clocks[group] = error
-
-        def make(group: int = group, index: int = index, name: str = name) -> Channel:
-            clock = clocks[group]
-            if isinstance(clock, RecordingError):
-                raise clock
-            return _channel(path, file, records, opened, group, index, name, clock)
-
-        gathered.add(name, make)
-    return gathered
 
 
 def _count(path: Path, file: Any, group: int) -> int:
@@ -159,9 +208,10 @@ def _clock(path: Path, file: Any, group: int, rate_hz: float | None) -> SampleCl
 
 
 def _channel(
-    path: Path, file: Any, records: MdfRecords, opened: Opened, group: int, index: int, name: str, clock: SampleClock
+    path: Path, place: _Place, opened: Opened, name: str, clock: SampleClock, signal: BusSignal | None
 ) -> Channel:
-    described = file.groups[group].channels[index]
+    file, records, group, index = place.file, place.records, place.group, place.index
+    described = place.described
     count = _count(path, file, group)
     expect_in_record(path, name, file.groups[group].channel_group, described)
     conversion = described.conversion
@@ -170,7 +220,9 @@ def _channel(
     first, invalid = records.samples(group, index, 0, min(count, 2), raw=True)
     if first.ndim != 1 or first.dtype.kind not in "fiu":
         raise RecordingError(f"{path}, channel {name}: expected one real number a sample, found {_shape(first)}.")
-    is_counts = first.dtype == np.int16 and invalid is None and (conversion is None or kind == _LINEAR)
+    is_counts = (
+        first.dtype == np.int16 and invalid is None and signal is None and (conversion is None or kind == _LINEAR)
+    )
     if is_counts and conversion is not None and _is_v4(file):
         scale, offset = float(conversion.a), float(conversion.b)
         is_counts = scale != 0.0 and bool(np.isfinite([scale, offset]).all())
@@ -191,6 +243,8 @@ def _channel(
             numbers[:] = values
             if invalid is not None:
                 numbers[np.asarray(invalid, dtype=bool)] = np.nan
+            if signal is not None:
+                numbers[(numbers < signal.lowest) | (numbers > signal.highest)] = np.nan
             return numbers
 
     source(0, min(count, 2))
@@ -203,9 +257,15 @@ def _channel(
         source=source,
         scale=scale,
         offset=offset,
-        long_name=str(getattr(described, "comment", "") or "")[:200],
+        long_name=_long_name(described, signal),
     )
     return on_clock(channel, clock)
+
+
+def _long_name(described: Any, signal: BusSignal | None) -> str:
+    if signal is None or signal.spn is None:
+        return str(getattr(described, "comment", "") or "")[:200]
+    return f"SPN {signal.spn}{': ' if signal.comment else ''}{signal.comment}"[:200]
 
 
 def _is_v4(file: Any) -> bool:
