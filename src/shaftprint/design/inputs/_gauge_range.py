@@ -15,7 +15,7 @@ FULL_SCALE = "full scale of the gauge"
 # What one sample in a hundred passes at the gauge of the simulated Stan Tug, and how many times that one in 10,000
 # passes (docs/decisions/0059-full-scale.md).
 USUAL_RIPPLE = 0.5
-_RARE = 1.25
+_RARE = 1.3
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)

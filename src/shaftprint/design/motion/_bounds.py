@@ -1,29 +1,18 @@
 """Limits of the ship as bounds of one leg: straight lines in the deviations of ``SIGNALS`` about its working point."""
 
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.design.inputs import FULL_SCALE, Curve, GaugeRange, Limits
+from shaftprint.design.inputs import Curve, Limits
+from shaftprint.design.motion._bound import Bound
+from shaftprint.design.motion._gauge import gauge_bounds
 from shaftprint.design.motion._motion import SIGNALS
 from shaftprint.errors import DesignError
 
 # A leg reaches speeds so many times as far from its level as its set point does.
 _OVERSHOOT = 1.3
-
-
-@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class Bound:
-    """``weights . signals <= room``."""
-
-    name: str
-    """Limit that it stands for."""
-    weights: FloatArray
-    """What it weighs, in the order of ``SIGNALS``, shape (signals,)."""
-    room: float
-    """What is left at the working point, the margin for noise taken off, positive."""
 
 
 def bounds_of_leg(limits: Limits, speed_share: float, noise: FloatArray) -> tuple[Bound, ...]:
@@ -68,41 +57,7 @@ def bounds_of_leg(limits: Limits, speed_share: float, noise: FloatArray) -> tupl
             weights = {signal: sign, "speed": -slope * speed_rpm / torque_nm}
             stated.append((name, weights, at_mean_nm / torque_nm - sign))
     bounds = tuple(_bound(name, weights, room, limits, noise, speed_rpm) for name, weights, room in stated)
-    if limits.gauge is None:
-        return bounds
-    fastest = min(step, high / speed_rpm - 1.0)
-    return (*bounds, *_bounds_of_gauge(limits.gauge, torque_nm, speed_rpm, fastest))
-
-
-def _bounds_of_gauge(gauge: GaugeRange, brake_torque_nm: float, speed_rpm: float, reach: float) -> tuple[Bound, Bound]:
-    """Return the ends of what a gauge shows as bounds; orders and noise go with the load, the square of the speed.
-
-    ``M (1 + m + a n) + r M L <= M_max`` and ``M (1 + m) - r M L >= M_min``, with the mean shaft torque ``M``, the
-    deviations ``m`` and ``n`` of torque and speed, the ripple ``r`` and the load ``L = 1 + 2 n + a n``. For speeds from
-    the mean to ``1 + a`` times it ``a n`` is at least ``n^2``, which the square of the speed adds to the linear torque.
-    A margin for the noise is in the ripple. Crests are short; the mean has to leave room for rarer ripple.
-
-    Parameters
-    ----------
-    reach
-        Largest deviation of the speed ``a``.
-    """
-    torque_nm = gauge.shaft_over_brake * brake_torque_nm
-    needed_nm = (1.0 + gauge.rare_ripple) * torque_nm
-    if not gauge.highest_nm > needed_nm:
-        raise DesignError(
-            f"vessel file of {gauge.vessel}, full_scale_nm of [sensors.shaft_torque]: expected more than "
-            f"{needed_nm:.0f} N m for a leg at {speed_rpm:g} rpm, whose shaft torque is {torque_nm:.0f} N m with "
-            f"orders and noise of {100.0 * gauge.rare_ripple:g} % on it, found a gauge that shows up to "
-            f"{gauge.highest_nm:g} N m; choose a larger range of the telemetry and state it there, or slower legs."
-        )
-    bounds = []
-    for sign, end_nm in ((1.0, gauge.highest_nm), (-1.0, -gauge.lowest_nm)):
-        room = end_nm / torque_nm - sign - gauge.ripple
-        of_speed = max(sign, 0.0) * reach + gauge.ripple * (2.0 + reach)
-        row = np.array([{"shaft torque": sign, "speed": of_speed}.get(signal, 0.0) for signal in SIGNALS])
-        bounds.append(Bound(name=FULL_SCALE, weights=frozen_float(row), room=room))
-    return bounds[0], bounds[1]
+    return (*bounds, *gauge_bounds(limits, speed_share))
 
 
 def _bound(

@@ -7,7 +7,7 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.design.inputs import FULL_SCALE, AssumedShip, Limits, Wish
-from shaftprint.design.motion import Bound, bounds_of_leg, expect_motion, motion, motion_noise
+from shaftprint.design.motion import Bound, bounds_of_leg, expect_motion, gauge_bounds, motion, motion_noise
 from shaftprint.design.plan import SailedTest, Timetable, odd_harmonics
 from shaftprint.design.search import Uses
 from shaftprint.errors import DesignError
@@ -118,6 +118,12 @@ class Brief:
     def without_gauge(self) -> "Brief":
         """Return the same without the full scale of the gauge among what binds the legs."""
         return replace(self, bounds=tuple(tuple(one for one in leg if one.name != FULL_SCALE) for leg in self.bounds))
+
+    def with_crest(self, crest: float) -> "Brief":
+        """Return the same with so many times the ripple kept free below the full scale of the gauge at crests."""
+        others = self.without_gauge().bounds
+        of_gauge = [gauge_bounds(self.limits, share, crest=crest) for share in self.speeds]
+        return replace(self, bounds=tuple((*leg, *ends) for leg, ends in zip(others, of_gauge, strict=True)))
 
     @property
     def seconds(self) -> tuple[float, ...]:

@@ -9,6 +9,7 @@ from shaftprint.design.inputs import FULL_SCALE, AssumedShip, Limits, Wish, numb
 from shaftprint.design.plan import Plan, SailedTest, Timetable
 from shaftprint.design.planning._brief import Brief
 from shaftprint.design.planning._finish import SHARE_HELD, plan_of_lines
+from shaftprint.design.planning._shown import CRESTS, is_shown
 from shaftprint.design.search import (
     Criterion,
     DeterminantWithFloor,
@@ -92,7 +93,8 @@ def best_plan(brief: Brief, effort: Effort, rng: np.random.Generator, start: Flo
     """Return the best plan of several random starts, or that of one start.
 
     The full scale of the gauge is looked for only where a plan that knows nothing of it would pass it: on most ships
-    engine and governor keep the torque far below, and their plans are the same with it and without.
+    engine and governor keep the torque far below, and their plans are the same with it and without. How much is kept
+    free at crests follows from how many samples may be cut off: where crests are long, or orders large, it is more.
     """
     table = brief.ship.draws(effort.peak_draws, rng)
     starts = None if start is None else [start]
@@ -100,10 +102,17 @@ def best_plan(brief: Brief, effort: Effort, rng: np.random.Generator, start: Flo
     plan, found = _best_of_starts(free, effort, rng, table, starts)
     if free.bounds == brief.bounds:
         return plan
-    held = plan_of_lines(brief, found, table)
-    if all(peaks.uses[FULL_SCALE] < max(peaks.uses.values()) for peaks in held.peaks):
-        return held
-    return _best_of_starts(brief, effort, rng, table, starts)[0]
+    plan = plan_of_lines(brief, found, table)
+    if is_shown(plan) and not any(peaks.uses[FULL_SCALE] == max(peaks.uses.values()) for peaks in plan.peaks):
+        return plan
+    for crest in CRESTS:
+        higher = brief.with_crest(crest)
+        if crest != CRESTS[-1] and not is_shown(plan_of_lines(higher, found, table)):
+            continue
+        plan, _ = _best_of_starts(higher, effort, rng, table, starts)
+        if is_shown(plan):
+            break
+    return plan
 
 
 def _best_of_starts(
