@@ -9,7 +9,7 @@ import pytest
 
 from shaftprint.errors import SettingsError
 from shaftprint.tug import Tug, linearised_response, simulate_signals
-from shaftprint.tug.plant import Disturbance, Stretch, build_plant, interpolation_weights, torque_limits, voyage
+from shaftprint.tug.plant import Demand, Disturbance, Stretch, build_plant, interpolation_weights, torque_limits, voyage
 from shaftprint.vessel import Vessel
 
 Make = Callable[..., Any]
@@ -158,6 +158,23 @@ def test_demand_is_quantised_and_rate_limited(vessel: Vessel, quiet_tug: Tug, as
     stretch = one_stretch(slow, vessel, campaign, 60.0)
     rise = 60.0 * 3.82 * np.gradient(stretch.shaft_speed_rev_s[90_000:100_000:1000], 0.5)
     assert rise == pytest.approx(10.0, rel=0.02)
+
+
+@pytest.mark.parametrize("step_s", [5e-4, 2e-3])
+def test_a_quantised_demand_is_late_by_half_a_step_over_its_rate(
+    vessel: Vessel, quiet_tug: Tug, ask: Make, sine: Make, step_s: float
+) -> None:
+    tug = replace(quiet_tug, demand_resolution_rpm=4.8, demand_rate_limit_rpm_per_s=600.0, set_point_latency_s=0.0)
+    demand = Demand(tug, vessel, ask(21.0, sines=[sine(0.5, 0.3)]), start_s=0.0, step_s=step_s)
+    count = round(20.0 / step_s)
+    values, time_s = demand.next(count, np.zeros(count + 1))[::2], step_s * np.arange(count + 1)
+    settled = time_s >= 10.0
+    asked = Demand(quiet_tug, vessel, ask(21.0, sines=[sine(0.5, 0.3)]), start_s=0.0, step_s=step_s)
+    late = fitted(values[settled], time_s[settled], 0.5) / fitted(
+        asked.next(count, np.zeros(count + 1))[::2][settled], time_s[settled], 0.5
+    )
+    delay_s = -np.angle(late) / np.pi + quiet_tug.set_point_latency_s
+    assert delay_s == pytest.approx(0.5 * 4.8 / 600.0, abs=2e-5)
 
 
 def test_stretches_do_not_depend_on_their_length(vessel: Vessel, ask: Make) -> None:

@@ -15,11 +15,14 @@ from shaftprint.vessel import Vessel
 
 
 @compiled(nogil=True)
-def _rate_limit(demand: FloatArray, largest_change, last) -> None:  # type: ignore[no-untyped-def]
-    for j in range(demand.size):
-        change = min(max(demand[j] - last, -largest_change), largest_change)
-        last = last + change
-        demand[j] = last
+def _rate_limit(asked: FloatArray, followed: FloatArray, largest_change) -> None:  # type: ignore[no-untyped-def]
+    for j in range(1, asked.size):
+        change = asked[j] - followed[j - 1]
+        largest = largest_change
+        if followed[j - 1] == asked[j - 1] and abs(change) > largest:
+            # a jump that is seen now was on average half a step ago
+            largest = 0.5 * largest
+        followed[j] = followed[j - 1] + min(max(change, -largest), largest)
 
 
 def helm_voltage(tug: Tug, campaign: Campaign, time_s: FloatArray) -> FloatArray:
@@ -104,9 +107,10 @@ class Demand:
         if self._limits.rate_rpm_per_s is not None:
             largest = rev_s_from_rpm(self._limits.rate_rpm_per_s) * self._half_step_s
             # the first value is the last of the chunk before: it may not move twice
-            demand[0] = self._last
-            _rate_limit(demand[1:], largest, self._last)
-            self._last = float(demand[-1])
+            followed = np.full_like(demand, self._last)
+            _rate_limit(demand, followed, largest)
+            self._last = float(followed[-1])
+            demand = followed
         demand[::2] += self._working_point_rev_s * wander
         demand[1::2] += 0.5 * self._working_point_rev_s * (wander[:-1] + wander[1:])
         return demand
