@@ -1,5 +1,7 @@
 """Working points and the set-point line from whole periods of legs."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -53,6 +55,22 @@ def test_the_working_point_is_the_mean_speed_with_the_torque_of_the_propeller_th
     assert point.shaft_torque_nm == pytest.approx(722.0, rel=1e-12)
     assert point.set_point_v == pytest.approx(-5.0, abs=1e-12)
     assert (state.start_s, state.period_s, state.periods) == (30.0, 20.0, 5)
+
+
+def test_a_load_that_wanders_with_a_line_has_the_mean_load():
+    still = _samples()
+    time_s = 30.0 + np.arange(still.torque_nm.size) / RATE_HZ
+    # in step with the slowest line, so that the load is high whenever the speed is
+    wander = 0.01 * np.sin(2.0 * np.pi * (time_s - LEG.start_s) / LEG.period_s)
+    point = leg_state(replace(still, torque_nm=still.torque_nm * (1.0 + wander))).working_point
+    assert point.shaft_torque_nm == pytest.approx(722.0, rel=1e-9)
+
+
+def test_a_shaft_that_stands_still_within_a_leg_is_refused():
+    speed = _samples().speed_rev_s.copy()
+    speed[2500:2600] = 0.0
+    with pytest.raises(SignalError, match=r"M1: expected a shaft that turns ahead throughout, found 0 rpm at 80\.0 s"):
+        leg_state(replace(_samples(), speed_rev_s=speed))
 
 
 @pytest.mark.slow

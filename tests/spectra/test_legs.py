@@ -40,6 +40,7 @@ def _made(
     *,
     clock_ratio=0.0,
     wander=0.0,
+    wander_s=37.0,
     noise=0.0,
     cut_v=None,
     leg=LEG,
@@ -66,7 +67,7 @@ def _made(
         change += (1j * omega * (answer + 2.0 * twice)).real
     if cut_v is not None:
         set_point = np.minimum(set_point, cut_v)
-    load = 1.0 + wander * np.cos(2.0 * np.pi * time_s / 37.0 + 1.0)
+    load = 1.0 + wander * np.cos(2.0 * np.pi * time_s / wander_s + 1.0)
     turns = tracked.per_turn * SPEED_REV_S * np.cumsum(1.0 + speed) / RATE_HZ
     turns = np.interp(time_s - order_late_s, time_s, turns)
     load = load * (1.0 + order * np.cos(2.0 * np.pi * turns + 0.7))
@@ -160,6 +161,15 @@ def test_the_wander_of_the_load_is_no_noise_under_the_lines():
     calm_std, std = (np.sqrt(np.diagonal(one.covariance, axis1=1, axis2=2))[:, 1] for one in (calm, wandering))
     # the sidebands of a wander of 2 % would be ten times the noise of the torque
     assert np.all(std[2:] < 2.0 * calm_std[2:])
+
+
+def test_a_wander_that_carries_one_line_onto_the_next_does_not_move_them():
+    # harmonics 3 and 5 are two periods apart: left in, their sidebands change both by up to a per cent
+    still, moving = (
+        estimate_legs(_made(wander=wander, wander_s=PERIOD_S / 2.0), CAMPAIGN)["M1"].response for wander in (0.0, 0.01)
+    )
+    ratio = [one.response[1, 0] / one.response[0, 0] for one in (still, moving)]
+    assert np.abs(ratio[1] / ratio[0] - 1.0).max() < 2e-4
 
 
 def test_what_the_pick_up_takes_from_fast_lines_is_given_back():

@@ -19,8 +19,9 @@ class WorkingPoint:
     """Mean set-point voltage [V] of the stretches that were used."""
     load_std: float
     """Standard deviation of the mean load ``M_s0 / n_0^2`` over its value [-]: the load of a propeller wanders."""
-    mean_square: float = 1.0
-    """Mean of ``(n / n_0)^2`` where it was measured [-]; times ``M_s0`` it is the mean torque that was shown."""
+    harmonic_mean_square: float = 1.0
+    """One over the mean of ``(n_0 / n)^2`` where ``M_s0`` was measured [-]: a zero of the gauge adds its torque
+    over this to ``M_s0``."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

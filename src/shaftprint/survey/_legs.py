@@ -67,7 +67,7 @@ def structure_at(structure: Structure, point: "WorkingPoint", *, main: "WorkingP
         structure,
         speed_share=point.engine_speed_rev_s / main.engine_speed_rev_s,
         torque_share=torque_share,
-        shown_share=torque_share * point.mean_square / main.mean_square,
+        shown_share=torque_share * point.harmonic_mean_square / main.harmonic_mean_square,
     )
 
 
@@ -92,7 +92,9 @@ def leg_pairs(
                 structure,
                 speed_share=leg.working_point.engine_speed_rev_s / speed_rev_s,
                 torque_share=leg.working_point.shaft_torque_nm / shaft_torque_nm,
-                shown_share=leg.working_point.mean_square * leg.working_point.shaft_torque_nm / shaft_torque_nm,
+                shown_share=leg.working_point.harmonic_mean_square
+                * leg.working_point.shaft_torque_nm
+                / shaft_torque_nm,
             ),
             leg.spectra.response.of_outputs(*structure.outputs),
         )

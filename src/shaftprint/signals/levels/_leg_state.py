@@ -1,9 +1,11 @@
 """The working point of a leg and the line of the set point through several, from whole periods alone.
 
 Over whole periods the mean speed is that of the mean set point, since the governor integrates its error, and nothing
-has to stand still: ``n_0`` is the mean speed and ``M_0 = mean(M_s) / mean((n / n_0)^2)``, the torque at ``n_0`` of a
-propeller whose torque goes with the square of the speed. The load of the leg is 1 by definition. Several levels give
-the line from volts to speed; a single leg gives it by its slow lines, at which the speed follows the set point.
+has to stand still: ``n_0`` is the mean speed and ``M_0 = mean(M_s (n_0 / n)^2)``, the torque at ``n_0`` of a propeller
+whose torque goes with the square of the speed. The load of the leg is 1 by definition. In ``mean(M_s)`` over
+``mean((n / n_0)^2)`` the load at high speed would count more than at low: noise of the torque at the lines would be in
+``M_0`` and in the lines, related to each other. Several levels give the line from volts to speed; a single leg gives it
+by its slow lines, at which the speed follows the set point.
 
 The standard deviation of a mean is that of the coefficients beside it: below the first line there is nothing but noise.
 """
@@ -58,14 +60,27 @@ def leg_state(samples: LegSamples) -> LegState:
     ----------
     samples
         Its whole periods.
+
+    Raises
+    ------
+    SignalError
+        If the shaft stands still or turns back.
     """
     periods = samples.periods
+    if not samples.speed_rev_s.min() > 0.0:
+        where = int(np.argmin(samples.speed_rev_s)) / samples.speed_rev_s.size
+        raise SignalError(
+            f"{samples.leg.name}: expected a shaft that turns ahead throughout, found "
+            f"{60.0 * samples.speed_rev_s.min():.0f} rpm at "
+            f"{periods.start_s + where * (periods.stop_s - periods.start_s):.1f} s: no test goes "
+            "through standstill; check the speed channel, or leave this leg out of the campaign file."
+        )
     speed = float(samples.speed_rev_s.mean())
     square = (samples.speed_rev_s / speed) ** 2
-    mean_square = float(square.mean())
-    torque = float(samples.torque_nm.mean()) / mean_square
+    harmonic_mean_square = float(1.0 / np.mean(1.0 / square))
+    torque = float(np.mean(samples.torque_nm / square))
     speed_std = _std_of_mean(samples.speed_rev_s, periods.periods)
-    load_std = _std_of_mean(samples.torque_nm / torque - square, periods.periods)
+    load_std = _std_of_mean(samples.torque_nm / (torque * square), periods.periods)
     point = WorkingPoint(
         engine_speed_rev_s=speed,
         shaft_torque_nm=torque,
@@ -73,7 +88,7 @@ def leg_state(samples: LegSamples) -> LegState:
         shaft_torque_std_nm=abs(torque) * float(np.hypot(load_std, 2.0 * speed_std / speed)),
         set_point_v=float(samples.set_point_v.mean()),
         load_std=load_std,
-        mean_square=mean_square,
+        harmonic_mean_square=harmonic_mean_square,
     )
     return LegState(
         name=samples.leg.name,

@@ -28,6 +28,7 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray, IntArray
 from shaftprint.spectra.legs._leg_orders import LegOrders, without_leg_orders
 from shaftprint.spectra.legs._leg_window import LegWindow
+from shaftprint.spectra.legs._load_wander import linear_torque
 from shaftprint.spectra.lines import (
     LineMeasurement,
     LineNoise,
@@ -89,7 +90,7 @@ def measure_leg(
     references
         Value of each channel at the working point, for the angle of the shaft.
     """
-    linear, found = _linear_window(window, orders, references, excitation=excitation, speed=speed)
+    linear, found = _linear_window(window, harmonics, orders, references, excitation=excitation, speed=speed)
     spectrum, periods = linear.spectrum(), window.state.periods
     deviation = (window.of(speed) - 1.0).ravel()
     square = np.fft.rfft(deviation**2)[periods * np.array(harmonics)] * (2.0 / deviation.size)
@@ -138,6 +139,7 @@ class _LegSpectrum:
 
 def _linear_window(
     window: LegWindow,
+    harmonics: Sequence[int],
     orders: "Sequence[TrackedOrder]",
     references: Mapping[str, float],
     *,
@@ -146,7 +148,9 @@ def _linear_window(
 ) -> tuple[LegWindow, LegOrders | None]:
     """Return a leg with a torque that is linear in the speed, without drift and orders, and what orders there were."""
     values = window.values.copy()
-    values[window.channels.index(_TORQUE)] = _linear_torque(window.of(speed), window.of(_TORQUE))
+    values[window.channels.index(_TORQUE)] = linear_torque(
+        window.of(speed), window.of(_TORQUE), np.array(harmonics), window.state.period_s
+    )
     values -= _drift(values)
     return without_leg_orders(
         replace(window, values=values),
@@ -197,28 +201,6 @@ def _window(window: LegWindow, harmonic: int) -> Window:
         start_s=state.start_s,
         periods=harmonic * state.periods,
     )
-
-
-def _linear_torque(speed: FloatArray, torque: FloatArray) -> FloatArray:
-    """Return the torque without what the square of the speed and the wander of the load add to it.
-
-    With ``M_s = (1 + w) u^2`` and the speed ``u = 1 + n``, ``n^2`` is taken out, and of the wander ``w`` what it makes
-    of the lines: ``w (u^2 - 1)``, which stands beside each of them and is no noise under it. The wander itself stays.
-    It is what the coefficients below the first line show.
-
-    Parameters
-    ----------
-    speed, torque
-        Over the working point, shape (periods, samples a period).
-    """
-    periods = len(speed)
-    square = speed**2
-    spectrum = np.fft.rfft((torque - square).ravel())
-    spectrum[0] = 0.0
-    spectrum[periods:] = 0.0
-    wander = np.fft.irfft(spectrum, torque.size).reshape(torque.shape)
-    linear: FloatArray = torque - (speed - 1.0) ** 2 - wander * (square - 1.0)
-    return linear
 
 
 def _drift(values: FloatArray) -> FloatArray:
