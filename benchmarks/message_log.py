@@ -4,8 +4,8 @@ The simulated Stan Tug 1205 sails the shipped campaign ``short``. Its control un
 1 % a bit; the messages come with 15 % of jitter, one in a hundred is lost. The raw recording is prepared and identified
 with GAUGE-ECU and what the vessel file knows. Printed are, for each number, the mean error, its scatter, the standard
 deviation that the fits state, and how often the 95 % interval holds the truth. ``python -m benchmarks.message_log
---tests 100`` takes about 7 seconds a test; ``--exact`` sends messages without jitter and losses, ``--mdf`` writes them
-into an MDF 4 file first.
+--tests 100`` takes about 7 seconds a test; ``--exact`` sends messages without jitter and losses, ``--speed`` takes
+the speed from messages too, ``--mdf`` writes all into an MDF 4 file first.
 """
 
 import argparse
@@ -48,10 +48,14 @@ class Estimate:
     """Whether the 95 % interval holds the truth."""
 
 
-def vessel_with_messages() -> Vessel:
-    """Return the Stan Tug with a control unit that sends every 20 ms."""
+def vessel_with_messages(*, speed: bool) -> Vessel:
+    """Return the Stan Tug with a control unit that sends every 20 ms; where asked, its speed is the only one."""
     content = load_vessel("stan-tug-1205-ecu").model_dump()
     content["sensors"]["rack"] |= {"cycle_s": CYCLE_S}
+    if speed:
+        content["sensors"]["speed"] = [
+            {"name": "n_e", "channel": "EngineSpeed", "shaft": "engine", "unit": "rpm", "latency_s": 0.01}
+        ]
     return Vessel.model_validate(content)
 
 
@@ -110,10 +114,13 @@ def main() -> None:
     parser.add_argument("--tests", type=int, default=20)
     parser.add_argument("--first", type=int, default=1, help="seed of the first test")
     parser.add_argument("--exact", action="store_true", help="messages at their cycle, none lost")
+    parser.add_argument("--speed", action="store_true", help="the speed from messages too, 0.125 rpm a bit; no pick-up")
     parser.add_argument("--mdf", action="store_true", help="by way of an MDF 4 file")
     chosen = parser.parse_args()
-    tug = Tug() if chosen.exact else Tug(message_jitter=JITTER, messages_lost=LOST)
-    vessel, tests = vessel_with_messages(), []
+    tug = Tug(speed_cycle_s=CYCLE_S) if chosen.exact else Tug(
+        speed_cycle_s=CYCLE_S, message_jitter=JITTER, messages_lost=LOST
+    )  # fmt: skip
+    vessel, tests = vessel_with_messages(speed=chosen.speed), []
     for seed in range(chosen.first, chosen.first + chosen.tests):
         tests.append(sailed(vessel, seed, tug=tug, ending=".mf4" if chosen.mdf else ".nc"))
         gain = next(one for one in tests[-1] if one.name == "K_p")

@@ -34,3 +34,30 @@ def test_the_channel_shows_the_speed_late(vessel, ask, sine, quiet_tug, tmp_path
     # one of 32,000 counts
     shown = (values - at_rest) / per_rev_s
     assert shown[: late.size] == pytest.approx(late, abs=1.3 * 30.0 / 32_000)
+
+
+def test_a_control_unit_sends_the_speed_in_messages(vessel, ask, sine, quiet, tmp_path):
+    """SPN 190: 0.125 rpm a bit, here every 20 ms with 15 % of jitter, one in twenty lost."""
+    content = vessel.model_dump()
+    content["sensors"]["speed"] = [
+        {"name": "n_x", "channel": "X", "latency_s": 0.0303, "unit": "rpm", "shaft": "engine"}
+    ]
+    ship = Vessel.model_validate(content)
+    campaign = ask(21.0, sines=[sine(0.5, 0.6)])
+    tug = Tug(noise=quiet, speed_cycle_s=0.02, message_jitter=0.15, messages_lost=0.05)
+    sail(ship, campaign, tmp_path / "x.nc", tug=tug, seed=1)
+    with read_recording(tmp_path / "x.nc") as recording:
+        channel = recording.channels["X"]
+        values, time_s = channel.values(0, channel.count), channel.time_s(0, channel.count)
+        assert set(recording.channels) == {"U_setpoint", "X", "M_s"}
+    assert channel.is_uneven
+    assert channel.count == pytest.approx(0.95 * 21.0 / 0.02, rel=0.02)
+    true = simulate_signals(ship, campaign, tug=tug, rate_hz=2000.0)
+    late = 60.0 * np.interp(time_s - 0.0303, true.time_s, true.engine_speed_rev_s)
+    assert values == pytest.approx(late, abs=0.0626)
+    assert values / 0.125 == pytest.approx(np.rint(values / 0.125), abs=1e-9)
+    regular = Tug(noise=quiet, speed_cycle_s=0.05)
+    sail(ship, campaign, tmp_path / "even.nc", tug=regular, seed=1)
+    with read_recording(tmp_path / "even.nc") as recording:
+        even = recording.channels["X"]
+        assert (even.rate_hz, even.is_uneven, even.count) == (20.0, False, 420)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
-from typing import Protocol
+from typing import Literal, Protocol, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,7 @@ from shaftprint.tug.sensors import (
     PickUp,
     PitchLever,
     SpeedLog,
+    SpeedMessages,
     SpeedMeter,
     TorqueGauge,
 )
@@ -45,6 +46,9 @@ from shaftprint.vessel import SAMPLES_A_TOOTH, SpeedSensor, Vessel
 
 RATE_HZ = 2000.0
 """Sample rate where the vessel file names no logger [Hz]."""
+
+# What sends messages.
+SENDERS = (ControlUnit, SpeedMessages)
 
 # As many samples as one compressed block of the container holds: no block is copied.
 _CHUNK = 262_144
@@ -118,6 +122,14 @@ class _Sensor(Protocol):
     def faults(self) -> list[Fault]: ...
 
 
+class _SensorClock(TypedDict):
+    """When the samples of a channel are taken."""
+
+    rate_hz: float
+    start_s: float
+    times: Literal["by rate", "uneven"]
+
+
 class _Crew:
     """The sensors of one voyage and the log that they fill."""
 
@@ -176,11 +188,17 @@ class _Crew:
                     "teeth or that of a slower shaft."
                 )
 
-    def _stand_by_shaft(self, sensor: SpeedSensor, rng: np.random.Generator) -> PickUp | SpeedMeter | Encoder:
+    def _stand_by_shaft(
+        self, sensor: SpeedSensor, rng: np.random.Generator
+    ) -> PickUp | SpeedMeter | SpeedMessages | Encoder:
         tug, vessel = self._tug, self._vessel
         if sensor.gives_pulses:
             duration_s = self._campaign.duration_s
             return PickUp(sensor, tug, vessel, duration_s=duration_s, rate_hz=self._rate_hz, rng=rng)
+        if sensor.unit == "rpm" and tug.speed_cycle_s is not None:
+            return SpeedMessages(
+                sensor, vessel, cycle_s=tug.speed_cycle_s, rate_hz=self._rate_hz, rng=rng, bus=Bus.of(tug)
+            )
         kind = Encoder if sensor.gives_angle else SpeedMeter
         return kind(sensor, tug, vessel, rate_hz=self._rate_hz, rng=rng)
 
@@ -269,10 +287,10 @@ class _Crew:
             writer.declare(
                 sensor.channel,
                 unit=sensor.unit,
-                rate_hz=self._rate_hz,
                 scale=speed.scale,
                 offset=speed.offset,
                 long_name=teeth if sensor.gives_pulses else what,
+                **self._clock_of(speed),
             )
         writer.declare(
             sensors.shaft_torque.channel,
@@ -291,18 +309,23 @@ class _Crew:
             )
         self._declare_slow_channels(writer)
 
+    def _clock_of(self, sensor: _Sensor) -> _SensorClock:
+        """Return on which clock a sensor is recorded: that of the logger, or that of its messages."""
+        if not isinstance(sensor, SENDERS):
+            return {"rate_hz": self._rate_hz, "start_s": 0.0, "times": "by rate"}
+        times = sensor.times
+        kind: Literal["by rate", "uneven"] = "by rate" if times.is_regular else "uneven"
+        return {"rate_hz": 1.0 / times.cycle_s, "start_s": times.start_s, "times": kind}
+
     def _declare_slow_channels(self, writer: RecordingWriter) -> None:
         if self._control_unit is not None:
-            times = self._control_unit.times
             writer.declare(
                 self._control_unit.channel,
                 unit="%",
-                rate_hz=1.0 / times.cycle_s,
-                start_s=times.start_s,
-                times="by rate" if times.is_regular else "uneven",
                 scale=self._control_unit.scale,
                 offset=LOWEST_PERCENT,
                 long_name="demand percent torque of the engine's control unit, from its CAN bus",
+                **self._clock_of(self._control_unit),
             )
         if self._log is not None:
             writer.declare(
@@ -316,7 +339,7 @@ class _Crew:
 
     def _write(self, writer: RecordingWriter, stretch: Stretch) -> None:
         for sensor in self._sensors:
-            if isinstance(sensor, ControlUnit) and not sensor.times.is_regular:
+            if isinstance(sensor, SENDERS) and not sensor.times.is_regular:
                 writer.append(sensor.channel, *sensor.messages(stretch))
             else:
                 writer.append(sensor.channel, sensor.next(stretch))

@@ -113,6 +113,9 @@ class Tug:
     """What the torque gauge shows beyond the zero that the vessel file knows of [N m]."""
     rack_latency_s: float | None = None
     """Time by which the percent torque on the CAN bus is late [s]; ``None``: the vessel's."""
+    speed_cycle_s: float | None = None
+    """Time from one message to the next with a speed in rpm [s], 0.125 rpm a bit; ``None``: instruments in rpm give a
+    value for each sample of the logger."""
     message_jitter: float = 0.0
     """Standard deviation of the time of a message on the CAN bus about its cycle, over the cycle; evenly spread, below
     0.28. Messages with jitter or losses are recorded with times of their own."""

@@ -11,7 +11,7 @@ from shaftprint.tug.sensors._gauge import TorqueGauge, shaft_orders
 from shaftprint.tug.sensors._helm import PITCH_INPUT, Helm, PitchLever
 from shaftprint.tug.sensors._log import SpeedLog
 from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT, PickUp
-from shaftprint.tug.sensors._speed_meter import SpeedMeter
+from shaftprint.tug.sensors._speed_meter import SpeedMessages, SpeedMeter
 
 __all__ = [
     "LOWEST_PERCENT",
@@ -25,6 +25,7 @@ __all__ = [
     "PickUp",
     "PitchLever",
     "SpeedLog",
+    "SpeedMessages",
     "SpeedMeter",
     "TorqueGauge",
     "draw_dropouts",

@@ -74,3 +74,43 @@ class MessageTimes:
         self._waiting = self._waiting[int(np.count_nonzero(come)) :]
         is_logged = (time_s >= 0.0) & (drawn[:, 1] >= self._bus.lost)
         return np.asarray(time_s[come & is_logged])
+
+
+class MessageStream:
+    """Stream of a quantity as messages carry it: what it was a latency before each of them came.
+
+    A message that the recording just misses at its end is left out.
+    """
+
+    def __init__(self, times: MessageTimes, *, latency_s: float, rate_hz: float) -> None:
+        self.times = times
+        """When the messages come."""
+        self._latency_s = latency_s
+        self._rate_hz = rate_hz
+        self._passed = 0
+        self._tail: FloatArray = np.empty(0)
+
+    def next(self, values: FloatArray, *, first: float) -> tuple[FloatArray, FloatArray]:
+        """Return what the messages of the next samples carry, and their times [s], each of shape (messages,).
+
+        Parameters
+        ----------
+        values
+            The quantity, sample by sample, shape (samples,).
+        first
+            What it was before the start.
+        """
+        # all that a later message can ask for: its latency, its own cycle either way and the sample before
+        kept = int(np.ceil((self._latency_s + 2.0 * self.times.cycle_s) * self._rate_hz)) + 2
+        longer = np.concatenate([self._tail if self._passed else np.full(kept, first), values])
+        begin = self._passed + values.size - longer.size
+        self._passed += values.size
+        # both the message and the sample after what it carries are there
+        seen_s = min(self._passed, self._passed - 1 + self._latency_s * self._rate_hz) / self._rate_hz
+        time_s = self.times.before(seen_s)
+        position = (time_s - self._latency_s) * self._rate_hz
+        # in samples since the start, so that the result does not depend on how the time is cut into stretches
+        before = np.floor(position).astype(np.int64)
+        part = position - before
+        self._tail = longer[-kept:]
+        return (1.0 - part) * longer[before - begin] + part * longer[before - begin + 1], time_s

@@ -8,11 +8,15 @@ from numpy.typing import NDArray
 from shaftprint.arrays import FloatArray
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import Stretch
+from shaftprint.tug.sensors._bus import Bus, MessageStream, MessageTimes
 from shaftprint.tug.sensors._faults import Fault
 from shaftprint.vessel import SpeedSensor, Vessel
 
 # Counts at 30 % above rated speed, which no engine reaches.
 _HIGHEST_COUNT = 32_000
+
+SPEED_STEP_RPM = 0.125
+"""Step of the engine speed in a message; SAE J1939-71, SPN 190."""
 
 
 class SpeedMeter:
@@ -49,6 +53,40 @@ class SpeedMeter:
 
     def faults(self) -> list[Fault]:
         """Return no fault."""
+        return []
+
+
+class SpeedMessages:
+    """Stream of the raw counts of one speed in rpm that a control unit sends, message by message."""
+
+    def __init__(
+        self, sensor: SpeedSensor, vessel: Vessel, *, cycle_s: float, rate_hz: float, rng: np.random.Generator, bus: Bus
+    ) -> None:
+        self.channel = sensor.channel
+        self.offset = 0.0
+        """Value of no count [rpm]."""
+        self.scale = SPEED_STEP_RPM
+        """Value of one count [rpm]."""
+        self.times = MessageTimes(bus, cycle_s=cycle_s, rng=rng)
+        """When its messages come."""
+        self._turns = vessel.gearbox.ratio if sensor.shaft == "engine" else 1.0
+        self._stream = MessageStream(self.times, latency_s=sensor.latency_s, rate_hz=rate_hz)
+        self._first: float | None = None
+
+    def next(self, stretch: Stretch) -> NDArray[np.int16]:
+        """Return the counts of the messages of the next stretch, shape (messages,)."""
+        return self.messages(stretch)[0]
+
+    def messages(self, stretch: Stretch) -> tuple[NDArray[np.int16], FloatArray]:
+        """Return counts and times [s] of the messages of the next stretch, each of shape (messages,)."""
+        rpm = 60.0 * self._turns * stretch.shaft_speed_rev_s
+        # before the start the line ran steadily
+        self._first = float(rpm[0]) if self._first is None else self._first
+        shown, time_s = self._stream.next(rpm, first=self._first)
+        return np.rint(shown / self.scale).clip(-32768, 32767).astype(np.int16), time_s
+
+    def faults(self) -> list[Fault]:
+        """Return no fault: a CAN bus sends a spoilt message again."""
         return []
 
 
