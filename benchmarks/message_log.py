@@ -114,11 +114,12 @@ def main() -> None:
     parser.add_argument("--tests", type=int, default=20)
     parser.add_argument("--first", type=int, default=1, help="seed of the first test")
     parser.add_argument("--exact", action="store_true", help="messages at their cycle, none lost")
+    parser.add_argument("--wait", action="store_true", help="the messages alone are late, their values keep the cycle")
     parser.add_argument("--speed", action="store_true", help="the speed from messages too, 0.125 rpm a bit; no pick-up")
     parser.add_argument("--mdf", action="store_true", help="by way of an MDF 4 file")
     chosen = parser.parse_args()
     tug = Tug(speed_cycle_s=CYCLE_S) if chosen.exact else Tug(
-        speed_cycle_s=CYCLE_S, message_jitter=JITTER, messages_lost=LOST
+        speed_cycle_s=CYCLE_S, message_jitter=JITTER, messages_lost=LOST, messages_wait=chosen.wait
     )  # fmt: skip
     vessel, tests = vessel_with_messages(speed=chosen.speed), []
     for seed in range(chosen.first, chosen.first + chosen.tests):

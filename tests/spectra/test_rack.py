@@ -17,6 +17,7 @@ from shaftprint.spectra import (
     measured,
     open_loop,
 )
+from shaftprint.spectra.lines import WholePeriodSine, Window, WindowSamples, times_of_values
 
 RATE_HZ = 20.0
 AMPLITUDE = 0.12
@@ -175,6 +176,59 @@ def test_messages_are_unbiased_and_as_uncertain_as_stated(ship):
     assert (np.abs(np.mean(errors, axis=0)) < 0.4 * std).all()
     ratio = np.mean(np.abs(errors) ** 2, axis=0) / np.mean(stated, axis=0)
     assert ratio == pytest.approx(np.full(4, 0.85), abs=0.35)
+
+
+def late_stamps(rng, count=44_950, *, share, lost=0.01):
+    """Stamps with 3 ms of jitter, and the times of the values: those of the cycle but for a share of the jitter."""
+    cycle = 0.0137 + 0.02 * np.arange(count)
+    jitter = 0.003 * np.sqrt(3.0) * rng.uniform(-1.0, 1.0, count)
+    kept = rng.random(count) >= lost
+    return (cycle + jitter)[kept], (cycle + share * jitter)[kept]
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+def test_messages_that_are_late_are_told_from_values_that_are(ship, share):
+    """Up to 0.2 % of the fast line is lost to stamps that are late; what is in the values is no error."""
+    signals, campaign = ship()
+    rng = np.random.default_rng(12)
+    stamps, taken = late_stamps(rng, share=share)
+    deviation = waves(taken, lambda hz: plant(hz)[2]) + 0.005 * rng.standard_normal(taken.size)
+    found = estimate_response(with_channels(signals, X=messages_at(stamps, deviation)), campaign)
+    error = found.response[2, 0] / plant(found.frequency_hz)[2] - 1.0
+    std = np.sqrt(found.covariance[:, 2, 2] + found.covariance[:, 5, 5]) / np.abs(plant(found.frequency_hz)[2])
+    assert (np.abs(error) < 3.0 * std).all()
+    assert std[-1] < 1.5e-3
+
+
+@pytest.mark.parametrize(("frequency_hz", "loss"), [(7.2, 0.0092), (3.1, 0.0017)])
+def test_stamps_that_are_late_make_no_sine_smaller(frequency_hz, loss):
+    """``exp(-(omega 3 ms)^2 / 2)`` at the stamps; nothing at the times of the cycle. Sixty seconds, steps, noise."""
+    rng = np.random.default_rng(3)
+    window = Window(line="S", frequency_hz=frequency_hz, start_s=0.0, periods=int(60.0 * frequency_hz))
+    at_stamps, at_cycle = [], []
+    for share in [0.0] * 20 + [1.0] * 20:
+        stamps, taken = late_stamps(rng, 3100, share=share)
+        inside = (stamps >= 0.0) & (stamps < window.stop_s)
+        rough = np.cos(2.0 * np.pi * frequency_hz * taken) + 0.04 * rng.standard_normal(taken.size)
+        values = 0.1 * np.rint(rough / 0.1)[np.newaxis, inside]
+        samples = WindowSamples(window=window, rate_hz=50.03, time_s=stamps[inside], channels=("X",), values=values)
+        fit = WholePeriodSine().fit(samples)
+        times = times_of_values(fit)
+        assert (times is None) == (share == 1.0)
+        if times is not None:
+            at_stamps.append(fit.amplitude[0, 0])
+            at_cycle.append(WholePeriodSine().fit(replace(samples, time_s=times)).amplitude[0, 0])
+    assert 1.0 - np.mean(at_stamps).real == pytest.approx(loss, rel=0.15)
+    assert np.mean(at_cycle) == pytest.approx(1.0, abs=1e-3)
+
+
+def test_sender_that_keeps_no_cycle_has_the_times_of_its_stamps():
+    rng = np.random.default_rng(3)
+    stamps = np.cumsum(rng.uniform(0.016, 0.024, 2900))
+    window = Window(line="S", frequency_hz=7.0, start_s=0.0, periods=400)
+    values = np.cos(2.0 * np.pi * 7.0 * (stamps + 0.003 * rng.standard_normal(stamps.size)))
+    samples = WindowSamples(window=window, rate_hz=50.0, time_s=stamps, channels=("X",), values=values[np.newaxis])
+    assert times_of_values(WholePeriodSine().fit(samples)) is None
 
 
 def test_a_hole_costs_the_windows_that_it_touches(ship):

@@ -168,6 +168,18 @@ def test_times_of_messages_do_not_depend_on_how_the_voyage_is_cut() -> None:
         assert np.array_equal(counts, results[0][0])
 
 
+def test_messages_that_wait_carry_the_rack_of_their_cycle() -> None:
+    """The stamps are as far from the cycle as with values of their own, the values are those of the cycle."""
+    sensor = RackSensor(channel="X", unit="%", cycle_s=0.02, latency_s=0.03, resolution_percent=0.01)
+    rack = 0.4 + 1e-4 * np.arange(6000.0)
+    bus = Bus(jitter=0.25, lost=0.2, waits=True)
+    unit = ControlUnit(sensor, latency_s=0.03, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1), bus=bus)
+    counts, times = unit.messages(stretch_of(rack))
+    cycle = unit.times.start_s + 0.02 * np.rint((times - unit.times.start_s) / 0.02)
+    assert counts * 0.01 - 125.0 == pytest.approx(np.maximum(40.0 + 20.0 * (cycle - 0.03), 40.0), abs=0.0051)
+    assert (times - cycle).std() == pytest.approx(0.005, rel=0.1)
+
+
 @pytest.mark.parametrize("changes", [{"message_jitter": 0.3}, {"messages_lost": 1.0}, {"message_jitter": -0.1}])
 def test_a_bus_that_cannot_be_is_refused(
     vessel_with_bus: Vessel, ask: Make, tmp_path: Path, changes: dict[str, float]

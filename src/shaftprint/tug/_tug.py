@@ -119,6 +119,8 @@ class Tug:
     message_jitter: float = 0.0
     """Standard deviation of the time of a message on the CAN bus about its cycle, over the cycle; evenly spread, below
     0.28. Messages with jitter or losses are recorded with times of their own."""
+    messages_wait: bool = False
+    """Whether only the messages come early or late, while their values keep the cycle."""
     messages_lost: float = 0.0
     """Share of the messages on the CAN bus that the logger misses."""
     strip_angles_deg: tuple[float, ...] = STRIP_ANGLES_DEG

@@ -12,6 +12,7 @@ import numpy as np
 
 from shaftprint.arrays import ComplexArray
 from shaftprint.spectra.lines._line_fit import LineFit, SineMethod, WindowSamples, cut_window, cut_window_at
+from shaftprint.spectra.lines._message_times import times_of_values
 from shaftprint.spectra.lines._modulation import without_modulation
 from shaftprint.spectra.lines._noise import ShaftRelation, line_noise
 from shaftprint.spectra.lines._signal_to_noise import NEIGHBOUR_BINS, LineVariances, line_variances
@@ -47,6 +48,8 @@ class MessageWindow:
     """Why the line cannot be measured; empty where it can."""
     has_own_times: bool = False
     """Whether the messages have times of their own, not those of a rate."""
+    is_held: bool = False
+    """Whether each value is held until the next, so that it is older than its message."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -84,6 +87,7 @@ def cut_messages(signal: "MessageSignal", window: "Window") -> MessageWindow:
         count=window.duration_s / signal.cycle_s,
         remark="",
         has_own_times=signal.times is not None,
+        is_held=signal.hold_s > 0.0,
     )
     highest = signal.highest_hz
     if frequency > highest:
@@ -140,8 +144,7 @@ def measure_messages(
     """
     if messages.samples is None:
         return None
-    # bins need samples at one rate
-    fit = (WholePeriodSine() if messages.has_own_times else method).fit(messages.samples)
+    fit = _fitted(messages, messages.samples, method)
     message_spectrum = _residual_at_bins(fit, samples, spectrum.shape[1])
     together = np.concatenate([spectrum, message_spectrum])
     cleaned = without_modulation(together, samples.of("M_s"), relation, periods=samples.window.periods)
@@ -160,6 +163,16 @@ def measure_messages(
             fit.amplitude[0], messages.samples.values, message_spectrum, periods=samples.window.periods
         ),
     )
+
+
+def _fitted(messages: MessageWindow, samples: WindowSamples, method: SineMethod) -> LineFit:
+    """Return the line in the messages, at the times at which their values were taken."""
+    if not messages.has_own_times:
+        return method.fit(samples)
+    # bins need samples at one rate
+    fit = WholePeriodSine().fit(samples)
+    taken_s = None if messages.is_held else times_of_values(fit)
+    return fit if taken_s is None else WholePeriodSine().fit(replace(samples, time_s=taken_s))
 
 
 def _residual_at_bins(fit: LineFit, samples: WindowSamples, bins: int) -> ComplexArray:

@@ -20,6 +20,8 @@ class Bus:
     """Standard deviation of the time of a message about its cycle, over the cycle."""
     lost: float = 0.0
     """Share of the messages that are missing."""
+    waits: bool = False
+    """Whether only the messages come early or late, while their values keep the cycle."""
 
     @classmethod
     def of(cls, tug: Tug) -> "Bus":
@@ -36,7 +38,7 @@ class Bus:
             )
         if not 0.0 <= tug.messages_lost < 1.0:
             raise SettingsError(f"messages_lost: expected a share from 0 to below 1, found {tug.messages_lost:g}.")
-        return cls(jitter=tug.message_jitter, lost=tug.messages_lost)
+        return cls(jitter=tug.message_jitter, lost=tug.messages_lost, waits=tug.messages_wait)
 
     @property
     def is_regular(self) -> bool:
@@ -58,8 +60,18 @@ class MessageTimes:
         self._sent = 0
         self._waiting: FloatArray = np.empty((0, 2))
 
-    def before(self, stop_s: float) -> FloatArray:
-        """Return the times of the messages that come before a time [s] and were not returned yet, shape (messages,)."""
+    def before(self, stop_s: float) -> tuple[FloatArray, FloatArray]:
+        """Return the messages that come before a time and were not returned yet.
+
+        Parameters
+        ----------
+        stop_s
+            The time [s].
+
+        Returns
+        -------
+        When they came and when their values were taken [s], each of shape (messages,).
+        """
         most = max(int((stop_s - self.start_s) / self.cycle_s) + 2 - self._sent, 0)
         cycle = np.arange(self._sent, self._sent + most)
         drawn = np.zeros((most, 2))
@@ -68,12 +80,15 @@ class MessageTimes:
             self._waiting = np.concatenate([self._waiting, new])
             drawn = self._waiting[:most]
         jitter_s = self._bus.jitter * self.cycle_s * np.sqrt(12.0) * (drawn[:, 0] - 0.5)
-        time_s = self.start_s + self.cycle_s * cycle + (0.0 if self.is_regular else jitter_s)
-        come = time_s < stop_s
+        due_s = self.start_s + self.cycle_s * cycle
+        time_s = due_s + (0.0 if self.is_regular else jitter_s)
+        # a value that waits must be there, too
+        come = np.maximum(time_s, due_s) < stop_s
         self._sent += int(np.count_nonzero(come))
         self._waiting = self._waiting[int(np.count_nonzero(come)) :]
         is_logged = (time_s >= 0.0) & (drawn[:, 1] >= self._bus.lost)
-        return np.asarray(time_s[come & is_logged])
+        logged = come & is_logged
+        return time_s[logged], (due_s if self._bus.waits else time_s)[logged]
 
 
 class MessageStream:
@@ -107,8 +122,8 @@ class MessageStream:
         self._passed += values.size
         # both the message and the sample after what it carries are there
         seen_s = min(self._passed, self._passed - 1 + self._latency_s * self._rate_hz) / self._rate_hz
-        time_s = self.times.before(seen_s)
-        position = (time_s - self._latency_s) * self._rate_hz
+        time_s, taken_s = self.times.before(seen_s)
+        position = (taken_s - self._latency_s) * self._rate_hz
         # in samples since the start, so that the result does not depend on how the time is cut into stretches
         before = np.floor(position).astype(np.int64)
         part = position - before
