@@ -102,16 +102,16 @@ def best_plan(brief: Brief, effort: Effort, rng: np.random.Generator, start: Flo
     plan, found = _best_of_starts(free, effort, rng, table, starts)
     if free.bounds == brief.bounds:
         return plan
-    plan = plan_of_lines(brief, found, table)
-    if is_shown(plan) and not any(peaks.uses[FULL_SCALE] == max(peaks.uses.values()) for peaks in plan.peaks):
-        return plan
     for crest in CRESTS:
         higher = brief.with_crest(crest)
-        if crest != CRESTS[-1] and not is_shown(plan_of_lines(higher, found, table)):
-            continue
-        plan, _ = _best_of_starts(higher, effort, rng, table, starts)
-        if is_shown(plan):
+        plan = plan_of_lines(higher, found, table)
+        is_enough = is_shown(plan, table)
+        if is_enough and not any(peaks.uses[FULL_SCALE] == max(peaks.uses.values()) for peaks in plan.peaks):
             break
+        if is_enough or crest == CRESTS[-1]:
+            plan, _ = _best_of_starts(higher, effort, rng, table, starts)
+            if is_shown(plan, table):
+                break
     return plan
 
 
