@@ -5,14 +5,16 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from shaftprint.catalogue import STRUCTURES, structure
+from shaftprint.catalogue import STRUCTURES, ShipRole, structure
 from shaftprint.errors import StructureError
+from shaftprint.identify import identify_jointly
 from shaftprint.models import (
     AveragingSensor,
     Block,
     Combination,
     Constant,
     Delay,
+    Diagram,
     FilteredDerivative,
     Gain,
     Integrator,
@@ -30,6 +32,7 @@ from shaftprint.models import (
     poles,
     unstable_poles,
 )
+from shaftprint.spectra import FrequencyResponse
 
 S = 1j * np.array([0.1, 1.0, 7.0])
 
@@ -311,3 +314,69 @@ def test_combination_is_kept_by_a_structure_of_ones_own():
         name="OWN", title="", input="u", outputs={"y": Gain(parameter("k"))}, combinations=(double,)
     ).held_at(k=3.0)
     assert own.combinations[0].of(dict(zip(own.names, own.vector({}), strict=True))) == 6.0
+
+
+# ---- other names ----
+
+
+def test_a_renamed_structure_answers_as_before():
+    before = structure("GAUGE-CLOSED")
+    after = before.renamed(t_d="t_d_7", K_p="K_p_7")
+    assert after.names == tuple({"t_d": "t_d_7", "K_p": "K_p_7"}.get(name, name) for name in before.names)
+    values = {"K_p": 4.0, "t_d": 0.05, "tau_dn": 0.3}
+    renamed = {"K_p_7": 4.0, "t_d_7": 0.05, "tau_dn": 0.3}
+    response, slopes = before.gradient(before.vector(values), S)
+    again, slopes_again = after.gradient(after.vector(renamed), S)
+    assert np.array_equal(response, again)
+    assert np.array_equal(slopes, slopes_again)
+    assert after.named_as(ShipRole.LOOP_DELAY) == "t_d_7"
+    of = {one.name: float(one.of(after.named(after.vector(renamed)))) for one in after.combinations}
+    assert of["t_d_7 + t_sp"] == 0.05 + before.vector({})[before.names.index("t_sp")]
+    assert "K_p_7 / K_i" in of
+    assert "v K_i / (k_q - g)" in of
+
+
+def test_a_renamed_parameter_keeps_factor_and_tie():
+    gain, slow = Gain(parameter("k")), parameter("x")
+    made = of(y=gain * Gain(parameter("m"))).scaled(k=3.0).tied("m", lambda k: 2.0 * k).renamed(k="k_2")
+    # 3 k_2 times 2 k_2
+    assert made.response(made.vector({"k_2": 0.5}), S)[0] == pytest.approx(1.5 * 1.0)
+    with pytest.raises(StructureError, match="structure OWN has a parameter k already"):
+        of(y=Gain(slow) * gain).renamed(x="k")
+    with pytest.raises(StructureError, match="structure OWN has no parameter q; it has k_2"):
+        made.renamed(q="r")
+
+
+def test_two_records_with_delays_of_their_own_share_the_rest():
+    shared = of(y=Gain(parameter("k")) * Delay(parameter("t", 0.1, unit="s", upper=0.5)))
+    rng = np.random.default_rng(4)
+    hertz = np.linspace(0.1, 2.0, 12)
+
+    def measured(delay):
+        noise = 0.01 * (rng.standard_normal(12) + 1j * rng.standard_normal(12))
+        values = 2.0 * np.exp(-2j * np.pi * hertz * delay) + noise
+        covariance = np.broadcast_to(1e-4 * np.eye(2), (12, 2, 2))
+        return FrequencyResponse(
+            frequency_hz=hertz, response=values[None, None], covariance=covariance, inputs=("u",), outputs=("y",)
+        )
+
+    pairs = [(shared.renamed(t=f"t_{one}"), measured(delay)) for one, delay in ((1, 0.10), (2, 0.13))]
+    fit = identify_jointly(pairs, rng=rng)
+    assert {one.name for one in fit.parameters} == {"k", "t_1", "t_2"}
+    for name, true in (("k", 2.0), ("t_1", 0.10), ("t_2", 0.13)):
+        (found,) = (one for one in fit.parameters if one.name == name)
+        assert abs(found.value - true) < 4.0 * found.std < 0.02
+    assert fit.p_value > 0.01
+
+
+def test_a_parameter_in_equations_is_not_renamed():
+    drive = Diagram(
+        name="drive",
+        input="u",
+        outputs=("y",),
+        equations=lambda flow, u, p: {"y": p.K_p * u},
+        of=(parameter("K_p"),),
+    )
+    limited = of(**drive.ports())
+    with pytest.raises(StructureError, match="stands in equations, in which a parameter cannot be renamed"):
+        limited.renamed(K_p="K_p_2")

@@ -21,6 +21,7 @@ from shaftprint.models._block import Block
 from shaftprint.models._combination import Combination
 from shaftprint.models._expression import Expression, Walk
 from shaftprint.models._parameter import Parameter
+from shaftprint.models._renaming import Renaming, renamed_combination, renamed_parameter
 from shaftprint.models._role import Role
 from shaftprint.models._tied_parameter import Tie, through_ties
 from shaftprint.notebook import Shown, Summary, shortened
@@ -190,6 +191,38 @@ class Structure(Shown):
             parameters=(*(p for p in self.parameters if p.name != name), *new),
             ties=(*self.ties, tie),
             combinations=(followed, *self.combinations),
+        )
+
+    def renamed(self, **names: str) -> "Structure":
+        """Return the structure with other names for some parameters, such as ``renamed(t_d="t_d_7")``.
+
+        In a joint fit parameters of one name are one parameter: what differs from record to record, such as a latency
+        that each start of a logger draws anew, has a name of its own in each. Combinations that are made of it too.
+
+        Raises
+        ------
+        StructureError
+            If a name is not a parameter, a new name is there already, or a parameter stands in the equations of a
+            diagram.
+        """
+        self._expect_names(names)
+        repeated = [new for new in names.values() if new in self.names or list(names.values()).count(new) > 1]
+        if repeated:
+            raise StructureError(f"structure {self.name} has a parameter {repeated[0]} already; use another name.")
+        renaming, values = Renaming(names), self.named(self.vector({}))
+        paths = iter(renaming.of(path) for path in self.paths)
+        outputs = {output: {one: next(paths) for one in self.inputs} for output in self.outputs}
+        return replace(
+            self,
+            outputs=outputs,
+            parameters=tuple(renamed_parameter(one, names) for one in self.parameters),
+            ties=tuple(
+                replace(tie, arguments=tuple(names.get(argument, argument) for argument in tie.arguments))
+                for tie in self.ties
+            ),
+            combinations=tuple(renamed_combination(one, names, values) for one in self.combinations),
+            factors={names.get(name, name): factor for name, factor in self.factors.items()},
+            offsets={names.get(name, name): offset for name, offset in self.offsets.items()},
         )
 
     def scaled(self, **factors: float) -> "Structure":
