@@ -84,6 +84,14 @@ def test_printed_times_of_a_clock_are_no_messages(rate_hz, digits):
     assert not clock.is_uneven
 
 
+def test_stamps_of_a_loggers_own_samples_are_its_clock():
+    """2000 Hz, each stamp off by up to 50 microseconds: nobody sends so fast."""
+    times = (np.arange(20_000) + np.random.default_rng(1).uniform(-0.1, 0.1, 20_000)) / 2000.0
+    clock = clock_of(times)
+    assert (clock.stamps, clock.is_uneven) == (None, False)
+    assert clock.rate_hz == pytest.approx(2000.0, rel=1e-5)
+
+
 @pytest.mark.parametrize(
     "times",
     [

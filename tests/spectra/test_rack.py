@@ -178,6 +178,20 @@ def test_messages_are_unbiased_and_as_uncertain_as_stated(ship):
     assert ratio == pytest.approx(np.full(4, 0.85), abs=0.35)
 
 
+@pytest.mark.parametrize("cycle_s", [0.05, 0.0613])
+def test_values_that_are_asked_for_more_often_than_they_come_are_as_old_as_they_may_be(ship, cycle_s):
+    """A program asks every 20 ms, 15 % of jitter, for a value that is new every 50 or 61 ms."""
+    signals, campaign = ship()
+    times = sent_times(np.random.default_rng(6))
+    asked = waves(0.011 + cycle_s * np.floor((times - 0.011) / cycle_s), lambda hz: plant(hz)[2])
+    rack = messages_at(times, asked, cycle_s=cycle_s, hold_s=cycle_s)
+    found = estimate_response(with_channels(signals, X=rack), campaign)
+    # what is left are the ages that the polls of a value happen to have
+    assert np.abs(found.response[2, 0] / plant(found.frequency_hz)[2] - 1.0).max() < 0.01
+    plain = estimate_response(with_channels(signals, X=replace(rack, hold_s=0.0)), campaign)
+    assert np.abs(plain.response[2, 0, -1] / plant(3.1)[2] - 1.0) > 0.4
+
+
 def late_stamps(rng, count=44_950, *, share, lost=0.01):
     """Stamps with 3 ms of jitter, and the times of the values: those of the cycle but for a share of the jitter."""
     cycle = 0.0137 + 0.02 * np.arange(count)

@@ -16,6 +16,8 @@ _FEWEST_CHANGES, _BY_CHANCE = 50, 0.05
 _MORE = 1.5
 # Values of which more differ than this share have no steps.
 _MOST_DIFFERENT = 0.5
+# So many messages tell what their sender is like; more would fill the memory.
+_MOST_JUDGED = 1 << 22
 # Differences of two values below this share of their range are rounding.
 _ROUNDING = 1e-9
 
@@ -71,15 +73,15 @@ def judge_messages(channel: Channel) -> Messages:
     Parameters
     ----------
     channel
-        A channel with ``stamps``.
+        A channel with ``stamps``; of more than four million messages the first four are judged.
 
     Raises
     ------
     RecordingError
         If the file cannot be read.
     """
-    edges = range(0, channel.count, BLOCK_SAMPLES)
-    blocks = [(start, min(start + BLOCK_SAMPLES, channel.count)) for start in edges]
+    count = min(channel.count, _MOST_JUDGED)
+    blocks = [(start, min(start + BLOCK_SAMPLES, count)) for start in range(0, count, BLOCK_SAMPLES)]
     values = np.concatenate([channel.values(*block) for block in blocks] or [np.empty(0)])
     time_s = np.concatenate([channel.stamps_s(*block) for block in blocks] or [np.empty(0)])
     return messages_of(time_s, values, period_s=1.0 / channel.rate_hz)

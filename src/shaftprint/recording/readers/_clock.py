@@ -21,8 +21,9 @@ _MOST_HOLES, _MOST_HOLES_SHARE = 3, 1e-3
 # A hole is whole samples long to this part of a step, where times are printed exactly.
 _WHOLE = 0.02
 
-# Times that are off the clock by more than this part of a step, and by more than their printing explains, are kept.
-_JITTER, _BY_PRINTING = 0.02, 1.5
+# Times that are off the clock by more than this part of a step, and by more than their printing explains, are kept,
+# unless they come faster than any sender's: the stamps of a logger's own samples say less than its clock.
+_JITTER, _BY_PRINTING, _FASTEST_SENDER_HZ = 0.02, 1.5, 200.0
 _MOST_DECIMALS, _PRINTED = 6, 1e-3
 # With fewer times a sender is not known; of one, most steps are near its period.
 _FEWEST_MESSAGES, _MOST_NEAR = 100, 0.5
@@ -113,8 +114,10 @@ def clock_of_times(path: Path, name: str, count: int, read: Times) -> SampleCloc
         if messages is None:
             raise
         return messages
+    if clock.rate_hz > _FASTEST_SENDER_HZ or off_s <= _JITTER / clock.rate_hz:
+        return clock
     printed_s = _BY_PRINTING * _printed_step(read(0, min(count, 1000))) / np.sqrt(12.0)
-    return replace(clock, stamps=read) if off_s > max(_JITTER / clock.rate_hz, printed_s) else clock
+    return replace(clock, stamps=read) if off_s > printed_s else clock
 
 
 def _message_clock(count: int, read: Times) -> SampleClock | None:
