@@ -40,6 +40,7 @@ __version__ = "0.1.0"
 
 _ROOMS = (
     "campaign",
+    "card",
     "catalogue",
     "clocks",
     "design",

@@ -2,6 +2,7 @@
 from shaftprint import arguments as arguments
 from shaftprint import arrays as arrays
 from shaftprint import campaign as campaign
+from shaftprint import card as card
 from shaftprint import catalogue as catalogue
 from shaftprint import clocks as clocks
 from shaftprint import design as design

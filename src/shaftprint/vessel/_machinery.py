@@ -88,6 +88,8 @@ class Gearbox(Settings):
     """Engine speed over propeller-shaft speed."""
     efficiency: Fraction
     """Power out over power in, from engine flange to torque gauge."""
+    propeller_rated_rpm: PositiveNumber | None = None
+    """Speed of the propeller shaft at rated engine speed as the papers state it [rpm]; the ratio is held against it."""
 
 
 class Propeller(Settings):

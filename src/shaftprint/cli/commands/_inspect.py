@@ -14,6 +14,7 @@ from shaftprint.cli._options import NAMES, hints_of, reading_options
 from shaftprint.cli._sensor_map import Seen, proposed_sensors
 from shaftprint.cli._signal_tables import print_lines, print_signals
 from shaftprint.cli._terminal import answer, echo, print_findings, say
+from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import no_progress_option, print_table, print_tables, progress
 from shaftprint.clocks import LoggerClock, logger_clocks
 from shaftprint.design import limit_uses, recorded_operation, stated_limits
@@ -59,14 +60,16 @@ _MOST_STRIPS = 12
 def command(recording: Path, vessel: str | None, campaign: str | None, no_progress: bool, **said: object) -> None:
     """Show what is in a recording and whether it is good enough.
 
-    Without a vessel file, the channels with rates, spans and levels, and a proposal for its sensors. With one, what
-    each sensor shows: pulses, faults, outliers. With a campaign file too, the calibration, the signal-to-noise ratio of
-    every test line, and where the test left the limits of ship and engine.
+    Without a vessel file, the channels with rates, spans and levels, and a proposal for its sensors. With one, what in
+    it contradicts the rest, and what each sensor shows: pulses, faults, outliers. With a campaign file too, the
+    calibration, the signal-to-noise ratio of every test line, and where the test left the limits of ship and engine.
     """
     if campaign is not None and vessel is None:
         raise click.UsageError("--campaign needs --vessel, which says what each channel is.")
     ship = None if vessel is None else load_vessel(vessel)
     planned = None if campaign is None else load_campaign(campaign)
+    if ship is not None and vessel is not None:
+        print_disagreements(ship, vessel)
     with read_recording(recording, **hints_of(**said)) as opened:
         clocks = logger_clocks(opened)
         watch = watch_levels(opened)

@@ -14,6 +14,7 @@ from shaftprint.cli._limit_uses import print_limit_uses
 from shaftprint.cli._options import NAMES, campaign_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._prediction_tables import print_prediction
+from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import no_progress_option, progress
 from shaftprint.design import expected_operation, limit_uses, stated_limits
 from shaftprint.errors import StructureError
@@ -103,6 +104,8 @@ def command(
     """
     (chosen,) = chosen_structures([name])
     chosen = chosen.held_at(**dict(held))
+    if vessel is not None:
+        print_disagreements(load_vessel(vessel), vessel)
     planned = load_campaign(campaign)
     _expect_free(freed, chosen)
     if recording is not None:

@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from shaftprint.cli._terminal import answer
+from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import no_progress_option, progress
 from shaftprint.recording import expect_known_ending
 from shaftprint.survey import load_trial
@@ -34,6 +35,7 @@ def command(vessel: str, campaign: str, output: Path, seed: int, force: bool, no
         raise click.ClickException(f"{output}: expected a file for the recording, found a folder; add a file name.")
     expect_known_ending(output)
     trial = load_trial(vessel, campaign)
+    print_disagreements(trial.vessel, vessel)
     with progress(hidden=no_progress) as steps:
         steps.begin("Sailing", total=1.0)
         sail_as(trial.vessel, trial.campaign, output, seed=seed, overwrite=force, progress=steps.reach)

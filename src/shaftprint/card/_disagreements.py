@@ -1,0 +1,210 @@
+"""Does a vessel file agree with itself? Each check holds one field against what others of the file make of it."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.card._series import series_torque
+from shaftprint.units import rev_s_from_rpm
+from shaftprint.vessel import Vessel
+
+# A rounded gear ratio is off by half a per cent, and no gear slips.
+_ROUNDED_RATIO, _WRONG_RATIO = 0.005, 0.02
+# Tips of propellers that are built, at rated speed [m/s]: 20 to 45, with a wide margin.
+_TIP_SPEEDS = (5.0, 100.0)
+# Full-load curves and efficiencies are known to some per cent.
+_CURVE_TOLERANCE = 1.1
+_FINDING, _CONTRADICTION = 1.25, 2.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Disagreement:
+    """A field of a vessel file that others of the same file do not agree with."""
+
+    field: str
+    """Dotted name of the field, such as ``working_point.shaft_torque_nm``."""
+    expected: str
+    """What the other fields make of it, in words."""
+    found: str
+    """What stands there, in words."""
+    advice: str
+    """What to do."""
+    is_contradiction: bool
+    """Whether both cannot be true; otherwise it is strange only."""
+
+    def sentence(self, file: str) -> str:
+        """Return it as one sentence about a file."""
+        return f"{file}, {self.field}: expected {self.expected}, found {self.found}; {self.advice}."
+
+
+def disagreements(vessel: Vessel) -> tuple[Disagreement, ...]:
+    """Return what in a vessel file contradicts the rest of it or is strange beside it, contradictions first.
+
+    Held against each other are gear ratio, engine and propeller speed; working speed, idle and highest speed; working
+    torque, full-load curve, rated power and full scale of the gauge; working torque, torque coefficient and propeller
+    series. A torque that is off by a factor of two contradicts the series, by a quarter it is strange.
+    """
+    checks = (_ratio, _tip_speed, _working_speed, _full_load_curve, _engine_load, _series, _coefficient, _full_scale)
+    found = [disagreement for check in checks for disagreement in check(vessel)]
+    return tuple(sorted(found, key=lambda one: not one.is_contradiction))
+
+
+def _ratio(vessel: Vessel) -> Iterator[Disagreement]:
+    stated_rpm = vessel.gearbox.propeller_rated_rpm
+    if stated_rpm is None:
+        return
+    rated_rpm = vessel.engine.rated_speed_rpm
+    expected = rated_rpm / stated_rpm
+    off = abs(vessel.gearbox.ratio / expected - 1.0)
+    if off > _ROUNDED_RATIO:
+        yield Disagreement(
+            field="gearbox.ratio",
+            expected=f"{expected:.4g}, as the engine's {rated_rpm:g} rpm turn the propeller at {stated_rpm:g} rpm",
+            found=f"{vessel.gearbox.ratio:g}",
+            advice="correct the ratio, engine.rated_speed_rpm or gearbox.propeller_rated_rpm",
+            is_contradiction=off > _WRONG_RATIO,
+        )
+
+
+def _tip_speed(vessel: Vessel) -> Iterator[Disagreement]:
+    diameter, ratio = vessel.propeller.diameter_m, vessel.gearbox.ratio
+    tip_m_s = math.pi * diameter * rev_s_from_rpm(vessel.engine.rated_speed_rpm) / ratio
+    low, high = _TIP_SPEEDS
+    if not low < tip_m_s < high:
+        yield Disagreement(
+            field="gearbox.ratio",
+            expected=f"propeller tips at {low:g} to {high:g} m/s at rated speed, 20 to 45 m/s as a rule",
+            found=f"{tip_m_s:.3g} m/s with a ratio of {ratio:g} and a diameter of {diameter:g} m",
+            advice="correct the ratio, which is engine speed over propeller speed, or propeller.diameter_m",
+            is_contradiction=True,
+        )
+
+
+def _working_speed(vessel: Vessel) -> Iterator[Disagreement]:
+    speed_rpm, engine, limits = vessel.working_point.engine_speed_rpm, vessel.engine, vessel.limits
+    bounds = (
+        ("engine.idle_speed_rpm", engine.idle_speed_rpm, speed_rpm > engine.idle_speed_rpm, "below"),
+        ("limits.lowest_speed_rpm", limits.lowest_speed_rpm, speed_rpm > (limits.lowest_speed_rpm or 0.0), "below"),
+        (
+            "limits.highest_speed_rpm" if limits.highest_speed_rpm else "engine.rated_speed_rpm",
+            limits.highest_speed_rpm or engine.rated_speed_rpm,
+            speed_rpm <= (limits.highest_speed_rpm or engine.rated_speed_rpm),
+            "not below",
+        ),
+    )
+    for field, bound_rpm, is_kept, where in bounds:
+        if bound_rpm is not None and not is_kept:
+            yield Disagreement(
+                field=field,
+                expected=f"a speed {where} that of the working point, {speed_rpm:g} rpm",
+                found=f"{bound_rpm:g} rpm",
+                advice="correct it, or working_point.engine_speed_rpm",
+                is_contradiction=True,
+            )
+
+
+def _full_load_curve(vessel: Vessel) -> Iterator[Disagreement]:
+    engine = vessel.engine
+    speeds = engine.full_load_speed_rpm
+    if not speeds[0] <= engine.rated_speed_rpm <= speeds[-1]:
+        return
+    at_rated_nm = float(np.interp(engine.rated_speed_rpm, speeds, engine.full_load_torque_nm))
+    apart = _apart(at_rated_nm, engine.rated_torque_nm)
+    if apart > _CURVE_TOLERANCE:
+        yield Disagreement(
+            field="engine.full_load_torque_nm",
+            expected=f"{engine.rated_torque_nm:.4g} N m at {engine.rated_speed_rpm:g} rpm, as "
+            f"{engine.rated_power_kw:g} kW give there",
+            found=f"{at_rated_nm:.4g} N m",
+            advice="correct the curve, or rated_power_kw (kW, not hp) and rated_speed_rpm",
+            is_contradiction=apart > _FINDING,
+        )
+
+
+def _engine_load(vessel: Vessel) -> Iterator[Disagreement]:
+    """Hold the working torque against the full-load curve; where that has room, its power against the rated one."""
+    point, engine = vessel.working_point, vessel.engine
+    brake_nm = point.shaft_torque_nm / (vessel.gearbox.ratio * vessel.gearbox.efficiency)
+    power_kw = 2.0 * math.pi * rev_s_from_rpm(point.engine_speed_rpm) * brake_nm / 1000.0
+    highest_nm = float(np.interp(point.engine_speed_rpm, engine.full_load_speed_rpm, engine.full_load_torque_nm))
+    if brake_nm > highest_nm:
+        load, expected = brake_nm / highest_nm, f"at most {highest_nm:.4g} N m at the engine, its full load"
+        found = f"{brake_nm:.4g} N m there"
+    elif power_kw > engine.rated_power_kw:
+        load, expected = power_kw / engine.rated_power_kw, f"at most the rated power of {engine.rated_power_kw:g} kW"
+        found = f"{power_kw:.4g} kW at the engine"
+    else:
+        return
+    yield Disagreement(
+        field="working_point.shaft_torque_nm",
+        expected=f"{expected} at {point.engine_speed_rpm:g} rpm",
+        found=f"{found} with {point.shaft_torque_nm:g} N m at the shaft",
+        advice="correct the torque (N m at the propeller shaft), gearbox.ratio, the full-load curve or rated_power_kw",
+        is_contradiction=load > _CURVE_TOLERANCE,
+    )
+
+
+def _series(vessel: Vessel) -> Iterator[Disagreement]:
+    propeller, point = vessel.propeller, vessel.working_point
+    series = series_torque(
+        series=propeller.series,
+        blades=propeller.blades,
+        area_ratio=propeller.area_ratio,
+        pitch_ratio=propeller.pitch_ratio,
+    )
+    if series is None:
+        return
+    expected_nm = _torque_nm(vessel, series.torque_coefficient)
+    apart = _apart(point.shaft_torque_nm, expected_nm)
+    if apart > _FINDING:
+        yield Disagreement(
+            field="working_point.shaft_torque_nm",
+            expected=f"about {expected_nm:.4g} N m, as {series.name} takes at zero advance and "
+            f"{point.engine_speed_rpm / vessel.gearbox.ratio:.4g} rpm",
+            found=f"{point.shaft_torque_nm:g} N m, a factor of {apart:.3g}",
+            advice="correct the torque (N m at the propeller shaft), gearbox.ratio, or diameter_m and pitch_ratio of "
+            "the propeller",
+            is_contradiction=apart > _CONTRADICTION,
+        )
+
+
+def _coefficient(vessel: Vessel) -> Iterator[Disagreement]:
+    coefficient, point = vessel.propeller.torque_coefficient, vessel.working_point
+    expected = coefficient * point.shaft_torque_nm / _torque_nm(vessel, coefficient)
+    apart = _apart(coefficient, expected)
+    if apart > _FINDING:
+        yield Disagreement(
+            field="propeller.torque_coefficient",
+            expected=f"{expected:.4g}, as {point.shaft_torque_nm:g} N m at {point.engine_speed_rpm:g} rpm of the "
+            "engine give",
+            found=f"{coefficient:g}",
+            advice="correct it, M eta_R / (rho n^2 D^5) with n in rev/s of the propeller, or the working point",
+            is_contradiction=apart > _CONTRADICTION,
+        )
+
+
+def _full_scale(vessel: Vessel) -> Iterator[Disagreement]:
+    full_scale_nm, torque_nm = vessel.sensors.shaft_torque.full_scale_nm, vessel.working_point.shaft_torque_nm
+    if full_scale_nm <= torque_nm:
+        yield Disagreement(
+            field="sensors.shaft_torque.full_scale_nm",
+            expected=f"more than the torque of the working point, {torque_nm:g} N m",
+            found=f"{full_scale_nm:g} N m",
+            advice="correct it, in N m at the propeller shaft, or the working point",
+            is_contradiction=True,
+        )
+
+
+def _torque_nm(vessel: Vessel, torque_coefficient: float) -> float:
+    """Return ``rho n^2 D^5 K_Q / eta_R`` at the working speed [N m]."""
+    propeller = vessel.propeller
+    shaft_rev_s = rev_s_from_rpm(vessel.working_point.engine_speed_rpm) / vessel.gearbox.ratio
+    force = vessel.water_density_kg_m3 * shaft_rev_s**2 * propeller.diameter_m**5
+    return float(torque_coefficient * force / propeller.relative_rotative_efficiency)
+
+
+def _apart(one: float, other: float) -> float:
+    """Return the factor between two positive numbers, at least 1."""
+    return max(one / other, other / one)

@@ -1,0 +1,50 @@
+"""Torque coefficients by the propeller series, where a card or a vessel file names diameter, pitch and blades."""
+
+from dataclasses import dataclass
+
+from shaftprint.errors import PropellerError
+from shaftprint.propeller import OpenWaterCurve, ka4_70_in_19a, wageningen_b
+
+OPEN_AREA_RATIO, NOZZLE_AREA_RATIO = 0.55, 0.70
+"""Blade area ratios ``A_E/A_0`` that are usual for open propellers and for those in a nozzle."""
+_IN_NOZZLE = ("ka4", "ka 4", "nozzle", "19a", "duct", "kort")
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SeriesTorque:
+    """What a series gives a propeller at zero advance."""
+
+    name: str
+    """Series and type, such as ``Ka4-70 in nozzle 19A``."""
+    torque_coefficient: float
+    """``K_Q`` at zero advance."""
+
+
+def series_torque(
+    *, series: str | None, blades: int, area_ratio: float | None, pitch_ratio: float
+) -> SeriesTorque | None:
+    """Return ``K_Q`` at zero advance by the series that is nearest to a propeller; None where none was tested.
+
+    Parameters
+    ----------
+    series
+        Name of the series; with a nozzle in it Ka4-70 in nozzle 19A, whatever the blades, else Wageningen B.
+    blades, area_ratio, pitch_ratio
+        The propeller; an area ratio that is not known is that of usual open propellers.
+    """
+    try:
+        curve = _curve(series, blades, area_ratio)
+        return SeriesTorque(name=curve.name, torque_coefficient=curve.at(0.0, pitch_ratio).torque)
+    except PropellerError:
+        return None
+
+
+def is_in_nozzle(series: str | None) -> bool:
+    """Return whether the name of a series says that the propeller turns in a nozzle."""
+    return series is not None and any(word in series.lower() for word in _IN_NOZZLE)
+
+
+def _curve(series: str | None, blades: int, area_ratio: float | None) -> OpenWaterCurve:
+    if is_in_nozzle(series):
+        return ka4_70_in_19a()
+    return wageningen_b(blades=blades, area_ratio=OPEN_AREA_RATIO if area_ratio is None else area_ratio)

@@ -1,0 +1,22 @@
+"""What is said of a vessel file before anything is made of it: whether it agrees with itself."""
+
+from shaftprint.card import disagreements
+from shaftprint.cli._terminal import print_findings
+from shaftprint.vessel import Vessel
+
+
+def print_disagreements(vessel: Vessel, file: str) -> None:
+    """Print what in a vessel file contradicts itself, as part of the answer, and what is strange; nothing else.
+
+    Parameters
+    ----------
+    vessel, file
+        What was read, and the path or name of a shipped file it was read from.
+    """
+    found = disagreements(vessel)
+    contradictions = [one.sentence(file) for one in found if one.is_contradiction]
+    if contradictions:
+        print_findings("The vessel file contradicts itself", contradictions, is_answer=True)
+    strange = [one.sentence(file) for one in found if not one.is_contradiction]
+    if strange:
+        print_findings("Findings on the vessel file", strange)

@@ -1,0 +1,139 @@
+"""A vessel file that contradicts itself, one field wrong at a time; the numbers are worked out by hand."""
+
+import pytest
+
+from shaftprint.card import disagreements
+from shaftprint.settings import write_template
+from shaftprint.vessel import load_vessel
+
+
+@pytest.fixture
+def changed(tmp_path):
+    """The template with one line changed."""
+
+    def make(old, new):
+        path = tmp_path / "ship.toml"
+        path.unlink(missing_ok=True)
+        write_template("vessel", path)
+        text = path.read_text(encoding="utf-8")
+        assert text.count(old) == 1
+        path.write_text(text.replace(old, new), encoding="utf-8")
+        return load_vessel(path)
+
+    return make
+
+
+@pytest.mark.parametrize("name", ["stan-tug-1205", "stan-tug-1205-ecu"])
+def test_shipped_vessels_agree_with_themselves(name):
+    assert disagreements(load_vessel(name)) == ()
+
+
+def test_template_agrees_with_itself(changed):
+    assert disagreements(changed("blades = 4", "blades = 4")) == ()
+
+
+def only(vessel, field):
+    (found,) = [one for one in disagreements(vessel) if one.field == field]
+    return found
+
+
+def test_ratio_beside_the_speed_of_the_propeller(changed):
+    """1800 rpm over 471 rpm is 3.8217; over 450 rpm it is 4."""
+    old = "# propeller_rated_rpm = 471.2 "
+    assert disagreements(changed(old, "propeller_rated_rpm = 471.0 ")) == ()
+    wrong = only(changed(old, "propeller_rated_rpm = 450.0 "), "gearbox.ratio")
+    assert wrong.is_contradiction
+    assert wrong.sentence("ship.toml") == (
+        "ship.toml, gearbox.ratio: expected 4, as the engine's 1800 rpm turn the propeller at 450 rpm, found 3.82; "
+        "correct the ratio, engine.rated_speed_rpm or gearbox.propeller_rated_rpm."
+    )
+    # 1800 / 466 = 3.8627, 1.1 % above
+    assert not only(changed(old, "propeller_rated_rpm = 466.0 "), "gearbox.ratio").is_contradiction
+
+
+def test_ratio_upside_down(changed):
+    """1800 rpm over 1 / 3.82 are 114.6 rev/s: tips of 1.05 m at 378 m/s."""
+    found = disagreements(changed("ratio = 3.82 ", "ratio = 0.2618 "))
+    assert "378 m/s" in next(one.found for one in found if one.field == "gearbox.ratio")
+    assert all(one.is_contradiction for one in found)
+
+
+def test_torque_above_full_load(changed):
+    """5500 / (3.82 * 0.97) = 1484.3 N m at the engine; at 1184 rpm the curve has 700 + 620 * 584 / 600 = 1303.5."""
+    found = disagreements(changed("shaft_torque_nm = 1725.0", "shaft_torque_nm = 5500.0"))
+    engine = next(one for one in found if "full load" in one.expected)
+    assert engine.is_contradiction
+    assert "at most 1303 N m" in engine.expected
+    assert "1484 N m there" in engine.found
+    # 1025 * (1184 / 60 / 3.82)^2 * 1.05^5 * 0.0560555 = 1956.9 N m
+    series = next(one for one in found if "Ka4-70" in one.expected)
+    assert series.is_contradiction
+    assert "about 1957 N m" in series.expected
+    assert series.found == "5500 N m, a factor of 2.81"
+
+
+def test_torque_in_kilonewton_metres(changed):
+    found = disagreements(changed("shaft_torque_nm = 1725.0", "shaft_torque_nm = 1.725"))
+    assert {one.field for one in found} == {"working_point.shaft_torque_nm", "propeller.torque_coefficient"}
+    assert all(one.is_contradiction for one in found)
+
+
+def test_more_than_the_rated_power_below_full_load(changed):
+    """1725 N m are 465.54 N m at the engine: 57.7 kW at 1184 rpm, more than an engine of 50 kW has."""
+    vessel = changed("rated_power_kw = 221.0", "rated_power_kw = 50.0")
+    power = next(one for one in disagreements(vessel) if one.field == "working_point.shaft_torque_nm")
+    assert power.is_contradiction
+    assert "rated power of 50 kW" in power.expected
+    assert "57.72 kW" in power.found
+
+
+def test_horse_power_in_the_place_of_kilowatts(changed):
+    """300 hp for 221 kW: the curve is 0.737 of what 300 kW give, 1591.5 N m."""
+    curve = only(changed("rated_power_kw = 221.0", "rated_power_kw = 300.0"), "engine.full_load_torque_nm")
+    assert curve.is_contradiction
+    assert "1592 N m at 1800 rpm" in curve.expected
+    assert not only(
+        changed("rated_power_kw = 221.0", "rated_power_kw = 250.0"), "engine.full_load_torque_nm"
+    ).is_contradiction
+
+
+def test_torque_that_the_series_finds_strange(changed):
+    """1450 N m are 0.741 of 1956.9: more than a quarter and less than a factor of two off."""
+    found = only(changed("shaft_torque_nm = 1725.0", "shaft_torque_nm = 1450.0"), "working_point.shaft_torque_nm")
+    assert not found.is_contradiction
+    assert found.found == "1450 N m, a factor of 1.35"
+
+
+def test_diameter_in_feet(changed):
+    """3.445 ft: (3.445 / 1.05)^5 = 380 times the torque; tips of 85 m/s alone would pass."""
+    found = disagreements(changed("diameter_m = 1.05", "diameter_m = 3.445"))
+    assert {one.field for one in found} == {"working_point.shaft_torque_nm", "propeller.torque_coefficient"}
+
+
+def test_torque_coefficient_ten_times_too_large(changed):
+    """1725 / (1025 * 5.1658^2 * 1.27628) = 0.0494."""
+    found = only(changed("torque_coefficient = 0.0494", "torque_coefficient = 0.494"), "propeller.torque_coefficient")
+    assert found.is_contradiction
+    assert found.expected.startswith("0.04941")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "field"),
+    [
+        ("engine_speed_rpm = 1184.0", "engine_speed_rpm = 590.0", "engine.idle_speed_rpm"),
+        ("engine_speed_rpm = 1184.0", "engine_speed_rpm = 1900.0", "engine.rated_speed_rpm"),
+        ("# [limits]", "[limits]\nlowest_speed_rpm = 1200.0", "limits.lowest_speed_rpm"),
+        ("# [limits]", "[limits]\nhighest_speed_rpm = 1100.0", "limits.highest_speed_rpm"),
+        ("full_scale_nm = 5000.0", "full_scale_nm = 1500.0", "sensors.shaft_torque.full_scale_nm"),
+    ],
+)
+def test_working_point_outside_of_what_is_allowed(changed, old, new, field):
+    assert only(changed(old, new), field).is_contradiction
+
+
+def test_a_propeller_of_no_series_is_held_against_none(changed):
+    """Wageningen B ends at P/D 1.4, and nobody tested a single blade."""
+    vessel = changed('series = "Ka4-70 in nozzle 19A"', 'series = "B-series"')
+    propeller = vessel.propeller.model_copy(update={"blades": 1})
+    point = vessel.working_point.model_copy(update={"shaft_torque_nm": 1450.0})
+    assert disagreements(vessel.model_copy(update={"propeller": propeller, "working_point": point})) == ()
