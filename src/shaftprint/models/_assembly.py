@@ -1,6 +1,6 @@
 """What a structure is assembled from: channels, parameters of the blocks, the feedback loop."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -127,6 +127,52 @@ def expect_tie(structure: str, ties: Iterable[Tie], name: str, new: Iterable[obj
             f"structure {structure}: {name} cannot be tied, since {', '.join(followers)} follows from it; write both "
             "formulas in other parameters."
         )
+
+
+def expect_known_names(structure: str, known: Sequence[str], names: Iterable[str]) -> None:
+    """Check that names are those of parameters.
+
+    Raises
+    ------
+    StructureError
+        If not.
+    """
+    unknown = [name for name in names if name not in known]
+    if unknown:
+        raise StructureError(f"structure {structure} has no parameter {', '.join(unknown)}; it has {', '.join(known)}.")
+
+
+def expect_new_names(structure: str, known: Sequence[str], names: Iterable[str]) -> None:
+    """Check that names are not those of parameters, and each once.
+
+    Raises
+    ------
+    StructureError
+        If not.
+    """
+    given = list(names)
+    repeated = [name for place, name in enumerate(given) if name in known or name in given[:place]]
+    if repeated:
+        raise StructureError(f"structure {structure} has a parameter {', '.join(repeated)} already; use another name.")
+
+
+def shown_parts(
+    paths: Iterable[Expression], parameters: Iterable[Parameter], ties: Iterable[Tie]
+) -> tuple[tuple[Parameter, ...], tuple[Tie, ...]]:
+    """Return the parameters and ties that some paths show."""
+    shown = {p.name for path in paths for node in path.nodes() if isinstance(node, Block) for p in node.parameters}
+    kept = tuple(tie for tie in ties if tie.name in shown)
+    shown |= {argument for tie in kept for argument in tie.arguments}
+    return tuple(p for p in parameters if p.name in shown), kept
+
+
+def distinct_nodes(paths: Iterable[Expression]) -> list[Expression]:
+    """Return all parts of some paths, each once."""
+    seen: dict[int, Expression] = {}
+    for expression in paths:
+        for node in expression.nodes():
+            seen.setdefault(id(node), node)
+    return list(seen.values())
 
 
 def outermost_loop(structure: str, nodes: Iterable[Expression]) -> Expression | None:

@@ -10,19 +10,39 @@ from shaftprint.models._block import Block
 from shaftprint.models._combination import Combination
 from shaftprint.models._expression import Expression
 from shaftprint.models._parameter import Parameter
-
-
-def renamed_parameter(parameter: Parameter, names: Mapping[str, str]) -> Parameter:
-    """Return a parameter under its new name, if it has one."""
-    return replace(parameter, name=names[parameter.name]) if parameter.name in names else parameter
+from shaftprint.models._tied_parameter import Tie
 
 
 class Renaming:
-    """Expressions with other parameter names; what is shared stays shared."""
+    """The parts of a structure with other parameter names; what expressions share stays shared."""
 
     def __init__(self, names: Mapping[str, str]) -> None:
         self._names = names
         self._done: dict[int, tuple[Expression, Expression]] = {}
+
+    def parameter(self, one: Parameter) -> Parameter:
+        """Return a parameter under its new name, if it has one."""
+        return replace(one, name=self._names[one.name]) if one.name in self._names else one
+
+    def tie(self, tie: Tie) -> Tie:
+        """Return a tie that follows from the new names."""
+        return replace(tie, arguments=tuple(self._names.get(one, one) for one in tie.arguments))
+
+    def keys(self, numbers: Mapping[str, float]) -> dict[str, float]:
+        """Return numbers of parameters by their new names."""
+        return {self._names.get(name, name): value for name, value in numbers.items()}
+
+    def combination(self, one: Combination, values: Mapping[str, FloatArray]) -> Combination:
+        """Return a combination, under a name of its own if a renamed parameter is in it.
+
+        Parameters
+        ----------
+        one
+            The combination, in the former names.
+        values
+            Every parameter by its former name, for which it is looked which of them the combination is made of.
+        """
+        return _renamed_combination(one, self._names, values)
 
     def of(self, expression: Expression) -> Expression:
         """Return an expression with the new names.
@@ -54,7 +74,7 @@ class Renaming:
 
     def _value(self, value: object) -> object:
         if isinstance(value, Parameter):
-            return renamed_parameter(value, self._names)
+            return self.parameter(value)
         if isinstance(value, Expression):
             return self.of(value)
         if isinstance(value, tuple):
@@ -62,20 +82,9 @@ class Renaming:
         return value
 
 
-def renamed_combination(
+def _renamed_combination(
     combination: Combination, names: Mapping[str, str], values: Mapping[str, FloatArray]
 ) -> Combination:
-    """Return a combination of renamed parameters, under a name of its own if one of them is in it.
-
-    Parameters
-    ----------
-    combination
-        The combination, in the former names.
-    names
-        New names by former ones.
-    values
-        Every parameter by its former name, for which it is looked which of them the combination is made of.
-    """
     concerned = [former for former in names if not _without(combination, values, former)]
     if not concerned:
         return combination

@@ -12,16 +12,20 @@ from shaftprint.errors import StructureError
 from shaftprint.models._assembly import (
     block_parameters,
     channel_paths,
+    distinct_nodes,
     expect_combinations,
+    expect_known_names,
+    expect_new_names,
     expect_single_roles,
     expect_tie,
     outermost_loop,
+    shown_parts,
 )
 from shaftprint.models._block import Block
 from shaftprint.models._combination import Combination
 from shaftprint.models._expression import Expression, Walk
 from shaftprint.models._parameter import Parameter
-from shaftprint.models._renaming import Renaming, renamed_combination, renamed_parameter
+from shaftprint.models._renaming import Renaming
 from shaftprint.models._role import Role
 from shaftprint.models._tied_parameter import Tie, through_ties
 from shaftprint.notebook import Shown, Summary, shortened
@@ -89,7 +93,7 @@ class Structure(Shown):
         object.__setattr__(self, "input", self.inputs[0])
         object.__setattr__(self, "channels", tuple(paths))
         object.__setattr__(self, "paths", tuple(paths.values()))
-        nodes = self._nodes()
+        nodes = distinct_nodes(self.paths)
         object.__setattr__(self, "blocks", tuple(node for node in nodes if isinstance(node, Block)))
         parameters = block_parameters(self.name, self.blocks)
         tied = {tie.name for tie in self.ties}
@@ -102,13 +106,6 @@ class Structure(Shown):
         object.__setattr__(self, "roles", {item.name: item.role for item in described if item.role is not None})
         expect_single_roles(self.name, self.roles)
         object.__setattr__(self, "loop", outermost_loop(self.name, nodes))
-
-    def _nodes(self) -> list[Expression]:
-        seen: dict[int, Expression] = {}
-        for expression in self.paths:
-            for node in expression.nodes():
-                seen.setdefault(id(node), node)
-        return list(seen.values())
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -178,51 +175,36 @@ class Structure(Shown):
         """
         expect_tie(self.name, self.ties, name, new)
         self._expect_names([name])
-        repeated = [parameter.name for parameter in new if parameter.name in self.names]
-        if repeated:
-            raise StructureError(
-                f"structure {self.name} has a parameter {', '.join(repeated)} already; use another name."
-            )
+        expect_new_names(self.name, self.names, [parameter.name for parameter in new])
         before = self.parameters[self.names.index(name)]
         tie = Tie.from_formula(name, formula)
         followed = Combination(name=name, unit=before.unit, of=tie.value, meaning=before.meaning, role=before.role)
-        return replace(
-            self,
-            parameters=(*(p for p in self.parameters if p.name != name), *new),
-            ties=(*self.ties, tie),
-            combinations=(followed, *self.combinations),
-        )
+        kept = (p for p in self.parameters if p.name != name)
+        combinations = (followed, *self.combinations)
+        return replace(self, parameters=(*kept, *new), ties=(*self.ties, tie), combinations=combinations)
 
     def renamed(self, **names: str) -> "Structure":
         """Return the structure with other names for some parameters, such as ``renamed(t_d="t_d_7")``.
 
-        In a joint fit parameters of one name are one parameter: what differs from record to record, such as a latency
-        that each start of a logger draws anew, has a name of its own in each. Combinations that are made of it too.
+        For what differs from record to record of a joint fit; combinations that are made of it are renamed too.
 
         Raises
         ------
         StructureError
-            If a name is not a parameter, a new name is there already, or a parameter stands in the equations of a
-            diagram.
+            If a name is not a parameter, a new one is there already, or a parameter stands in equations of a diagram.
         """
         self._expect_names(names)
-        repeated = [new for new in names.values() if new in self.names or list(names.values()).count(new) > 1]
-        if repeated:
-            raise StructureError(f"structure {self.name} has a parameter {repeated[0]} already; use another name.")
-        renaming, values = Renaming(names), self.named(self.vector({}))
-        paths = iter(renaming.of(path) for path in self.paths)
-        outputs = {output: {one: next(paths) for one in self.inputs} for output in self.outputs}
+        expect_new_names(self.name, self.names, names.values())
+        new, values = Renaming(names), self.named(self.vector({}))
+        paths = {channel: new.of(path) for channel, path in zip(self.channels, self.paths, strict=True)}
         return replace(
             self,
-            outputs=outputs,
-            parameters=tuple(renamed_parameter(one, names) for one in self.parameters),
-            ties=tuple(
-                replace(tie, arguments=tuple(names.get(argument, argument) for argument in tie.arguments))
-                for tie in self.ties
-            ),
-            combinations=tuple(renamed_combination(one, names, values) for one in self.combinations),
-            factors={names.get(name, name): factor for name, factor in self.factors.items()},
-            offsets={names.get(name, name): offset for name, offset in self.offsets.items()},
+            outputs={output: {source: paths[output, source] for source in self.inputs} for output in self.outputs},
+            parameters=tuple(new.parameter(one) for one in self.parameters),
+            ties=tuple(new.tie(one) for one in self.ties),
+            combinations=tuple(new.combination(one, values) for one in self.combinations),
+            factors=new.keys(self.factors),
+            offsets=new.keys(self.offsets),
         )
 
     def scaled(self, **factors: float) -> "Structure":
@@ -264,10 +246,7 @@ class Structure(Shown):
                 f"structure {self.name} has no output {', '.join(unknown)}; it has {', '.join(self.outputs)}."
             )
         paths = [path for (output, _), path in zip(self.channels, self.paths, strict=True) if output in names]
-        shown = {p.name for path in paths for node in path.nodes() if isinstance(node, Block) for p in node.parameters}
-        ties = tuple(tie for tie in self.ties if tie.name in shown)
-        shown |= {argument for tie in ties for argument in tie.arguments}
-        kept = tuple(p for p in self.parameters if p.name in shown)
+        kept, ties = shown_parts(paths, self.parameters, self.ties)
         values = {p.name: np.asarray(p.value) for p in kept}
         values |= {tie.name: tie.value(values) for tie in ties}
         return replace(
@@ -416,8 +395,4 @@ class Structure(Shown):
 
     def _expect_names(self, names: Mapping[str, object] | Sequence[str], *, tied: bool = False) -> None:
         allowed = (*self.names, *(tie.name for tie in self.ties)) if tied else self.names
-        unknown = [name for name in names if name not in allowed]
-        if unknown:
-            raise StructureError(
-                f"structure {self.name} has no parameter {', '.join(unknown)}; it has {', '.join(allowed)}."
-            )
+        expect_known_names(self.name, allowed, names)
