@@ -28,6 +28,7 @@ MILLI, PPM = 1e3, 1e6
 _SPELLINGS = {
     "volt": "V", "volts": "V", "v": "V", "nm": "N m", "n·m": "N m", "n*m": "N m", "n.m": "N m", "newton metre": "N m",
     "newton-meter": "N m", "newton meters": "N m",
+    "mv/v": "mV/V", "mv / v": "mV/V", "percentage": "%",
     "knm": "kN m", "kn·m": "kN m", "kn.m": "kN m", "percent": "%", "pct": "%", "kt": "kn", "kts": "kn", "knot": "kn",
     "knots": "kn", "rpm": "rpm", "1/min": "rpm", "min-1": "rpm", "min^-1": "rpm", "rev/min": "rpm", "r/min": "rpm",
     "u/min": "rpm", "rps": "rev/s", "rad/sec": "rad/s", "milliampere": "mA", "ma": "mA",
@@ -45,6 +46,9 @@ REV_S_PER_UNIT: Mapping[str, float] = MappingProxyType(
     {"rev/s": 1.0, "rpm": 1.0 / SECONDS_PER_MINUTE, "rad/s": 0.5 / math.pi, "deg/s": 1.0 / 360.0}
 )
 """Rotational speed for one unit of those in which instruments give it [rev/s]."""
+
+NM_PER_UNIT: Mapping[str, float] = MappingProxyType({"N m": 1.0, "kN m": 1000.0})
+"""Torque for one unit of those in which telemetries give it [N m]."""
 
 _Number = TypeVar("_Number", float, NDArray[np.float64])
 

@@ -107,3 +107,20 @@ def test_signals_of_a_control_unit_are_known_by_their_numbers(run, tmp_path):
     assert set(found) == {"rack", "speed"}
     said = [line for line in result.output.splitlines() if line.endswith("; no sensor takes it")]
     assert [line.split("'")[1] for line in said] == ["EEC2_a", "EEC2_b", "LFE"]
+
+
+def test_gauges_are_proposed_with_what_their_unit_needs(run, tmp_path):
+    def proposed(unit, number):
+        path = tmp_path / f"{number}.nc"
+        with RecordingWriter(path) as writer:
+            writer.declare("Shaft torque", unit=unit, rate_hz=1000.0, dtype="float64")
+            writer.append("Shaft torque", 5.0 + np.sin(np.arange(20_000) / 1000.0))
+        return run("inspect", path)
+
+    units = ("mA", "%", "mV/V", "kN m")
+    loop, share, bridge, torque = [proposed(unit, number) for number, unit in enumerate(units)]
+    gauges = [_map(result)["sensors"]["shaft_torque"] for result in (loop, share, bridge, torque)]
+    assert tuple(gauge["unit"] for gauge in gauges) == units
+    assert gauges[3]["scale_nm_per_unit"] == 1000.0
+    assert "# reading_at_zero =" in loop.output
+    assert "[sensors.shaft_torque.shaft]: diameters" in bridge.output

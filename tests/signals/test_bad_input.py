@@ -224,3 +224,27 @@ def test_one_level_only(vessel, ship, campaign, spoiled):
 
 def test_unknown_mode(ship, vessel, campaign):
     refused(ship.recording(), vessel, campaign, 'mode: expected "shaftprint" or "thesis", found "fast"', mode="fast")
+
+
+@pytest.mark.parametrize(
+    ("fields", "factor", "unit"),
+    [
+        ({"unit": "N m", "scale_nm_per_unit": 1.0}, 0.5, 'unit = "kN m" with scale_nm_per_unit = 1000'),
+        ({"unit": "kN m", "scale_nm_per_unit": 1000.0}, 500.0, 'unit = "N m" with scale_nm_per_unit = 1'),
+    ],
+)
+def test_the_unit_of_a_torque_is_named_where_another_fits(spoiled, vessel, campaign, fields, factor, unit):
+    # the ship shows 500 N m a volt
+    recording = spoiled(M_s=lambda counts: factor * counts.astype(np.float64), units={"M_s": fields["unit"]})
+    refused(
+        recording,
+        with_gauge(vessel, **fields),
+        campaign,
+        rf"channel M_s: expected a torque around 1725 N m, found .* N m; {unit} in sensors\.shaft_torque would fit",
+    )
+
+
+def test_a_current_loop_that_was_entered_as_a_voltage(spoiled, vessel, campaign):
+    # 4 to 20 mA for 0 to 5000 N m
+    recording = spoiled(M_s=lambda counts: 4.0 * 3200.0 + 1.6 * counts.astype(np.float64))
+    refused(recording, vessel, campaign, 'unit = "mA" with scale_nm_per_unit = 312.5 and reading_at_zero = 4 in')

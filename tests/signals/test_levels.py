@@ -270,7 +270,8 @@ def test_two_sensors_of_one_shaft_have_no_gear_ratio_to_blame():
 
 
 def test_gear_ratio_the_other_way_round():
-    sensors = [SimpleNamespace(name="shaft", shaft="propeller"), SimpleNamespace(name="engine", shaft="engine")]
+    shafts = {"shaft": "propeller", "engine": "engine"}
+    sensors = [SimpleNamespace(name=name, shaft=shaft, unit="V") for name, shaft in shafts.items()]
     vessel = SimpleNamespace(sensors=SimpleNamespace(speed=sensors), gearbox=SimpleNamespace(ratio=4.0))
     speeds = tuple(
         SimpleNamespace(name=name, channel=name, values=np.full(5, value))

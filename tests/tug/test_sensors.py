@@ -240,3 +240,15 @@ def test_faults_are_drawn_within_the_recording() -> None:
     dropouts = draw_dropouts(crowded, 50.0, RATE_HZ, rng)
     assert np.all(dropouts.start[1:] >= dropouts.stop[:-1])
     assert np.all(dropouts.stop > dropouts.start)
+
+
+def test_a_current_loop_shows_no_torque_as_its_live_zero(
+    vessel: Vessel, ask: Make, quiet_tug: Tug, tmp_path: Path
+) -> None:
+    content = vessel.model_dump()
+    content["sensors"]["shaft_torque"] |= {"unit": "mA", "scale_nm_per_unit": 625.0, "reading_at_zero": 12.0}
+    content["sensors"]["shaft_torque"] |= {"resolution_nm": None, "latency_s": 0.0}
+    content["logger"] = None
+    values, _ = recorded(Vessel.model_validate(content), ask(2.0), quiet_tug, tmp_path / "loop.nc")
+    # 1725 N m of +/- 5000 in 8 mA about 12
+    assert values["M_s"] == pytest.approx(12.0 + 1725.0 / 625.0, abs=1e-3)

@@ -39,7 +39,7 @@ from shaftprint.vessel import ShaftTorqueSensor, SpeedSensor, load_vessel
         (
             'unit = "V"                          #',
             'unit = "mV" #',
-            r"sensors\.shaft_torque\.unit: expected 'V', 'N m' or 'kN m', found 'mV'",
+            r"sensors\.shaft_torque\.unit: expected 'V', 'mA', '%', 'mV/V', 'N m' or 'kN m', found 'mV'",
         ),
         ("cylinders = 6", "cylinders = 6.5", "cylinders: expected a whole number"),
         ("# [sensors.rack]", '[sensors.rack]\nchannel = "X"', r"sensors\.rack\.cycle_s: expected a value, found none"),

@@ -7,7 +7,7 @@ from typing import Literal, TypeAlias
 
 from shaftprint.escape import toml_string
 from shaftprint.recording import Channel
-from shaftprint.units import ANGLES_REV, REV_S_PER_UNIT
+from shaftprint.units import ANGLES_REV, NM_PER_UNIT, REV_S_PER_UNIT
 
 Use: TypeAlias = Literal["speed", "instrument", "encoder", "shaft_torque", "set_point", "rack", "ship_speed"]
 
@@ -29,8 +29,14 @@ _NO_SENSOR = {
 }
 
 _SPEEDS = ("speed", "instrument", "encoder")
-# Torque for one unit of a channel that is a torque already [N m].
-_SCALES = {"N m": 1.0, "kN m": 1000.0}
+_TORQUES = ("V", "mA", "%", "mV/V")
+_SCALE_TO_FILL_IN = "# scale_nm_per_unit =            # torque for one {unit}, from the calibration [N m]"
+_TO_FILL_IN = {
+    "mA": _SCALE_TO_FILL_IN.format(unit="mA")
+    + "\n# reading_at_zero =              # of the data sheet: 4, or 12 where 4 to 20 mA are both signs",
+    "mV/V": _SCALE_TO_FILL_IN.format(unit="mV/V")
+    + "\n# in place of it [sensors.shaft_torque.shaft]: diameters, modulus, gauge and bridge factor",
+}
 _FIELDS = {
     "speed": (
         'name = "{name}"',
@@ -162,9 +168,9 @@ def _use(item: Seen) -> Use | None:
         return "ship_speed"
     if _SET_POINT.search(name) and unit == "V":
         return "set_point"
-    if _TORQUE.search(name) and unit in ("V", *_SCALES) and not item.is_pulses:
+    if _TORQUE.search(name) and unit in _TORQUES and not item.is_pulses:
         return "shaft_torque"
-    if unit in _SCALES:
+    if unit in NM_PER_UNIT or unit == "mV/V":
         return "shaft_torque"
     if unit in REV_S_PER_UNIT and _PULSES.search(name):
         return "instrument"
@@ -182,7 +188,7 @@ def _values(channel: Channel, speeds: int) -> dict[str, object]:
         "name": f"n_{speeds}",
         "shaft": "engine" if _ENGINE.search(channel.name) else "propeller",
         "cycle": 1.0 / channel.rate_hz,
-        "scale": f"scale_nm_per_unit = {_SCALES[channel.unit]}"
-        if channel.unit in _SCALES
-        else "# scale_nm_per_unit =            # torque for one volt, from the calibration [N m/V]",
+        "scale": f"scale_nm_per_unit = {NM_PER_UNIT[channel.unit]}"
+        if channel.unit in NM_PER_UNIT
+        else _TO_FILL_IN.get(channel.unit, _SCALE_TO_FILL_IN.format(unit=channel.unit)),
     }

@@ -94,7 +94,7 @@ def _of_torque(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str,
     torque, set_point = by_use["shaft torque"], by_use["set point"]
 
     def mean_nm(report: ChannelReport) -> float:
-        return sensor.scale_nm_per_unit * report.mean - sensor.zero_nm
+        return float(sensor.torque_nm(report.mean))
 
     mean_torque_nm = mean_nm(torque)
     if not np.isfinite(mean_torque_nm) or mean_torque_nm >= _CLEARLY_NEGATIVE * expected:
@@ -107,7 +107,5 @@ def _of_torque(reports: Sequence[ChannelReport], vessel: "Vessel") -> tuple[str,
             f"and {swapped:.4g} N m in {set_point.channel}. Correct the channels in the vessel file or the columns of "
             "the recording.",
         )
-    return (
-        f"channel {torque.channel}: {sentence}; check that it is the torque, and the sign of "
-        "sensors.shaft_torque.scale_nm_per_unit.",
-    )
+    sign = "the sign of sensors.shaft_torque.scale_nm_per_unit" if sensor.shaft is None else "reversed of its shaft"
+    return (f"channel {torque.channel}: {sentence}; check that it is the torque, and {sign}.",)

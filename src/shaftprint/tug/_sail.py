@@ -297,6 +297,7 @@ class _Crew:
             unit=sensors.shaft_torque.unit,
             rate_hz=self._rate_hz,
             scale=self._gauge.scale,
+            offset=self._gauge.offset,
             long_name="torque telemetry of the propeller shaft",
         )
         if self._lever is not None:

@@ -35,17 +35,18 @@ from shaftprint.vessel._sensors import (
     PitchSetPointSensor,
     RackSensor,
     Sensors,
-    SetPointSensor,
-    ShaftTorqueSensor,
     ShipSpeedSensor,
     SpeedSensor,
 )
+from shaftprint.vessel._set_point import SetPointSensor
+from shaftprint.vessel._shaft_torque import GaugedShaft, ShaftTorqueSensor
 from shaftprint.vessel._vessel import Vessel, load_vessel
 from shaftprint.vessel._wheel import SAMPLES_A_TOOTH, Wheel
 
 __all__ = [
     "SAMPLES_A_TOOTH",
     "Engine",
+    "GaugedShaft",
     "Gearbox",
     "Hull",
     "InertiaRow",

@@ -18,18 +18,13 @@ from shaftprint.settings import (
     Settings,
 )
 from shaftprint.units import ANGLES_REV, M_S_PER_KNOT, REV_S_PER_UNIT, plain_unit
-from shaftprint.vessel._usual import GAUGE_SCALE_STD, GAUGE_ZERO_SHARE, LATENCY_STD_S
+from shaftprint.vessel._set_point import SetPointSensor
+from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
 from shaftprint.vessel._wheel import Wheel
-
-# A gauge whose channel is in kN m has a scale of about 1000 N m a unit; this much less is a forgotten factor.
-_SMALLEST_OF_KILO = 100.0
 
 
 def _plain(unit: Any) -> Any:
     return plain_unit(unit) if isinstance(unit, str) else unit
-
-
-TorqueUnit: TypeAlias = Annotated[Literal["V", "N m", "kN m"], BeforeValidator(_plain)]
 
 
 SpeedUnit: TypeAlias = Annotated[
@@ -190,79 +185,6 @@ class SpeedSensor(Settings):
         if errors:
             raise ValueError(" ".join(errors))
         return self
-
-
-class ShaftTorqueSensor(Settings):
-    """Strain gauges with telemetry on the propeller shaft.
-
-    ``M_s = scale_nm_per_unit * reading - zero_nm``.
-    """
-
-    channel: Name
-    """Name of the channel in the recording."""
-    unit: TorqueUnit
-    """Unit of the channel; Nm and kNm are read as N m and kN m."""
-    scale_nm_per_unit: Number
-    """Torque for one unit of the channel [N m per unit]; negative where the gauge is mounted reversed."""
-    scale_std_fraction: NotNegativeNumber | None = None
-    """Relative standard deviation of the scale; see ``scale_std`` where it is not stated."""
-    zero_nm: Number
-    """Torque that the scaled channel shows when there is none [N m]; it is subtracted."""
-    zero_std_nm: NotNegativeNumber | None = None
-    """Standard deviation of the zero [N m]; see ``zero_std`` where it is not stated."""
-    latency_s: NotNegativeNumber
-    """Time by which the telemetry is late [s]."""
-    latency_std_s: NotNegativeNumber | None = None
-    """Standard deviation of the latency [s]; see ``latency_std`` where it is not stated."""
-    full_scale_nm: PositiveNumber
-    """Largest torque that the telemetry can pass on [N m], either sign."""
-    resolution_nm: PositiveNumber | None = None
-    """Smallest step of the telemetry [N m]."""
-
-    @model_validator(mode="after")
-    def _scale_is_usable(self) -> Self:
-        if self.scale_nm_per_unit == 0.0:
-            raise ValueError("expected scale_nm_per_unit other than 0, found 0.")
-        if self.unit == "kN m" and abs(self.scale_nm_per_unit) < _SMALLEST_OF_KILO:
-            raise ValueError(
-                f"expected scale_nm_per_unit near 1000 for a channel in kN m, as torque is in N m here, found "
-                f"{self.scale_nm_per_unit:g}."
-            )
-        return self
-
-    @property
-    def scale_std(self) -> float:
-        """Relative standard deviation of the scale, as stated or as usual."""
-        return GAUGE_SCALE_STD if self.scale_std_fraction is None else self.scale_std_fraction
-
-    @property
-    def zero_std(self) -> float:
-        """Standard deviation of the zero [N m], as stated or as usual."""
-        return GAUGE_ZERO_SHARE * self.full_scale_nm if self.zero_std_nm is None else self.zero_std_nm
-
-    @property
-    def latency_std(self) -> float:
-        """Standard deviation of the latency [s], as stated or as usual."""
-        return LATENCY_STD_S if self.latency_std_s is None else self.latency_std_s
-
-    def torque_nm(self, reading: ArrayLike) -> FloatArray:
-        """Return the shaft torque [N m] for readings in the channel's unit, of any shape."""
-        return self.scale_nm_per_unit * np.asarray(reading, dtype=np.float64) - self.zero_nm
-
-
-class SetPointSensor(Settings):
-    """The voltage that asks the governor for a speed."""
-
-    channel: Name
-    """Name of the channel in the recording."""
-    unit: Literal["V"]
-    """Unit of the channel."""
-    noise_v: NotNegativeNumber | None = None
-    """Standard deviation of the logger's noise [V]."""
-    latency_s: NotNegativeNumber | None = None
-    """Time from the voltage to the demanded speed that the engine's control unit has [s]; None where not measured."""
-    latency_std_s: PositiveNumber | None = None
-    """Standard deviation of that time [s]."""
 
 
 class RackSensor(Settings):

@@ -10,6 +10,7 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign import Campaign, Sine
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelSignal
+from shaftprint.signals._channels import spots
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
@@ -19,10 +20,15 @@ from shaftprint.vessel import ShaftTorqueSensor
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
     from shaftprint.signals._clock import Clock
+    from shaftprint.vessel import Vessel
 
 # So near to full scale counts as there.
 _RAIL_SHARE = 0.999
 _LARGEST_SATURATED_SHARE = 1e-3
+
+# Less than this part of the torque at the working point, or more than this multiple, is not the load of another day. A
+# recording may idle for most of its time.
+_SMALL_PART, _MULTIPLE = 0.1, 2.5
 
 # Torque follows slow excitations; faster ones say nothing about the gauge.
 _SLOW_HZ = 1.0
@@ -41,6 +47,7 @@ class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
     def read(self, source: Source[ShaftTorqueSensor], clock: "Clock") -> Reading:
         """Return the torque on the grid."""
         channel, sensor = source.channel, source.sensor
+        expect_unit(channel, source.vessel)
         latency_s = clock.latency_s(sensor.latency_s)
         reading = conditioned(
             channel,
@@ -75,12 +82,32 @@ class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
 def torque_limits(channel: "Channel", sensor: ShaftTorqueSensor) -> FaultLimits:
     """Return what counts as a fault of the gauge, with rails at the full scale of the telemetry."""
     reach = abs(sensor.full_scale_nm / sensor.scale_nm_per_unit)
-    ends = [(side * reach - channel.offset) / channel.scale for side in (-1.0, 1.0)]
+    ends = [(sensor.live_zero + side * reach - channel.offset) / channel.scale for side in (-1.0, 1.0)]
     middle, half = 0.5 * (ends[0] + ends[1]), 0.5 * abs(ends[1] - ends[0]) * _RAIL_SHARE
     lowest, highest = middle - half, middle + half
     if channel.read(0, 1).dtype == np.int16:
         lowest, highest = max(lowest, -32768.0), min(highest, 32767.0)
     return fault_limits(channel, holds=True, lowest=lowest, highest=highest)
+
+
+def expect_unit(channel: "Channel", vessel: "Vessel") -> None:
+    """Check by stretches all over the recording that the torque is not one of another unit than the vessel file states.
+
+    Raises
+    ------
+    SignalError
+        If it is a small part or a multiple of what is expected, and would be as expected in another unit; the message
+        names it.
+    """
+    sensor, expected = vessel.sensors.shaft_torque, vessel.working_point.shaft_torque_nm
+    middle = float(np.median(np.concatenate(spots(channel)))) * channel.scale + channel.offset
+    torque = float(sensor.torque_nm(middle))
+    unit = sensor.unit_that_fits(torque, expected)
+    if unit is not None and not _SMALL_PART * expected < torque < _MULTIPLE * expected:
+        raise SignalError(
+            f"channel {channel.name}: expected a torque around {expected:.4g} N m, found {torque:.4g} N m; {unit} in "
+            "sensors.shaft_torque would fit."
+        )
 
 
 def judge_saturation(channel: "Channel", repairs: Sequence[Repair]) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
     from shaftprint.signals._gaps import Coverage
     from shaftprint.signals.levels._steady import SteadyStretch
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel import ShaftTorqueSensor, Vessel
 
 # Voltages this near to the offset of the campaign are the working voltage.
 _NEAR_V = 0.25
@@ -144,14 +144,20 @@ def expect_plausible(point: WorkingPoint, vessel: "Vessel") -> tuple[str, ...]:
     if not torque > 0.0:
         raise SignalError(
             f"channel {sensor.channel}: expected a positive mean torque at the working point, found {torque:.4g} N m; "
-            "turn the sign of scale_nm_per_unit in the vessel file, or correct zero_nm there."
+            f"{sensor.sign_words} in the vessel file, or correct zero_nm there{_unit_words(sensor, torque, expected)}."
         )
     if max(torque / expected, expected / torque) < _FAR:
         return ()
     return (
         f"The mean torque of {sensor.channel} at the working point is {torque:.4g} N m; the vessel file expects "
-        f"{expected:.4g} N m. Check scale_nm_per_unit there, or shaft_torque_nm of its working point.",
+        f"{expected:.4g} N m. Check scale_nm_per_unit there, or shaft_torque_nm of its working point"
+        f"{_unit_words(sensor, torque, expected)}.",
     )
+
+
+def _unit_words(sensor: "ShaftTorqueSensor", torque_nm: float, expected_nm: float) -> str:
+    unit = sensor.unit_that_fits(torque_nm, expected_nm)
+    return "" if unit is None else f"; {unit} would fit"
 
 
 def _between_tests(stretch: "SteadyStretch", campaign: "Campaign") -> bool:

@@ -126,6 +126,8 @@ class TorqueGauge:
         self.channel = sensor.channel
         self.scale = _HEADROOM * sensor.full_scale_nm / abs(sensor.scale_nm_per_unit) / 32768.0
         """Value of one count in the unit of the channel."""
+        self.offset = sensor.live_zero
+        """Value of no count in the unit of the channel."""
         orders = shaft_orders(noise, vessel)
         smoothing = 1.0 - math.exp(-2.0 * math.pi * LOW_PASS_HZ / rate_hz)
         # the latency of the vessel file is that of the whole telemetry: the filter's own delay is a part of it

@@ -1,0 +1,218 @@
+"""The torque gauge: strain gauges on the propeller shaft, from the unit of their channel to a torque."""
+
+import math
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import BeforeValidator, Field, ValidationError, model_validator
+
+from shaftprint.arrays import FloatArray
+from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
+from shaftprint.units import MILLI, NM_PER_UNIT, plain_unit
+from shaftprint.vessel._usual import GAUGE_SCALE_STD, GAUGE_ZERO_SHARE, LATENCY_STD_S
+
+# A gauge whose channel is in kN m has a scale of about 1000 N m a unit; this much less is a forgotten factor.
+_SMALLEST_OF_KILO = 100.0
+_PASCAL_PER_GPA = 1e9
+# What a channel can show in a unit: a current loop that is alive (NAMUR NE 43), what amplifiers of 10 V give, and a
+# share that is no voltage, since one with ten times the scale would look like it.
+_REACH = {"mA": (3.6, 21.0), "V": (-10.5, 10.5), "%": (10.5, 110.0)}
+# A torque this factor around the expected one is the load of another day.
+_NEAR = 1.3
+# Written with fewer digits and read again, a scale is still that of its shaft.
+_SAME_SCALE = 1e-6
+
+
+def _plain(unit: Any) -> Any:
+    return plain_unit(unit) if isinstance(unit, str) else unit
+
+
+TorqueUnit: TypeAlias = Annotated[Literal["V", "mA", "%", "mV/V", "N m", "kN m"], BeforeValidator(_plain)]
+
+
+class GaugedShaft(Settings):
+    """The round shaft under strain gauges at 45 degrees to its axis, from which the torque for 1 mV/V is calculated.
+
+    On the surface of a shaft in torsion the shear strain is ``gamma = M D / (2 G J)`` with ``J = pi (D^4 - d^4) / 32``,
+    and at 45 degrees to the axis the strain is ``gamma / 2``, of either sign. A bridge with ``B`` active arms gives
+    ``V / U = k B / 4 * gamma / 2``, so that ``M = (V / U) pi G (D^4 - d^4) / (2 k B D)``. Both sides of the formula are
+    in K. Hoffmann, An Introduction to Measurements using Strain Gages, HBM 1989, on torsion; imc, CAEMAX Dx manual,
+    chapter 12, has it with numbers for steel.
+    """
+
+    outer_diameter_m: PositiveNumber
+    """Outer diameter where the gauges are [m]."""
+    inner_diameter_m: NotNegativeNumber = 0.0
+    """Diameter of the bore there [m]; 0 for a solid shaft."""
+    shear_modulus_gpa: Annotated[float, Field(strict=True, ge=1.0, le=500.0)]
+    """Shear modulus of the shaft [GPa], 79 to 82 for steel."""
+    gauge_factor: PositiveNumber
+    """Relative change of a gauge's resistance for its strain, about 2."""
+    bridge_factor: Annotated[float, Field(strict=True, gt=0.0, le=4.0)] = 4.0
+    """Active arms of the bridge: 4 for a full bridge, 2 for a half."""
+    reversed: bool = False
+    """Whether the bridge shows a torque that drives the propeller as negative."""
+
+    @model_validator(mode="after")
+    def _bore_fits(self) -> Self:
+        if self.inner_diameter_m >= self.outer_diameter_m:
+            raise ValueError(
+                f"expected inner_diameter_m below outer_diameter_m = {self.outer_diameter_m:g}, found "
+                f"{self.inner_diameter_m:g}."
+            )
+        return self
+
+    @property
+    def scale_nm_per_unit(self) -> float:
+        """Torque for 1 mV/V [N m], negative where the bridge is reversed."""
+        section_m4 = self.outer_diameter_m**4 - self.inner_diameter_m**4
+        stiffness = math.pi * self.shear_modulus_gpa * _PASCAL_PER_GPA * section_m4
+        scale = stiffness / (2.0 * self.gauge_factor * self.bridge_factor * self.outer_diameter_m) / MILLI
+        return -scale if self.reversed else scale
+
+
+class ShaftTorqueSensor(Settings):
+    """Strain gauges with telemetry on the propeller shaft.
+
+    ``M_s = scale_nm_per_unit * (reading - reading_at_zero) - zero_nm``.
+    """
+
+    channel: Name
+    """Name of the channel in the recording."""
+    unit: TorqueUnit
+    """Unit of the channel; Nm and kNm are read as N m and kN m."""
+    scale_nm_per_unit: Number
+    """Torque for one unit of the channel [N m per unit]; negative where the gauge is mounted reversed. Where it is not
+    given: 1 and 1000 for a channel in N m and kN m, and that of ``shaft``."""
+    shaft: GaugedShaft | None = None
+    """The shaft under the gauges, of a channel in mV/V without a scale."""
+    reading_at_zero: Number | None = None
+    """What the telemetry gives at no torque by its data sheet, in the unit of the channel, such as 12 where 4 and 20 mA
+    are full scale of either sign; 0 where not given."""
+    scale_std_fraction: NotNegativeNumber | None = None
+    """Relative standard deviation of the scale; see ``scale_std`` where it is not stated."""
+    zero_nm: Number
+    """Torque that the scaled channel shows when there is none [N m]; it is subtracted."""
+    zero_std_nm: NotNegativeNumber | None = None
+    """Standard deviation of the zero [N m]; see ``zero_std`` where it is not stated."""
+    latency_s: NotNegativeNumber
+    """Time by which the telemetry is late [s]."""
+    latency_std_s: NotNegativeNumber | None = None
+    """Standard deviation of the latency [s]; see ``latency_std`` where it is not stated."""
+    full_scale_nm: PositiveNumber
+    """Largest torque that the telemetry can pass on [N m], either sign."""
+    resolution_nm: PositiveNumber | None = None
+    """Smallest step of the telemetry [N m]."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _scale_that_follows(cls, content: Any) -> Any:
+        """Fill in the scale where unit or shaft tell it."""
+        if not isinstance(content, Mapping):
+            return content
+        of_unit = NM_PER_UNIT.get(_plain(content.get("unit")))
+        of_shaft = _scale_of_shaft(content.get("shaft"))
+        follows = of_unit if of_shaft is None else of_shaft
+        if follows is None or "scale_nm_per_unit" in content:
+            return content
+        return {**content, "scale_nm_per_unit": follows}
+
+    @model_validator(mode="after")
+    def _scale_is_usable(self) -> Self:
+        scale = self.scale_nm_per_unit
+        if scale == 0.0:
+            raise ValueError("expected scale_nm_per_unit other than 0, found 0.")
+        if self.unit == "kN m" and abs(scale) < _SMALLEST_OF_KILO:
+            raise ValueError(
+                "expected scale_nm_per_unit near 1000 for a channel in kN m, as torque is in N m here, found "
+                f"{scale:g}."
+            )
+        if self.shaft is None:
+            return self
+        if self.unit != "mV/V":
+            raise ValueError(f'expected shaft left out for a channel in "{self.unit}", found one; it is for mV/V.')
+        if not math.isclose(scale, self.shaft.scale_nm_per_unit, rel_tol=_SAME_SCALE):
+            raise ValueError(
+                f"expected scale_nm_per_unit left out beside shaft, which gives {self.shaft.scale_nm_per_unit:.6g}, "
+                f"found {scale:g}; leave out shaft where the scale was calibrated."
+            )
+        return self
+
+    @property
+    def scale_std(self) -> float:
+        """Relative standard deviation of the scale, as stated or as usual."""
+        return GAUGE_SCALE_STD if self.scale_std_fraction is None else self.scale_std_fraction
+
+    @property
+    def zero_std(self) -> float:
+        """Standard deviation of the zero [N m], as stated or as usual."""
+        return GAUGE_ZERO_SHARE * self.full_scale_nm if self.zero_std_nm is None else self.zero_std_nm
+
+    @property
+    def latency_std(self) -> float:
+        """Standard deviation of the latency [s], as stated or as usual."""
+        return LATENCY_STD_S if self.latency_std_s is None else self.latency_std_s
+
+    @property
+    def live_zero(self) -> float:
+        """What the telemetry gives at no torque by its data sheet [unit of the channel]."""
+        return self.reading_at_zero or 0.0
+
+    @property
+    def sign_words(self) -> str:
+        """What turns the sign of the torque, in words."""
+        if self.shaft is not None:
+            return f"set reversed = {str(not self.shaft.reversed).lower()} in sensors.shaft_torque.shaft"
+        return "turn the sign of scale_nm_per_unit"
+
+    def torque_nm(self, reading: ArrayLike) -> FloatArray:
+        """Return the shaft torque [N m] for readings in the channel's unit, of any shape."""
+        beyond = np.asarray(reading, dtype=np.float64) - self.live_zero
+        return self.scale_nm_per_unit * beyond - self.zero_nm
+
+    def unit_that_fits(self, torque_nm: float, expected_nm: float) -> str | None:
+        """Return the unit, in words, in which the channel would show the torque that is expected; None if none would.
+
+        Telemetries give full scale as 10 V, 100 %, or 20 mA from 4 or from 12 mA on.
+
+        Parameters
+        ----------
+        torque_nm
+            The torque that was found [N m].
+        expected_nm
+            The one that was expected [N m].
+        """
+        reading = (torque_nm + self.zero_nm) / self.scale_nm_per_unit + self.live_zero
+        full_nm = self.full_scale_nm
+        for unit, scale, zero in (
+            ("N m", 1.0, 0.0),
+            ("kN m", 1000.0, 0.0),
+            ("mA", full_nm / 16.0, 4.0),
+            ("mA", full_nm / 8.0, 12.0),
+            ("V", full_nm / 10.0, 0.0),
+            ("%", full_nm / 100.0, 0.0),
+        ):
+            lowest, highest = _REACH.get(unit, (-math.inf, math.inf))
+            shown_nm = scale * (reading - zero)
+            if unit == self.unit or not lowest <= reading <= highest:
+                continue
+            if not expected_nm / _NEAR < shown_nm < expected_nm * _NEAR:
+                continue
+            if unit in NM_PER_UNIT:
+                return f'unit = "{unit}" with scale_nm_per_unit = {scale:g}'
+            start = f" and reading_at_zero = {zero:g}" if zero else ""
+            return f'unit = "{unit}" with scale_nm_per_unit = {scale:.5g}{start}'
+        return None
+
+
+def _scale_of_shaft(shaft: Any) -> float | None:
+    """Return the torque for 1 mV/V [N m] of a shaft as it stands in a file; None of none and of a wrong one."""
+    if shaft is None:
+        return None
+    try:
+        return GaugedShaft.model_validate(shaft).scale_nm_per_unit
+    except ValidationError:
+        # told with its field where the shaft is read
+        return 1.0

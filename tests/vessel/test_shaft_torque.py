@@ -1,0 +1,115 @@
+"""The torque gauge in every unit that telemetries have: the scale that follows, and what is refused."""
+
+import pytest
+from pydantic import ValidationError
+
+from shaftprint.settings import write_template
+from shaftprint.vessel import GaugedShaft, ShaftTorqueSensor, load_vessel
+
+STEEL = {"outer_diameter_m": 0.1, "shear_modulus_gpa": 80.0, "gauge_factor": 2.0}
+
+
+def gauge(unit, **fields):
+    stated = {"channel": "M_s", "unit": unit, "zero_nm": 0.0, "latency_s": 0.0, "full_scale_nm": 5000.0}
+    return ShaftTorqueSensor.model_validate(stated | fields)
+
+
+def test_a_solid_shaft_of_a_tenth_of_a_metre():
+    # M = (V/U) pi G D^4 / (2 k B D) = 1e-3 * pi * 80e9 * 1e-4 / (2 * 2 * 4 * 0.1) = 5000 pi
+    assert GaugedShaft(**STEEL).scale_nm_per_unit == pytest.approx(15_707.963, abs=0.001)
+
+
+def test_stress_by_way_of_the_section_modulus():
+    # 1000 N m on 90 mm with a bore of 45 mm: W = pi (0.09^4 - 0.045^4) / (16 * 0.09) = 1.34192e-4 m3, so 7.45199 MPa of
+    # shear, 93.1499 um/m of gamma at 80 GPa, 46.5750 um/m at 45 degrees, times k = 2.1 for a full bridge: 97.8074 uV/V
+    hollow = GaugedShaft(outer_diameter_m=0.09, inner_diameter_m=0.045, shear_modulus_gpa=80.0, gauge_factor=2.1)
+    assert 1000.0 / hollow.scale_nm_per_unit == pytest.approx(0.0978074, rel=1e-5)
+
+
+def test_the_number_of_a_maker_of_telemetries():
+    # imc, CAEMAX Dx manual, chapter 12: 62 M / d^3 in mV/V for steel, N m and mm, k = 2, full bridge
+    shaft = GaugedShaft(outer_diameter_m=0.12, shear_modulus_gpa=82.0, gauge_factor=2.0)
+    assert 1000.0 / shaft.scale_nm_per_unit == pytest.approx(62.0 * 1000.0 / 120.0**3, rel=0.005)
+
+
+def test_half_a_bridge_shows_half_and_a_reversed_one_the_opposite():
+    full = GaugedShaft(**STEEL).scale_nm_per_unit
+    assert GaugedShaft(**STEEL, bridge_factor=2.0).scale_nm_per_unit == 2.0 * full
+    assert GaugedShaft(**STEEL, reversed=True).scale_nm_per_unit == -full
+
+
+@pytest.mark.parametrize(
+    ("unit", "fields", "reading"),
+    [
+        ("N m", {}, 1000.0),
+        ("kNm", {}, 1.0),
+        ("kN m", {"scale_nm_per_unit": -1000.0}, -1.0),
+        ("V", {"scale_nm_per_unit": 500.0}, 2.0),
+        ("mA", {"scale_nm_per_unit": 625.0, "reading_at_zero": 12.0}, 13.6),
+        ("mA", {"scale_nm_per_unit": 312.5, "reading_at_zero": 4.0}, 7.2),
+        ("percent", {"scale_nm_per_unit": 50.0}, 20.0),
+        ("mV/V", {"shaft": STEEL}, 0.0636620),
+        ("mV/V", {"shaft": STEEL | {"reversed": True}, "zero_nm": 20.0}, -0.0649352),
+        ("mV/V", {"scale_nm_per_unit": 15_000.0}, 0.0666667),
+    ],
+)
+def test_a_thousand_newton_metres_in_every_unit(unit, fields, reading):
+    sensor = gauge(unit, **fields)
+    assert float(sensor.torque_nm(reading)) == pytest.approx(1000.0, rel=1e-5)
+    # what is written again can be read again
+    assert ShaftTorqueSensor.model_validate(sensor.model_dump()) == sensor
+
+
+@pytest.mark.parametrize(
+    ("unit", "fields", "sentence"),
+    [
+        ("V", {}, r"scale_nm_per_unit\s+Field required"),
+        ("mV/V", {}, r"scale_nm_per_unit\s+Field required"),
+        ("V", {"shaft": STEEL}, 'expected shaft left out for a channel in "V"'),
+        (
+            "mV/V",
+            {"shaft": STEEL, "scale_nm_per_unit": 15_000.0},
+            "left out beside shaft, which gives 15708, found 15000; leave out shaft where the scale was calibrated",
+        ),
+        ("mV/V", {"shaft": STEEL | {"inner_diameter_m": 0.1}}, r"inner_diameter_m below outer_diameter_m = 0\.1"),
+        ("mV/V", {"shaft": STEEL | {"shear_modulus_gpa": 80e9}}, "less than or equal to 500"),
+        ("mV/V", {"shaft": STEEL | {"bridge_factor": 8.0}}, "less than or equal to 4"),
+    ],
+)
+def test_what_does_not_fit_together_is_refused(unit, fields, sentence):
+    with pytest.raises(ValidationError, match=sentence):
+        gauge(unit, **fields)
+
+
+@pytest.mark.parametrize(
+    ("stated", "fields", "reading", "unit"),
+    [
+        ("N m", {}, 1.7, 'unit = "kN m" with scale_nm_per_unit = 1000'),
+        ("kN m", {}, 1700.0, 'unit = "N m" with scale_nm_per_unit = 1'),
+        ("V", {"scale_nm_per_unit": 500.0}, 1700.0, 'unit = "N m" with scale_nm_per_unit = 1'),
+        ("V", {"scale_nm_per_unit": 500.0}, 9.5, 'unit = "mA" with scale_nm_per_unit = 312.5 and reading_at_zero = 4'),
+        ("V", {"scale_nm_per_unit": 500.0}, 14.8, 'unit = "mA" with scale_nm_per_unit = 625 and reading_at_zero = 12'),
+        ("V", {"scale_nm_per_unit": 500.0}, 34.0, 'unit = "%" with scale_nm_per_unit = 50'),
+        ("mA", {"scale_nm_per_unit": 312.5, "reading_at_zero": 4.0}, 3.45, 'unit = "V" with scale_nm_per_unit = 500'),
+        ("N m", {}, 400.0, None),
+    ],
+)
+def test_the_unit_that_would_fit_is_named(stated, fields, reading, unit):
+    sensor = gauge(stated, **fields)
+    assert sensor.unit_that_fits(float(sensor.torque_nm(reading)), 1725.0) == unit
+
+
+def test_the_template_has_a_shaft_that_can_be_used(tmp_path):
+    path = tmp_path / "ship.toml"
+    write_template("vessel", path)
+    text = path.read_text(encoding="utf-8")
+    text = text.replace("scale_nm_per_unit = 500.0  ", "#").replace(
+        'unit = "V"                          #', 'unit = "mV/V" #'
+    )
+    before, after = text.split("# [sensors.shaft_torque.shaft]\n")
+    fields, rest = after.split("\n\n", 1)
+    shaft = "\n".join(line.removeprefix("# ") for line in fields.splitlines())
+    path.write_text(f"{before}[sensors.shaft_torque.shaft]\n{shaft}\n\n{rest}", encoding="utf-8")
+    sensor = load_vessel(path).sensors.shaft_torque
+    # by hand: pi times 80 GPa times 0.09 m cubed, over 2 times 2.1 times 4, and a thousand millivolts in a volt
+    assert sensor.scale_nm_per_unit == pytest.approx(10_905.8, abs=0.1)
