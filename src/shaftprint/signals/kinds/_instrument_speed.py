@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from shaftprint.signals._clock import Clock
 
 # Signals of 4 to 20 mA beyond these have failed (NAMUR recommendation NE 43).
-_LIVE_ZERO_MA, _FAILED_MA = 4.0, (3.6, 21.0)
+LIVE_ZERO_MA, FAILED_MA = 4.0, (3.6, 21.0)
+"""Where a current loop begins, and outside of what it has failed [mA]."""
 # A line through zero speed at 4 mA, to this share of the speed at 20 mA.
 _AT_ZERO = 0.02
 # Over a gap longer than this a slow channel says nothing.
@@ -87,10 +88,10 @@ def instrument_limits(channel: "Channel", sensor: SpeedSensor) -> FaultLimits:
     limits = fault_limits(channel, holds=False)
     if sensor.unit != "mA":
         return limits
-    zero, full = sensor.speed_rev_s([_LIVE_ZERO_MA, 20.0])
+    zero, full = sensor.speed_rev_s([LIVE_ZERO_MA, 20.0])
     if abs(zero) > _AT_ZERO * abs(full):
         return limits
-    ends = sorted((end - channel.offset) / channel.scale for end in _FAILED_MA)
+    ends = sorted((end - channel.offset) / channel.scale for end in FAILED_MA)
     return replace(limits, lowest=ends[0], highest=ends[1])
 
 

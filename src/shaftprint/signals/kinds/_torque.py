@@ -14,6 +14,7 @@ from shaftprint.signals._channels import spots
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
+from shaftprint.signals.kinds._instrument_speed import FAILED_MA, LIVE_ZERO_MA
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.vessel import ShaftTorqueSensor
 
@@ -85,6 +86,9 @@ def torque_limits(channel: "Channel", sensor: ShaftTorqueSensor) -> FaultLimits:
     ends = [(sensor.live_zero + side * reach - channel.offset) / channel.scale for side in (-1.0, 1.0)]
     middle, half = 0.5 * (ends[0] + ends[1]), 0.5 * abs(ends[1] - ends[0]) * _RAIL_SHARE
     lowest, highest = middle - half, middle + half
+    if sensor.unit == "mA" and sensor.live_zero >= LIVE_ZERO_MA:
+        failed = sorted((end - channel.offset) / channel.scale for end in FAILED_MA)
+        lowest, highest = max(lowest, failed[0]), min(highest, failed[1])
     if channel.read(0, 1).dtype == np.int16:
         lowest, highest = max(lowest, -32768.0), min(highest, 32767.0)
     return fault_limits(channel, holds=True, lowest=lowest, highest=highest)
