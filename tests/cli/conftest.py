@@ -25,3 +25,13 @@ def run() -> Run:
 def recording(demo: tuple[Path, Result]) -> Path:
     """The raw recording of the short demo."""
     return demo[0] / "recording.nc"
+
+
+@pytest.fixture(scope="session")
+def invoke() -> Run:
+    """The same for a whole session."""
+
+    def call(*arguments: object) -> Result:
+        return CliRunner().invoke(shaftprint, [str(argument) for argument in arguments], catch_exceptions=False)
+
+    return call

@@ -52,7 +52,8 @@ def expect_demo(folder, printed, words):
 
 def expect_settings(folder, printed, words):
     load = {"vessel": load_vessel, "campaign": load_campaign}[words[1]]
-    assert load(folder / words[2]).name
+    (file,) = (word for word in words if word.endswith(".toml"))
+    assert load(folder / file).name
 
 
 def expect_prediction(folder, printed, words):

@@ -3,11 +3,18 @@
 ===================== ======= ===============================================================================
 quantity              unit    meaning and sign
 ===================== ======= ===============================================================================
+card                          engine, gearbox and propeller by the numbers that every ship's papers have
 ``K_Q``               -       torque coefficient of a propeller series at zero advance
+derived               as is   a number of the vessel file that the card does not have, with its origin
 disagreement                  a field that other fields of the same file contradict, or that is strange
 ===================== ======= ===============================================================================
+
+The simulated tug shares no physics with this room: it reads the file that is written here.
 """
 
+from shaftprint.card._card import Card, Gauge, Pulses
 from shaftprint.card._disagreements import Disagreement, disagreements
+from shaftprint.card._vessel_text import vessel_text
+from shaftprint.card._write import write_vessel
 
-__all__ = ["Disagreement", "disagreements"]
+__all__ = ["Card", "Disagreement", "Gauge", "Pulses", "disagreements", "vessel_text", "write_vessel"]

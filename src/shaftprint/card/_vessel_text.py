@@ -1,0 +1,203 @@
+"""A card as the text of a vessel file, in which every number that is not from the card says where it is from."""
+
+from collections.abc import Iterable
+
+from shaftprint.card._card import Card, Gauge, Pulses
+from shaftprint.card._derived import (
+    EFFICIENCY,
+    Derived,
+    engine_inertia,
+    full_load,
+    full_scale,
+    gear_ratio,
+    idle_speed,
+    motoring,
+    propeller_inertia,
+    torque_coefficient,
+    water_inertia,
+    working_speed,
+    working_torque,
+)
+from shaftprint.errors import SettingsError
+from shaftprint.escape import toml_string
+
+_SCALES = {"N m": 1.0, "kN m": 1000.0}
+_DIGITS = 5
+
+
+def vessel_text(card: Card) -> str:
+    """Return the vessel file that follows from a card.
+
+    Raises
+    ------
+    SettingsError
+        If the card has neither gear ratio nor propeller speed, or a gauge in volts without its scale.
+    """
+    parts = (_head(card), _engine(card), _gearbox(card), _propeller(card), _point(card), _limits(card), _inertia(card))
+    return "\n\n".join("\n".join(part) for part in (*parts, _sensors(card))) + "\n"
+
+
+def _head(card: Card) -> Iterable[str]:
+    return (
+        "# Written by `shaftprint new vessel` from what stands on the ship's card: the numbers without a comment.",
+        "# The comments of the others say where they are from, with a deviation; replace what you know better.",
+        "",
+        f"name = {toml_string(card.name)}",
+        f"water_density_kg_m3 = {_number(card.water_density_kg_m3)}",
+    )
+
+
+def _engine(card: Card) -> Iterable[str]:
+    speeds, torques = full_load(card)
+    return (
+        "[engine]",
+        f"rated_power_kw = {_number(card.rated_power_kw)}",
+        f"rated_speed_rpm = {_number(card.rated_speed_rpm)}",
+        _line("idle_speed_rpm", idle_speed(card)),
+        f"cylinders = {card.cylinders}",
+        f"strokes_per_cycle = {card.strokes_per_cycle}",
+        "# Usual for a turbocharged high-speed engine, through rated power: +/- 15 % below rated speed.",
+        f"full_load_speed_rpm = {_list(speeds)}",
+        f"full_load_torque_nm = {_list(torques)}",
+    )
+
+
+def _gearbox(card: Card) -> Iterable[str]:
+    lines = [
+        "[gearbox]",
+        _line("ratio", gear_ratio(card)),
+        f"efficiency = {EFFICIENCY:g}  # usual for one reduction, +/- 0.01",
+    ]
+    if card.gear_ratio is not None and card.propeller_rated_rpm is not None:
+        lines.append(f"propeller_rated_rpm = {_number(card.propeller_rated_rpm)}")
+    return lines
+
+
+def _propeller(card: Card) -> Iterable[str]:
+    usual = "" if card.area_ratio is not None else f"usual {'in a nozzle' if card.in_nozzle else 'without nozzle'}"
+    return (
+        "[propeller]",
+        f"diameter_m = {_number(card.diameter_m)}",
+        f"pitch_ratio = {_number(card.pitch_ratio)}",
+        f"blades = {card.blades}",
+        _line("area_ratio", Derived(value=card.usual_area_ratio, origin=f"{usual}, +/- 0.1" if usual else "")),
+        _line("torque_coefficient", torque_coefficient(card)),
+        f"series = {toml_string(card.series)}",
+    )
+
+
+def _point(card: Card) -> Iterable[str]:
+    return (
+        "[working_point]",
+        _line("engine_speed_rpm", working_speed(card)),
+        _line("shaft_torque_nm", working_torque(card)),
+    )
+
+
+def _limits(card: Card) -> Iterable[str]:
+    speeds, torques = motoring(card)
+    return (
+        "# Torque that turns the engine without fuel: usual, 19 % of rated torque at a third of rated speed and 32 %",
+        "# at rated speed, +/- 30 %. Lowest and highest speed of a test are idle and rated speed.",
+        "[limits]",
+        f"motoring_speed_rpm = {_list(speeds)}",
+        f"motoring_torque_nm = {_list(torques)}",
+    )
+
+
+def _inertia(card: Card) -> Iterable[str]:
+    if card.inertia_upstream_kg_m2 is None:
+        lines = _row("Engine, flywheel, coupling and gears", engine_inertia(card), shaft="engine", gauge="upstream")
+    else:
+        stated = Derived(value=card.inertia_upstream_kg_m2, origin="")
+        lines = _row("All before the gauge", stated, shaft="propeller", gauge="upstream")
+    if card.inertia_downstream_kg_m2 is None:
+        propeller = _row("Propeller, dry", propeller_inertia(card), gauge="downstream", part="propeller")
+        water = _row("Entrained water", water_inertia(card), gauge="downstream", part="water")
+        return (*lines, "", *propeller, "", *water)
+    stated = Derived(value=card.inertia_downstream_kg_m2, origin="")
+    return (*lines, "", *_row("Propeller with shaft and water", stated, gauge="downstream"))
+
+
+def _row(
+    name: str, inertia: Derived, *, gauge: str, shaft: str = "propeller", part: str | None = None
+) -> tuple[str, ...]:
+    """Return a row of the inertia table; one that is stated has the usual deviation of a table."""
+    lines = ["[[inertia]]", f'name = "{name}"', _line("inertia_kg_m2", inertia)]
+    lines += [] if inertia.std is None else [f"std_kg_m2 = {_rounded(inertia.std)}"]
+    lines += [f'shaft = "{shaft}"', f'gauge = "{gauge}"', *([] if part is None else [f'part = "{part}"'])]
+    return (*lines, f'source = "{"estimated" if inertia.origin else "table"}"')
+
+
+def _sensors(card: Card) -> Iterable[str]:
+    lines = ["# Speed pick-ups; the first is the one that is identified."]
+    for number, pulses in enumerate(card.engine_pulses, start=1):
+        lines += _pick_up(pulses, f"n_e{number if number > 1 else ''}", "engine")
+    for number, pulses in enumerate(card.shaft_pulses, start=1):
+        lines += _pick_up(pulses, f"n_s{number if number > 1 else ''}", "propeller")
+    if not (card.engine_pulses or card.shaft_pulses):
+        lines.append("# No channel was named: one strip on the engine is assumed.")
+        lines += _pick_up(Pulses(channel="PTM_e"), "n_e", "engine")
+    return (
+        *lines,
+        *_gauge(card.gauge, full_scale(card)),
+        "",
+        "[sensors.set_point]",
+        f"channel = {toml_string(card.set_point_channel)}",
+        'unit = "V"',
+        "",
+        "[logger]",
+        f"sample_rate_hz = {_number(card.sample_rate_hz)}",
+    )
+
+
+def _pick_up(pulses: Pulses, name: str, shaft: str) -> tuple[str, ...]:
+    is_even = pulses.wheel.isdecimal()
+    teeth = f"pulses_per_revolution = {int(pulses.wheel)}" if is_even else f"wheel = {toml_string(pulses.wheel)}"
+    channel = toml_string(pulses.channel)
+    return (
+        "[[sensors.speed]]",
+        f'name = "{name}"',
+        f"channel = {channel}",
+        f'shaft = "{shaft}"',
+        teeth,
+        'unit = "V"',
+        "",
+    )
+
+
+def _gauge(gauge: Gauge, largest: Derived) -> tuple[str, ...]:
+    scale_nm_per_unit = gauge.scale_nm_per_unit or _SCALES.get(gauge.unit)
+    if scale_nm_per_unit is None:
+        raise SettingsError(
+            f"torque gauge {gauge.channel}: expected its scale for a channel in V, found none; state N m for one volt."
+        )
+    return (
+        "[sensors.shaft_torque]",
+        f"channel = {toml_string(gauge.channel)}",
+        f'unit = "{gauge.unit}"',
+        f"scale_nm_per_unit = {_number(scale_nm_per_unit)}",
+        "zero_nm = 0.0  # turn the shaft slowly both ways before the test; +/- 0.5 % of full scale is taken",
+        "latency_s = 0.005  # usual for telemetry, +/- 0.002 s",
+        _line("full_scale_nm", largest),
+    )
+
+
+def _line(key: str, derived: Derived) -> str:
+    if not derived.origin:
+        return f"{key} = {_number(derived.value)}"
+    return f"{key} = {_rounded(derived.value)}  # {derived.origin}"
+
+
+def _number(value: float) -> str:
+    """Return a number of TOML as it stands on the card."""
+    return repr(float(value))
+
+
+def _rounded(value: float) -> str:
+    """Return a derived number of TOML with five significant digits."""
+    return repr(float(f"{value:.{_DIGITS}g}"))
+
+
+def _list(values: Iterable[float]) -> str:
+    return f"[{', '.join(map(_rounded, values))}]"

@@ -1,0 +1,119 @@
+"""Options of ``new vessel``: what stands on a ship's card."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, Literal, cast
+
+import click
+
+from shaftprint.card import Card, Gauge, Pulses
+
+_POSITIVE = click.FloatRange(min=0.0, min_open=True)
+_COUNT = click.IntRange(min=1)
+
+# Fields of a card by their option; the first six and one of the two of the gear are needed.
+_NEEDED: Mapping[str, tuple[str, Any, str]] = {
+    "rated_power_kw": ("--power-kw", _POSITIVE, "Brake power of one engine at rated speed [kW]."),
+    "rated_speed_rpm": ("--rated-rpm", _POSITIVE, "Rated engine speed [rpm]."),
+    "cylinders": ("--cylinders", _COUNT, "Cylinders of the engine."),
+    "diameter_m": ("--diameter-m", _POSITIVE, "Diameter of the propeller [m]."),
+    "blades": ("--blades", _COUNT, "Blades of the propeller."),
+    "pitch_ratio": ("--pitch-ratio", _POSITIVE, "Pitch of the propeller over its diameter."),
+}
+_GEAR: Mapping[str, tuple[str, Any, str]] = {
+    "gear_ratio": ("--ratio", _POSITIVE, "Engine speed over propeller speed."),
+    "propeller_rated_rpm": (
+        "--propeller-rpm",
+        _POSITIVE,
+        "Propeller speed at rated engine speed [rpm], instead of --ratio or to check it.",
+    ),
+}
+_FURTHER: Mapping[str, tuple[str, Any, str]] = {
+    "name": ("--name", click.STRING, "Name of ship and shaft line."),
+    "strokes_per_cycle": ("--strokes", click.IntRange(min=2, max=4), "Strokes in a cycle, 2 or 4; 4 when not given."),
+    "area_ratio": ("--area-ratio", click.FloatRange(0.0, 1.0, min_open=True), "Blade area over disc area."),
+    "engine_speed_rpm": ("--test-rpm", _POSITIVE, "Engine speed of the test [rpm]; two thirds of rated speed."),
+    "shaft_torque_nm": ("--torque-nm", _POSITIVE, "Torque of the propeller shaft there, where it is known [N m]."),
+    "idle_speed_rpm": ("--idle-rpm", _POSITIVE, "Idle speed [rpm]; a third of rated speed."),
+    "inertia_upstream_kg_m2": (
+        "--inertia-upstream",
+        _POSITIVE,
+        "Inertia from engine to gauge at the propeller shaft [kg m2].",
+    ),
+    "inertia_downstream_kg_m2": (
+        "--inertia-downstream",
+        _POSITIVE,
+        "Inertia from gauge to propeller, with its water [kg m2].",
+    ),
+    "water_density_kg_m3": ("--density", _POSITIVE, "Density of the water [kg/m3]; 1025, sea water."),
+    "set_point_channel": ("--set-point", click.STRING, "Channel of the set-point voltage; U_setpoint."),
+    "sample_rate_hz": ("--sample-rate", _POSITIVE, "Samples a second of the logger [Hz]; 2000."),
+}
+_GAUGE: Mapping[str, tuple[str, Any, str]] = {
+    "channel": ("--torque", click.STRING, "Channel of the shaft torque; M_s."),
+    "unit": ("--torque-unit", click.Choice(["V", "N m", "kN m"]), "Unit of that channel; N m."),
+    "scale_nm_per_unit": ("--torque-scale", click.FLOAT, "Torque for one unit of it [N m]; needed for V."),
+    "full_scale_nm": ("--full-scale-nm", _POSITIVE, "Largest torque that it passes on [N m]."),
+}
+_FLAGS = {
+    "in_nozzle": ("--nozzle", "The propeller turns in a nozzle."),
+    "is_underway": ("--underway", "The test is made underway, not at bollard pull."),
+}
+_PULSES = {
+    "engine_pulses": (
+        "--engine-pulses",
+        "Channel of a pick-up on the engine, pulses in a turn; may be repeated.",
+    ),
+    "shaft_pulses": ("--shaft-pulses", "The same on the propeller shaft."),
+}
+_OF_GAUGE = "gauge_"
+
+
+def pulses(text: str) -> Pulses:
+    """Return the pick-up of ``CHANNEL=PULSES``; pulses are a number or a wheel such as ``60-2``.
+
+    Raises
+    ------
+    click.BadParameter
+        If the text is something else.
+    """
+    channel, _, wheel = text.rpartition("=")
+    if not channel or not wheel:
+        raise click.BadParameter(f'expected CHANNEL=PULSES such as PTM_e=1 or gear=60-2, found "{text}".')
+    return Pulses(channel=channel, wheel=wheel)
+
+
+def card_options(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add what stands on a card; all of it reaches the command by the names of the fields of ``Card``."""
+    for field, (option, help_text) in reversed(_PULSES.items()):
+        command = click.option(
+            option, field, type=pulses, metavar="CHANNEL=PULSES", multiple=True, default=(), help=help_text
+        )(command)
+    for field, (option, help_text) in reversed(_FLAGS.items()):
+        command = click.option(option, field, is_flag=True, help=help_text)(command)
+    gauge = {f"{_OF_GAUGE}{field}": words for field, words in _GAUGE.items()}
+    for field, (option, kind, help_text) in reversed({**_NEEDED, **_GEAR, **_FURTHER, **gauge}.items()):
+        command = click.option(option, field, type=kind, help=help_text)(command)
+    return command
+
+
+def card_of(said: Mapping[str, Any]) -> Card | None:
+    """Return the card that the options state; None where there are none.
+
+    Raises
+    ------
+    click.UsageError
+        If something is missing that cannot be derived.
+    """
+    stated = {field: value for field, value in said.items() if value not in (None, False, ())}
+    if not stated:
+        return None
+    missing = [option for field, (option, _, _) in _NEEDED.items() if field not in stated]
+    if not set(_GEAR) & set(stated):
+        missing.append("--ratio or --propeller-rpm")
+    if missing:
+        raise click.UsageError(f"A vessel file from a card needs {', '.join(missing)} too.")
+    gauge = {field.removeprefix(_OF_GAUGE): stated.pop(field) for field in [*stated] if field.startswith(_OF_GAUGE)}
+    if gauge.get("unit") == "V" and not gauge.get("scale_nm_per_unit"):
+        raise click.UsageError("--torque-unit V needs --torque-scale, the torque for one volt [N m].")
+    unit = cast(Literal["V", "N m", "kN m"], gauge.pop("unit", "N m"))
+    return Card(**stated, gauge=Gauge(unit=unit, **gauge))
