@@ -137,3 +137,19 @@ def test_a_propeller_of_no_series_is_held_against_none(changed):
     propeller = vessel.propeller.model_copy(update={"blades": 1})
     point = vessel.working_point.model_copy(update={"shaft_torque_nm": 1450.0})
     assert disagreements(vessel.model_copy(update={"propeller": propeller, "working_point": point})) == ()
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("ratio = 3.82 ", "ratio = 1e-200 "),
+        ("ratio = 3.82 ", "ratio = 1e30 "),
+        ("diameter_m = 1.05", "diameter_m = 1e-100"),
+        ("diameter_m = 1.05", "diameter_m = 1e30"),
+        ("torque_coefficient = 0.0494", "torque_coefficient = 1e-320"),
+        ("# propeller_rated_rpm = 471.2 ", "propeller_rated_rpm = 1e-300 "),
+        ("shaft_torque_nm = 1725.0", "shaft_torque_nm = 1e-320"),
+    ],
+)
+def test_numbers_beyond_all_ships_are_contradictions_too(changed, old, new):
+    assert any(one.is_contradiction for one in disagreements(changed(old, new)))

@@ -44,8 +44,9 @@ def test_a_card_that_contradicts_itself_is_told_so(run, tmp_path):
     ("words", "message"),
     [
         (("--engine-pulses", "PTM_e"), "expected CHANNEL=PULSES such as PTM_e=1"),
+        (("--diameter-m", "1e70"), "is not in the range"),
         (("--torque-unit", "V"), "--torque-unit V needs --torque-scale"),
-        (("--power-kw", "-1"), "-1.0 is not in the range x>0"),
+        (("--power-kw", "-1"), "-1.0 is not in the range"),
     ],
 )
 def test_wrong_options(run, tmp_path, words, message):

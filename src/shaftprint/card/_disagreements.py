@@ -57,7 +57,7 @@ def _ratio(vessel: Vessel) -> Iterator[Disagreement]:
         return
     rated_rpm = vessel.engine.rated_speed_rpm
     expected = rated_rpm / stated_rpm
-    off = abs(vessel.gearbox.ratio / expected - 1.0)
+    off = _apart(vessel.gearbox.ratio, expected) - 1.0
     if off > _ROUNDED_RATIO:
         yield Disagreement(
             field="gearbox.ratio",
@@ -172,9 +172,10 @@ def _series(vessel: Vessel) -> Iterator[Disagreement]:
 
 def _coefficient(vessel: Vessel) -> Iterator[Disagreement]:
     coefficient, point = vessel.propeller.torque_coefficient, vessel.working_point
-    expected = coefficient * point.shaft_torque_nm / _torque_nm(vessel, coefficient)
-    apart = _apart(coefficient, expected)
+    torque_nm = _torque_nm(vessel, coefficient)
+    apart = _apart(point.shaft_torque_nm, torque_nm)
     if apart > _FINDING:
+        expected = coefficient * point.shaft_torque_nm / torque_nm if torque_nm > 0.0 else math.inf
         yield Disagreement(
             field="propeller.torque_coefficient",
             expected=f"{expected:.4g}, as {point.shaft_torque_nm:g} N m at {point.engine_speed_rpm:g} rpm of the "
@@ -201,10 +202,13 @@ def _torque_nm(vessel: Vessel, torque_coefficient: float) -> float:
     """Return ``rho n^2 D^5 K_Q / eta_R`` at the working speed [N m]."""
     propeller = vessel.propeller
     shaft_rev_s = rev_s_from_rpm(vessel.working_point.engine_speed_rpm) / vessel.gearbox.ratio
-    force = vessel.water_density_kg_m3 * shaft_rev_s**2 * propeller.diameter_m**5
+    # a product becomes infinite where a power raises
+    force = vessel.water_density_kg_m3 * shaft_rev_s * shaft_rev_s * propeller.diameter_m**5
     return float(torque_coefficient * force / propeller.relative_rotative_efficiency)
 
 
 def _apart(one: float, other: float) -> float:
-    """Return the factor between two positive numbers, at least 1."""
+    """Return the factor between two positive numbers, at least 1; infinite where one of them is beyond all numbers."""
+    if not (0.0 < one < math.inf and 0.0 < other < math.inf):
+        return math.inf
     return max(one / other, other / one)

@@ -23,6 +23,8 @@ from shaftprint.escape import toml_string
 
 _SCALES = {"N m": 1.0, "kN m": 1000.0}
 _DIGITS = 5
+# Longer numbers of pulses are refused as wheels.
+_MOST_DIGITS = 6
 
 
 def vessel_text(card: Card) -> str:
@@ -152,7 +154,7 @@ def _sensors(card: Card) -> Iterable[str]:
 
 
 def _pick_up(pulses: Pulses, name: str, shaft: str) -> tuple[str, ...]:
-    is_even = pulses.wheel.isdecimal()
+    is_even = pulses.wheel.isdecimal() and len(pulses.wheel) <= _MOST_DIGITS
     teeth = f"pulses_per_revolution = {int(pulses.wheel)}" if is_even else f"wheel = {toml_string(pulses.wheel)}"
     channel = toml_string(pulses.channel)
     return (

@@ -7,8 +7,9 @@ import click
 
 from shaftprint.card import Card, Gauge, Pulses
 
-_POSITIVE = click.FloatRange(min=0.0, min_open=True)
-_COUNT = click.IntRange(min=1)
+# Wider than any ship, and so that no power of them is beyond all numbers.
+_POSITIVE = click.FloatRange(1e-6, 1e9)
+_COUNT = click.IntRange(1, 1000)
 
 # Fields of a card by their option; the first six and one of the two of the gear are needed.
 _NEEDED: Mapping[str, tuple[str, Any, str]] = {
