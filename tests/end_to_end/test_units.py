@@ -1,4 +1,4 @@
-"""A quarter of an hour of the tug, its torque in every unit that telemetries have: the same response."""
+"""A quarter of an hour of the tug, its torque and its set point in every unit that they have: the same response."""
 
 from dataclasses import replace
 
@@ -20,11 +20,14 @@ SHAFT = {"outer_diameter_m": 0.1, "shear_modulus_gpa": 80.0, "gauge_factor": 2.0
 def response(short_trip, short_campaign):
     """What becomes of the voyage as another sensor shows it, by ``reading = per_v * voltage + at_zero``."""
 
-    def shown(ship, name, *, per_v=1.0, at_zero=0.0):
+    def shown(ship, name, *, per_v=1.0, at_zero=0.0, bent=None):
         sensor = getattr(ship.sensors, name)
         with read_recording(short_trip.path) as recording:
             raw = recording.channels[sensor.channel]
             other = replace(raw, unit=sensor.unit, scale=per_v * raw.scale, offset=per_v * raw.offset + at_zero)
+            if bent is not None:
+                bent_values = bent(raw.values(0, raw.count))
+                other = replace(other, scale=1.0, offset=0.0, source=lambda start, stop: bent_values[start:stop])
             changed = replace(recording, channels=dict(recording.channels) | {sensor.channel: other})
             signals = prepare_signals(changed, ship, short_campaign)
         return estimate_spectra(signals, short_campaign).response
@@ -66,3 +69,39 @@ def expect_same(found, expected):
 def test_torque_in_every_unit(response, in_volts, vessel, fields, per_v, at_zero):
     ship = with_sensor(vessel, "shaft_torque", fields)
     expect_same(response(ship, "shaft_torque", per_v=per_v, at_zero=at_zero), in_volts)
+
+
+@pytest.mark.parametrize(
+    ("fields", "per_v", "at_zero"),
+    [
+        pytest.param({"unit": "V", "v_per_unit": 2.0}, 0.5, 0.0, id="V behind a divider"),
+        # -10 to 0 V are 20 to 4 mA, and 100 to 0 %
+        pytest.param({"unit": "mA", "v_per_unit": -0.625, "v_at_zero": 2.5}, -1.6, 4.0, id="mA"),
+        pytest.param({"unit": "%", "v_per_unit": -0.1}, -10.0, 0.0, id="%"),
+        pytest.param({"unit": "rpm", "v_per_unit": -0.004, "v_at_zero": -0.3}, -250.0, -75.0, id="rpm"),
+    ],
+)
+def test_set_point_in_every_unit(response, in_volts, vessel, fields, per_v, at_zero):
+    ship = with_sensor(vessel, "set_point", fields)
+    expect_same(response(ship, "set_point", per_v=per_v, at_zero=at_zero), in_volts)
+
+
+def test_a_set_point_that_is_bent_is_straightened(response, in_volts, vessel):
+    """The levels of the staircase lie where the lever asks for 7 and 13 % a volt, the sines where it asks for 10."""
+    volts = np.array([-9.0, -5.9, -4.1, -1.0])
+    shown = np.array([41.0 + 13.0 * 3.1, 41.0, 59.0, 59.0 + 7.0 * 3.1])
+    shown[0] = 41.0 - 13.0 * 3.1
+    # the line of the simulated tug
+    table = np.column_stack([shown, -250.97 * volts - 83.467]).tolist()
+    fields = {"unit": "%", "v_per_unit": 0.1, "v_at_zero": -10.0}
+
+    def bent(values):
+        return np.interp(values, volts, shown)
+
+    straight = response(with_sensor(vessel, "set_point", fields | {"table_rpm": table}), "set_point", bent=bent)
+    used = straight.used & in_volts.used
+    error = np.abs(straight.response[:, 0] / in_volts.response[:, 0] - 1.0)
+    assert error.T[used].max() < 1e-3
+    without = response(with_sensor(vessel, "set_point", fields), "set_point", bent=bent)
+    # the staircases' line is another one then
+    assert np.abs(without.response[:, 0] / in_volts.response[:, 0] - 1.0).T[used].min() > 3e-3

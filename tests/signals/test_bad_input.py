@@ -248,3 +248,31 @@ def test_a_current_loop_that_was_entered_as_a_voltage(spoiled, vessel, campaign)
     # 4 to 20 mA for 0 to 5000 N m
     recording = spoiled(M_s=lambda counts: 4.0 * 3200.0 + 1.6 * counts.astype(np.float64))
     refused(recording, vessel, campaign, 'unit = "mA" with scale_nm_per_unit = 312.5 and reading_at_zero = 4 in')
+
+
+def with_set_point(vessel, **fields):
+    content = vessel.model_dump()
+    content["sensors"]["set_point"] |= fields
+    return type(vessel).model_validate(content)
+
+
+def test_the_unit_of_a_set_point_is_named_where_another_fits(spoiled, vessel, campaign):
+    # the demanded speed in a channel that was entered as volts
+    recording = spoiled(U_setpoint=lambda counts: -250.0 * counts.astype(np.float64))
+    sentence = r'channel U_setpoint: expected a set point in V, found 1\d\d\d.*; unit = "rpm" with its v_per_unit in '
+    refused(recording, vessel, campaign, sentence)
+
+
+def test_a_table_that_does_not_reach_the_working_point(ship, vessel, campaign):
+    fields = {"table_rpm": [[-3.0, 670.0], [0.0, -80.0]]}
+    refused(ship.recording(), with_set_point(vessel, **fields), campaign, "expected table_rpm of the vessel file to re")
+
+
+def test_a_table_that_asks_for_another_speed_is_a_finding(ship, vessel, campaign):
+    # the ship runs at -250.8 rpm a volt and -83.4 rpm: 1170.6 rpm at -5 V
+    right = {"table_rpm": [[-10.0, 2424.6], [0.0, -83.4]]}
+    wrong = {"table_rpm": [[-10.0, 2924.6], [0.0, -83.4]]}
+    told = [prepare_signals(ship.recording(), with_set_point(vessel, **one), campaign) for one in (right, wrong)]
+    findings = [[line for line in one.findings if "asks for" in line] for one in told]
+    assert findings[0] == []
+    assert "asks for 1421 rpm at the working point, where the engine runs at 11" in findings[1][0]

@@ -252,3 +252,12 @@ def test_a_current_loop_shows_no_torque_as_its_live_zero(
     values, _ = recorded(Vessel.model_validate(content), ask(2.0), quiet_tug, tmp_path / "loop.nc")
     # 1725 N m of +/- 5000 in 8 mA about 12
     assert values["M_s"] == pytest.approx(12.0 + 1725.0 / 625.0, abs=1e-3)
+
+
+def test_a_set_point_is_shown_in_its_unit(vessel: Vessel, ask: Make, quiet_tug: Tug, tmp_path: Path) -> None:
+    content = vessel.model_dump()
+    content["sensors"]["set_point"] |= {"unit": "mA", "v_per_unit": 0.625, "v_at_zero": -12.5}
+    content["logger"] = None
+    values, _ = recorded(Vessel.model_validate(content), ask(2.0), quiet_tug, tmp_path / "lever.nc")
+    # 4 to 20 mA for -10 to 0 V, and the potentiometer's 0.0495 V below the -5 V of the campaign
+    assert values["U_setpoint"] == pytest.approx(12.0 - 0.0495 * 1.6, abs=0.005)

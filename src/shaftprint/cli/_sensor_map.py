@@ -29,6 +29,7 @@ _NO_SENSOR = {
 }
 
 _SPEEDS = ("speed", "instrument", "encoder")
+_SET_POINTS = ("V", "mA", "%", "rpm")
 _TORQUES = ("V", "mA", "%", "mV/V")
 _SCALE_TO_FILL_IN = "# scale_nm_per_unit =            # torque for one {unit}, from the calibration [N m]"
 _TO_FILL_IN = {
@@ -69,7 +70,7 @@ _FIELDS = {
         "# latency_s =                    # of the telemetry, from its data sheet [s]",
         "# full_scale_nm =                # largest torque that it passes on [N m]",
     ),
-    "set_point": ("channel = {channel}", "unit = {unit}"),
+    "set_point": ("channel = {channel}", "unit = {unit}", "{line}"),
     "rack": (
         "channel = {channel}",
         "unit = {unit}",
@@ -118,7 +119,8 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
         else:
             single.add(use)
             lines.append(f"[sensors.{use}]")
-        lines += [field.format(**_values(item.channel, speeds)) for field in _FIELDS[use]]
+        filled = [field.format(**_values(item.channel, speeds)) for field in _FIELDS[use]]
+        lines += [line for line in filled if line]
         lines.append("")
     for needed in ("shaft_torque", "set_point"):
         if needed not in single:
@@ -166,7 +168,7 @@ def _use(item: Seen) -> Use | None:
         return "rack"
     if unit in ("kn", "m/s"):
         return "ship_speed"
-    if _SET_POINT.search(name) and unit == "V":
+    if _SET_POINT.search(name) and unit in _SET_POINTS and (unit != "%" or item.channel.rate_hz > 100.0):
         return "set_point"
     if _TORQUE.search(name) and unit in _TORQUES and not item.is_pulses:
         return "shaft_torque"
@@ -187,6 +189,9 @@ def _values(channel: Channel, speeds: int) -> dict[str, object]:
         "unit": toml_string(channel.unit),
         "name": f"n_{speeds}",
         "shaft": "engine" if _ENGINE.search(channel.name) else "propeller",
+        "line": ""
+        if channel.unit == "V"
+        else f"# v_per_unit =                   # volts of the campaign for one {channel.unit}, and v_at_zero [V]",
         "cycle": 1.0 / channel.rate_hz,
         "scale": f"scale_nm_per_unit = {NM_PER_UNIT[channel.unit]}"
         if channel.unit in NM_PER_UNIT

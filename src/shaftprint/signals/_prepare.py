@@ -27,13 +27,14 @@ from shaftprint.signals.kinds import (
     SteadyState,
     compare_speeds,
     expect_moving_torque,
-    read_voltage,
+    read_set_point,
 )
 from shaftprint.signals.levels import (
     DcScale,
     calibrate,
     calibrate_through_wander,
     dc_scale,
+    expect_asked_speed,
     expect_plausible,
     expect_steady_gauge,
     find_working_point,
@@ -47,7 +48,7 @@ from shaftprint.signals.pulses import expect_whole_crests
 
 if TYPE_CHECKING:
     from shaftprint.recording import Recording
-    from shaftprint.vessel import Vessel
+    from shaftprint.vessel import SetPointSensor, Vessel
 
 # Rate at which the set point alone is looked at [Hz].
 _SET_POINT_HZ = 200.0
@@ -110,6 +111,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
     clock = readings.clock
     reasons = [*expect_one_rate(recording, logger_channels(readings.sources)), *_cut_crests(readings.sources)]
     lost, mismatches = _differences_from_campaign(recording, vessel, campaign, readings)
+    _straightened_in_place(readings.set_point, vessel.sensors.set_point, campaign)
     differences = compare_speeds(readings.pick_ups, vessel)
     legs = samples_of_legs(campaign, readings)
     stopped = stopped_generators(legs, readings)
@@ -154,6 +156,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
             *mismatches,
             *stopped,
             *strange,
+            *expect_asked_speed(steady.working_point, vessel),
             *differences,
             *scale.findings,
             *absent,
@@ -197,7 +200,8 @@ def find_tests(
     channel = find_channel(recording, sensor.channel, unit=sensor.unit, use="set point")
     rate_hz = min(_SET_POINT_HZ, channel.rate_hz)
     clock = clock_of(channel, rate_hz)
-    return found_tests(read_voltage(channel, clock).values, campaign.of_input(), rate_hz=rate_hz, start_s=clock.start_s)
+    volts = read_set_point(channel, sensor, clock, speed_rpm=vessel.working_point.engine_speed_rpm).values
+    return found_tests(volts, campaign.of_input(), rate_hz=rate_hz, start_s=clock.start_s)
 
 
 def _cut_crests(sources: "Sequence[Source[Any]]") -> tuple[Reason, ...]:
@@ -280,6 +284,22 @@ def _signals_by_name(readings: Readings, steady: SteadyState) -> tuple[dict[str,
         else:
             signals[source.name] = signal
     return signals, tuple(absent)
+
+
+def _straightened_in_place(volts: FloatArray, sensor: "SetPointSensor", campaign: Campaign) -> None:
+    """Make the set point one of which the speed is a line, where the vessel file has a table of it.
+
+    Only now: the campaign says what was put out, not what it asks for.
+    """
+    if sensor.table_rpm is None:
+        return
+    if not sensor.covers(campaign.offset_v):
+        raise SignalError(
+            f"channel {sensor.channel}: expected table_rpm of the vessel file to reach the offset of the campaign, "
+            f"{float(sensor.reading(campaign.offset_v)):.4g} {sensor.unit}, found readings from "
+            f"{sensor.table_rpm[0][0]:g} to {sensor.table_rpm[-1][0]:g}."
+        )
+    volts[:] = sensor.straightened(volts, about_v=campaign.offset_v)
 
 
 def _calibrated_in_place(n_set: FloatArray, calibration: SetPointCalibration) -> None:

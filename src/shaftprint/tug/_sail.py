@@ -278,7 +278,8 @@ class _Crew:
             sensors.set_point.channel,
             unit=sensors.set_point.unit,
             rate_hz=self._rate_hz,
-            scale=VOLT_PER_COUNT,
+            scale=self._helm.scale,
+            offset=self._helm.offset,
             long_name="speed set point behind the potentiometer",
         )
         for sensor, speed in zip(sensors.speed, self._speeds, strict=True):

@@ -1,20 +1,142 @@
 """The set point of the speed: what is put out to the governor, as it was recorded."""
 
-from typing import Literal
+from itertools import pairwise
+from typing import Annotated, Any, Literal, Self, TypeAlias
 
-from shaftprint.settings import Name, NotNegativeNumber, PositiveNumber, Settings
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import BeforeValidator, Field, model_validator
+
+from shaftprint.arrays import FloatArray
+from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
+from shaftprint.units import plain_unit
+
+# What a channel can show in a unit; in rpm, by how much more or less than the speed of the working point.
+_REACH = {"mA": (0.0, 22.0), "V": (-30.0, 30.0), "%": (-10.0, 110.0)}
+_AROUND_SPEED = 4.0
+# The slope of a table at a reading is taken over this share of its range to either side.
+_BESIDE = 0.02
+
+
+def _plain(unit: Any) -> Any:
+    return plain_unit(unit) if isinstance(unit, str) else unit
+
+
+SetPointUnit: TypeAlias = Annotated[Literal["V", "mA", "%", "rpm"], BeforeValidator(_plain)]
 
 
 class SetPointSensor(Settings):
-    """The voltage that asks the governor for a speed."""
+    """What asks the governor for a speed: a voltage, a current, a percentage, or the demand itself in rpm.
+
+    Campaigns are in volts: ``U = v_per_unit * reading + v_at_zero``.
+    """
 
     channel: Name
     """Name of the channel in the recording."""
-    unit: Literal["V"]
+    unit: SetPointUnit
     """Unit of the channel."""
+    v_per_unit: Number | None = None
+    """Volts of the campaign for one unit of the channel [V per unit]; 1 where it is not given for a channel in V."""
+    v_at_zero: Number | None = None
+    """Volts of the campaign where the channel shows 0 [V]; 0 where not given."""
+    table_rpm: Annotated[tuple[tuple[Number, Number], ...], Field(min_length=2)] | None = None
+    """Readings in the unit of the channel, each with the speed that it asks for [rpm], where that is no straight line;
+    shape (pairs, 2)."""
     noise_v: NotNegativeNumber | None = None
     """Standard deviation of the logger's noise [V]."""
     latency_s: NotNegativeNumber | None = None
     """Time from the voltage to the demanded speed that the engine's control unit has [s]; None where not measured."""
     latency_std_s: PositiveNumber | None = None
     """Standard deviation of that time [s]."""
+
+    @model_validator(mode="after")
+    def _can_be_volts(self) -> Self:
+        errors = []
+        if self.unit != "V" and self.v_per_unit is None:
+            errors.append(
+                f"expected v_per_unit for a channel in {self.unit}, the volts of the campaign for one {self.unit}, "
+                "found none."
+            )
+        if self.v_per_unit == 0.0:
+            errors.append("expected v_per_unit other than 0, found 0.")
+        pairs = self.table_rpm or ()
+        if any(later[0] <= earlier[0] for earlier, later in pairwise(pairs)):
+            errors.append("expected readings in table_rpm that rise from pair to pair, found others.")
+        rising = [later[1] > earlier[1] for earlier, later in pairwise(pairs)]
+        level = any(later[1] == earlier[1] for earlier, later in pairwise(pairs))
+        if level or len(set(rising)) > 1:
+            errors.append("expected speeds in table_rpm that all rise or all fall, found others.")
+        if errors:
+            raise ValueError(" ".join(errors))
+        return self
+
+    @property
+    def slope_v(self) -> float:
+        """Volts of the campaign for one unit of the channel [V per unit]."""
+        return 1.0 if self.v_per_unit is None else self.v_per_unit
+
+    def volts(self, reading: ArrayLike) -> FloatArray:
+        """Return the set point in volts of the campaign [V] for readings in the channel's unit, of any shape."""
+        values = np.asarray(reading, dtype=np.float64)
+        if self.unit == "V" and self.v_per_unit is None and self.v_at_zero is None:
+            return values
+        return self.slope_v * values + (self.v_at_zero or 0.0)
+
+    def reading(self, volts: ArrayLike) -> FloatArray:
+        """Return what the channel shows, in its unit, for volts of the campaign, of any shape."""
+        return (np.asarray(volts, dtype=np.float64) - (self.v_at_zero or 0.0)) / self.slope_v
+
+    def straightened(self, volts: FloatArray, *, about_v: float) -> FloatArray:
+        """Return volts that ask for speeds on a straight line, which touches the table at one voltage.
+
+        Parameters
+        ----------
+        volts
+            Set point [V], of any shape.
+        about_v
+            Voltage at which nothing changes, neither value nor slope [V].
+        """
+        if self.table_rpm is None:
+            return volts
+        shown, rpm = np.array(self.table_rpm).T
+        about = float(self.reading(about_v))
+        beside = _BESIDE * float(np.ptp(shown))
+        lower, middle, upper = _along(np.array([about - beside, about, about + beside]), shown, rpm)
+        rpm_per_v = (upper - lower) / (2.0 * beside) / self.slope_v
+        straight: FloatArray = about_v + (_along(self.reading(volts), shown, rpm) - middle) / rpm_per_v
+        return straight
+
+    def covers(self, volts: float) -> bool:
+        """Return whether a set point [V] lies within the table, where there is one."""
+        pairs = self.table_rpm
+        return pairs is None or pairs[0][0] <= float(self.reading(volts)) <= pairs[-1][0]
+
+    def asked_rpm(self, volts: float) -> float | None:
+        """Return the engine speed that a set point [V] asks for [rpm], where table or unit say it."""
+        reading = self.reading(volts)
+        if self.table_rpm is not None:
+            return float(_along(reading, *np.array(self.table_rpm).T))
+        return float(reading) if self.unit == "rpm" else None
+
+    def unit_that_fits(self, reading: float, speed_rpm: float) -> str | None:
+        """Return the unit that a reading looks like; None if it can be one in the unit that is stated.
+
+        Parameters
+        ----------
+        reading
+            What the channel shows, in its unit.
+        speed_rpm
+            Engine speed of the working point [rpm].
+        """
+        reach = _REACH | {"rpm": (speed_rpm / _AROUND_SPEED, speed_rpm * _AROUND_SPEED)}
+        fitting = [unit for unit, (lowest, highest) in reach.items() if lowest <= reading <= highest]
+        return None if self.unit in fitting or not fitting else fitting[0]
+
+
+def _along(reading: FloatArray, shown: FloatArray, rpm: FloatArray) -> FloatArray:
+    """Return the speeds of a table [rpm], its first and last pieces extended."""
+    first, last = ((rpm[k + 1] - rpm[k]) / (shown[k + 1] - shown[k]) for k in (0, -2))
+    inside = np.interp(reading, shown, rpm)
+    below, above = np.minimum(reading - shown[0], 0.0), np.maximum(reading - shown[-1], 0.0)
+    along: FloatArray = inside + first * below + last * above
+    return along

@@ -39,7 +39,8 @@ def campaign_chart(recording: "Recording", vessel: "Vessel", campaign: "Campaign
         Names the tests and when they were.
     """
     channel = recording.channel(vessel.sensors.set_point.channel)
-    time, volts = channel_envelope(channel, stretches=2 * STRETCHES)
+    time, shown = channel_envelope(channel, stretches=2 * STRETCHES)
+    volts = vessel.sensors.set_point.volts(shown)
     edges = np.linspace(channel.start_s, channel.start_s + channel.duration_s, ROWS + 1)
     limits = _range_v(campaign)
     panels = []

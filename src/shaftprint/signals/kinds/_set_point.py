@@ -1,9 +1,14 @@
-"""The set point of the speed, from the voltage that asks the governor for it."""
+"""The set point of the speed, from what asks the governor for it."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from shaftprint.arrays import frozen_float
+from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, ExcitationSignal
+from shaftprint.signals._channels import spots
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.units import rpm_from_rev_s
@@ -24,8 +29,9 @@ class SetPoint(ChannelKind[SetPointSensor]):
         return fault_limits(source.channel, holds=False)
 
     def read(self, source: Source[SetPointSensor], clock: "Clock") -> Reading:
-        """Return the voltage on the grid [V]."""
-        return read_voltage(source.channel, clock)
+        """Return the set point on the grid, in volts of the campaign [V]."""
+        speed_rpm = source.vessel.working_point.engine_speed_rpm
+        return read_set_point(source.channel, source.sensor, clock, speed_rpm=speed_rpm)
 
     def signal(self, source: Source[SetPointSensor], reading: Reading, steady: SteadyState) -> ExcitationSignal:
         """Return the set point, whose values have become a speed by its line."""
@@ -41,6 +47,35 @@ class SetPoint(ChannelKind[SetPointSensor]):
             shown_unit="rpm",
             shown_reference=rpm_from_rev_s(speed_rev_s),
         )
+
+
+def read_set_point(channel: "Channel", sensor: SetPointSensor, clock: "Clock", *, speed_rpm: float) -> Reading:
+    """Return the set point of the speed on the grid, in volts of the campaign [V].
+
+    Parameters
+    ----------
+    channel, sensor
+        The channel, and what the vessel file says of it.
+    clock
+        The grid.
+    speed_rpm
+        Engine speed of the working point [rpm].
+
+    Raises
+    ------
+    SignalError
+        If the values cannot be in the unit that is stated; the message names one that would fit.
+    """
+    middle = float(np.median(np.concatenate(spots(channel)))) * channel.scale + channel.offset
+    unit = sensor.unit_that_fits(middle, speed_rpm)
+    if unit is not None:
+        line = "" if unit == "V" else " with its v_per_unit"
+        raise SignalError(
+            f"channel {channel.name}: expected a set point in {sensor.unit}, found {middle:.4g}; "
+            f'unit = "{unit}"{line} in sensors.set_point would fit.'
+        )
+    reading = read_voltage(channel, clock)
+    return replace(reading, values=sensor.volts(reading.values))
 
 
 def read_voltage(channel: "Channel", clock: "Clock") -> Reading:

@@ -11,6 +11,7 @@ from shaftprint.signals.levels._steady import SteadyStretch, steady_stretches
 from shaftprint.signals.levels._wander import fit_through_wander
 from shaftprint.signals.levels._working_point import (
     deviation,
+    expect_asked_speed,
     expect_plausible,
     find_working_point,
     mean_of_stretches,
@@ -30,6 +31,7 @@ __all__ = [
     "calibration_of_legs",
     "dc_scale",
     "deviation",
+    "expect_asked_speed",
     "expect_plausible",
     "expect_steady_gauge",
     "find_working_point",

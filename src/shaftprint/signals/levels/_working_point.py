@@ -8,6 +8,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
 from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.signals.levels._load import torque_of_mean_load
+from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
@@ -17,8 +18,12 @@ if TYPE_CHECKING:
 
 # Voltages this near to the offset of the campaign are the working voltage.
 _NEAR_V = 0.25
+# What a current loop shows [mA].
+_LOOP_MA = (3.6, 21.0)
 # A working point further off than this factor is not the load of another day, but a scale.
 _FAR = 1.5
+# A governor with droop runs this much slower than it is asked to.
+_ASKED = 0.1
 
 
 def deviation(values: FloatArray, reference: float) -> FloatArray:
@@ -50,12 +55,20 @@ def stretches_at_working_point(
     near = [stretch for stretch in stretches if abs(stretch.set_point_v - campaign.offset_v) < _NEAR_V]
     if not near:
         levels = ", ".join(f"{stretch.set_point_v:.2f} V" for stretch in stretches) or "none"
+        shown = [stretch.set_point_v for stretch in stretches]
         raise SignalError(
             f"channel {channel}: expected a quiet stretch of at least 15 s near the working voltage "
             f"of {campaign.offset_v:g} V, found steady levels at {levels}; check offset_v in the "
-            "campaign file."
+            f"campaign file{_loop_words(shown, campaign.offset_v)}."
         )
     return tuple(stretch for stretch in near if _between_tests(stretch, campaign)) or tuple(near)
+
+
+def _loop_words(levels_v: list[float], offset_v: float) -> str:
+    lowest, highest = _LOOP_MA
+    if not levels_v or not all(lowest <= level <= highest for level in levels_v) or lowest <= offset_v <= highest:
+        return ""
+    return ', or, if these are 4 to 20 mA, state unit = "mA" with its v_per_unit in sensors.set_point'
 
 
 def find_working_point(used: "tuple[SteadyStretch, ...]") -> WorkingPoint:
@@ -152,6 +165,19 @@ def expect_plausible(point: WorkingPoint, vessel: "Vessel") -> tuple[str, ...]:
         f"The mean torque of {sensor.channel} at the working point is {torque:.4g} N m; the vessel file expects "
         f"{expected:.4g} N m. Check scale_nm_per_unit there, or shaft_torque_nm of its working point"
         f"{_unit_words(sensor, torque, expected)}.",
+    )
+
+
+def expect_asked_speed(point: WorkingPoint, vessel: "Vessel") -> tuple[str, ...]:
+    """Return a finding where the set point, by its table or in rpm, asks for another speed than the engine runs."""
+    sensor, speed_rpm = vessel.sensors.set_point, rpm_from_rev_s(point.engine_speed_rev_s)
+    asked_rpm = sensor.asked_rpm(point.set_point_v)
+    if asked_rpm is None or abs(asked_rpm / speed_rpm - 1.0) < _ASKED:
+        return ()
+    field = "table_rpm" if sensor.table_rpm is not None else 'unit = "rpm"'
+    return (
+        f"The set point in {sensor.channel} asks for {asked_rpm:.4g} rpm at the working point, where the engine "
+        f"runs at {speed_rpm:.4g} rpm. Check {field} of sensors.set_point in the vessel file.",
     )
 
 

@@ -22,7 +22,8 @@ class Helm:
     def __init__(
         self, tug: Tug, vessel: Vessel, campaign: Campaign, *, rate_hz: float, rng: np.random.Generator
     ) -> None:
-        self.channel = vessel.sensors.set_point.channel
+        self._sensor = vessel.sensors.set_point
+        self.channel = self._sensor.channel
         self._tug = tug
         self._campaign = campaign
         self._rate_hz = rate_hz
@@ -39,6 +40,16 @@ class Helm:
         voltage[self._spikes.sample[inside] - self._done] = _RANGE_V * self._spikes.size[inside]
         self._done += voltage.size
         return np.rint(voltage / VOLT_PER_COUNT).clip(-32768, 32767).astype(np.int16)
+
+    @property
+    def scale(self) -> float:
+        """Value of one count in the unit of the channel."""
+        return VOLT_PER_COUNT / self._sensor.slope_v
+
+    @property
+    def offset(self) -> float:
+        """Value of no count in the unit of the channel."""
+        return float(self._sensor.reading(0.0))
 
     def faults(self) -> list[Fault]:
         """Return the faults of the whole recording."""
