@@ -20,6 +20,8 @@ DEFAULT_BLOCK_SAMPLES = 262_144
 
 _SPOTS = 4
 _SPOT_SAMPLES = 65_536
+# Enough to tell the unit of a channel by what it shows.
+_GLANCE_SAMPLES = 4_096
 
 
 def find_channel(
@@ -127,18 +129,30 @@ def spots(channel: "Channel") -> list[Counts]:
     SignalError
         If there is no number in any of them.
     """
-    length = min(_SPOT_SAMPLES, channel.count)
-    starts = np.linspace(0, channel.count - length, _SPOTS).astype(int)
-    # on block borders where the channel is long enough, so that no block is unpacked twice
-    starts -= starts % length
-    stretches = [_finite(_counts(channel, int(start), int(start) + length)) for start in np.unique(starts)]
+    stretches = _stretches(channel, _SPOT_SAMPLES)
     numbers = [counts for counts in stretches if counts.size]
     if not numbers:
+        length = min(_SPOT_SAMPLES, channel.count)
         raise SignalError(
             f"channel {channel.name}: expected numbers, found none in {len(stretches)} stretches of "
             f"{length / channel.rate_hz:.3g} s all over the recording; check the export of the logger."
         )
     return numbers
+
+
+def middle_of(channel: "Channel") -> float:
+    """Return the median of a few short stretches from all over a channel, in its unit; nan without numbers in them."""
+    counts = np.concatenate(_stretches(channel, _GLANCE_SAMPLES))
+    return float(np.median(counts)) * channel.scale + channel.offset if counts.size else float("nan")
+
+
+def _stretches(channel: "Channel", samples: int) -> list[Counts]:
+    """Return the numbers among so many samples, at most, of each of a few stretches."""
+    length = min(_SPOT_SAMPLES, channel.count)
+    starts = np.linspace(0, channel.count - length, _SPOTS).astype(int)
+    # on block borders where the channel is long enough, so that no block is unpacked twice
+    starts -= starts % length
+    return [_finite(_counts(channel, int(start), int(start) + min(length, samples))) for start in np.unique(starts)]
 
 
 def time_of(channel: "Channel", sample: float) -> float:

@@ -3,12 +3,10 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from shaftprint.arrays import frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, ExcitationSignal
-from shaftprint.signals._channels import spots
+from shaftprint.signals._channels import middle_of
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.units import rpm_from_rev_s
@@ -66,7 +64,7 @@ def read_set_point(channel: "Channel", sensor: SetPointSensor, clock: "Clock", *
     SignalError
         If the values cannot be in the unit that is stated; the message names one that would fit.
     """
-    middle = float(np.median(np.concatenate(spots(channel)))) * channel.scale + channel.offset
+    middle = middle_of(channel)
     unit = sensor.unit_that_fits(middle, speed_rpm)
     if unit is not None:
         line = "" if unit == "V" else " with its v_per_unit"

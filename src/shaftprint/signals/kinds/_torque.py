@@ -10,7 +10,7 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.campaign import Campaign, Sine
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelSignal
-from shaftprint.signals._channels import spots
+from shaftprint.signals._channels import middle_of
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
@@ -104,8 +104,7 @@ def expect_unit(channel: "Channel", vessel: "Vessel") -> None:
         names it.
     """
     sensor, expected = vessel.sensors.shaft_torque, vessel.working_point.shaft_torque_nm
-    middle = float(np.median(np.concatenate(spots(channel)))) * channel.scale + channel.offset
-    torque = float(sensor.torque_nm(middle))
+    torque = float(sensor.torque_nm(middle_of(channel)))
     unit = sensor.unit_that_fits(torque, expected)
     if unit is not None and not _SMALL_PART * expected < torque < _MULTIPLE * expected:
         raise SignalError(
