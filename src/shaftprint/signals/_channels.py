@@ -142,7 +142,7 @@ def spots(channel: "Channel") -> list[Counts]:
 
 def middle_of(channel: "Channel") -> float:
     """Return the median of a few short stretches from all over a channel, in its unit; nan without numbers in them."""
-    counts = np.concatenate(_stretches(channel, _GLANCE_SAMPLES))
+    counts: NDArray[np.float64] = np.concatenate(_stretches(channel, _GLANCE_SAMPLES)).astype(np.float64)
     return float(np.median(counts)) * channel.scale + channel.offset if counts.size else float("nan")
 
 
