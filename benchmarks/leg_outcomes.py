@@ -60,7 +60,7 @@ def true_values(truth: Truth, signals: Signals, ship: Ship) -> dict[str, float]:
     values = {
         **{name: both * true[name] for name in ("K_p", "K_i", "tau_dn", "tau_up", "g")},
         **{name: true[name] for name in ("t_d", "omega_n", "zeta", "t_sp")},
-        "k_q": true["k_q"] * (1.0 - ship.zero_nm / (point.harmonic_mean_square * point.shaft_torque_nm)),
+        "k_q": true["k_q"] * (1.0 - ship.scale * ship.zero_nm / (point.harmonic_mean_square * point.shaft_torque_nm)),
         "c_set": truth.set_point_slope_rpm_per_v / (60.0 * signals.calibration.slope_rev_s_per_v),
         "t_gauge": ship.late_s,
         "v": 1.0,

@@ -39,7 +39,7 @@ class Ship:
     scale: float
     """Torque that the gauge shows over the true one."""
     zero_nm: float
-    """What the gauge shows without torque [N m]."""
+    """What the gauge feels without torque [N m]; it shows ``scale`` times that."""
     late_s: float
     """Latency of the telemetry beyond that in the vessel file [s]."""
 
@@ -80,7 +80,7 @@ def true_values(truth: Truth, signals: Signals, ship: Ship) -> dict[str, float]:
     found |= {name: normalised[name] for name in ("t_d", "omega_n", "zeta", "t_sp", "v")}
     found |= {
         # What is shown without the zero is a point of the propeller law, whatever the load of the day.
-        "k_q": normalised["k_q"] * (1.0 - ship.zero_nm / shown),
+        "k_q": normalised["k_q"] * (1.0 - ship.scale * ship.zero_nm / shown),
         "c_set": truth.set_point_slope_rpm_per_v / line,
         "t_gauge": ship.late_s,
     }

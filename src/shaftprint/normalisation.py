@@ -1,13 +1,23 @@
 """Speed and torque of a working point, by which models are normalised: the one place of ``tau = 2 pi I n_s0 / M_s0``.
 
 Models know deviations over their values at the working point (thesis eqs 2.14-2.25). An inertia of ``I`` kg m2 on the
-propeller shaft is there a time, ``2 pi I n_s0 / M_s0`` (thesis eq. 2.23).
+propeller shaft is there a time, ``2 pi I n_s0 / M_s0`` (thesis eq. 2.23). Where the speed swings, the torque at the
+working point takes what the lines show of the shaft at the gauge.
 """
 
 import math
 from dataclasses import dataclass
 
+import numpy as np
+
+from shaftprint.arrays import ComplexArray
 from shaftprint.units import SECONDS_PER_MINUTE
+
+FASTEST_SHAFT_LINE_HZ = 4.0
+"""Faster lines tell of the elasticity of the shaft as well [Hz]."""
+_ROUNDS = 5
+# What is late beyond the latency in the vessel file: where there is next to no inertia, lines do not tell it.
+_USUAL_DELAY_S = 5e-3
 
 
 def inertia_time_s(inertia_kg_m2: float, *, shaft_speed_rev_s: float, shaft_torque_nm: float) -> float:
@@ -46,3 +56,36 @@ class Normalisation:
     def torque_nm_per_rpm(self) -> float:
         """Torque at the propeller shaft for one rpm of engine speed, of a gain of 1 [N m/rpm]."""
         return self.shaft_torque_nm / (self.engine_speed_rev_s * SECONDS_PER_MINUTE)
+
+
+def shaft_at_lines(
+    shown: ComplexArray, square: ComplexArray, change: ComplexArray, s: ComplexArray
+) -> tuple[float, float, float]:
+    """Return slope of the torque over the square of the speed [-], inertia time [s] and delay of the gauge [s].
+
+    As the lines show them, ``M_s = exp(-s t) (c u^2 + tau_dn du/dt)``, by least squares (Gauss-Newton).
+
+    Parameters
+    ----------
+    shown, square, change
+        Coefficients of torque, square of the speed and its change at the lines, shape (lines,).
+    s
+        Laplace variable there [rad/s].
+    """
+    slope, inertia_s, late_s = 1.0, 0.0, 0.0
+    # one line is two numbers: it tells slope and inertia
+    for done in range(_ROUNDS if shown.size > 1 else shown.size):
+        turned = np.exp(-s * late_s)
+        model = turned * (slope * square + inertia_s * change)
+        # without an inertia a delay would look like one
+        columns = np.stack([turned * square, turned * change, -s * model], axis=1)[:, : 3 if done else 2]
+        error = shown - model
+        rows = np.concatenate([columns.real, columns.imag])
+        left = np.concatenate([error.real, error.imag])
+        if done:
+            weight = np.sqrt(np.mean(left**2)) / _USUAL_DELAY_S
+            rows, left = np.vstack([rows, [0.0, 0.0, weight]]), np.append(left, -weight * late_s)
+        step, *_ = np.linalg.lstsq(rows, left, rcond=None)
+        slope, inertia_s = slope + step[0], inertia_s + step[1]
+        late_s += step[2] if done else 0.0
+    return float(slope), float(inertia_s), float(late_s)

@@ -66,6 +66,17 @@ def test_a_load_that_wanders_with_a_line_has_the_mean_load():
     assert point.shaft_torque_nm == pytest.approx(722.0, rel=1e-9)
 
 
+@pytest.mark.parametrize("late_s", [0.0, 0.003, -0.003])
+def test_the_torque_of_an_inertia_that_comes_late_is_no_load(late_s):
+    still = _samples()
+    s = 2j * np.pi * np.fft.rfftfreq(still.speed_rev_s.size, 1.0 / RATE_HZ)
+    # an inertia as large as a tug's, 0.28 s of the torque at the mean speed
+    inertia = 0.28 * 722.0 / 19.0 * s * np.fft.rfft(still.speed_rev_s)
+    shown = np.fft.irfft((np.fft.rfft(still.torque_nm) + inertia) * np.exp(-s * late_s), still.torque_nm.size)
+    point = leg_state(replace(still, torque_nm=shown)).working_point
+    assert point.shaft_torque_nm == pytest.approx(722.0, rel=2e-6)
+
+
 def test_a_shaft_that_stands_still_within_a_leg_is_refused():
     speed = _samples().speed_rev_s.copy()
     speed[2500:2600] = 0.0

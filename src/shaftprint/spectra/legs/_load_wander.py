@@ -4,20 +4,21 @@ The propeller takes ``(1 + w) u^2`` of the torque, with the speed ``u = 1 + n`` 
 the wander adds at slow frequencies, ``w`` itself, is noise like any other. What it makes of the lines,
 ``w (u^2 - 1)``, is not: it changes the height of all strong lines together, as the load at the moment when the speed
 swings most is another than the mean, and no covariance of single lines knows of that. In tests of five minutes the
-exponent of the propeller torque had errors one and a half times as large as stated. ``w`` follows from the measured
-speed and torque, ``w = (M_s - tau_dn s n) / u^2 - 1``, up to the frequency at which the noise of the gauge is as large.
+exponent of the propeller torque had errors one and a half times as large as stated. ``w`` follows from speed and
+torque, ``1 + w = (M_s - tau_dn s n - z) / (c u^2)``, as far as it is above the noise of the gauge; inertia, zero and
+delay of the gauge are those that the lines show. Without these ``w`` would follow the square of the speed.
 """
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, ComplexArray, FloatArray, IntArray
+from shaftprint.arrays import BoolArray, FloatArray, IntArray
+from shaftprint.normalisation import FASTEST_SHAFT_LINE_HZ, shaft_at_lines
 
-# The load of a propeller at the quay wanders in tens of seconds, and with the surge against the mooring, 0.1 to 0.2 Hz.
-_FASTEST_WANDER_HZ = 0.3
+# The load of a propeller at the quay wanders in tens of seconds, and with the surge against the mooring, 0.1 to 0.2 Hz;
+# a large wander still stands above the noise of the gauge at 1 Hz.
+_FASTEST_WANDER_HZ = 1.0
 # Beside this band the torque has the noise of its gauge, which is no wander.
-_GAUGE_NOISE_HZ = (0.5, 1.0)
-# The inertia is found at lines below this: above, delays of the sensors turn the torque as well.
-_FASTEST_INERTIA_HZ = 1.5
+_GAUGE_NOISE_HZ = (1.5, 3.0)
 _SMOOTHED_BINS = 9
 
 
@@ -49,10 +50,13 @@ def load_wander(speed: FloatArray, torque: FloatArray, lines: IntArray, period_s
     square = (speed**2).ravel()
     hertz = np.fft.rfftfreq(speed.size, period_s / speed.shape[1])
     s = 2j * np.pi * hertz
-    deviation = np.fft.rfft(speed.ravel())
-    above_square = np.fft.rfft(torque.ravel() - square)
-    inertia = np.fft.irfft(_inertia_time(above_square, deviation, s, periods * lines) * s * deviation, speed.size)
-    load = np.fft.rfft((torque.ravel() - inertia) / square)
+    change, shown = s * np.fft.rfft(speed.ravel()), np.fft.rfft(torque.ravel())
+    slow = periods * lines[lines < FASTEST_SHAFT_LINE_HZ * period_s]
+    slope, inertia_s, late_s = shaft_at_lines(shown[slow], np.fft.rfft(square)[slow], change[slow], s[slow])
+    # the torque is 1 at the mean load: what the slope lacks of that is what the zero adds to it
+    zero = (1.0 - slope) / float(np.mean(1.0 / square))
+    of_propeller = np.fft.irfft(shown * np.exp(s * late_s) - inertia_s * change, speed.size) - zero
+    load = np.fft.rfft(of_propeller / (slope * square))
     kept = np.zeros_like(load)
     bins = np.setdiff1d(np.arange(1, np.searchsorted(hertz, _GAUGE_NOISE_HZ[1])), periods * lines)
     beside = hertz[bins] >= _GAUGE_NOISE_HZ[0]
@@ -70,11 +74,3 @@ def _share(power: FloatArray, noise: BoolArray) -> FloatArray:
     smooth = np.convolve(power, width, "same") / np.convolve(np.ones(power.size), width, "same")
     share: FloatArray = np.clip(1.0 - power[noise].mean() / smooth, 0.0, 1.0)
     return share
-
-
-def _inertia_time(above_square: ComplexArray, deviation: ComplexArray, s: ComplexArray, lines: IntArray) -> float:
-    """Return the inertia time downstream of the gauge as the slow lines show it [s]."""
-    slow = lines[np.abs(s[lines]) < 2.0 * np.pi * _FASTEST_INERTIA_HZ]
-    swing = (s * deviation)[slow]
-    power = float(np.sum(np.abs(swing) ** 2))
-    return float(np.sum((above_square[slow] * swing.conj()).real)) / power if power else 0.0
