@@ -81,7 +81,7 @@ def test_an_interrupt_waits_for_the_library(tmp_path, monkeypatch):
     counts = np.arange(300_000, dtype=np.int16)
     reached = []
 
-    def interrupted_compression(self, block):
+    def interrupted_compression(self, counts, time_s):
         signal.raise_signal(signal.SIGINT)
         reached.append("write went on")
 
