@@ -6,11 +6,12 @@ working point takes what the lines show of the shaft at the gauge.
 """
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
-from shaftprint.arrays import ComplexArray
+from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.units import SECONDS_PER_MINUTE
 
 FASTEST_SHAFT_LINE_HZ = 4.0
@@ -58,10 +59,40 @@ class Normalisation:
         return self.shaft_torque_nm / (self.engine_speed_rev_s * SECONDS_PER_MINUTE)
 
 
-def shaft_at_lines(
+def propeller_torque(
+    speed: FloatArray, torque: FloatArray, *, harmonics: Iterable[int], periods: int, period_s: float
+) -> tuple[FloatArray, float]:
+    """Return the torque that the propeller takes, and by how much its lines rise with the square of the speed.
+
+    That of the gauge when the shaft had it, without that of the inertia behind the gauge; delay and inertia are what
+    the lines show.
+
+    Parameters
+    ----------
+    speed
+        Over its mean [-], shape (samples,), whole periods.
+    torque
+        At the gauge, in any unit, shape (samples,); what is returned is in this unit.
+    harmonics
+        Harmonics of the period at which there are lines.
+    periods, period_s
+        How many periods, and how long one is [s].
+    """
+    square = speed**2
+    s = 2j * np.pi * np.arange(speed.size // 2 + 1) / (periods * period_s)
+    lines = np.array([periods * line for line in harmonics if line < FASTEST_SHAFT_LINE_HZ * period_s], dtype=int)
+    lines = lines[lines < s.size]
+    if not lines.size:
+        return torque, float(np.mean(torque / square))
+    change, shown = s * np.fft.rfft(speed), np.fft.rfft(torque)
+    slope, inertia_s, late_s = _shaft_at_lines(shown[lines], np.fft.rfft(square)[lines], change[lines], s[lines])
+    return np.fft.irfft(shown * np.exp(s * late_s) - inertia_s * change, speed.size), slope
+
+
+def _shaft_at_lines(
     shown: ComplexArray, square: ComplexArray, change: ComplexArray, s: ComplexArray
 ) -> tuple[float, float, float]:
-    """Return slope of the torque over the square of the speed [-], inertia time [s] and delay of the gauge [s].
+    """Return torque over the square of the speed, that over the change of the speed, and delay of the gauge [s].
 
     As the lines show them, ``M_s = exp(-s t) (c u^2 + tau_dn du/dt)``, by least squares (Gauss-Newton).
 
@@ -72,20 +103,19 @@ def shaft_at_lines(
     s
         Laplace variable there [rad/s].
     """
-    slope, inertia_s, late_s = 1.0, 0.0, 0.0
+    slope, inertia_s, late_s = 0.0, 0.0, 0.0
     # one line is two numbers: it tells slope and inertia
-    for done in range(_ROUNDS if shown.size > 1 else shown.size):
+    for done in range(_ROUNDS if shown.size > 1 else 1):
         turned = np.exp(-s * late_s)
         model = turned * (slope * square + inertia_s * change)
         # without an inertia a delay would look like one
         columns = np.stack([turned * square, turned * change, -s * model], axis=1)[:, : 3 if done else 2]
-        error = shown - model
-        rows = np.concatenate([columns.real, columns.imag])
-        left = np.concatenate([error.real, error.imag])
+        residual = shown - model
+        rows, right = (np.concatenate([values.real, values.imag]) for values in (columns, residual))
         if done:
-            weight = np.sqrt(np.mean(left**2)) / _USUAL_DELAY_S
-            rows, left = np.vstack([rows, [0.0, 0.0, weight]]), np.append(left, -weight * late_s)
-        step, *_ = np.linalg.lstsq(rows, left, rcond=None)
+            weight = np.sqrt(np.mean(right**2)) / _USUAL_DELAY_S
+            rows, right = np.vstack([rows, [0.0, 0.0, weight]]), np.append(right, -weight * late_s)
+        step, *_ = np.linalg.lstsq(rows, right, rcond=None)
         slope, inertia_s = slope + step[0], inertia_s + step[1]
         late_s += step[2] if done else 0.0
     return float(slope), float(inertia_s), float(late_s)

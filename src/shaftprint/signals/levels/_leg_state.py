@@ -18,12 +18,13 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
-from shaftprint.normalisation import FASTEST_SHAFT_LINE_HZ, shaft_at_lines
+from shaftprint.normalisation import propeller_torque
 from shaftprint.signals._signals import SetPointCalibration
 from shaftprint.signals._working_points import LegState, WorkingPoint
 from shaftprint.signals.levels._dc_scale import LowLines, zero_frequency_ratio
 from shaftprint.signals.levels._leg_periods import LegPeriods, between_lines
 from shaftprint.signals.levels._steady import SteadyStretch
+from shaftprint.units import rpm_from_rev_s
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Leg
@@ -72,14 +73,21 @@ def leg_state(samples: LegSamples) -> LegState:
         where = int(np.argmin(samples.speed_rev_s)) / samples.speed_rev_s.size
         raise SignalError(
             f"{samples.leg.name}: expected a shaft that turns ahead throughout, found "
-            f"{60.0 * samples.speed_rev_s.min():.0f} rpm at "
+            f"{rpm_from_rev_s(float(samples.speed_rev_s.min())):.0f} rpm at "
             f"{periods.start_s + where * (periods.stop_s - periods.start_s):.1f} s: no test goes "
             "through standstill; check the speed channel, or leave this leg out of the campaign file."
         )
     speed = float(samples.speed_rev_s.mean())
     square = (samples.speed_rev_s / speed) ** 2
     harmonic_mean_square = float(1.0 / np.mean(1.0 / square))
-    torque = _torque_of_mean_load(samples, square)
+    of_propeller, _ = propeller_torque(
+        samples.speed_rev_s / speed,
+        samples.torque_nm,
+        harmonics=samples.leg.lines,
+        periods=periods.periods,
+        period_s=periods.period_s,
+    )
+    torque = float(np.mean(of_propeller / square))
     speed_std = _std_of_mean(samples.speed_rev_s, periods.periods)
     load_std = _std_of_mean(samples.torque_nm / (torque * square), periods.periods)
     point = WorkingPoint(
@@ -98,23 +106,6 @@ def leg_state(samples: LegSamples) -> LegState:
         periods=periods.periods,
         working_point=point,
     )
-
-
-def _torque_of_mean_load(samples: LegSamples, square: FloatArray) -> float:
-    """Return the mean of the torque [N m] over the square of the speed.
-
-    Of the torque when the shaft had it: that of the inertia, some milliseconds late, would not be zero on average.
-    """
-    periods = samples.periods
-    s = 2j * np.pi * np.arange(square.size // 2 + 1) / (periods.periods * periods.period_s)
-    harmonics = np.array(list(samples.leg.lines))
-    lines = periods.periods * harmonics[harmonics < FASTEST_SHAFT_LINE_HZ * periods.period_s]
-    lines = lines[lines < s.size]
-    change = s[lines] * np.fft.rfft(np.sqrt(square))[lines]
-    shown = np.fft.rfft(samples.torque_nm)
-    level = shown[0].real / float(square.sum())
-    *_, late_s = shaft_at_lines(shown[lines] / level, np.fft.rfft(square)[lines], change, s[lines])
-    return float(np.mean(np.fft.irfft(shown * np.exp(s * late_s), square.size) / square))
 
 
 def stretch_of(state: LegState) -> SteadyStretch:

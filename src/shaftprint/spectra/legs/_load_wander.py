@@ -12,7 +12,7 @@ delay of the gauge are those that the lines show. Without these ``w`` would foll
 import numpy as np
 
 from shaftprint.arrays import BoolArray, FloatArray, IntArray
-from shaftprint.normalisation import FASTEST_SHAFT_LINE_HZ, shaft_at_lines
+from shaftprint.normalisation import propeller_torque
 
 # The load of a propeller at the quay wanders in tens of seconds, and with the surge against the mooring, 0.1 to 0.2 Hz.
 # Up to 1 Hz noise of the gauge passes for wander: errors of k_q in five minutes were 1.3 times as large as stated.
@@ -49,14 +49,12 @@ def load_wander(speed: FloatArray, torque: FloatArray, lines: IntArray, period_s
     periods = len(speed)
     square = (speed**2).ravel()
     hertz = np.fft.rfftfreq(speed.size, period_s / speed.shape[1])
-    s = 2j * np.pi * hertz
-    change, shown = s * np.fft.rfft(speed.ravel()), np.fft.rfft(torque.ravel())
-    slow = periods * lines[lines < FASTEST_SHAFT_LINE_HZ * period_s]
-    slope, inertia_s, late_s = shaft_at_lines(shown[slow], np.fft.rfft(square)[slow], change[slow], s[slow])
+    of_propeller, slope = propeller_torque(
+        speed.ravel(), torque.ravel(), harmonics=lines.tolist(), periods=periods, period_s=period_s
+    )
     # the torque is 1 at the mean load: what the slope lacks of that is what the zero adds to it
     zero = (1.0 - slope) / float(np.mean(1.0 / square))
-    of_propeller = np.fft.irfft(shown * np.exp(s * late_s) - inertia_s * change, speed.size) - zero
-    load = np.fft.rfft(of_propeller / (slope * square))
+    load = np.fft.rfft((of_propeller - zero) / (slope * square))
     kept = np.zeros_like(load)
     bins = np.setdiff1d(np.arange(1, np.searchsorted(hertz, _GAUGE_NOISE_HZ[1])), periods * lines)
     beside = hertz[bins] >= _GAUGE_NOISE_HZ[0]
