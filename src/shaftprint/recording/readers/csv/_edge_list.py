@@ -15,7 +15,8 @@ from shaftprint.recording.readers.csv._header import Header
 PULSES = "pulses"
 """Name of the channel of a file that holds times alone."""
 
-_BLOCK = 1_000_000
+# The first block tells of most columns that they hold more than two values: small blocks are read fast.
+_BLOCK = 1 << 16
 # With fewer edges a file is a table of another kind.
 _FEWEST = 10
 # Samples stay on a level for longer than one row; of a list of edges so large a share of the rows changes something.
