@@ -46,9 +46,10 @@ def angle_range(channel: "Channel", sensor: SpeedSensor) -> float | None:
     SignalError
         If the recording shows another range, which is named, or a single angle.
     """
-    if channel.count < _FEWEST_ANGLES:
-        raise SignalError(f"channel {channel.name}: expected an angle that turns, found a single one.")
-    parts = _parts(channel)
+    return _range_of(_parts(channel), channel, sensor)
+
+
+def _range_of(parts: Sequence[FloatArray], channel: "Channel", sensor: SpeedSensor) -> float | None:
     lowest, highest = np.quantile(np.concatenate(parts), [_OUTSIDE, 1.0 - _OUTSIDE]).tolist()
     turn, stated = 1.0 / sensor.rev_per_unit, sensor.rolls_over_at
     within = turn if highest - lowest <= (1.0 + _ROUNDING) * turn else None
@@ -66,8 +67,8 @@ def angle_range(channel: "Channel", sensor: SpeedSensor) -> float | None:
     return whole
 
 
-def expect_small_steps(channel: "Channel", sensor: SpeedSensor, turns_hz: float) -> None:
-    """Check that an angle that begins again turns by clearly less than half of its range from sample to sample.
+def range_of_small_steps(channel: "Channel", sensor: SpeedSensor, turns_hz: float) -> float | None:
+    """Return `angle_range` of an angle that turns by clearly less than half of it from sample to sample.
 
     Parameters
     ----------
@@ -79,16 +80,17 @@ def expect_small_steps(channel: "Channel", sensor: SpeedSensor, turns_hz: float)
     Raises
     ------
     SignalError
-        If it turns further there or in the recording; the rate that would do is in the message.
+        If it turns further there or in the recording, with the rate that would do in the message, or as `angle_range`.
     """
-    whole = angle_range(channel, sensor)
+    parts = _parts(channel)
+    whole = _range_of(parts, channel, sensor)
     if whole is None:
-        return
-    steps = np.concatenate([np.abs(wrapped(np.diff(part), whole)) for part in _parts(channel)])
+        return None
+    steps = np.concatenate([np.abs(wrapped(np.diff(part), whole)) for part in parts])
     seen = float(np.quantile(steps, 1.0 - _OUTSIDE)) / whole if steps.size else 0.0
     share = max(seen, turns_hz / (channel.rate_hz * whole * sensor.rev_per_unit))
     if share <= _LARGEST_STEP:
-        return
+        return whole
     raise SignalError(
         f"channel {channel.name}: expected an angle that turns by less than {_LARGEST_STEP:g} of its {whole:.10g} "
         f"{channel.unit} from sample to sample, found {share:.2f} of it at {channel.rate_hz:g} Hz; log at "
@@ -98,6 +100,8 @@ def expect_small_steps(channel: "Channel", sensor: SpeedSensor, turns_hz: float)
 
 def _parts(channel: "Channel") -> list[FloatArray]:
     """Return the angle in a few stretches from all over the channel, in its unit."""
+    if channel.count < _FEWEST_ANGLES:
+        raise SignalError(f"channel {channel.name}: expected an angle that turns, found a single one.")
     return [part.astype(np.float64) * channel.scale + channel.offset for part in spots(channel)]
 
 

@@ -15,7 +15,7 @@ from shaftprint.errors import SignalError
 from shaftprint.signals._channels import Counts, time_of
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps, joined, runs_of
 from shaftprint.signals.conditioning import Reading, conditioned, fault_limits
-from shaftprint.signals.kinds._angle_range import angle_range, expect_small_steps, wrapped
+from shaftprint.signals.kinds._angle_range import angle_range, range_of_small_steps, wrapped
 from shaftprint.signals.kinds._kind import Source
 from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.kinds._speed_reading import SpeedReading
@@ -52,13 +52,13 @@ def read_encoder(source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
     ratio = source.vessel.gearbox.ratio if sensor.shaft == "propeller" else 1.0
     # what turns too fast comes back as slow: what the recording shows is not enough
     turns_hz = rev_s_from_rpm(source.vessel.working_point.engine_speed_rpm) / ratio
-    expect_small_steps(channel, sensor, turns_hz)
+    whole = range_of_small_steps(channel, sensor, turns_hz)
     values_hz = _values_hz(channel, sensor, clock, turns_hz)
     latency_s = clock.latency_s(sensor.latency_s)
     if channel.is_uneven or channel.rate_hz < clock.rate_hz:
-        reading = _splined(channel, sensor, clock, latency_s)
+        reading = _splined(channel, sensor, whole, clock, latency_s)
     else:
-        turning = speed_channel(channel, sensor)
+        turning = _turning(channel, sensor, whole)
         reading = conditioned(
             turning,
             fault_limits(turning, holds=False),
@@ -95,7 +95,11 @@ def speed_channel(channel: "Channel", sensor: SpeedSensor) -> "Channel":
     SignalError
         If the angle begins again elsewhere than the vessel file says.
     """
-    whole = angle_range(channel, sensor)
+    return _turning(channel, sensor, angle_range(channel, sensor))
+
+
+def _turning(channel: "Channel", sensor: SpeedSensor, whole: float | None) -> "Channel":
+    """Return the speed of the shaft as `speed_channel` does, where the range of the angle is known."""
     counts_of_range = None if whole is None else abs(whole / channel.scale)
 
     def steps(start: int, stop: int) -> Counts:
@@ -181,7 +185,7 @@ def _sharpen(speed: FloatArray, *, step: float) -> None:
     speed[1:-1] -= step**2 / 24.0 * np.diff(speed, 2)
 
 
-def _splined(channel: "Channel", sensor: SpeedSensor, clock: "Clock", latency_s: float) -> Reading:
+def _splined(channel: "Channel", sensor: SpeedSensor, whole: float | None, clock: "Clock", latency_s: float) -> Reading:
     """Return the speed of a channel that is slower than the grid, or of messages: the slope of a spline of its angles.
 
     Raises
@@ -189,7 +193,8 @@ def _splined(channel: "Channel", sensor: SpeedSensor, clock: "Clock", latency_s:
     SignalError
         If there are too few angles.
     """
-    reading = _message_angles(channel, sensor) if channel.stamps is not None else _angles(channel, sensor)
+    angles = _angles if channel.stamps is None else _message_angles
+    reading = angles(channel, sensor, whole)
     if reading.time_s.size < _FEWEST_ANGLES:
         raise SignalError(f"channel {channel.name}: expected numbers, found none; check the export of the logger.")
     begin_s = clock.start_s + latency_s
@@ -210,9 +215,9 @@ class _Angles(NamedTuple):
     findings: tuple[str, ...]
 
 
-def _angles(channel: "Channel", sensor: SpeedSensor) -> _Angles:
+def _angles(channel: "Channel", sensor: SpeedSensor, whole: float | None) -> _Angles:
     """Return the angles of even samples, straight lines where some are missing."""
-    turning = speed_channel(channel, sensor)
+    turning = _turning(channel, sensor, whole)
     counts = np.asarray(turning.read(0, turning.count), dtype=np.float64)
     missing = np.isnan(counts)
     if missing.all():
@@ -233,12 +238,12 @@ def _angles(channel: "Channel", sensor: SpeedSensor) -> _Angles:
     return _Angles(time_s, angle_rev, tuple(gaps), ())
 
 
-def _message_angles(channel: "Channel", sensor: SpeedSensor) -> _Angles:
+def _message_angles(channel: "Channel", sensor: SpeedSensor, whole: float | None) -> _Angles:
     """Return the angles of messages at their own times."""
     messages = read_messages(channel)
     # two messages at one time give no spline
     time_s, first = np.unique(messages.time_s, return_index=True)
-    step = wrapped(np.diff(messages.values[first]), angle_range(channel, sensor))
+    step = wrapped(np.diff(messages.values[first]), whole)
     angle_rev = sensor.rev_per_unit * np.concatenate([np.zeros(1), np.cumsum(step, dtype=np.float64)])
     return _Angles(time_s, angle_rev, messages.gaps, messages.findings)
 
