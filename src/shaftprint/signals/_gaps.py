@@ -54,6 +54,10 @@ class Gap:
             return f"channel {self.channel} {self.reason} at {self.start_s:.2f} s"
         return f"channel {self.channel} {self.reason} from {self.start_s:.2f} to {self.stop_s:.2f} s"
 
+    def earlier(self, latency_s: float) -> "Gap":
+        """Return the gap of what a channel shows that is so late [s]: it lies so much earlier."""
+        return replace(self, start_s=self.start_s - latency_s, stop_s=self.stop_s - latency_s)
+
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Coverage:
@@ -131,6 +135,33 @@ def clock_gaps(channel: "Channel") -> list[Gap]:
             reason=f"has a clock that jumps by {jump.jump_s:.4g} s",
         )
         for jump in channel.clock_jumps
+    ]
+
+
+def gaps_of_missing(channel: "Channel", missing: BoolArray, *, longest: float, reach_s: float = 0.0) -> list[Gap]:
+    """Return the runs of missing samples over which no line is to be trusted.
+
+    Parameters
+    ----------
+    channel
+        What has no values.
+    missing
+        Which of its samples, shape (samples,).
+    longest
+        Samples of the longest run that is no gap.
+    reach_s
+        How far beyond both ends a gap reaches [s].
+    """
+    return [
+        Gap(
+            channel=channel.name,
+            start_s=time_of(channel, first),
+            stop_s=time_of(channel, stop),
+            reason="has no values",
+            reach_s=reach_s,
+        )
+        for first, stop in runs_of(missing)
+        if stop - first > longest
     ]
 
 

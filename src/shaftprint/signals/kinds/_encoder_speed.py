@@ -12,13 +12,13 @@ import numpy as np
 
 from shaftprint.arrays import FloatArray
 from shaftprint.errors import SignalError
-from shaftprint.signals._channels import Counts, time_of
-from shaftprint.signals._gaps import Gap, bridge, clock_gaps, joined, runs_of
+from shaftprint.signals._channels import Counts
+from shaftprint.signals._gaps import Gap, bridge, clock_gaps, gaps_of_missing, joined, runs_of
 from shaftprint.signals.conditioning import Reading, conditioned, fault_limits
 from shaftprint.signals.kinds._angle_range import angle_range, range_of_small_steps, wrapped
 from shaftprint.signals.kinds._kind import Source
 from shaftprint.signals.kinds._message_reading import read_messages
-from shaftprint.signals.kinds._speed_reading import SpeedReading
+from shaftprint.signals.kinds._speed_reading import LONGEST_GAP_VALUES, REACH_VALUES, SpeedReading
 from shaftprint.signals.pulses import spline_speed
 from shaftprint.units import rev_s_from_rpm, rpm_from_rev_s
 from shaftprint.vessel import SpeedSensor
@@ -31,8 +31,6 @@ if TYPE_CHECKING:
 _WINDOW_S, _STANDING = 1.0, 0.02
 # Nine tenths of the time, in which a shaft may stand, are slower than what is usual.
 _USUAL = 0.9
-# Over a gap longer than this a slow channel says nothing; the end of a spline is felt so many values further on.
-_LONGEST_GAP_VALUES, _REACH_VALUES = 3, 4
 # A spline goes through three angles.
 _FEWEST_ANGLES = 3
 # No engine runs so far below idle or above rated speed. So far from the working point counts may be entered wrongly.
@@ -72,7 +70,7 @@ def read_encoder(source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
     speed = ahead * reading.values
     stops = _stops(speed, usual, clock, channel.name)
     bridge(speed, stops, start_s=clock.start_s, rate_hz=clock.rate_hz)
-    gaps = [replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in reading.gaps]
+    gaps = [gap.earlier(latency_s) for gap in reading.gaps]
     backwards = f"channel {channel.name} counts down while the ship moves ahead: its sign was turned"
     return SpeedReading(
         name=sensor.name,
@@ -201,7 +199,7 @@ def _splined(channel: "Channel", sensor: SpeedSensor, whole: float | None, clock
     speed = spline_speed(
         reading.time_s, reading.angle_rev, start_s=begin_s, step_s=1.0 / clock.rate_hz, count=clock.count
     )
-    gaps = tuple(replace(gap, reach_s=_REACH_VALUES / channel.rate_hz) for gap in reading.gaps)
+    gaps = tuple(replace(gap, reach_s=REACH_VALUES / channel.rate_hz) for gap in reading.gaps)
     bridge(speed, gaps, start_s=begin_s, rate_hz=clock.rate_hz)
     return Reading(values=speed, repairs=[], gaps=(*gaps, *clock_gaps(channel)), findings=reading.findings)
 
@@ -225,16 +223,7 @@ def _angles(channel: "Channel", sensor: SpeedSensor, whole: float | None) -> _An
     step_rev = joined(counts) * turning.scale / turning.rate_hz
     angle_rev = np.concatenate([np.zeros(1), np.cumsum(step_rev[1:], dtype=np.float64)])
     time_s = channel.start_s + np.arange(angle_rev.size, dtype=np.float64) / channel.rate_hz
-    gaps = (
-        Gap(
-            channel=channel.name,
-            start_s=time_of(turning, first),
-            stop_s=time_of(turning, stop),
-            reason="has no values",
-        )
-        for first, stop in runs_of(missing)
-        if stop - first > _LONGEST_GAP_VALUES
-    )
+    gaps = gaps_of_missing(turning, missing, longest=LONGEST_GAP_VALUES)
     return _Angles(time_s, angle_rev, tuple(gaps), ())
 
 

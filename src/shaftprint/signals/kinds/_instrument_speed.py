@@ -12,11 +12,11 @@ import numpy as np
 import scipy
 
 from shaftprint.errors import SignalError
-from shaftprint.signals._channels import blocks, time_of
-from shaftprint.signals._gaps import Gap, bridge, clock_gaps, joined, runs_of
+from shaftprint.signals._channels import blocks
+from shaftprint.signals._gaps import bridge, clock_gaps, gaps_of_missing, joined
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
 from shaftprint.signals.kinds._message_reading import read_messages
-from shaftprint.signals.kinds._speed_reading import SpeedReading
+from shaftprint.signals.kinds._speed_reading import LONGEST_GAP_VALUES, REACH_VALUES, SpeedReading
 from shaftprint.vessel import SpeedSensor
 
 if TYPE_CHECKING:
@@ -28,10 +28,6 @@ LIVE_ZERO_MA, FAILED_MA = 4.0, (3.6, 21.0)
 """Where a current loop begins, and outside of what it has failed [mA]."""
 # A line through zero speed at 4 mA, to this share of the speed at 20 mA.
 _AT_ZERO = 0.02
-# Over a gap longer than this a slow channel says nothing.
-_LONGEST_GAP_VALUES = 3
-# The end of a spline is felt so many values further on: by half a per cent.
-_REACH_VALUES = 4
 # A cubic spline goes through four values.
 _FEWEST_MESSAGES = 4
 
@@ -71,7 +67,7 @@ def read_instrument(channel: "Channel", sensor: SpeedSensor, clock: "Clock", *, 
             f"channel {channel.name}: expected a speed ahead, found a mean of {60.0 * speed.mean():.4g} rpm at the "
             "engine; correct unit, rpm_per_unit and rpm_at_zero in the vessel file, or the sign of the channel."
         )
-    gaps = (replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in reading.gaps)
+    gaps = (gap.earlier(latency_s) for gap in reading.gaps)
     return SpeedReading(
         values=speed,
         repairs=reading.repairs,
@@ -108,17 +104,8 @@ def _splined(channel: "Channel", sensor: SpeedSensor, clock: "Clock", latency_s:
     values = joined(np.where(missing, np.nan, counts)) * channel.scale + channel.offset
     time_s = channel.start_s - latency_s + np.arange(values.size) / channel.rate_hz
     on_grid = scipy.interpolate.CubicSpline(time_s, values)(grid_s.clip(time_s[0], time_s[-1]))
-    gaps = [
-        Gap(
-            channel=channel.name,
-            start_s=time_of(channel, first),
-            stop_s=time_of(channel, stop),
-            reason="has no values",
-            reach_s=_REACH_VALUES / channel.rate_hz,
-        )
-        for first, stop in runs_of(missing)
-        if stop - first > _LONGEST_GAP_VALUES
-    ]
+    reach_s = REACH_VALUES / channel.rate_hz
+    gaps = gaps_of_missing(channel, missing, longest=LONGEST_GAP_VALUES, reach_s=reach_s)
     bridge(on_grid, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)
     return Reading(values=on_grid, repairs=[], gaps=(*gaps, *clock_gaps(channel)))
 
@@ -133,7 +120,7 @@ def _splined_messages(channel: "Channel", limits: FaultLimits, clock: "Clock", l
         raise _no_numbers(channel)
     grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
     on_grid = scipy.interpolate.CubicSpline(time_s, messages.values[first])(grid_s.clip(time_s[0], time_s[-1]))
-    gaps = tuple(replace(gap, reach_s=_REACH_VALUES / channel.rate_hz) for gap in messages.gaps)
+    gaps = tuple(replace(gap, reach_s=REACH_VALUES / channel.rate_hz) for gap in messages.gaps)
     bridge(on_grid, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)
     return replace(messages, values=on_grid, gaps=gaps)
 

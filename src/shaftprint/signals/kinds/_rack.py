@@ -175,7 +175,7 @@ def rack_signal(
         hold_s=sensor.cycle_s if held else 0.0,
         reference=mean * load,
         reference_std=std * load,
-        gaps=tuple(replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in gaps),
+        gaps=tuple(gap.earlier(latency_s) for gap in gaps),
     )
 
 

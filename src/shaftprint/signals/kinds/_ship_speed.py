@@ -12,8 +12,8 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, ChannelSignal
-from shaftprint.signals._channels import blocks, time_of
-from shaftprint.signals._gaps import Gap, clock_gaps, joined, runs_of
+from shaftprint.signals._channels import blocks
+from shaftprint.signals._gaps import clock_gaps, gaps_of_missing, joined
 from shaftprint.signals.conditioning import Reading
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState, steady_parts
 from shaftprint.signals.kinds._message_reading import read_messages
@@ -95,22 +95,14 @@ def read_ship_speed(channel: "Channel", sensor: ShipSpeedSensor, clock: "Clock",
         )
     if messages is not None:
         late = (
-            replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s, reach_s=sensor.cycle_s)
+            replace(gap.earlier(latency_s), reach_s=sensor.cycle_s)
             for gap in messages.gaps
             if gap.stop_s - gap.start_s > _LONGEST_GAP_S
         )
         return replace(messages, values=np.interp(grid, time, speed), gaps=tuple(late))
-    gaps = [
-        Gap(
-            channel=channel.name,
-            start_s=time_of(channel, first) - latency_s,
-            stop_s=time_of(channel, stop) - latency_s,
-            reason="has no values",
-            reach_s=sensor.cycle_s,
-        )
-        for first, stop in runs_of(np.isnan(speed))
-        if stop - first > _LONGEST_GAP_S * channel.rate_hz
-    ]
+    longest = _LONGEST_GAP_S * channel.rate_hz
+    found = gaps_of_missing(channel, np.isnan(speed), longest=longest, reach_s=sensor.cycle_s)
+    gaps = (gap.earlier(latency_s) for gap in found)
     values = np.interp(grid, time, joined(speed))
     return Reading(values=values, repairs=[], gaps=(*gaps, *clock_gaps(channel)))
 

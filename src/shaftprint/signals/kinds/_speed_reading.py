@@ -5,6 +5,12 @@ from dataclasses import dataclass
 from shaftprint.signals._signals import StripAngles
 from shaftprint.signals.conditioning import Reading
 
+# Values of a channel that is slower than the grid are joined by a spline.
+LONGEST_GAP_VALUES = 3
+"""Over a gap longer than so many values it says nothing."""
+REACH_VALUES = 4
+"""The end of a spline is felt so many values further on: by half a per cent."""
+
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class SpeedReading(Reading):

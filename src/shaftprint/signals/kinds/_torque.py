@@ -58,12 +58,8 @@ class ShaftTorque(ChannelKind[ShaftTorqueSensor]):
             block_samples=clock.block_samples(channel),
             advance=clock.advance,
         )
-        gaps = (replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in reading.gaps)
-        return replace(
-            reading,
-            values=sensor.torque_nm(reading.values),
-            gaps=tuple(gaps),
-        )
+        gaps = tuple(gap.earlier(latency_s) for gap in reading.gaps)
+        return replace(reading, values=sensor.torque_nm(reading.values), gaps=gaps)
 
     def judge(self, source: Source[ShaftTorqueSensor], reading: Reading) -> tuple[str, ...]:
         """Return a finding where crests are cut off; too many are refused."""
