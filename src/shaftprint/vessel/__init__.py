@@ -24,6 +24,7 @@ The torque gauge sits on the propeller shaft: *upstream* of it is what lies towa
 *downstream* what lies towards the propeller.
 """
 
+from shaftprint.vessel._current_loop import ALIVE_MA, LIVE_ZERO_MA
 from shaftprint.vessel._hull import Hull
 from shaftprint.vessel._inertia import InertiaRow
 from shaftprint.vessel._limits import OperatingLimits
@@ -44,6 +45,8 @@ from shaftprint.vessel._vessel import Vessel, load_vessel
 from shaftprint.vessel._wheel import SAMPLES_A_TOOTH, Wheel
 
 __all__ = [
+    "ALIVE_MA",
+    "LIVE_ZERO_MA",
     "SAMPLES_A_TOOTH",
     "Engine",
     "GaugedShaft",

@@ -11,14 +11,15 @@ from pydantic import BeforeValidator, Field, ValidationError, model_validator
 from shaftprint.arrays import FloatArray
 from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
 from shaftprint.units import MILLI, NM_PER_UNIT, plain_unit
+from shaftprint.vessel._current_loop import ALIVE_MA
 from shaftprint.vessel._usual import GAUGE_SCALE_STD, GAUGE_ZERO_SHARE, LATENCY_STD_S
 
 # A gauge whose channel is in kN m has a scale of about 1000 N m a unit; this much less is a forgotten factor.
 _SMALLEST_OF_KILO = 100.0
 _PASCAL_PER_GPA = 1e9
-# What a channel can show in a unit: a current loop that is alive (NAMUR NE 43), what amplifiers of 10 V give, and a
+# What a channel can show in a unit: a current loop that is alive, what amplifiers of 10 V give, and a
 # share that is no voltage, since one with ten times the scale would look like it.
-_REACH = {"mA": (3.6, 21.0), "V": (-10.5, 10.5), "%": (10.5, 110.0)}
+_REACH = {"mA": ALIVE_MA, "V": (-10.5, 10.5), "%": (10.5, 110.0)}
 # A torque this factor around the expected one is the load of another day.
 _NEAR = 1.3
 # Written with fewer digits and read again, a scale is still that of its shaft.

@@ -15,17 +15,15 @@ from shaftprint.errors import SignalError
 from shaftprint.signals._channels import blocks
 from shaftprint.signals._gaps import bridge, clock_gaps, gaps_of_missing, joined
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
+from shaftprint.signals.kinds._current_loop import alive_counts
 from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.kinds._speed_reading import LONGEST_GAP_VALUES, REACH_VALUES, SpeedReading
-from shaftprint.vessel import SpeedSensor
+from shaftprint.vessel import LIVE_ZERO_MA, SpeedSensor
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
     from shaftprint.signals._clock import Clock
 
-# Signals of 4 to 20 mA beyond these have failed (NAMUR recommendation NE 43).
-LIVE_ZERO_MA, FAILED_MA = 4.0, (3.6, 21.0)
-"""Where a current loop begins, and outside of what it has failed [mA]."""
 # A line through zero speed at 4 mA, to this share of the speed at 20 mA.
 _AT_ZERO = 0.02
 # A cubic spline goes through four values.
@@ -87,8 +85,8 @@ def instrument_limits(channel: "Channel", sensor: SpeedSensor) -> FaultLimits:
     zero, full = sensor.speed_rev_s([LIVE_ZERO_MA, 20.0])
     if abs(zero) > _AT_ZERO * abs(full):
         return limits
-    ends = sorted((end - channel.offset) / channel.scale for end in FAILED_MA)
-    return replace(limits, lowest=ends[0], highest=ends[1])
+    lowest, highest = alive_counts(channel)
+    return replace(limits, lowest=lowest, highest=highest)
 
 
 def _splined(channel: "Channel", sensor: SpeedSensor, clock: "Clock", latency_s: float) -> Reading:

@@ -14,9 +14,9 @@ from shaftprint.signals._channels import middle_of
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals._signals import Repair
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
-from shaftprint.signals.kinds._instrument_speed import FAILED_MA, LIVE_ZERO_MA
+from shaftprint.signals.kinds._current_loop import alive_counts
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
-from shaftprint.vessel import ShaftTorqueSensor
+from shaftprint.vessel import LIVE_ZERO_MA, ShaftTorqueSensor
 
 if TYPE_CHECKING:
     from shaftprint.recording import Channel
@@ -83,8 +83,8 @@ def torque_limits(channel: "Channel", sensor: ShaftTorqueSensor) -> FaultLimits:
     middle, half = 0.5 * (ends[0] + ends[1]), 0.5 * abs(ends[1] - ends[0]) * _RAIL_SHARE
     lowest, highest = middle - half, middle + half
     if sensor.unit == "mA" and sensor.live_zero >= LIVE_ZERO_MA:
-        failed = sorted((end - channel.offset) / channel.scale for end in FAILED_MA)
-        lowest, highest = max(lowest, failed[0]), min(highest, failed[1])
+        least, most = alive_counts(channel)
+        lowest, highest = max(lowest, least), min(highest, most)
     if channel.read(0, 1).dtype == np.int16:
         lowest, highest = max(lowest, -32768.0), min(highest, 32767.0)
     return fault_limits(channel, holds=True, lowest=lowest, highest=highest)

@@ -9,6 +9,7 @@ from shaftprint.errors import SignalError
 from shaftprint.signals._working_points import WorkingPoint
 from shaftprint.signals.levels._load import torque_of_mean_load
 from shaftprint.units import rpm_from_rev_s
+from shaftprint.vessel import ALIVE_MA
 
 if TYPE_CHECKING:
     from shaftprint.campaign import Campaign
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
 
 # Voltages this near to the offset of the campaign are the working voltage.
 _NEAR_V = 0.25
-# What a current loop shows [mA].
-_LOOP_MA = (3.6, 21.0)
 # A working point further off than this factor is not the load of another day, but a scale.
 _FAR = 1.5
 # A governor with droop runs this much slower than it is asked to.
@@ -65,7 +64,7 @@ def stretches_at_working_point(
 
 
 def _loop_words(levels_v: list[float], offset_v: float) -> str:
-    lowest, highest = _LOOP_MA
+    lowest, highest = ALIVE_MA
     if not levels_v or not all(lowest <= level <= highest for level in levels_v) or lowest <= offset_v <= highest:
         return ""
     return ', or, if these are 4 to 20 mA, state unit = "mA" with its v_per_unit in sensors.set_point'
