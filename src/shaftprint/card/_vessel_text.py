@@ -20,8 +20,8 @@ from shaftprint.card._derived import (
 )
 from shaftprint.errors import SettingsError
 from shaftprint.escape import toml_string
+from shaftprint.units import NM_PER_UNIT
 
-_SCALES = {"N m": 1.0, "kN m": 1000.0}
 _DIGITS = 5
 # Longer numbers of pulses are refused as wheels.
 _MOST_DIGITS = 6
@@ -169,7 +169,7 @@ def _pick_up(pulses: Pulses, name: str, shaft: str) -> tuple[str, ...]:
 
 
 def _gauge(gauge: Gauge, largest: Derived) -> tuple[str, ...]:
-    scale_nm_per_unit = gauge.scale_nm_per_unit or _SCALES.get(gauge.unit)
+    scale_nm_per_unit = gauge.scale_nm_per_unit or NM_PER_UNIT.get(gauge.unit)
     if scale_nm_per_unit is None:
         raise SettingsError(
             f"torque gauge {gauge.channel}: expected its scale for a channel in V, found none; state N m for one volt."

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from shaftprint.arrays import FloatArray
 from shaftprint.settings import (
@@ -17,19 +17,15 @@ from shaftprint.settings import (
     PositiveNumber,
     Settings,
 )
-from shaftprint.units import ANGLES_REV, M_S_PER_KNOT, REV_S_PER_UNIT, plain_unit
+from shaftprint.units import ANGLES_REV, M_S_PER_KNOT, REV_S_PER_UNIT
+from shaftprint.vessel._plain_unit import PLAIN_UNIT
 from shaftprint.vessel._set_point import SetPointSensor
 from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
 from shaftprint.vessel._wheel import Wheel
 
-
-def _plain(unit: Any) -> Any:
-    return plain_unit(unit) if isinstance(unit, str) else unit
-
-
 SpeedUnit: TypeAlias = Annotated[
     Literal["V", "mA", "rpm", "rev/s", "rad/s", "deg/s", "Hz", "m/s", "deg", "rad", "rev", "counts"],
-    BeforeValidator(_plain),
+    PLAIN_UNIT,
 ]
 
 

@@ -1,15 +1,15 @@
 """The set point of the speed: what is put out to the governor, as it was recorded."""
 
 from itertools import pairwise
-from typing import Annotated, Any, Literal, Self, TypeAlias
+from typing import Annotated, Literal, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import Field, model_validator
 
 from shaftprint.arrays import FloatArray
 from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
-from shaftprint.units import plain_unit
+from shaftprint.vessel._plain_unit import PLAIN_UNIT
 
 # What a channel can show in a unit; in rpm, by how much more or less than the speed of the working point.
 _REACH = {"mA": (0.0, 22.0), "V": (-30.0, 30.0), "%": (-10.0, 110.0)}
@@ -18,11 +18,7 @@ _AROUND_SPEED = 4.0
 _BESIDE = 0.02
 
 
-def _plain(unit: Any) -> Any:
-    return plain_unit(unit) if isinstance(unit, str) else unit
-
-
-SetPointUnit: TypeAlias = Annotated[Literal["V", "mA", "%", "rpm"], BeforeValidator(_plain)]
+SetPointUnit: TypeAlias = Annotated[Literal["V", "mA", "%", "rpm"], PLAIN_UNIT]
 
 
 class SetPointSensor(Settings):

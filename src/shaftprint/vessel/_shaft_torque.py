@@ -6,12 +6,13 @@ from typing import Annotated, Any, Literal, Self, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import BeforeValidator, Field, ValidationError, model_validator
+from pydantic import Field, ValidationError, model_validator
 
 from shaftprint.arrays import FloatArray
 from shaftprint.settings import Name, NotNegativeNumber, Number, PositiveNumber, Settings
-from shaftprint.units import MILLI, NM_PER_UNIT, plain_unit
+from shaftprint.units import MILLI, NM_PER_UNIT
 from shaftprint.vessel._current_loop import ALIVE_MA
+from shaftprint.vessel._plain_unit import PLAIN_UNIT, as_plain_unit
 from shaftprint.vessel._usual import GAUGE_SCALE_STD, GAUGE_ZERO_SHARE, LATENCY_STD_S
 
 # A gauge whose channel is in kN m has a scale of about 1000 N m a unit; this much less is a forgotten factor.
@@ -26,11 +27,7 @@ _NEAR = 1.3
 _SAME_SCALE = 1e-6
 
 
-def _plain(unit: Any) -> Any:
-    return plain_unit(unit) if isinstance(unit, str) else unit
-
-
-TorqueUnit: TypeAlias = Annotated[Literal["V", "mA", "%", "mV/V", "N m", "kN m"], BeforeValidator(_plain)]
+TorqueUnit: TypeAlias = Annotated[Literal["V", "mA", "%", "mV/V", "N m", "kN m"], PLAIN_UNIT]
 
 
 class GaugedShaft(Settings):
@@ -113,7 +110,7 @@ class ShaftTorqueSensor(Settings):
         """Fill in the scale where unit or shaft tell it."""
         if not isinstance(content, Mapping):
             return content
-        of_unit = NM_PER_UNIT.get(_plain(content.get("unit")))
+        of_unit = NM_PER_UNIT.get(as_plain_unit(content.get("unit")))
         of_shaft = _scale_of_shaft(content.get("shaft"))
         follows = of_unit if of_shaft is None else of_shaft
         if follows is None or "scale_nm_per_unit" in content:
