@@ -163,6 +163,18 @@ def test_dead_and_saturated_gauge(spoiled, vessel, campaign):
     )
 
 
+def test_crests_cut_off_below_the_stated_full_scale_are_no_dropouts(spoiled, vessel, campaign):
+    refused(
+        spoiled(M_s=lambda counts: np.minimum(counts, 13_504)),
+        vessel,
+        campaign,
+        r"channel M_s: expected a torque within full scale, found .*% of the samples saturated .*; check full_scale_nm",
+    )
+    found = prepare_signals(spoiled(M_s=lambda counts: np.minimum(counts, 13_850)), vessel, campaign)
+    assert found.findings[0].startswith("channel M_s reaches full scale from 4")
+    assert {repair.kind for repair in found.repairs} == {"saturated"}
+
+
 def test_a_few_clipped_crests_are_a_finding(spoiled, vessel, campaign):
     sensors = vessel.sensors.model_copy(
         update={"shaft_torque": vessel.sensors.shaft_torque.model_copy(update={"full_scale_nm": 2165.0})}

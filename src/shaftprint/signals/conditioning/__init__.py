@@ -1,6 +1,7 @@
 """What is done to a channel before it is a signal: outliers, repairs, decimation, and the thesis' own way."""
 
 from shaftprint.signals.conditioning._condition import Reading, conditioned
+from shaftprint.signals.conditioning._cut_off import CutOff
 from shaftprint.signals.conditioning._decimate import SampleGrid, decimated, filter_grid, low_pass_taps
 from shaftprint.signals.conditioning._outliers import (
     GOOD,
@@ -22,6 +23,7 @@ __all__ = [
     "HOLD",
     "RAIL",
     "SPIKE",
+    "CutOff",
     "FaultLimits",
     "Patcher",
     "Reading",

@@ -1,13 +1,17 @@
 """A continuous channel from raw counts to its unit on the grid: faults replaced, rate lowered."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from shaftprint.arrays import FloatArray
-from shaftprint.signals._channels import Advance, blocks
+from shaftprint.signals._channels import Advance, Counts, blocks
 from shaftprint.signals._gaps import Gap, bridge, clock_gaps
 from shaftprint.signals._signals import Repair
+from shaftprint.signals.conditioning._cut_off import CutOff
 from shaftprint.signals.conditioning._decimate import SampleGrid, decimated, reach_samples
 from shaftprint.signals.conditioning._outliers import FaultLimits, flagged
 from shaftprint.signals.conditioning._patch import Patcher
@@ -66,8 +70,19 @@ def conditioned(
     thesis = mode == "thesis"
     repairs: list[Repair] = []
     patcher = Patcher(channel=channel, limits=limits, mean_of_neighbours=thesis, repairs=repairs)
-    samples = patcher.patched(flagged(blocks(channel, block_samples, advance), limits))
+    ends = CutOff(-1), CutOff(1)
+    codes = flagged(blocks(channel, block_samples, advance), limits)
+    samples = patcher.patched(_watched(codes, ends) if limits.hold_samples else codes)
     values = previous_neighbours(samples, grid) if thesis else decimated(samples, grid, channel=channel.name)
+    lowest, highest = (end.level(limits.hold_samples) for end in ends)
+    if lowest is not None or highest is not None:
+        # read again: with rails there, crests that are cut off are no telemetry that holds its value
+        rails = replace(
+            limits,
+            lowest=limits.lowest if lowest is None else lowest,
+            highest=limits.highest if highest is None else highest,
+        )
+        return conditioned(channel, rails, grid, mode=mode, block_samples=block_samples)
     values *= channel.scale
     values += channel.offset
     gaps = [*patcher.gaps, *clock_gaps(channel)]
@@ -77,3 +92,13 @@ def conditioned(
     rate_hz = channel.rate_hz / grid.step
     bridge(values, reaching, start_s=channel.start_s + grid.first / channel.rate_hz, rate_hz=rate_hz)
     return Reading(values=values, repairs=repairs, gaps=tuple(reaching))
+
+
+def _watched(
+    samples: Iterable[tuple[Counts, NDArray[np.uint8]]], ends: Iterable[CutOff]
+) -> Iterator[tuple[Counts, NDArray[np.uint8]]]:
+    """Yield the samples again; the ends of the channel see them go by."""
+    for counts, codes in samples:
+        for end in ends:
+            end.add(counts, codes)
+        yield counts, codes
