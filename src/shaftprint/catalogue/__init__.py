@@ -3,6 +3,7 @@
 The language in which they are written, blocks and structures, is ``models``; symbols and signs are explained there.
 """
 
+from shaftprint.catalogue._drives import DRIVES, SIGNAL_MEANINGS, SIGNAL_UNITS
 from shaftprint.catalogue._gauge import gauge_governor, gauge_line
 from shaftprint.catalogue._known_propeller import KnownPropeller, with_known_propeller
 from shaftprint.catalogue._limited import limited
@@ -18,7 +19,10 @@ from shaftprint.catalogue._two_masses import two_mass_line
 
 __all__ = [
     "AHEAD_S",
+    "DRIVES",
     "ROLES",
+    "SIGNAL_MEANINGS",
+    "SIGNAL_UNITS",
     "STRUCTURES",
     "THESIS_VALUES",
     "Family",

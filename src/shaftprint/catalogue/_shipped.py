@@ -1,10 +1,11 @@
-"""Every structure that comes with the package by its name: those of the catalogue, and those with limits.
+"""Every structure that comes with the package by its name: those of the catalogue, with limits, and of drives.
 
 The gauge-aware closed loop with limits is named by these: ``GAUGE-QUADRATIC``, ``GAUGE-TORQUE-RATE``.
 """
 
 from functools import cache
 
+from shaftprint.catalogue._drives import DRIVES
 from shaftprint.catalogue._limited import limited
 from shaftprint.catalogue._roles import ShipRole
 from shaftprint.catalogue._thesis import STRUCTURES, structure
@@ -23,7 +24,8 @@ def shipped_structure(name: str) -> Structure:
     StructureError
         If there is none of that name, or its limits do not go together.
     """
-    return _limited_structure(name) or structure(name)
+    drive = DRIVES.get(name.upper())
+    return drive() if drive is not None else _limited_structure(name) or structure(name)
 
 
 def _limited_structure(name: str) -> Structure | None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import NewType
 
-from shaftprint.catalogue import STRUCTURES, shipped_structure
+from shaftprint.catalogue import DRIVES, STRUCTURES, shipped_structure
 from shaftprint.errors import ShaftprintError, StructureError
 from shaftprint.fingerprint import Fingerprint, named_structure
 from shaftprint.models import Structure, check_structure
@@ -133,7 +133,7 @@ def _taken(module: ModuleType, path: Path, name: str) -> Structure:
         raise StructureError(f"{path}:{name}: expected a Structure, found {type(structure).__name__}.")
     with _one_sentence(path, prefix=f"{path}:{name}"):
         check_structure(structure)
-    if structure.name.upper() in STRUCTURES:
+    if structure.name.upper() in (*STRUCTURES, *DRIVES):
         raise StructureError(
             f"{path}:{name}: its name {structure.name} is that of a shipped structure; give it its own, with "
             'dataclasses.replace(structure, name="...").'

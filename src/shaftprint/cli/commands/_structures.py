@@ -2,7 +2,7 @@
 
 import click
 
-from shaftprint.catalogue import STRUCTURES
+from shaftprint.catalogue import DRIVES, STRUCTURES
 from shaftprint.cli._own_structure import TypedName, chosen_structures
 from shaftprint.cli._terminal import echo, say
 from shaftprint.cli.output import give, print_table
@@ -18,7 +18,7 @@ def command(names: tuple[TypedName, ...]) -> None:
     With one or more NAMEs only those. A NAME such as my_ship.py:my_loop is a structure in a file of your
     own, which is Python and is run. Held parameters keep their value unless they are freed.
     """
-    structures = chosen_structures(names or tuple(map(TypedName, STRUCTURES)))
+    structures = chosen_structures(names or tuple(map(TypedName, (*STRUCTURES, *DRIVES))))
     give("parameters", {chosen.name: chosen.parameters for chosen in structures})
     for chosen in structures:
         print_table(_parameter_table(chosen))

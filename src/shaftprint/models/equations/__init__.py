@@ -15,6 +15,7 @@ from shaftprint.models.equations._formula import (
     number,
     table,
 )
+from shaftprint.models.equations._friction import backlash, coulomb_friction, stribeck_friction
 from shaftprint.models.equations._limits import (
     Governed,
     deadband,
@@ -35,10 +36,12 @@ __all__ = [
     "Past",
     "Ratio",
     "as_formula",
+    "backlash",
     "boosted",
     "choose",
     "clip",
     "coefficients",
+    "coulomb_friction",
     "deadband",
     "depends",
     "derivative",
@@ -59,6 +62,7 @@ __all__ = [
     "rebuilt",
     "replaced",
     "second_order_lag",
+    "stribeck_friction",
     "swept",
     "table",
     "total",

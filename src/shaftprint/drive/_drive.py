@@ -1,0 +1,119 @@
+"""The noun of the room: a drive as its file describes it."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from shaftprint.arguments import refusing_none
+from shaftprint.drive._blocks import Block, FreeParameter
+from shaftprint.drive._signals import KnownParameter, SearchedParameter, Signal, StartState, Stretch
+from shaftprint.errors import SettingsError
+from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.settings import Name, PositiveNumber, Settings, read_settings
+
+
+class FitWay(Settings):
+    """How records are compared with the structure."""
+
+    start: Literal["steady", "found", "known"] = "steady"
+    """How a record begins: in steady running at its first inputs, in states that are found, in those of ``start``."""
+    offset: Literal["none", "constant", "drift"] = "constant"
+    """What the sensors of the outputs may add: nothing, a constant that is found, or a line in time."""
+    inputs_hold: Annotated[bool, Field(strict=True)] = False
+    """Whether inputs hold from sample to sample, as those of a computer, instead of going straight."""
+    longest_step_s: PositiveNumber | None = None
+    """Longest step of the simulation [s]; a quarter of the time between samples where not given."""
+
+
+class Drive(Shown, Settings):
+    """A line that is no ship's: its signals, its structure, and what is known of it."""
+
+    name: Name
+    """Name of the drive."""
+    structure: Name | None = None
+    """Name of a shipped structure, such as ``MOTOR``; none where blocks are composed, or the command names one."""
+    inputs: tuple[Signal, ...]
+    """What drives it."""
+    outputs: tuple[Signal, ...]
+    """What was measured of its motion."""
+    known: tuple[KnownParameter, ...] = ()
+    """Parameters that are known, exactly or with a standard deviation."""
+    searched: tuple[SearchedParameter, ...] = ()
+    """Parameters that are free between other bounds than those of the structure, or free although usually held."""
+    start: tuple[StartState, ...] = ()
+    """States at the start of every record; those that are not named are zero."""
+    records: tuple[Stretch, ...] = ()
+    """Parts of each recording that are records; the whole recording where none is named."""
+    blocks: tuple[Block, ...] = ()
+    """Blocks that make the structure."""
+    parameters: tuple[FreeParameter, ...] = ()
+    """Parameters of these blocks."""
+    fit: FitWay = FitWay()
+    """How records are compared with the structure."""
+
+    def summary(self) -> Summary:
+        """Return structure, signals and what is known."""
+        facts = {
+            "structure": self.structure or ("composed of blocks" if self.blocks else "given with the command"),
+            "inputs": shortened(f"{one.name} from {one.channel} [{one.unit}]" for one in self.inputs),
+            "outputs": shortened(f"{one.name} from {one.channel} [{one.unit}]" for one in self.outputs),
+            "known": shortened(f"{one.name} = {one.value:g} ± {one.std:g}" for one in self.known),
+            "records": shortened(one.name for one in self.records),
+        }
+        return Summary(title=f"Drive {self.name}", facts=facts)
+
+    @property
+    def signals(self) -> tuple[Signal, ...]:
+        """All signals, inputs first."""
+        return (*self.inputs, *self.outputs)
+
+    @model_validator(mode="after")
+    def _belongs_together(self) -> Self:
+        tables: dict[str, list[str]] = {
+            "inputs and outputs": [one.name for one in self.signals],
+            "known and searched": [*(one.name for one in self.known), *(one.name for one in self.searched)],
+            "start": [one.name for one in self.start],
+            "records": [one.name for one in self.records],
+            "parameters": [one.name for one in self.parameters],
+            "blocks (output)": [one.output for one in self.blocks],
+        }
+        errors = [
+            f"expected every row of {table} to have its own name, found {', '.join(twice)} twice."
+            for table, names in tables.items()
+            if (twice := _twice(names))
+        ]
+        # a row that cannot be used is not counted by pydantic, so that a least number would be told beside it
+        errors += [
+            f"expected one row of {name} or more, found none."
+            for name in ("inputs", "outputs")
+            if not getattr(self, name)
+        ]
+        if self.structure is not None and self.blocks:
+            errors.append(f'expected structure or [[blocks]], found structure = "{self.structure}" and blocks.')
+        if self.parameters and not self.blocks:
+            errors.append(
+                "expected [[parameters]] beside [[blocks]] only; of a structure write [[known]], [[searched]]."
+            )
+        if bool(self.start) != (self.fit.start == "known"):
+            errors.append('expected [[start]] and fit.start = "known" together, found one of them alone.')
+        if errors:
+            raise ValueError(" ".join(errors))
+        return self
+
+
+def _twice(names: Sequence[str]) -> list[str]:
+    return sorted({name for name in names if names.count(name) > 1})
+
+
+@refusing_none(SettingsError)
+def load_drive(path: str | Path) -> Drive:
+    """Read a drive file.
+
+    Raises
+    ------
+    SettingsError
+        If the file cannot be used; the message lists every field that is wrong.
+    """
+    return read_settings(path, Drive)

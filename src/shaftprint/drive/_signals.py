@@ -1,0 +1,78 @@
+"""Rows of a drive file: signals, known and searched parameters, the start, stretches of a recording."""
+
+from typing import Annotated, Self
+
+from pydantic import Field, model_validator
+
+from shaftprint.settings import Name, NotNegativeNumber, Number, Settings
+
+Text = Annotated[str, Field(strict=True)]
+
+
+class Signal(Settings):
+    """An input or an output of the drive, and the channel that holds it."""
+
+    name: Name
+    """What the structure calls it, such as ``omega``."""
+    channel: Name
+    """Name of the channel in the recording."""
+    unit: Name
+    """Unit of the channel."""
+    meaning: Text = ""
+    """What it is, in words."""
+
+
+class KnownParameter(Settings):
+    """A parameter of which something is known before the test."""
+
+    name: Name
+    """Name of the parameter."""
+    value: Number
+    """Its value, in the unit of the parameter."""
+    std: NotNegativeNumber = 0.0
+    """Standard deviation of the value; the parameter is held where it is 0 or not given."""
+    unit: Name | None = None
+    """Unit of the value, to be checked; that of the parameter where not given."""
+
+
+class SearchedParameter(Settings):
+    """Bounds between which a parameter is searched, instead of those of the structure."""
+
+    name: Name
+    """Name of the parameter."""
+    lower: Number
+    """Lower bound, in the unit of the parameter."""
+    upper: Number
+    """Upper bound."""
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if not self.lower < self.upper:
+            raise ValueError(f"expected lower below upper, found {self.lower:g} and {self.upper:g}.")
+        return self
+
+
+class StartState(Settings):
+    """The value of a state of the equations at the start of every record."""
+
+    name: Name
+    """What the equations call the state, such as ``theta``."""
+    value: Number
+    """Its value, in the units of the structure."""
+
+
+class Stretch(Settings):
+    """A part of a recording that is a record of its own."""
+
+    name: Name
+    """What was done, such as ``coast down``."""
+    from_s: Number
+    """Its first second, in seconds of the recording."""
+    to_s: Number
+    """Its last second."""
+
+    @model_validator(mode="after")
+    def _in_order(self) -> Self:
+        if not self.from_s < self.to_s:
+            raise ValueError(f"expected from_s before to_s, found {self.from_s:g} and {self.to_s:g}.")
+        return self
