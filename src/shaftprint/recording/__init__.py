@@ -17,7 +17,7 @@ from shaftprint.recording._cut import cut
 from shaftprint.recording._from_arrays import Samples, recording_from_arrays
 from shaftprint.recording._level_watch import LevelWatch, watch_levels
 from shaftprint.recording._levels import Levels
-from shaftprint.recording._messages import Messages, judge_messages, messages_of
+from shaftprint.recording._messages import Messages, judge_messages, messages_of, stamped_values
 from shaftprint.recording._read import read_recording
 from shaftprint.recording._recording import CLOCK_MAPS, Recording
 from shaftprint.recording._write import write_recording
@@ -54,6 +54,7 @@ __all__ = [
     "messages_of",
     "read_recording",
     "recording_from_arrays",
+    "stamped_values",
     "watch_levels",
     "write_by_ending",
     "write_csv",

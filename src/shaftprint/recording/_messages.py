@@ -80,11 +80,22 @@ def judge_messages(channel: Channel) -> Messages:
     RecordingError
         If the file cannot be read.
     """
-    count = min(channel.count, _MOST_JUDGED)
-    blocks = [(start, min(start + BLOCK_SAMPLES, count)) for start in range(0, count, BLOCK_SAMPLES)]
-    values = np.concatenate([channel.values(*block) for block in blocks] or [np.empty(0)])
-    time_s = np.concatenate([channel.stamps_s(*block) for block in blocks] or [np.empty(0)])
+    time_s, values = stamped_values(channel, count=min(channel.count, _MOST_JUDGED))
     return messages_of(time_s, values, period_s=1.0 / channel.rate_hz)
+
+
+def stamped_values(channel: Channel, *, count: int) -> tuple[FloatArray, FloatArray]:
+    """Return so many samples of a channel with ``stamps`` from the first on: their times [s] and values, (count,) each.
+
+    Raises
+    ------
+    RecordingError
+        If the file cannot be read.
+    """
+    blocks = [(start, min(start + BLOCK_SAMPLES, count)) for start in range(0, count, BLOCK_SAMPLES)]
+    time_s = np.concatenate([channel.stamps_s(*block) for block in blocks] or [np.empty(0)])
+    values = np.concatenate([channel.values(*block) for block in blocks] or [np.empty(0)])
+    return time_s, values
 
 
 def messages_of(time_s: FloatArray, values: FloatArray, *, period_s: float) -> Messages:

@@ -230,9 +230,8 @@ def _angles(channel: "Channel", sensor: SpeedSensor, whole: float | None) -> _An
 def _message_angles(channel: "Channel", sensor: SpeedSensor, whole: float | None) -> _Angles:
     """Return the angles of messages at their own times."""
     messages = read_messages(channel)
-    # two messages at one time give no spline
-    time_s, first = np.unique(messages.time_s, return_index=True)
-    step = wrapped(np.diff(messages.values[first]), whole)
+    time_s, angles = messages.for_spline(latency_s=0.0)
+    step = wrapped(np.diff(angles), whole)
     angle_rev = sensor.rev_per_unit * np.concatenate([np.zeros(1), np.cumsum(step, dtype=np.float64)])
     return _Angles(time_s, angle_rev, messages.gaps, messages.findings)
 

@@ -112,12 +112,11 @@ def _splined_messages(channel: "Channel", limits: FaultLimits, clock: "Clock", l
     """Return messages at times of their own, in their own unit on the grid."""
     ends = sorted(end * channel.scale + channel.offset for end in (limits.lowest, limits.highest))
     messages = read_messages(channel, lowest=ends[0], highest=ends[1])
-    # two messages at one time give no spline
-    time_s, first = np.unique(messages.time_s - latency_s, return_index=True)
+    time_s, values = messages.for_spline(latency_s=latency_s)
     if time_s.size < _FEWEST_MESSAGES:
         raise _no_numbers(channel)
     grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
-    on_grid = scipy.interpolate.CubicSpline(time_s, messages.values[first])(grid_s.clip(time_s[0], time_s[-1]))
+    on_grid = scipy.interpolate.CubicSpline(time_s, values)(grid_s.clip(time_s[0], time_s[-1]))
     gaps = tuple(replace(gap, reach_s=REACH_VALUES / channel.rate_hz) for gap in messages.gaps)
     bridge(on_grid, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)
     return replace(messages, values=on_grid, gaps=gaps)

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray
-from shaftprint.recording import Messages, messages_of
-from shaftprint.signals._channels import DEFAULT_BLOCK_SAMPLES
+from shaftprint.recording import Messages, messages_of, stamped_values
 from shaftprint.signals._gaps import Gap
 from shaftprint.signals.conditioning import Reading
 
@@ -24,6 +23,14 @@ class MessageReading(Reading):
     messages: Messages
     """What they tell of their sender."""
 
+    def for_spline(self, *, latency_s: float) -> tuple[FloatArray, FloatArray]:
+        """Return times, so much earlier [s], and values, (messages,) each, without the later of two at one time.
+
+        Messages at one time give no spline.
+        """
+        time_s, first = np.unique(self.time_s - latency_s, return_index=True)
+        return time_s, self.values[first]
+
 
 def read_messages(channel: "Channel", *, lowest: float = -np.inf, highest: float = np.inf) -> MessageReading:
     """Return the messages of a channel that hold a value, with the holes between them.
@@ -35,10 +42,7 @@ def read_messages(channel: "Channel", *, lowest: float = -np.inf, highest: float
     lowest, highest
         Smallest and largest value [unit]: what is beyond says that there is none.
     """
-    blocks = range(0, channel.count, DEFAULT_BLOCK_SAMPLES)
-    spans = [(start, min(start + DEFAULT_BLOCK_SAMPLES, channel.count)) for start in blocks]
-    values = np.concatenate([channel.values(*span) for span in spans])
-    time_s = np.concatenate([channel.stamps_s(*span) for span in spans])
+    time_s, values = stamped_values(channel, count=channel.count)
     # written so that what is not a number counts as missing
     is_value = (values >= lowest) & (values <= highest) & np.isfinite(values)
     values, time_s = values[is_value], time_s[is_value]
