@@ -1,7 +1,7 @@
 """Several recordings as one: of loggers that ran side by side, or of parts that follow one another."""
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -142,17 +142,8 @@ def _chain(parts: Sequence[tuple[Recording, Channel]], follow_on: bool) -> Chann
                 "follow on where each file begins at zero."
             )
         counts.append(channel.count)
-    edges = np.cumsum([0, *counts])
-
-    def source(start: int, stop: int) -> NDArray[Any]:
-        pieces = [
-            channel.read(max(start - begin, 0), min(stop - begin, channel.count))
-            for begin, (_, channel) in zip(edges, parts, strict=False)
-            if begin < stop and begin + channel.count > start
-        ]
-        return np.concatenate(pieces) if pieces else first.read(0, 0)
-
-    return replace(first, count=int(edges[-1]), source=source)
+    channels = [channel for _, channel in parts]
+    return replace(first, count=sum(counts), source=partial(_pieces, channels, Channel.read))
 
 
 def _chain_of_messages(parts: Sequence[tuple[Recording, Channel]], follow_on: bool) -> Channel:
@@ -169,23 +160,26 @@ def _chain_of_messages(parts: Sequence[tuple[Recording, Channel]], follow_on: bo
                 f"before it ends, found {start_s:.4f} s; say that the parts follow on where each file begins at zero."
             )
         moved.append(channel.on_other_clock(start_s=start_s, rate_hz=channel.rate_hz))
-    edges = np.cumsum([0, *(channel.count for channel in moved)])
-
-    def pieces(of: str, start: int, stop: int) -> NDArray[Any]:
-        chosen = [
-            getattr(channel, of)(max(start - begin, 0), min(stop - begin, channel.count))
-            for begin, channel in zip(edges, moved, strict=False)
-            if begin < stop and begin + channel.count > start
-        ]
-        return np.concatenate(chosen) if chosen else getattr(first, of)(0, 0)
-
     return replace(
         first,
-        count=int(edges[-1]),
-        source=partial(pieces, "read"),
-        stamps=partial(pieces, "stamps_s"),
+        count=sum(channel.count for channel in moved),
+        source=partial(_pieces, moved, Channel.read),
+        stamps=partial(_pieces, moved, Channel.stamps_s),
         is_uneven=True,
     )
+
+
+def _pieces(
+    channels: Sequence[Channel], read: Callable[[Channel, int, int], NDArray[Any]], start: int, stop: int
+) -> NDArray[Any]:
+    """Return what is read of samples [start, stop) of channels that follow one another."""
+    begins = np.cumsum([0, *(channel.count for channel in channels)])
+    chosen = [
+        read(channel, max(start - begin, 0), min(stop - begin, channel.count))
+        for begin, channel in zip(begins, channels, strict=False)
+        if begin < stop and begin + channel.count > start
+    ]
+    return np.concatenate(chosen) if chosen else read(channels[0], 0, 0)
 
 
 def _expect_same(recording: Recording, channel: Channel, first: Channel, same_rate: float = SAME_RATE) -> None:
