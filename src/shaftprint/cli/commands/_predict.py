@@ -104,16 +104,18 @@ def command(
     """
     (chosen,) = chosen_structures([name])
     chosen = chosen.held_at(**dict(held))
+    known = None
     if vessel is not None:
-        print_disagreements(load_vessel(vessel), vessel)
+        known = load_vessel(vessel)
+        print_disagreements(known, vessel)
     planned = load_campaign(campaign)
     _expect_free(freed, chosen)
     if recording is not None:
-        if vessel is None:
+        if known is None:
             raise click.UsageError("--from needs --vessel, which says what is in the recording.")
-        ship = _recorded(recording, vessel, recorded or campaign, chosen, planned, no_progress=no_progress)
+        ship = _recorded(recording, known, recorded or planned, chosen, planned, no_progress=no_progress)
     else:
-        ship = _assumed(vessel, rpm_per_volt, chosen, planned)
+        ship = _assumed(known, rpm_per_volt, chosen, planned)
     assumed_priors = {
         parameter: prior for parameter, prior in (dict(ship.priors) | dict(priors)).items() if parameter not in freed
     }
@@ -155,7 +157,7 @@ def _expect_free(freed: tuple[str, ...], chosen: Structure) -> None:
 
 
 def _recorded(
-    path: Path, vessel: str, campaign: str, chosen: Structure, planned: Campaign, *, no_progress: bool
+    path: Path, vessel: Vessel, campaign: str | Campaign, chosen: Structure, planned: Campaign, *, no_progress: bool
 ) -> _Ship:
     """Return what a recording tells of the noise, and what it and the vessel file know."""
     trial = load_trial(vessel, campaign)
@@ -179,9 +181,9 @@ def _recorded(
     )
 
 
-def _assumed(vessel: str | None, rpm_per_volt: float | None, chosen: Structure, planned: Campaign) -> _Ship:
+def _assumed(ship: Vessel | None, rpm_per_volt: float | None, chosen: Structure, planned: Campaign) -> _Ship:
     """Return the noise of the Stan Tug, and what the vessel file knows where there is one."""
-    if vessel is None:
+    if ship is None:
         if rpm_per_volt is not None:
             raise click.UsageError("--rpm-per-volt needs --vessel, which says at what speed.")
         # with less voltage the tug goes faster; its speed plays no part without a vessel
@@ -192,7 +194,6 @@ def _assumed(vessel: str | None, rpm_per_volt: float | None, chosen: Structure, 
             slope_rpm_per_v=-1.0,
             words="noise of the Stan Tug 1205 assumed",
         )
-    ship = load_vessel(vessel)
     speed_rpm = ship.working_point.engine_speed_rpm
     slope = -STAN_TUG_NOISE.set_point_per_v * speed_rpm if rpm_per_volt is None else rpm_per_volt
     noise = replace(STAN_TUG_NOISE, set_point_per_v=abs(slope) / speed_rpm)
