@@ -32,7 +32,7 @@ def reading_of(path, wheel, *, edge="rising", duration_s=40.0):
         return read_pick_up(
             channel,
             SpeedSensor(name="n", channel=channel.name, shaft="engine", unit="V", edge=edge, **teeth),
-            gear_ratio=1.0,
+            engine_over_shaft=1.0,
             mode="shaftprint",
             start_s=0.0,
             rate_hz=200.0,

@@ -34,7 +34,7 @@ def reading_of(volts, wheel, make_channel, *, rate_hz, edge="rising", mode="shaf
     return read_pick_up(
         make_channel(volts, name="P", rate_hz=rate_hz),
         sensor(wheel, edge),
-        gear_ratio=1.0,
+        engine_over_shaft=1.0,
         mode=mode,
         start_s=0.0,
         rate_hz=200.0,

@@ -13,6 +13,12 @@ def tug():
     return load_vessel("stan-tug-1205")
 
 
+def test_the_engine_turns_3_82_times_as_fast_as_the_propeller(tug):
+    gearbox = tug.gearbox
+    assert (gearbox.engine_over("engine"), gearbox.engine_over("propeller")) == (1.0, 3.82)
+    assert (gearbox.over_propeller("engine"), gearbox.over_propeller("propeller")) == (3.82, 1.0)
+
+
 def test_inertias_add_up_to_the_printed_totals(tug):
     table = [row for row in tug.inertia if row.name not in ("Entrained water", "Propeller shaft")]
     assert len(table) == 19

@@ -76,7 +76,7 @@ def content_of(channel: "Channel", sensor: "SpeedSensor | None" = None, *, rate_
         values = read_pick_up(
             channel,
             pulses,
-            gear_ratio=1.0,
+            engine_over_shaft=1.0,
             mode="shaftprint",
             start_s=channel.start_s,
             rate_hz=rate_hz,

@@ -67,8 +67,7 @@ def _agree(
 
 def _engine_speed(sensor: "SpeedSensor", pulses: PulseReport, vessel: "Vessel") -> float:
     """Return the engine speed [rev/s]."""
-    ratio = vessel.gearbox.ratio if sensor.shaft == "propeller" else 1.0
-    return ratio * pulses.per_second / sensor.pulses_per_revolution
+    return vessel.gearbox.engine_over(sensor.shaft) * pulses.per_second / sensor.pulses_per_revolution
 
 
 def _moved(channels: Sequence[str], order: Sequence[str]) -> int:

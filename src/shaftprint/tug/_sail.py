@@ -179,7 +179,7 @@ class _Crew:
         for sensor in vessel.sensors.speed:
             if not sensor.gives_pulses:
                 continue
-            turns_hz = highest_rpm / 60.0 / (vessel.gearbox.ratio if sensor.shaft == "propeller" else 1.0)
+            turns_hz = highest_rpm / 60.0 / vessel.gearbox.engine_over(sensor.shaft)
             if self._rate_hz < SAMPLES_A_TOOTH * sensor.toothed.closest * turns_hz:
                 raise SettingsError(
                     f"vessel {vessel.name}: expected a logger of {sensor.toothed.least_rate_hz(turns_hz):g} Hz or more "

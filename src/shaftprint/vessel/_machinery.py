@@ -2,7 +2,7 @@
 
 import math
 from itertools import pairwise
-from typing import Annotated, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
@@ -90,6 +90,14 @@ class Gearbox(Settings):
     """Power out over power in, from engine flange to torque gauge."""
     propeller_rated_rpm: PositiveNumber | None = None
     """Speed of the propeller shaft at rated engine speed as the papers state it [rpm]; the ratio is held against it."""
+
+    def engine_over(self, shaft: Literal["engine", "propeller"]) -> float:
+        """Return the speed of the engine over that of a shaft."""
+        return self.ratio if shaft == "propeller" else 1.0
+
+    def over_propeller(self, shaft: Literal["engine", "propeller"]) -> float:
+        """Return the speed of a shaft over that of the propeller shaft."""
+        return self.ratio if shaft == "engine" else 1.0
 
 
 class Propeller(Settings):

@@ -47,7 +47,7 @@ def read_encoder(source: Source[SpeedSensor], clock: "Clock") -> SpeedReading:
         sample, or its counts are fewer than the samples of the grid.
     """
     channel, sensor = source.channel, source.sensor
-    ratio = source.vessel.gearbox.ratio if sensor.shaft == "propeller" else 1.0
+    ratio = source.vessel.gearbox.engine_over(sensor.shaft)
     # what turns too fast comes back as slow: what the recording shows is not enough
     turns_hz = rev_s_from_rpm(source.vessel.working_point.engine_speed_rpm) / ratio
     whole = range_of_small_steps(channel, sensor, turns_hz)

@@ -30,7 +30,9 @@ _AT_ZERO = 0.02
 _FEWEST_MESSAGES = 4
 
 
-def read_instrument(channel: "Channel", sensor: SpeedSensor, clock: "Clock", *, gear_ratio: float) -> SpeedReading:
+def read_instrument(
+    channel: "Channel", sensor: SpeedSensor, clock: "Clock", *, engine_over_shaft: float
+) -> SpeedReading:
     """Return the engine-side speed of an instrument on the grid.
 
     Parameters
@@ -39,8 +41,8 @@ def read_instrument(channel: "Channel", sensor: SpeedSensor, clock: "Clock", *, 
         The channel and what the vessel file says about it.
     clock
         The grid.
-    gear_ratio
-        Engine speed over propeller-shaft speed.
+    engine_over_shaft
+        Speed of the engine over that of the sensor's shaft.
 
     Raises
     ------
@@ -59,7 +61,7 @@ def read_instrument(channel: "Channel", sensor: SpeedSensor, clock: "Clock", *, 
         )
     else:
         reading = _splined(channel, sensor, clock, latency_s)
-    speed = sensor.speed_rev_s(reading.values) * (gear_ratio if sensor.shaft == "propeller" else 1.0)
+    speed = engine_over_shaft * sensor.speed_rev_s(reading.values)
     if not speed.mean() > 0.0:
         raise SignalError(
             f"channel {channel.name}: expected a speed ahead, found a mean of {60.0 * speed.mean():.4g} rpm at the "

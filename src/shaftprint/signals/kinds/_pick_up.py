@@ -85,15 +85,15 @@ class Speed(ChannelKind[SpeedSensor]):
         vessel, wheel = source.vessel, source.sensor.toothed
         if source.sensor.gives_angle:
             return read_encoder(source, clock)
+        ratio = vessel.gearbox.engine_over(source.sensor.shaft)
         if not source.sensor.gives_pulses:
-            return read_instrument(source.channel, source.sensor, clock, gear_ratio=vessel.gearbox.ratio)
-        ratio = vessel.gearbox.ratio if source.sensor.shaft == "propeller" else 1.0
+            return read_instrument(source.channel, source.sensor, clock, engine_over_shaft=ratio)
         # teeth that pass too fast come back as slow ones: what the recording shows is not enough
         expect_samples(source.channel, wheel, rev_s_from_rpm(vessel.working_point.engine_speed_rpm) / ratio)
         return read_pick_up(
             source.channel,
             source.sensor,
-            gear_ratio=source.vessel.gearbox.ratio,
+            engine_over_shaft=ratio,
             mode=clock.mode,
             start_s=clock.start_s,
             rate_hz=clock.rate_hz,
@@ -128,7 +128,7 @@ def read_pick_up(
     channel: "Channel",
     sensor: SpeedSensor,
     *,
-    gear_ratio: float,
+    engine_over_shaft: float,
     mode: Literal["shaftprint", "thesis"],
     start_s: float,
     rate_hz: float,
@@ -142,8 +142,8 @@ def read_pick_up(
     ----------
     channel, sensor
         The pulse channel and what the vessel file says about it.
-    gear_ratio
-        Engine speed over propeller-shaft speed.
+    engine_over_shaft
+        Speed of the engine over that of the sensor's shaft.
     mode
         ``"thesis"``: pulse periods between whole samples, strip angles left in.
     start_s, rate_hz, count
@@ -164,7 +164,6 @@ def read_pick_up(
     train, strips = numbered_strips(edges, sensor)
     expect_samples(channel, wheel, fastest_turns_hz(channel, train, wheel))
     gaps = pulse_gaps(channel, train, sensor.pulses_per_revolution)
-    ratio = gear_ratio if sensor.shaft == "propeller" else 1.0
     time_s = time_of_edges(channel, train.position)
     seconds, pulses = _counted(train, time_s, gaps)
     turn_s = seconds / (pulses / sensor.pulses_per_revolution)
@@ -178,7 +177,7 @@ def read_pick_up(
         speed = speed_on_grid(time_s, angle, start_s=start_s, rate_hz=rate_hz, count=count, channel=channel.name)
         period = 0.0
     bridge(speed, gaps, start_s=start_s, rate_hz=rate_hz)
-    speed *= ratio
+    speed *= engine_over_shaft
     return PulseReading(
         name=sensor.name,
         channel=channel.name,

@@ -34,7 +34,7 @@ class Encoder:
                 f"vessel {vessel.name}: expected rolls_over_at of at most {_VALUES} counts for channel "
                 f"{sensor.channel}, which is simulated in 16 bits, found {whole:g}."
             )
-        self._turns = vessel.gearbox.ratio if sensor.shaft == "engine" else 1.0
+        self._turns = vessel.gearbox.over_propeller(sensor.shaft)
         self._counts_per_rev, self._counts = turn / self.scale, whole / self.scale
         self._phase_rev = float(rng.uniform())
         self._error_rev = tug.encoder_error_deg / 360.0

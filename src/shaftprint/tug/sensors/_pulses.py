@@ -139,7 +139,7 @@ class PickUp:
         counted = marked_edge if not sensor.toothed.extra else marked_edge[: -sensor.toothed.extra]
         self.angle_rev = np.diff(np.append(counted, 1.0 + counted[0]))
         """Angle from each strip or tooth that is counted to the next [rev], shape (strips,)."""
-        turns = vessel.gearbox.ratio if sensor.shaft == "engine" else 1.0
+        turns = vessel.gearbox.over_propeller(sensor.shaft)
         width = _pulse_width(sensor)
         middle = np.sort(marked_edge) + (0.5 * width if sensor.edge == "rising" else -0.5 * width)
         # at the start every strip is ahead: the first that passes is strip 1, 2, ... at random
@@ -218,7 +218,5 @@ def _pulse_width(sensor: SpeedSensor) -> float:
 
 def _most_pulses(sensor: SpeedSensor, vessel: Vessel, duration_s: float) -> int:
     """Return more pulses than can pass: the engine does not run 30 % above its rated speed."""
-    turns = 1.3 * vessel.engine.rated_speed_rpm / 60.0 * duration_s
-    if sensor.shaft == "propeller":
-        turns /= vessel.gearbox.ratio
+    turns = 1.3 * vessel.engine.rated_speed_rpm / 60.0 * duration_s / vessel.gearbox.engine_over(sensor.shaft)
     return int(turns * (sensor.pulses_per_revolution + sensor.toothed.extra)) + 16

@@ -26,7 +26,7 @@ class SpeedMeter:
         self, sensor: SpeedSensor, tug: Tug, vessel: Vessel, *, rate_hz: float, rng: np.random.Generator
     ) -> None:
         self.channel = sensor.channel
-        self._turns = vessel.gearbox.ratio if sensor.shaft == "engine" else 1.0
+        self._turns = vessel.gearbox.over_propeller(sensor.shaft)
         highest_rev_s = 1.3 * vessel.engine.rated_speed_rpm / 60.0 * self._turns / vessel.gearbox.ratio
         self._per_rev_s, self._at_rest = _line(sensor)
         self.offset = self._at_rest
@@ -69,7 +69,7 @@ class SpeedMessages:
         """Value of one count [rpm]."""
         self.times = MessageTimes(bus, cycle_s=cycle_s, rng=rng)
         """When its messages come."""
-        self._turns = vessel.gearbox.ratio if sensor.shaft == "engine" else 1.0
+        self._turns = vessel.gearbox.over_propeller(sensor.shaft)
         self._stream = MessageStream(self.times, latency_s=sensor.latency_s, rate_hz=rate_hz)
         self._first: float | None = None
 
