@@ -1,7 +1,5 @@
 """An encoder that shows the angle of a shaft: counts of its counter, or an angle in 16 bits."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +8,7 @@ from shaftprint.errors import SettingsError
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors._faults import Fault
+from shaftprint.tug.sensors._late import Late
 from shaftprint.vessel import SpeedSensor, Vessel
 
 # Values of a channel of 16 bits; the lowest stands for an angle of 0.
@@ -38,21 +37,14 @@ class Encoder:
         self._counts_per_rev, self._counts = turn / self.scale, whole / self.scale
         self._phase_rev = float(rng.uniform())
         self._error_rev = tug.encoder_error_deg / 360.0
-        self._rate_hz, self._late = rate_hz, sensor.latency_s * rate_hz
+        self._rate_hz, self._late = rate_hz, Late(sensor.latency_s * rate_hz)
         self._rng = rng
-        self._tail: FloatArray | None = None
 
     def next(self, stretch: Stretch) -> NDArray[np.int16]:
         """Return the counts of the next stretch, shape (steps,)."""
-        angle = self._turns * stretch.shaft_angle_rev
-        kept = math.ceil(self._late) + 1
-        if self._tail is None:
-            # before the start the line ran steadily
-            step = self._turns * stretch.shaft_speed_rev_s[0] / self._rate_hz
-            self._tail = angle[0] + step * np.arange(-kept, 0)
-        longer = np.concatenate([self._tail, angle])
-        self._tail = longer[-kept:]
-        shown = np.interp(kept + np.arange(angle.size) - self._late, np.arange(longer.size), longer)
+        # before the start the line ran steadily
+        step = self._turns * stretch.shaft_speed_rev_s[0] / self._rate_hz
+        shown = self._late.next(self._turns * stretch.shaft_angle_rev, before=step)
         shown += self._phase_rev + self._error_rev * self._rng.standard_normal(shown.size)
         counts: FloatArray = np.floor(shown * self._counts_per_rev) % self._counts
         return (counts + _LOWEST).astype(np.int16)

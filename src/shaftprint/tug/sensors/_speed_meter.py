@@ -10,6 +10,7 @@ from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors._bus import Bus, MessageStream, MessageTimes
 from shaftprint.tug.sensors._faults import Fault
+from shaftprint.tug.sensors._late import Late
 from shaftprint.vessel import SpeedSensor, Vessel
 
 # Counts at 30 % above rated speed, which no engine reaches.
@@ -34,19 +35,13 @@ class SpeedMeter:
         self.scale = self._per_rev_s * highest_rev_s / _HIGHEST_COUNT
         """Value of one count, in the unit of the channel."""
         self._noise_rev_s = tug.speed_meter_noise * highest_rev_s
-        self._late = sensor.latency_s * rate_hz
+        # before the start the line ran steadily
+        self._late = Late(sensor.latency_s * rate_hz)
         self._rng = rng
-        self._tail: FloatArray | None = None
 
     def next(self, stretch: Stretch) -> NDArray[np.int16]:
         """Return the counts of the next stretch, shape (steps,)."""
-        speed = self._turns * stretch.shaft_speed_rev_s
-        kept = math.ceil(self._late) + 1
-        # before the start the line ran steadily
-        tail = np.full(kept, speed[0]) if self._tail is None else self._tail
-        longer = np.concatenate([tail, speed])
-        self._tail = longer[-kept:]
-        shown = np.interp(kept + np.arange(speed.size) - self._late, np.arange(longer.size), longer)
+        shown = self._late.next(self._turns * stretch.shaft_speed_rev_s)
         shown += self._noise_rev_s * self._rng.standard_normal(shown.size)
         counts: FloatArray = np.rint(shown * self._per_rev_s / self.scale)
         return counts.clip(-32768, 32767).astype(np.int16)
