@@ -6,7 +6,7 @@ from shaftprint.arrays import FloatArray
 from shaftprint.design.motion import motion, share_cut_off
 from shaftprint.design.plan import Plan
 from shaftprint.design.planning._finish import SHARE_HELD
-from shaftprint.design.search import Uses
+from shaftprint.design.search import Uses, samples_of_period
 
 CRESTS = (0.8, 0.9, 1.0, 1.1, 1.2, 1.3)
 """How many times the ripple is kept free at crests, tried one after the other; one in 10,000 passes the last."""
@@ -39,7 +39,7 @@ def _cut_off(plan: Plan, number: int, table: FloatArray) -> FloatArray:
     leg = plan.legs[number]
     responses = motion(plan.structures[number], table, 2.0 * np.pi * leg.frequency_hz)
     ships, signals, lines = responses.shape
-    samples = 2 ** int(np.ceil(np.log2(_SAMPLES * leg.harmonics[-1])))
+    samples = samples_of_period(leg.harmonics[-1], _SAMPLES)
     uses = Uses(transfer=responses.reshape(-1, lines), harmonics=leg.harmonics, samples=samples, draws=ships)
     deviations = uses.in_time(leg.amplitudes).reshape(ships, signals, samples)
     return np.array([share_cut_off(plan.limits, leg.speed_share, one) for one in deviations])

@@ -11,6 +11,7 @@ import numpy as np
 from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.design.motion import Bound, motion
 from shaftprint.design.plan import Leg
+from shaftprint.design.search import samples_of_period
 from shaftprint.models import Structure
 
 # Samples a period of the fastest line, between which the set point is straight where it passes its level.
@@ -84,7 +85,7 @@ def _start_uses(
 
     One period of rest and one of the leg, repeated: what the end of the leg stirs up has died out after the rest.
     """
-    count = 2 ** int(np.ceil(np.log2(_START_SAMPLES * leg.harmonics[-1])))
+    count = samples_of_period(leg.harmonics[-1], _START_SAMPLES)
     time = leg.period_s / count * np.arange(count)
     about = leg.set_point_rpm(starts_s[:, None] + time) / leg.level_rpm - 1.0
     spectrum = np.fft.rfft(np.concatenate([np.zeros_like(about), about], axis=1), axis=1)

@@ -3,7 +3,7 @@
 from shaftprint.design.search._criterion import Criterion, DeterminantWithFloor, WorstWish
 from shaftprint.design.search._problem import Possibility, Problem
 from shaftprint.design.search._search import Effort, random_start, search
-from shaftprint.design.search._uses import Uses, held_draws
+from shaftprint.design.search._uses import Uses, held_draws, samples_of_period
 
 __all__ = [
     "Criterion",
@@ -15,5 +15,6 @@ __all__ = [
     "WorstWish",
     "held_draws",
     "random_start",
+    "samples_of_period",
     "search",
 ]

@@ -15,6 +15,12 @@ SAMPLES_PER_PERIOD = 8
 _NEGLIGIBLE = 1e-9
 
 
+def samples_of_period(highest_harmonic: int, samples_per_period: float) -> int:
+    """Return a power of two of samples in which the fastest line has at least so many a period of its own."""
+    samples: int = 2 ** int(np.ceil(np.log2(samples_per_period * highest_harmonic)))
+    return samples
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
 class Uses:
     """Uses of bounds over one period: signal over room, linear in the complex amplitudes of the lines."""
@@ -45,7 +51,7 @@ class Uses:
         """
         weights = np.array([bound.weights / bound.room for bound in bounds])
         transfer = np.einsum("bs,dsk->bdk", weights, responses).reshape(-1, len(harmonics))
-        samples = 2 ** int(np.ceil(np.log2(fold * SAMPLES_PER_PERIOD * harmonics[-1])))
+        samples = samples_of_period(harmonics[-1], fold * SAMPLES_PER_PERIOD)
         return cls(transfer=transfer, harmonics=harmonics, samples=samples, draws=responses.shape[0])
 
     def in_time(self, amplitudes: ComplexArray) -> FloatArray:
