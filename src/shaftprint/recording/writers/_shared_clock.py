@@ -1,4 +1,4 @@
-"""What formats with a single clock demand of the channels."""
+"""What formats with clocks, or with a single one, demand of the channels."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -18,12 +18,8 @@ def on_one_clock(path: Path, channels: Iterable[Channel]) -> tuple[Channel, ...]
     shared = tuple(channels)
     if not shared:
         raise RecordingError(f"{path}: expected at least one channel to write, found none.")
-    uneven = next((channel for channel in shared if channel.is_uneven), None)
-    if uneven is not None:
-        raise RecordingError(
-            f"{path}: expected channels on one clock, found messages at times of their own in {uneven.name}; "
-            "write .nc or .mf4, which keep them."
-        )
+    for channel in shared:
+        expect_no_messages(path, channel, on="one clock")
     clocks = {(channel.rate_hz, channel.start_s, channel.count) for channel in shared}
     if len(clocks) > 1:
         listed = ", ".join(
@@ -33,3 +29,25 @@ def on_one_clock(path: Path, channels: Iterable[Channel]) -> tuple[Channel, ...]
             f"{path}: expected channels on one clock, found {listed}; write_recording keeps each channel's own."
         )
     return shared
+
+
+def expect_no_messages(path: Path, channel: Channel, *, on: str) -> None:
+    """Check that a channel lies on a clock, as in a format that keeps no time of each sample.
+
+    Parameters
+    ----------
+    path, channel
+        The file to write, and what into.
+    on
+        On what the format has its channels, in words.
+
+    Raises
+    ------
+    RecordingError
+        If it holds messages at times of their own.
+    """
+    if channel.is_uneven:
+        raise RecordingError(
+            f"{path}: expected channels on {on}, found messages at times of their own in {channel.name}; "
+            "write .nc or .mf4, which keep them."
+        )

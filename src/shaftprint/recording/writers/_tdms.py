@@ -11,6 +11,7 @@ from shaftprint.files import reason, written_whole
 from shaftprint.recording._channel import Channel
 from shaftprint.recording._container import CHUNK_SAMPLES
 from shaftprint.recording.readers import library
+from shaftprint.recording.writers._shared_clock import expect_no_messages
 
 _GROUP = "recording"
 _NO_SCALE_BEFORE = 0xFFFFFFFF
@@ -38,7 +39,7 @@ def write_tdms(path: str | Path, channels: Iterable[Channel], *, overwrite: bool
     try:
         with written_whole(path, overwrite=overwrite) as part, nptdms.TdmsWriter(str(part)) as writer:
             for channel in channels:
-                _expect_clock(path, channel)
+                expect_no_messages(path, channel, on="clocks")
                 properties = _properties(nptdms.types, channel)
                 # an empty channel is one segment without samples
                 for start in range(0, max(channel.count, 1), CHUNK_SAMPLES):
@@ -47,14 +48,6 @@ def write_tdms(path: str | Path, channels: Iterable[Channel], *, overwrite: bool
                     writer.write_segment([nptdms.ChannelObject(_GROUP, channel.name, counts, stated)])
     except OSError as error:
         raise RecordingError(f"{path}: the file cannot be written: {reason(error)}") from None
-
-
-def _expect_clock(path: Path, channel: Channel) -> None:
-    if channel.is_uneven:
-        raise RecordingError(
-            f"{path}: expected channels on clocks, found messages at times of their own in {channel.name}; "
-            "write .nc or .mf4, which keep them."
-        )
 
 
 def _properties(types: Any, channel: Channel) -> dict[str, object]:
