@@ -1,7 +1,7 @@
 """What ``plan`` knows of a ship: from its vessel file, a first test, a recording, and what the user states."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import click
@@ -185,8 +185,8 @@ def _limits(stated: Stated, line: SetPointLine, recorded: _Recorded | None) -> L
     limits = limits_from_vessel(stated.vessel, set_point_rpm=set_point_rpm)
     if stated.first_test is not None:
         limits = limits_of_fingerprint(limits, stated.first_test, stated.vessel)
-    if recorded is not None and recorded.torque_ripple is not None and limits.gauge is not None:
-        limits = replace(limits, gauge=replace(limits.gauge, ripple=recorded.torque_ripple))
+    if recorded is not None:
+        limits = limits.with_ripple(recorded.torque_ripple)
     return limits_with(limits, stated.options.limits)
 
 

@@ -124,6 +124,7 @@ def set_point_rpm_of(stated: Sequence[StatedLimit], slope_rpm_per_v: float) -> f
 def limits_with(limits: Limits, stated: Sequence[StatedLimit]) -> Limits:
     """Return limits with what the user states instead of the vessel file."""
     changed: dict[str, Any] = {}
+    ripple: float | None = None
     for limit in stated:
         field = LIMITS[limit.name].field
         if field:
@@ -132,18 +133,19 @@ def limits_with(limits: Limits, stated: Sequence[StatedLimit]) -> Limits:
             changed["full_load"] = tuple((speed, min(torque, limit.value)) for speed, torque in limits.full_load)
         elif limit.name == "motoring":
             changed["motoring"] = ((limits.engine_speed_rpm, limit.value),)
-    return replace(limits, gauge=_gauge_with(limits.gauge, {one.name: one.value for one in stated}), **changed)
+        elif limit.name == "full-scale":
+            changed["gauge"] = _with_full_scale(limits.gauge, limit.value)
+        elif limit.name == "ripple":
+            ripple = limit.value
+    return replace(limits, **changed).with_ripple(ripple)
 
 
-def _gauge_with(gauge: GaugeRange | None, stated: Mapping[str, float]) -> GaugeRange | None:
-    """Return the range of the gauge with what the user states; its ripple is in shares of the load."""
+def _with_full_scale(gauge: GaugeRange | None, full_nm: float) -> GaugeRange | None:
+    """Return the range of the gauge with another full scale about its zero."""
     if gauge is None:
         return None
-    full_nm, ripple = stated.get("full-scale"), stated.get("ripple")
-    if full_nm is not None:
-        zero_nm = 0.5 * (gauge.lowest_nm + gauge.highest_nm)
-        gauge = replace(gauge, lowest_nm=zero_nm - full_nm, highest_nm=zero_nm + full_nm)
-    return gauge if ripple is None else replace(gauge, ripple=ripple)
+    zero_nm = 0.5 * (gauge.lowest_nm + gauge.highest_nm)
+    return replace(gauge, lowest_nm=zero_nm - full_nm, highest_nm=zero_nm + full_nm)
 
 
 def seconds_of(text: str) -> float:

@@ -69,14 +69,11 @@ def limits_of_fingerprint(limits: "Limits", fingerprint: "Fingerprint", vessel: 
 
     The gauge has the ripple that the test has shown, where it has shown one.
     """
-    gearbox, conditions, gauge = vessel.gearbox, fingerprint.conditions, limits.gauge
-    if gauge is not None and fingerprint.torque_ripple is not None:
-        gauge = replace(gauge, ripple=fingerprint.torque_ripple)
+    gearbox, conditions = vessel.gearbox, fingerprint.conditions
     return replace(
-        limits,
+        limits.with_ripple(fingerprint.torque_ripple),
         engine_speed_rpm=conditions.engine_speed.value,
         brake_torque_nm=conditions.shaft_torque.value / (gearbox.ratio * gearbox.efficiency),
-        gauge=gauge,
     )
 
 

@@ -1,9 +1,9 @@
 """The noun ``Limits``: what ship and engine allow during a test, in the units of the ship."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Self, TypeAlias
 
 from shaftprint.design.inputs._gauge_range import GaugeRange, gauge_range_of
 from shaftprint.errors import DesignError
@@ -91,6 +91,12 @@ class Limits(Shown):
         if self.demand_cycle_s is None:
             return self.highest_frequency_hz
         return min(self.highest_frequency_hz, 1.0 / (MESSAGES_PER_PERIOD * self.demand_cycle_s))
+
+    def with_ripple(self, ripple: float | None) -> Self:
+        """Return the limits with a gauge of another ripple; as they are without a gauge, or where none is known."""
+        if self.gauge is None or ripple is None:
+            return self
+        return replace(self, gauge=replace(self.gauge, ripple=ripple))
 
     def free_speeds(self, speed_rpm: float) -> tuple[float, float]:
         """Return the lowest and highest speed about a mean speed, which barred ranges narrow [rpm].
