@@ -1,8 +1,9 @@
 """The noun ``GaugeRange``: which shaft torque the gauge can show, and how much of it orders and noise need."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
+from shaftprint.arrays import FloatArray
 from shaftprint.errors import DesignError
 from shaftprint.notebook import Shown
 
@@ -16,6 +17,8 @@ FULL_SCALE = "full scale of the gauge"
 # passes (docs/decisions/0059-full-scale.md).
 USUAL_RIPPLE = 0.5
 _RARE = 1.3
+
+_Speed = TypeVar("_Speed", float, FloatArray)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, repr=False)
@@ -38,6 +41,18 @@ class GaugeRange(Shown):
     def rare_ripple(self) -> float:
         """The same of one sample in 10,000."""
         return _RARE * self.ripple
+
+    def shaft_torque_nm(self, brake_torque_nm: float, speed_share: _Speed) -> _Speed:
+        """Return the shaft torque of a load at other speeds, with whose square it goes [N m], shape of ``speed_share``.
+
+        Parameters
+        ----------
+        brake_torque_nm
+            Brake torque of the load [N m] at a speed of 1.
+        speed_share
+            Speed, over that one.
+        """
+        return self.shaft_over_brake * speed_share**2 * brake_torque_nm
 
     def __post_init__(self) -> None:
         """Check the numbers.

@@ -40,7 +40,7 @@ def gauge_bounds(limits: Limits, speed_share: float, *, crest: float = 1.0) -> t
         return ()
     speed_rpm = speed_share * limits.engine_speed_rpm
     reach = min(limits.set_point_rpm, limits.free_speeds(speed_rpm)[1] - speed_rpm) / speed_rpm
-    torque_nm = gauge.shaft_over_brake * speed_share**2 * limits.brake_torque_nm
+    torque_nm = gauge.shaft_torque_nm(limits.brake_torque_nm, speed_share)
     needed_nm = (1.0 + gauge.rare_ripple) * torque_nm
     if not gauge.highest_nm > needed_nm:
         raise DesignError(
@@ -72,7 +72,7 @@ def share_cut_off(limits: Limits, speed_share: float, signals: FloatArray) -> fl
         return 0.0
     speed, torque = signals[SIGNALS.index("speed")], signals[SIGNALS.index("shaft torque")]
     ends = np.array([[gauge.highest_nm], [gauge.lowest_nm]])
-    mean_nm = gauge.shaft_over_brake * speed_share**2 * limits.brake_torque_nm
+    mean_nm = gauge.shaft_torque_nm(limits.brake_torque_nm, speed_share)
     room = np.array([[1.0], [-1.0]]) * (ends / mean_nm - (1.0 + torque + speed**2))
     return float(np.mean(np.sum(_above(room / (gauge.ripple * (1.0 + speed) ** 2)), axis=0)))
 

@@ -139,8 +139,8 @@ def _rules(operation: Operation, limits: Limits) -> Iterator[_Rule]:
         if demand is not None:
             yield _above("zero fuel", "N m", demand, motoring)
     if limits.gauge is not None and operation.shaft_torque_nm is not None:
-        load = limits.brake_torque_nm * (speed / limits.engine_speed_rpm) ** 2
-        yield _within_range(limits.gauge, operation.shaft_torque_nm, load)
+        load_nm = limits.gauge.shaft_torque_nm(limits.brake_torque_nm, speed / limits.engine_speed_rpm)
+        yield _within_range(limits.gauge, operation.shaft_torque_nm, load_nm)
     for low, high in limits.barred_rpm:
         end = np.where(speed < 0.5 * (low + high), low, high)
         yield _Rule(
@@ -163,8 +163,8 @@ def _above(name: str, unit: str, value: FloatArray, lowest: FloatArray | float) 
 
 
 def _within_range(gauge: GaugeRange, torque_nm: FloatArray, load_nm: FloatArray) -> _Rule:
-    """Return what the gauge shows as a rule: orders and noise go with the brake torque of the load."""
-    ripple_nm = gauge.ripple * gauge.shaft_over_brake * load_nm
+    """Return what the gauge shows as a rule: orders and noise go with the shaft torque of the load."""
+    ripple_nm = gauge.ripple * load_nm
     below = _below(FULL_SCALE, "N m", torque_nm, gauge.highest_nm - ripple_nm)
     above = _above(FULL_SCALE, "N m", torque_nm, gauge.lowest_nm + ripple_nm)
     return below if below.left.min() <= above.left.min() else above
