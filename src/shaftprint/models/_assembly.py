@@ -151,7 +151,7 @@ def expect_new_names(structure: str, known: Sequence[str], names: Iterable[str])
         If not.
     """
     given = list(names)
-    repeated = [name for place, name in enumerate(given) if name in known or name in given[:place]]
+    repeated = [name for index, name in enumerate(given) if name in known or name in given[:index]]
     if repeated:
         raise StructureError(f"structure {structure} has a parameter {', '.join(repeated)} already; use another name.")
 
