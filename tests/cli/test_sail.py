@@ -6,31 +6,10 @@ from shaftprint.recording import read_recording
 from shaftprint.settings import write_template
 from shaftprint.tug import read_truth
 
-BRIEF = """
-name = "Half a minute"
-duration_s = 30.0
-offset_v = -5.0
 
-[[sines]]
-name = "S1"
-frequency_hz = 0.5
-amplitude_v = 0.6
-start_s = 5.0
-settled_s = 10.0
-stop_s = 25.0
-"""
-
-
-@pytest.fixture
-def campaign(tmp_path):
-    path = tmp_path / "brief.toml"
-    path.write_text(BRIEF)
-    return path
-
-
-def test_recording_and_truth_are_written(run, tmp_path, campaign):
+def test_recording_and_truth_are_written(run, tmp_path, brief_campaign):
     path = tmp_path / "test.nc"
-    result = run("sail", "stan-tug-1205", campaign, "-o", path, "--seed", 7)
+    result = run("sail", "stan-tug-1205", brief_campaign, "-o", path, "--seed", 7)
     assert result.exit_code == 0
     assert f"{path}: the raw recording of 30 s." in result.output
     with read_recording(path) as recording:
@@ -40,51 +19,51 @@ def test_recording_and_truth_are_written(run, tmp_path, campaign):
     assert (truth.seed, truth.duration_s, truth.campaign) == (7, 30.0, "Half a minute")
 
 
-def test_same_seed_same_file(run, tmp_path, campaign):
+def test_same_seed_same_file(run, tmp_path, brief_campaign):
     for name in ("a.nc", "b.nc"):
-        run("sail", "stan-tug-1205", campaign, "-o", tmp_path / name, "--seed", 3)
+        run("sail", "stan-tug-1205", brief_campaign, "-o", tmp_path / name, "--seed", 3)
     assert (tmp_path / "a.nc").read_bytes() == (tmp_path / "b.nc").read_bytes()
 
 
-def test_existing_recording_is_kept_unless_forced(run, tmp_path, campaign):
+def test_existing_recording_is_kept_unless_forced(run, tmp_path, brief_campaign):
     path = tmp_path / "test.nc"
     path.write_text("mine")
-    result = run("sail", "stan-tug-1205", campaign, "-o", path)
+    result = run("sail", "stan-tug-1205", brief_campaign, "-o", path)
     assert result.exit_code == 1
     assert "exists already" in result.stderr
     assert path.read_text() == "mine"
-    assert run("sail", "stan-tug-1205", campaign, "-o", path, "--force").exit_code == 0
+    assert run("sail", "stan-tug-1205", brief_campaign, "-o", path, "--force").exit_code == 0
     assert path.read_bytes()[:4] == b"\x89HDF"
 
 
 @pytest.mark.parametrize("place", [".", "", ".."])
-def test_folder_in_the_place_of_the_recording(run, tmp_path, campaign, monkeypatch, place):
+def test_folder_in_the_place_of_the_recording(run, tmp_path, brief_campaign, monkeypatch, place):
     monkeypatch.chdir(tmp_path)
-    result = run("sail", "stan-tug-1205", campaign, "-o", place)
+    result = run("sail", "stan-tug-1205", brief_campaign, "-o", place)
     assert result.exit_code == 1
     assert "expected a file for the recording, found a folder; add a file name" in result.stderr
 
 
 @pytest.mark.parametrize("name", ["vessel.toml", "stan-tug-1206"])
-def test_vessel_that_is_not_there(run, tmp_path, campaign, name):
-    result = run("sail", name, campaign, "-o", tmp_path / "test.nc")
+def test_vessel_that_is_not_there(run, tmp_path, brief_campaign, name):
+    result = run("sail", name, brief_campaign, "-o", tmp_path / "test.nc")
     assert result.exit_code == 1
     assert name in result.stderr
     assert not (tmp_path / "test.nc").exists()
 
 
-def test_all_errors_of_a_vessel_file_at_once(run, tmp_path, campaign):
+def test_all_errors_of_a_vessel_file_at_once(run, tmp_path, brief_campaign):
     path = tmp_path / "vessel.toml"
     write_template("vessel", path)
     text = path.read_text()
     text = text.replace("cylinders = 6", "cylinders = -6").replace("pitch_ratio", "pitch_ration")
     path.write_text(text)
-    result = run("sail", path, campaign, "-o", tmp_path / "test.nc")
+    result = run("sail", path, brief_campaign, "-o", tmp_path / "test.nc")
     assert result.exit_code == 1
     assert "engine.cylinders" in result.stderr
     assert "propeller.pitch_ration" in result.stderr
     assert "is pitch_ratio meant?" in result.stderr
 
 
-def test_seed_below_zero_is_a_usage_error(run, tmp_path, campaign):
-    assert run("sail", "stan-tug-1205", campaign, "-o", tmp_path / "test.nc", "--seed", -1).exit_code == 2
+def test_seed_below_zero_is_a_usage_error(run, tmp_path, brief_campaign):
+    assert run("sail", "stan-tug-1205", brief_campaign, "-o", tmp_path / "test.nc", "--seed", -1).exit_code == 2

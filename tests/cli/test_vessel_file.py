@@ -6,19 +6,6 @@ import pytest
 
 from shaftprint.settings import write_template
 
-BRIEF = """
-name = "Half a minute"
-duration_s = 30.0
-offset_v = -5.0
-
-[[sines]]
-name = "S1"
-frequency_hz = 0.5
-amplitude_v = 0.6
-start_s = 5.0
-settled_s = 10.0
-stop_s = 25.0
-"""
 TITLE = "The vessel file contradicts itself"
 SENTENCE = (
     "ship.toml, gearbox.ratio: expected 4, as the engine's 1800 rpm turn the propeller at 450 rpm, found 3.82; "
@@ -27,10 +14,9 @@ SENTENCE = (
 
 
 @pytest.fixture
-def aboard(tmp_path, monkeypatch):
+def aboard(tmp_path, monkeypatch, brief_campaign):
     """A folder with a brief campaign and the template, whose propeller is said to turn at another speed."""
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "test.toml").write_text(BRIEF)
     write_template("vessel", "ship.toml")
     text = (tmp_path / "ship.toml").read_text()
     (tmp_path / "ship.toml").write_text(text.replace("# propeller_rated_rpm = 471.2 ", "propeller_rated_rpm = 450.0 "))
@@ -46,7 +32,7 @@ def contradictions(result):
 
 @pytest.mark.slow
 def test_sail_predict_and_inspect_say_the_same(run, aboard):
-    sailed = run("sail", "ship.toml", "test.toml", "-o", "log.nc", "--json")
+    sailed = run("sail", "ship.toml", "brief.toml", "-o", "log.nc", "--json")
     predicted = run("predict", "--vessel", "ship.toml", "--campaign", "5min", "--json")
     inspected = run("inspect", "log.nc", "--vessel", "ship.toml", "--json")
     assert [contradictions(result) for result in (sailed, predicted, inspected)] == 3 * [SENTENCE]
