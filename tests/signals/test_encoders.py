@@ -7,11 +7,10 @@ import numpy as np
 import pytest
 from tests.wheel_truth import Turning
 
-from shaftprint.errors import SettingsError, SignalError
+from shaftprint.errors import SignalError
 from shaftprint.recording import Recording
-from shaftprint.settings import write_template
 from shaftprint.signals import content_of, prepare_signals, read_channels
-from shaftprint.vessel import SpeedSensor, Vessel, load_vessel
+from shaftprint.vessel import SpeedSensor, Vessel
 
 # What is shown for one turn, and where it begins again (never, where that is 0), with what the vessel file says.
 WAYS = {
@@ -314,29 +313,3 @@ def test_two_recordings_can_be_compared_by_an_encoder(make_channel):
     channel = make_channel(shown("counts", sampled(turning)), name="X", unit="counts")
     content = content_of(channel, sensor("counts"), rate_hz=50.0)
     assert content.values[50:-50] == pytest.approx(turning.speed_at(content.time_s)[50:-50], rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ('unit = "counts"\n', "expected counts_per_revolution for a channel in counts, found none"),
-        ('unit = "deg"\ncounts_per_revolution = 100.0\n', "expected counts_per_revolution left out for a channel in"),
-        ('unit = "rpm"\nrolls_over_at = 360.0\n', 'expected rolls_over_at left out for a channel in "rpm", found 360'),
-    ],
-)
-def test_what_an_encoder_needs_is_asked_for(tmp_path, text, expected):
-    path = tmp_path / "ship.toml"
-    write_template("vessel", path)
-    whole = path.read_text(encoding="utf-8")
-    last = 'pulses_per_revolution = 4\nunit = "V"\n'
-    assert whole.count(last) == 1
-    path.write_text(whole.replace(last, text), encoding="utf-8")
-    with pytest.raises(SettingsError, match=expected):
-        load_vessel(path)
-
-
-def test_units_are_read_as_people_write_them():
-    for written, unit in (("degrees", "deg"), ("°", "deg"), ("radians", "rad"), ("turns", "rev"), ("ticks", "counts")):
-        fields = {"counts_per_revolution": 100.0} if unit == "counts" else {}
-        content = {"name": "n", "channel": "X", "shaft": "engine", "unit": written, **fields}
-        assert SpeedSensor.model_validate(content).unit == unit
