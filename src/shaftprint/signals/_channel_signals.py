@@ -15,6 +15,24 @@ _HIGHEST_SHARE_OF_RATE = 0.45
 _IMAGES = 40
 
 
+def spline_gain(frequency_hz: float, rate_hz: float) -> float:
+    """Return what a cubic spline through values of a sine of amplitude 1 shows of it.
+
+    A sine of ``x`` periods a value becomes ``sinc(x)^4 / sum_k sinc(x + k)^4`` (Unser, Aldroubi and Eden, "B-spline
+    signal processing: Part I", IEEE Transactions on Signal Processing 41 (1993): frequency response of the cardinal
+    cubic spline).
+
+    Parameters
+    ----------
+    frequency_hz
+        Frequency of the sine [Hz].
+    rate_hz
+        Values a second [Hz].
+    """
+    images = np.sinc(frequency_hz / rate_hz + np.arange(-_IMAGES, _IMAGES + 1)) ** 4
+    return float(images[_IMAGES] / images.sum())
+
+
 class ChannelRole(Enum):
     """What a channel is to a test."""
 
@@ -100,6 +118,25 @@ class ExcitationSignal(ChannelSignal):
     """Unit in which amplitudes are told to the reader."""
     shown_reference: float = 1.0
     """The working point in that unit."""
+    value_rate_hz: float = math.inf
+    """Values a second that a spline joins [Hz]; infinite where the logger samples as fast as the signals."""
+    is_obeyed: bool = False
+    """Whether the governor holds each value until the next."""
+
+    @property
+    def nyquist_hz(self) -> float:
+        """Highest frequency that the values show without aliasing [Hz]."""
+        return 0.5 * self.value_rate_hz
+
+    def gain(self, frequency_hz: float) -> complex:
+        """Return what the spline through the values shows of what the governor follows.
+
+        That is the values themselves, or each held until the next: ``sinc`` and half of that time later.
+        """
+        if math.isinf(self.value_rate_hz) or frequency_hz > self.nyquist_hz:
+            return 1.0
+        held = frequency_hz / self.value_rate_hz if self.is_obeyed else 0.0
+        return complex(spline_gain(frequency_hz, self.value_rate_hz) / (np.sinc(held) * np.exp(-1j * np.pi * held)))
 
     @property
     def words(self) -> str:
@@ -135,20 +172,14 @@ class SpeedSignal(ChannelSignal):
     def gain(self, frequency_hz: float) -> complex:
         """Return the factor by which the spline through the pulses shows a sine too small.
 
-        A cubic spline through the shaft angles at the pulses, differentiated, shows a sine of ``x`` periods a pulse
-        with
-
-        ``sinc(x)^4 / sum_k sinc(x + k)^4``
-
-        (Unser, Aldroubi and Eden, "B-spline signal processing: Part I", IEEE Transactions on Signal Processing 41
-        (1993): frequency response of the cardinal cubic spline): 0.996 at a fifth of the pulse rate, 0.963 at three
-        tenths, one half at half the pulse rate. It is 1 for a signal that is averaged or held, since that belongs to
-        the model of the sensor, and above half the pulse rate, where the signal shows an alias.
+        A cubic spline through the shaft angles at the pulses, differentiated, has the gain of `spline_gain`: 0.996 at a
+        fifth of the pulse rate, 0.963 at three tenths, one half at half the pulse rate. It is 1 for a signal that is
+        averaged or held, since that belongs to the model of the sensor, and above half the pulse rate, where the signal
+        shows an alias.
         """
         if self.averaging_s > 0.0 or self.hold_s > 0.0 or frequency_hz > self.nyquist_hz:
             return 1.0
-        images = np.sinc(frequency_hz / self.pulse_rate_hz + np.arange(-_IMAGES, _IMAGES + 1)) ** 4
-        return float(images[_IMAGES] / images.sum())
+        return spline_gain(frequency_hz, self.pulse_rate_hz)
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)

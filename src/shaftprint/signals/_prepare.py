@@ -21,8 +21,16 @@ from shaftprint.signals._rates import expect_one_rate
 from shaftprint.signals._readings import Readings, usable_readings
 from shaftprint.signals._signals import SetPointCalibration, Signals
 from shaftprint.signals._working_points import LegState
-from shaftprint.signals.excitation import FoundTest, expect_campaign, find_step_delays, found_tests, left_out
+from shaftprint.signals.excitation import (
+    FoundTest,
+    expect_campaign,
+    find_step_delays,
+    found_tests,
+    left_out,
+    take_out_steps,
+)
 from shaftprint.signals.kinds import (
+    SetPointMessages,
     Source,
     SteadyState,
     compare_speeds,
@@ -111,6 +119,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
     clock = readings.clock
     reasons = [*expect_one_rate(recording, logger_channels(readings.sources)), *_cut_crests(readings.sources)]
     lost, mismatches = _differences_from_campaign(recording, vessel, campaign, readings)
+    _without_steps_in_place(readings, campaign)
     _straightened_in_place(readings.set_point, vessel.sensors.set_point, campaign)
     differences = compare_speeds(readings.pick_ups, vessel)
     legs = samples_of_legs(campaign, readings)
@@ -197,7 +206,7 @@ def find_tests(
         values, clock = readings.by_name["n_set"].values, readings.clock
         return found_tests(values, campaign.of_input(), rate_hz=clock.rate_hz, start_s=clock.start_s)
     sensor = vessel.sensors.set_point
-    channel = find_channel(recording, sensor.channel, unit=sensor.unit, use="set point")
+    channel = find_channel(recording, sensor.channel, unit=sensor.unit, use="set point", takes_messages=True)
     rate_hz = min(_SET_POINT_HZ, channel.rate_hz)
     clock = clock_of(channel, rate_hz)
     volts = read_set_point(channel, sensor, clock, speed_rpm=vessel.working_point.engine_speed_rpm).values
@@ -259,6 +268,7 @@ def _steady_state(
             speed_rev_s=speed,
             channel=channel,
             **grid,
+            step_v=_step_v(readings),
             coverage=coverage,
         )
         point = working_point_of_test(speed, torque, at_v=about_v, at=(at[0], at[1]), **grid, coverage=coverage)
@@ -273,6 +283,12 @@ def _steady_state(
     return steady, strange, unsteady
 
 
+def _step_v(readings: Readings) -> float:
+    """Return the step of the messages of a set point [V]; 0 where it has none."""
+    reading = readings.by_name["n_set"]
+    return reading.step_v if isinstance(reading, SetPointMessages) else 0.0
+
+
 def _signals_by_name(readings: Readings, steady: SteadyState) -> tuple[dict[str, ChannelSignal], tuple[str, ...]]:
     """Return every channel as a signal by name, and a finding on each that says nothing in this test."""
     signals, absent = {}, []
@@ -284,6 +300,22 @@ def _signals_by_name(readings: Readings, steady: SteadyState) -> tuple[dict[str,
         else:
             signals[source.name] = signal
     return signals, tuple(absent)
+
+
+def _without_steps_in_place(readings: Readings, campaign: Campaign) -> None:
+    """Take out of a set point what the steps of its messages make of the sines of a campaign."""
+    reading, clock = readings.by_name["n_set"], readings.clock
+    if clock.mode == "thesis" or not isinstance(reading, SetPointMessages) or not reading.step_v:
+        return
+    take_out_steps(
+        reading.values,
+        reading.time_s,
+        reading.shown_v,
+        campaign.of_input().sines,
+        step_v=reading.step_v,
+        rate_hz=clock.rate_hz,
+        start_s=clock.start_s,
+    )
 
 
 def _straightened_in_place(volts: FloatArray, sensor: "SetPointSensor", campaign: Campaign) -> None:

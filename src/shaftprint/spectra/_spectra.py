@@ -325,6 +325,9 @@ def _judge(
         aliased = frequency > sensor.nyquist_hz
         if aliased:
             lines.append(f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased")
+        if frequency > moved.nyquist_hz:
+            aliased = True
+            lines.append(f"above {moved.nyquist_hz:.2f} Hz, half the rate of the {moved.words}'s messages: aliased")
         lines += [line.order_remark] if line.order_remark else []
         lines += line.message_remarks.values()
         lines += [

@@ -35,6 +35,7 @@ from shaftprint.tug.sensors import (
     Encoder,
     Fault,
     Helm,
+    HelmMessages,
     PickUp,
     PitchLever,
     SpeedLog,
@@ -48,7 +49,7 @@ RATE_HZ = 2000.0
 """Sample rate where the vessel file names no logger [Hz]."""
 
 # What sends messages.
-SENDERS = (ControlUnit, SpeedMessages)
+SENDERS = (ControlUnit, HelmMessages, SpeedMessages)
 
 # As many samples as one compressed block of the container holds: no block is copied.
 _CHUNK = 262_144
@@ -162,7 +163,7 @@ class _Crew:
             rate_hz=self._rate_hz,
             rng=torque,
         )
-        self._helm = Helm(tug, vessel, campaign, rate_hz=self._rate_hz, rng=set_point)
+        self._helm = self._stand_by_helm(set_point)
         self._speeds = [
             self._stand_by_shaft(sensor, rng) for sensor, rng in zip(vessel.sensors.speed, speeds, strict=True)
         ]
@@ -201,6 +202,14 @@ class _Crew:
             )
         kind = Encoder if sensor.gives_angle else SpeedMeter
         return kind(sensor, tug, vessel, rate_hz=self._rate_hz, rng=rng)
+
+    def _stand_by_helm(self, rng: np.random.Generator) -> Helm | HelmMessages:
+        tug, vessel, campaign = self._tug, self._vessel, self._campaign
+        if tug.set_point_cycle_s is None:
+            return Helm(tug, vessel, campaign, rate_hz=self._rate_hz, rng=rng)
+        return HelmMessages(
+            tug, vessel, campaign, cycle_s=tug.set_point_cycle_s, rate_hz=self._rate_hz, rng=rng, bus=Bus.of(tug)
+        )
 
     def _stand_by_lever(self, rng: np.random.Generator) -> PitchLever | None:
         sensor = self._vessel.sensors.pitch_set_point
@@ -277,10 +286,10 @@ class _Crew:
         writer.declare(
             sensors.set_point.channel,
             unit=sensors.set_point.unit,
-            rate_hz=self._rate_hz,
             scale=self._helm.scale,
             offset=self._helm.offset,
             long_name="speed set point behind the potentiometer",
+            **self._clock_of(self._helm),
         )
         for sensor, speed in zip(sensors.speed, self._speeds, strict=True):
             what = f"{'angle' if sensor.gives_angle else 'speed'} of the {sensor.shaft} shaft"

@@ -119,6 +119,11 @@ class Tug:
     speed_cycle_s: float | None = None
     """Time from one message to the next with a speed in rpm [s], 0.125 rpm a bit; ``None``: instruments in rpm give a
     value for each sample of the logger."""
+    set_point_cycle_s: float | None = None
+    """Time from one message to the next with the set point as the control unit reports it [s]; ``None``: the logger
+    samples the voltage."""
+    set_point_resolution: float = 0.4
+    """Step of the set point in those messages, in the unit of the channel; 0.4 % of a pedal in SAE J1939-71."""
     message_jitter: float = 0.0
     """Standard deviation of the time of a message on the CAN bus about its cycle, over the cycle; evenly spread, below
     0.28. Messages with jitter or losses are recorded with times of their own."""

@@ -44,6 +44,10 @@ class SetPointSensor(Settings):
     """Time from the voltage to the demanded speed that the engine's control unit has [s]; None where not measured."""
     latency_std_s: PositiveNumber | None = None
     """Standard deviation of that time [s]."""
+    message_latency_s: NotNegativeNumber = 0.0
+    """Time by which messages are late behind what they show [s]; 0 for samples of a voltage."""
+    is_obeyed: bool = False
+    """Whether messages are the demand itself, each of which the governor holds until the next, not a report of it."""
 
     @model_validator(mode="after")
     def _can_be_volts(self) -> Self:

@@ -6,7 +6,7 @@ from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.kinds._kinds import KINDS, find_sources
 from shaftprint.signals.kinds._pick_up import PulseReading, read_pick_up
 from shaftprint.signals.kinds._rack import rack_signal, read_rack
-from shaftprint.signals.kinds._set_point import read_set_point
+from shaftprint.signals.kinds._set_point import SetPointMessages, read_set_point
 from shaftprint.signals.kinds._ship_speed import read_ship_speed, ship_speed_signal
 from shaftprint.signals.kinds._speed_reading import SpeedReading
 from shaftprint.signals.kinds._torque import expect_moving_torque
@@ -16,6 +16,7 @@ __all__ = [
     "LARGEST_DIFFERENCE",
     "ChannelKind",
     "PulseReading",
+    "SetPointMessages",
     "Source",
     "SpeedReading",
     "SteadyState",

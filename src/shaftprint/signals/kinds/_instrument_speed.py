@@ -18,6 +18,7 @@ from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, f
 from shaftprint.signals.kinds._current_loop import alive_counts
 from shaftprint.signals.kinds._message_reading import read_messages
 from shaftprint.signals.kinds._speed_reading import LONGEST_GAP_VALUES, REACH_VALUES, SpeedReading
+from shaftprint.signals.kinds._splined_messages import no_numbers, splined
 from shaftprint.vessel import LIVE_ZERO_MA, SpeedSensor
 
 if TYPE_CHECKING:
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
 
 # A line through zero speed at 4 mA, to this share of the speed at 20 mA.
 _AT_ZERO = 0.02
-# A cubic spline goes through four values.
-_FEWEST_MESSAGES = 4
 
 
 def read_instrument(
@@ -100,7 +99,7 @@ def _splined(channel: "Channel", sensor: SpeedSensor, clock: "Clock", latency_s:
     counts = np.concatenate([part.astype(np.float64) for part in blocks(channel, clock.block_samples(channel))])
     missing = np.isnan(counts) | (counts <= limits.lowest) | (counts >= limits.highest)
     if missing.all():
-        raise _no_numbers(channel)
+        raise no_numbers(channel)
     values = joined(np.where(missing, np.nan, counts)) * channel.scale + channel.offset
     time_s = channel.start_s - latency_s + np.arange(values.size) / channel.rate_hz
     on_grid = scipy.interpolate.CubicSpline(time_s, values)(grid_s.clip(time_s[0], time_s[-1]))
@@ -113,16 +112,4 @@ def _splined(channel: "Channel", sensor: SpeedSensor, clock: "Clock", latency_s:
 def _splined_messages(channel: "Channel", limits: FaultLimits, clock: "Clock", latency_s: float) -> Reading:
     """Return messages at times of their own, in their own unit on the grid."""
     ends = sorted(end * channel.scale + channel.offset for end in (limits.lowest, limits.highest))
-    messages = read_messages(channel, lowest=ends[0], highest=ends[1])
-    time_s, values = messages.for_spline(latency_s=latency_s)
-    if time_s.size < _FEWEST_MESSAGES:
-        raise _no_numbers(channel)
-    grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
-    on_grid = scipy.interpolate.CubicSpline(time_s, values)(grid_s.clip(time_s[0], time_s[-1]))
-    gaps = tuple(replace(gap, reach_s=REACH_VALUES / channel.rate_hz) for gap in messages.gaps)
-    bridge(on_grid, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)
-    return replace(messages, values=on_grid, gaps=gaps)
-
-
-def _no_numbers(channel: "Channel") -> SignalError:
-    return SignalError(f"channel {channel.name}: expected numbers, found none; check the export of the logger.")
+    return splined(read_messages(channel, lowest=ends[0], highest=ends[1]), channel, clock, latency_s)

@@ -1,14 +1,22 @@
-"""The set point of the speed, from what asks the governor for it."""
+"""The set point of the speed, from what asks the governor for it: a voltage, or messages of a bus.
 
-from dataclasses import replace
+Messages are joined by a cubic spline. Their steps are no noise under a slow sine, whose values stay the same for many
+messages: what they do to a sine is found from its course and taken out, where the campaign is known
+(``excitation/_quantum.py``).
+"""
+
+import math
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from shaftprint.arrays import frozen_float
+from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._channel_signals import ChannelRole, ExcitationSignal
 from shaftprint.signals._channels import middle_of
 from shaftprint.signals.conditioning import FaultLimits, Reading, conditioned, fault_limits
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
+from shaftprint.signals.kinds._message_reading import read_messages
+from shaftprint.signals.kinds._splined_messages import splined
 from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import SetPointSensor
 
@@ -16,14 +24,32 @@ if TYPE_CHECKING:
     from shaftprint.recording import Channel
     from shaftprint.signals._clock import Clock
 
+# Of a percentage, values above say "error" and "not available" (SAE J1939-71).
+_HIGHEST_PERCENT = 101.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class SetPointMessages(Reading):
+    """A set point that came in messages, on the grid and as it came."""
+
+    time_s: FloatArray
+    """When each message showed its value [s], shape (messages,)."""
+    shown_v: FloatArray
+    """The values, in volts of the campaign [V], shape (messages,)."""
+    step_v: float
+    """Step of the values [V]; 0 where they have none, or are what the governor obeys."""
+
 
 class SetPoint(ChannelKind[SetPointSensor]):
     """Engine speed that is asked for [rev/s]; its line from the voltage is found in the recording."""
 
     sensor, name, use, role, needed = "set_point", "n_set", "set point", ChannelRole.EXCITATION, True
+    takes_messages = True
 
-    def limits(self, source: Source[SetPointSensor]) -> FaultLimits:
-        """Return the limits of a voltage that may stand still."""
+    def limits(self, source: Source[SetPointSensor]) -> FaultLimits | None:
+        """Return the limits of a voltage that may stand still; nothing for messages."""
+        if source.channel.is_uneven:
+            return None
         return fault_limits(source.channel, holds=False)
 
     def read(self, source: Source[SetPointSensor], clock: "Clock") -> Reading:
@@ -33,6 +59,7 @@ class SetPoint(ChannelKind[SetPointSensor]):
 
     def signal(self, source: Source[SetPointSensor], reading: Reading, steady: SteadyState) -> ExcitationSignal:
         """Return the set point, whose values have become a speed by its line."""
+        is_message = isinstance(reading, SetPointMessages)
         calibration, scale, speed_rev_s = steady.calibration, steady.scale, steady.working_point.engine_speed_rev_s
         return ExcitationSignal(
             name=self.name,
@@ -44,6 +71,8 @@ class SetPoint(ChannelKind[SetPointSensor]):
             scale_std=scale.std / scale.value,
             shown_unit="rpm",
             shown_reference=rpm_from_rev_s(speed_rev_s),
+            value_rate_hz=source.channel.rate_hz if is_message else math.inf,
+            is_obeyed=is_message and source.sensor.is_obeyed,
         )
 
 
@@ -72,8 +101,28 @@ def read_set_point(channel: "Channel", sensor: SetPointSensor, clock: "Clock", *
             f"channel {channel.name}: expected a set point in {sensor.unit}, found {middle:.4g}; "
             f'unit = "{unit}"{line} in sensors.set_point would fit.'
         )
+    if channel.is_uneven or channel.rate_hz < clock.rate_hz:
+        return _read_messages(channel, sensor, clock)
     reading = read_voltage(channel, clock)
     return replace(reading, values=sensor.volts(reading.values))
+
+
+def _read_messages(channel: "Channel", sensor: SetPointSensor, clock: "Clock") -> SetPointMessages:
+    """Return a set point that came in messages, in volts of the campaign [V]."""
+    latency_s = clock.latency_s(sensor.message_latency_s)
+    highest = _HIGHEST_PERCENT if sensor.unit == "%" else math.inf
+    came = read_messages(channel, highest=highest)
+    on_grid = splined(came, channel, clock, latency_s)
+    gaps = (replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in on_grid.gaps)
+    return SetPointMessages(
+        values=sensor.volts(on_grid.values),
+        repairs=(),
+        gaps=tuple(gaps),
+        findings=came.findings,
+        time_s=came.time_s - latency_s,
+        shown_v=sensor.volts(came.values),
+        step_v=0.0 if sensor.is_obeyed else abs(sensor.slope_v) * came.messages.step,
+    )
 
 
 def read_voltage(channel: "Channel", clock: "Clock") -> Reading:

@@ -72,6 +72,7 @@ def calibrate_through_wander(
     rate_hz: float,
     start_s: float,
     channel: str,
+    step_v: float = 0.0,
     coverage: Coverage = EVERYTHING,
 ) -> tuple[SetPointCalibration, float, float]:
     """Return the line through steady levels and sines, its speed at the working voltage and that one's deviation.
@@ -90,6 +91,8 @@ def calibrate_through_wander(
         The grid.
     channel
         Name of the set-point channel, for messages.
+    step_v
+        Step of the set point's values [V]: a level is somewhere within one.
     coverage
         Says where the gaps are.
 
@@ -118,10 +121,11 @@ def calibrate_through_wander(
     # from (speed at the working voltage, slope) to (slope, intercept)
     turn = np.array([[0.0, 1.0], [1.0, -about_v]])
     slope, intercept = turn @ line.value
+    spread = np.array([0.0, step_v * slope]) ** 2 / (12.0 * np.sum((level_v - level_v.mean()) ** 2))
     calibration = SetPointCalibration(
         slope_rev_s_per_v=float(slope),
         intercept_rev_s=float(intercept),
-        covariance=frozen_float(turn @ line.covariance @ turn.T),
+        covariance=frozen_float(turn @ (line.covariance + np.diag(spread)) @ turn.T),
         level_v=frozen_float(level_v),
         level_rev_s=frozen_float(level_rev_s),
         level_std_rev_s=frozen_float(level_std),

@@ -8,7 +8,7 @@ from shaftprint.tug.sensors._control_unit import LOWEST_PERCENT, ControlUnit
 from shaftprint.tug.sensors._encoder import Encoder
 from shaftprint.tug.sensors._faults import Fault, draw_dropouts, draw_times
 from shaftprint.tug.sensors._gauge import TorqueGauge, shaft_orders
-from shaftprint.tug.sensors._helm import PITCH_INPUT, Helm, PitchLever
+from shaftprint.tug.sensors._helm import PITCH_INPUT, Helm, HelmMessages, PitchLever
 from shaftprint.tug.sensors._log import SpeedLog
 from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT, PickUp
 from shaftprint.tug.sensors._speed_meter import SpeedMessages, SpeedMeter
@@ -22,6 +22,7 @@ __all__ = [
     "Encoder",
     "Fault",
     "Helm",
+    "HelmMessages",
     "PickUp",
     "PitchLever",
     "SpeedLog",

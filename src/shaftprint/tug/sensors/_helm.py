@@ -1,11 +1,13 @@
-"""The logger's view of the set-point voltages."""
+"""The logger's view of the set points: voltages, or what a control unit reports of them."""
 
 import numpy as np
 from numpy.typing import NDArray
 
+from shaftprint.arrays import FloatArray
 from shaftprint.campaign import Campaign, setpoint
 from shaftprint.tug._tug import Tug
 from shaftprint.tug.plant import Stretch, helm_voltage
+from shaftprint.tug.sensors._bus import Bus, MessageStream, MessageTimes
 from shaftprint.tug.sensors._faults import Fault, draw_spikes
 from shaftprint.tug.sensors._pulses import VOLT_PER_COUNT
 from shaftprint.vessel import Vessel
@@ -57,6 +59,50 @@ class Helm:
             Fault(channel=self.channel, kind="spike", time_s=sample / self._rate_hz, duration_s=1.0 / self._rate_hz)
             for sample in self._spikes.sample.tolist()
         ]
+
+
+class HelmMessages:
+    """Stream of the raw counts of the set point that a control unit reports, message by message."""
+
+    def __init__(
+        self,
+        tug: Tug,
+        vessel: Vessel,
+        campaign: Campaign,
+        *,
+        cycle_s: float,
+        rate_hz: float,
+        rng: np.random.Generator,
+        bus: Bus,
+    ) -> None:
+        self._sensor = vessel.sensors.set_point
+        self.channel = self._sensor.channel
+        self._tug, self._campaign = tug, campaign
+        self.offset = 0.0
+        """Value of no count, in the unit of the channel."""
+        self.scale = tug.set_point_resolution
+        """Value of one count, in the unit of the channel."""
+        self.times = MessageTimes(bus, cycle_s=cycle_s, rng=rng)
+        """When its messages come."""
+        self._stream = MessageStream(self.times, latency_s=self._sensor.message_latency_s, rate_hz=rate_hz)
+        self._first: float | None = None
+
+    def next(self, stretch: Stretch) -> NDArray[np.int16]:
+        """Return the counts of the messages of the next stretch, shape (messages,)."""
+        return self.messages(stretch)[0]
+
+    def messages(self, stretch: Stretch) -> tuple[NDArray[np.int16], FloatArray]:
+        """Return counts and times [s] of the messages of the next stretch, each of shape (messages,)."""
+        voltage = helm_voltage(self._tug, self._campaign, stretch.time_s)
+        # before the start the lever stood still
+        self._first = float(voltage[0]) if self._first is None else self._first
+        shown, time_s = self._stream.next(voltage, first=self._first)
+        counts: FloatArray = np.rint(self._sensor.reading(shown) / self.scale)
+        return counts.clip(-32768, 32767).astype(np.int16), time_s
+
+    def faults(self) -> list[Fault]:
+        """Return no fault: a CAN bus sends a spoilt message again."""
+        return []
 
 
 class PitchLever:

@@ -1,0 +1,263 @@
+"""GAUGE-ECU from the log of a control unit's CAN bus: demand, torque, load and speed as messages.
+
+The simulated Stan Tug 1205 sails the shipped campaign ``short``. Its control unit sends, every 20 ms with 15 % of
+jitter and one in a hundred lost, the position of the pedal (SPN 91, 0.4 % a bit), the actual torque (SPN 513, 1 % a
+bit) or the load at the speed (SPN 92, 1 %), and the engine speed (SPN 190, 0.125 rpm). The torque gauge is logged
+beside it at 2000 Hz, the pick-ups in some of the cases. All noise and faults of the logger are in; in the cases "drawn"
+governor, engine, inertias, gauge, latencies, bus and noise are drawn for each test. Run ``python benchmarks/can_log.py
+--seeds 100 --write``, about 7 seconds a test of one core; ``--case`` runs one case alone, and tests that ``--outcomes
+FOLDER`` holds are not sailed again.
+"""
+
+import argparse
+import json
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parent.parent
+# Run as a file, the folder of the benchmarks is on the path, not the one above.
+sys.path.insert(0, str(ROOT))
+
+from benchmarks.message_log import Estimate, rows  # noqa: E402
+from benchmarks.monte_carlo_short import drawn_noise  # noqa: E402
+from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
+from shaftprint.campaign import load_campaign  # noqa: E402
+from shaftprint.catalogue import structure  # noqa: E402
+from shaftprint.errors import ShaftprintError  # noqa: E402
+from shaftprint.identify import Settings, identify, priors_from_vessel  # noqa: E402
+from shaftprint.recording import read_recording  # noqa: E402
+from shaftprint.signals import Signals, prepare_signals  # noqa: E402
+from shaftprint.spectra import estimate_response  # noqa: E402
+from shaftprint.tug import Truth, Tug, sail  # noqa: E402
+from shaftprint.vessel import Vessel, load_vessel  # noqa: E402
+
+DOCUMENT = ROOT / "docs" / "can-log.md"
+BEGIN, END = "<!-- table of benchmarks/can_log.py: begin -->", "<!-- table of benchmarks/can_log.py: end -->"
+SEED = 16
+ECU, CAMPAIGN, SHIP = structure("GAUGE-ECU"), load_campaign("short"), load_vessel("stan-tug-1205-ecu")
+CYCLE_S, JITTER, LOST = 0.02, 0.15, 0.01
+# The pedal asks for 600 rpm at 0 % and for 1800 rpm at 100 %, by the line of the simulated tug.
+RPM_PER_PERCENT, IDLE_RPM, RPM_PER_V, RPM_AT_ZERO_V = 12.0, 600.0, -250.97, -83.467
+PEDAL = {
+    "channel": "AcceleratorPedalPosition1",
+    "unit": "%",
+    "v_per_unit": RPM_PER_PERCENT / RPM_PER_V,
+    "v_at_zero": (IDLE_RPM - RPM_AT_ZERO_V) / RPM_PER_V,
+    "message_latency_s": 0.01,
+}
+SPEED = {"name": "n_e", "channel": "EngineSpeed", "shaft": "engine", "unit": "rpm", "latency_s": 0.01}
+# Working point of the truth, by which its numbers are normalised.
+TRUE_SPEED_REV_S, TRUE_TORQUE_NM = 1183.8 / 60.0, 1725.0
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Case:
+    """One way to log the line."""
+
+    name: str
+    """What it is."""
+    speed: bool = False
+    """Whether the speed comes from messages too, and there is no pick-up."""
+    rack: Mapping[str, Any] = field(default_factory=dict)
+    """What the vessel file says of the rack in another way."""
+    drawn: bool = False
+    """Whether truth and nuisances are drawn."""
+
+
+CASES: Mapping[str, Case] = {
+    "beside": Case(name="Pedal and torque from messages, beside pick-ups and torque gauge"),
+    "only": Case(name="Pedal, torque and speed from messages, beside the torque gauge alone", speed=True),
+    "drawn": Case(name="The same, truth and nuisances drawn", speed=True, drawn=True),
+}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Ship:
+    """What sails, and what is known of it."""
+
+    known: Vessel
+    """The vessel file."""
+    true: Vessel
+    """The same with the gauge and the latencies that it really has."""
+    tug: Tug
+    """The truth."""
+    scale: float = 1.0
+    """What the gauge shows over what it should."""
+
+    @property
+    def late_s(self) -> tuple[float, float]:
+        """By how much the messages with set point and speed are later than known [s]."""
+        known, true = self.known.sensors, self.true.sensors
+        set_point = true.set_point.message_latency_s - known.set_point.message_latency_s
+        return set_point, true.speed[0].latency_s - known.speed[0].latency_s
+
+
+def known_vessel(case: Case) -> Vessel:
+    """Return what the vessel file says."""
+    content = SHIP.model_dump()
+    content["sensors"]["set_point"] = PEDAL
+    content["sensors"]["rack"] |= {"cycle_s": CYCLE_S, **case.rack}
+    if case.speed:
+        content["sensors"]["speed"] = [SPEED]
+    return Vessel.model_validate(content)
+
+
+def ship_of(case: Case, seed: int) -> Ship:
+    """Return the ship of a test: the reference truth, or one that is drawn."""
+    known = known_vessel(case)
+    tug = Tug(speed_cycle_s=CYCLE_S, set_point_cycle_s=CYCLE_S, message_jitter=JITTER, messages_lost=LOST)
+    if not case.drawn:
+        return Ship(known=known, true=known, tug=tug)
+    rng, gauge = np.random.default_rng([SEED, seed]), known.sensors.shaft_torque
+    scale = 1.0 + float(rng.normal(0.0, gauge.scale_std))
+    content = known.model_dump()
+    content["sensors"]["shaft_torque"] |= {
+        "scale_nm_per_unit": float(gauge.scale_nm_per_unit or 1.0) / scale,
+        "latency_s": _late(rng, gauge.latency_s, gauge.latency_std or 0.0),
+    }
+    content["sensors"]["set_point"] |= {"message_latency_s": _late(rng, 0.01, 0.003)}
+    if case.speed:
+        content["sensors"]["speed"] = [SPEED | {"latency_s": _late(rng, 0.01, 0.002)}]
+    rack = known.sensors.rack
+    assert rack is not None
+    true = replace(
+        tug,
+        proportional_gain=float(rng.uniform(4.5, 6.5)),
+        integral_gain_per_s=float(rng.uniform(3.0, 5.0)),
+        governor_delay_s=float(rng.uniform(0.05, 0.08)),
+        natural_frequency_rad_s=float(rng.uniform(9.5, 12.5)),
+        damping_ratio=float(rng.uniform(0.45, 0.65)),
+        set_point_latency_s=float(rng.uniform(0.03, 0.08)),
+        g=float(rng.normal(0.0, 0.1)),
+        v=float(rng.uniform(0.9, 1.1)),
+        inertia_upstream_kg_m2=float(rng.normal(known.inertia_upstream_kg_m2, known.inertia_upstream_std_kg_m2)),
+        inertia_downstream_kg_m2=float(rng.normal(known.inertia_downstream_kg_m2, known.inertia_downstream_std_kg_m2)),
+        torque_zero_offset_nm=float(rng.normal(0.0, gauge.zero_std_nm or 0.0)),
+        rack_latency_s=_late(rng, rack.latency_s, rack.latency_std_s or 0.0),
+        message_jitter=float(rng.uniform(0.02, 0.25)),
+        messages_lost=float(rng.uniform(0.0, 0.03)),
+        noise=replace(drawn_noise(rng), surge_rms=0.0),
+    )
+    return Ship(known=known, true=Vessel.model_validate(content), tug=true, scale=scale)
+
+
+def _late(rng: np.random.Generator, stated_s: float, std_s: float) -> float:
+    return max(0.0, float(rng.normal(stated_s, std_s)))
+
+
+def true_values(ship: Ship, truth: Truth, signals: Signals) -> dict[str, float]:
+    """Return the truth in the sense in which it is found: over the working point of the recording, as the gauge shows.
+
+    A speed that is late by more than known makes the set point's latency longer and that of the rack shorter.
+    """
+    values = dict(truth.normalised)
+    rack = signals.channels["X"].reference / values["X_0"]
+    speed = signals.working_point.engine_speed_rev_s / TRUE_SPEED_REV_S
+    torque = signals.working_point.shaft_torque_nm / (TRUE_TORQUE_NM * ship.scale)
+    late_set_point_s, late_speed_s = ship.late_s
+    values["K_p"] *= speed / rack
+    values["K_i"] *= speed / rack
+    values["v"] *= rack / torque
+    values["g"] *= speed / torque
+    for name in ("tau_dn", "tau_up"):
+        values[name] *= speed / torque
+    values["k_q"] *= 1.0 - ship.tug.torque_zero_offset_nm / (TRUE_TORQUE_NM * torque)
+    values["t_sp"] += late_speed_s - late_set_point_s
+    values["t_rack"] -= late_speed_s
+    return values
+
+
+def outcome(case: Case, seed: int) -> dict[str, Any]:
+    """Sail and identify one test; return its estimates beside their truth and its p-value."""
+    ship = ship_of(case, seed)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "log.nc"
+        truth = sail(ship.true, CAMPAIGN, path, tug=ship.tug, seed=seed)
+        with read_recording(path) as recording:
+            signals = prepare_signals(recording, ship.known, CAMPAIGN)
+    response = estimate_response(signals, CAMPAIGN)
+    known = Settings(priors=priors_from_vessel(ECU, ship.known, signals.working_point))
+    found = identify(ECU, response, rng=np.random.default_rng(seed), settings=known)
+    true = true_values(ship, truth, signals)
+    estimates = [
+        Estimate(
+            name=one.name,
+            error=one.value - true[one.name],
+            std=one.std,
+            truth=true[one.name],
+            is_held=one.interval_95[0] <= true[one.name] <= one.interval_95[1],
+        )
+        for one in found.parameters
+        if one.name in true
+    ]
+    return {"seed": seed, "p_value": found.p_value, "estimates": [asdict(one) for one in estimates]}
+
+
+def outcomes_of(key: str, seeds: range, *, folder: Path | None) -> Iterator[dict[str, Any]]:
+    """Give what each test of a case gave, from the file where it stands there already."""
+    kept = folder / f"{key}.jsonl" if folder else None
+    lines = kept.read_text(encoding="utf-8").splitlines() if kept and kept.exists() else []
+    earlier = {one["seed"]: one for one in map(json.loads, lines)}
+    for seed in seeds:
+        if seed in earlier:
+            yield earlier[seed]
+            continue
+        try:
+            one = outcome(CASES[key], seed)
+        except ShaftprintError as error:
+            one = {"seed": seed, "refused": str(error)}
+        if kept:
+            with kept.open("a", encoding="utf-8") as file:
+                file.write(json.dumps(one) + "\n")
+        yield one
+
+
+def table(case: Case, outcomes: list[dict[str, Any]]) -> str:
+    """Return the table of a case in Markdown, errors over stated deviations in place of percent where it is drawn."""
+    held = [one for one in outcomes if "estimates" in one]
+    tests = [[Estimate(**estimate) for estimate in one["estimates"]] for one in held]
+    text = f"\n### {case.name}\n\n{len(held)} tests"
+    refused = [f"{one['seed']} ({one['refused']})" for one in outcomes if "refused" in one]
+    text += f"; refused: {'; '.join(refused)}.\n\n" if refused else ".\n\n"
+    if case.drawn:
+        tests = [[replace(one, error=one.error / one.std, std=1.0, truth=0.0) for one in test] for test in tests]
+        lines = [_drawn_row(row) for row in rows(tests)]
+    else:
+        lines = list(rows(tests))
+    p_values = np.array([one["p_value"] for one in held])
+    return text + "\n".join(lines) + f"\n\np-values below 0.05: {100.0 * np.mean(p_values < 0.05):.0f} %.\n"
+
+
+def _drawn_row(row: str) -> str:
+    """Leave out of a row what means nothing where every test has another truth."""
+    cells = row.split("|")
+    return "|".join([*cells[:2], *cells[3:5], *cells[6:]]).replace("scatter [%]", "scatter [% of the stated]")
+
+
+def main() -> None:
+    """Sail and identify the chosen cases."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", maxsplit=1)[0])
+    parser.add_argument("--seeds", type=int, default=4, help="tests of each case")
+    parser.add_argument("--case", choices=list(CASES), action="append", help="some cases alone")
+    parser.add_argument("--outcomes", type=Path, help="folder in which outcomes of tests are kept")
+    parser.add_argument("--write", action="store_true", help=f"put the tables into {DOCUMENT.relative_to(ROOT)}")
+    options = parser.parse_args()
+    if options.outcomes:
+        options.outcomes.mkdir(parents=True, exist_ok=True)
+    text = ""
+    for key in options.case or CASES:
+        outcomes = list(outcomes_of(key, range(1, options.seeds + 1), folder=options.outcomes))
+        text += table(CASES[key], outcomes)
+        print(table(CASES[key], outcomes), flush=True)
+    if options.write:
+        write_between_marks(DOCUMENT, text, BEGIN, END)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,136 @@
+"""What the steps of messages do to the sines of a set point, taken out by their course.
+
+A slow sine in steps is no sine with noise: one of ``a`` steps is wrong by up to ``2 J_1(2 pi a) / pi`` of a step, 0.3 %
+at 15 steps, in the same sense at every line of that amplitude (W. R. Bennett, "Spectra of quantized signals", Bell
+System Technical Journal 27 (1948)). Where the sine that was put out is known, so is what rounding makes of each of its
+values; with noise of deviation ``s`` before rounding, that is
+
+``e(u) = sum_n (-1)^n / (pi n) exp(-2 pi^2 n^2 s^2) sin(2 pi n u)``, all in steps
+
+(B. Widrow and I. Kollar, "Quantization Noise", 2008, chapter 4). The sine is fitted, the errors of its values are taken
+from the messages, and so again.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import scipy
+
+from shaftprint.arrays import FloatArray
+from shaftprint.campaign import Sine
+
+# So many rounds, each half of the way: the error of a sine of few steps hangs on itself.
+_ROUNDS, _SHARE = 12, 0.5
+# With noise above so many steps nothing is left to take out; below, rounding is that of the sine alone.
+_MOST_NOISE, _LEAST_NOISE = 0.4, 0.02
+# Terms whose factor is below exp(-18) are left out.
+_TERMS_BY_NOISE = 1.2
+# What is left must be smaller than so much of the variance that was there, else it is another course than a sine.
+_LEAST_GAIN = 0.8
+_FEWEST_MESSAGES = 30
+# Of a course in volts: fewer steps than this are none.
+_FEWEST_STEPS = 1.0
+
+
+def take_out_steps(
+    set_point_v: FloatArray,
+    time_s: FloatArray,
+    shown_v: FloatArray,
+    sines: Sequence[Sine],
+    *,
+    step_v: float,
+    rate_hz: float,
+    start_s: float,
+) -> tuple[str, ...]:
+    """Take out of a set point, in place, what the steps of its messages make of each sine; return those it was.
+
+    Parameters
+    ----------
+    set_point_v
+        The set point on the grid [V], shape (samples,).
+    time_s, shown_v
+        Time [s] and value [V] of its messages, shape (messages,).
+    sines
+        What was asked.
+    step_v
+        Step of the values [V].
+    rate_hz, start_s
+        The grid.
+    """
+    done = []
+    for sine in sines:
+        inside = slice(*np.searchsorted(time_s, [sine.start_s, sine.stop_s]))
+        times, first = np.unique(time_s[inside], return_index=True)
+        if times.size < _FEWEST_MESSAGES:
+            continue
+        error_v = step_v * steps_of_sine(times, shown_v[inside][first] / step_v, sine.frequency_hz)
+        if not error_v.any():
+            continue
+        begin, end = (int(np.ceil((instant - start_s) * rate_hz)) for instant in (times[0], times[-1]))
+        places = np.arange(max(begin, 0), min(end, set_point_v.size))
+        set_point_v[places] -= scipy.interpolate.CubicSpline(times, error_v)(start_s + places / rate_hz)
+        done.append(sine.name)
+    return tuple(done)
+
+
+def steps_of_sine(time_s: FloatArray, shown: FloatArray, frequency_hz: float) -> FloatArray:
+    """Return what rounding adds to each value of a sine; zeros where the values follow none.
+
+    Parameters
+    ----------
+    time_s
+        Times of the values [s], shape (values,).
+    shown
+        The values in steps, all of them whole numbers apart, shape (values,).
+    frequency_hz
+        Frequency of the sine [Hz]; where its clock differs, it may turn by some hundredths of a period.
+    """
+    design = _design(time_s, frequency_hz)
+    inverse = np.linalg.pinv(design)
+    # the grid of the steps goes through every value
+    values = shown - shown[0]
+    plain = values - design @ (inverse @ values)
+    course = design @ (inverse @ values)
+    error, noise = np.zeros_like(values), 0.0
+    for _ in range(_ROUNDS):
+        noise = _noise(values, course)
+        if noise > _MOST_NOISE:
+            return np.zeros_like(values)
+        error += _SHARE * (rounding_error(course, noise) - error)
+        course = design @ (inverse @ (values - error))
+    left = values - error - course
+    is_better = np.ptp(course) > _FEWEST_STEPS and left.var() < _LEAST_GAIN * plain.var()
+    return error if is_better else np.zeros_like(values)
+
+
+def rounding_error(values: FloatArray, noise: float = 0.0) -> FloatArray:
+    """Return by how much rounding to whole numbers changes values on average, of any shape.
+
+    Parameters
+    ----------
+    values
+        In steps.
+    noise
+        Standard deviation of the noise that they have beside [steps].
+    """
+    if noise < _LEAST_NOISE:
+        return np.asarray(np.rint(values) - values)
+    error = np.zeros_like(values)
+    for term in range(1, int(_TERMS_BY_NOISE / noise) + 2):
+        factor = (-1.0) ** term / (np.pi * term) * np.exp(-2.0 * (np.pi * term * noise) ** 2)
+        error += factor * np.sin(2.0 * np.pi * term * values)
+    return error
+
+
+def _design(time_s: FloatArray, frequency_hz: float) -> FloatArray:
+    """Return offset, drift and a sine that may slowly change, shape (values, 6)."""
+    phase = 2.0 * np.pi * frequency_hz * (time_s - time_s[0])
+    slow = 2.0 * (time_s - time_s[0]) / (time_s[-1] - time_s[0]) - 1.0
+    waves = (np.cos(phase), np.sin(phase))
+    return np.column_stack([np.ones(time_s.size), slow, *waves, *(slow * wave for wave in waves)])
+
+
+def _noise(values: FloatArray, course: FloatArray) -> float:
+    """Return the noise before rounding [steps]: what the values scatter beyond the rounding of their course."""
+    rounding = np.rint(course) - course
+    return float(np.sqrt(max(np.var(values - course) - np.var(rounding), 0.0)))

@@ -1,0 +1,53 @@
+"""Messages at times of their own on the common grid, joined by a cubic spline."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import scipy
+
+from shaftprint.errors import SignalError
+from shaftprint.signals._gaps import bridge
+from shaftprint.signals.kinds._message_reading import MessageReading
+from shaftprint.signals.kinds._speed_reading import REACH_VALUES
+
+if TYPE_CHECKING:
+    from shaftprint.recording import Channel
+    from shaftprint.signals._clock import Clock
+
+# A cubic spline goes through four values.
+_FEWEST_MESSAGES = 4
+
+
+def splined(messages: MessageReading, channel: "Channel", clock: "Clock", latency_s: float) -> MessageReading:
+    """Return messages with their values on the grid, in the unit of the channel, and what their holes cost there.
+
+    Parameters
+    ----------
+    messages
+        What was read; times are those of the messages, also in what is returned.
+    channel
+        Where they come from.
+    clock
+        The grid.
+    latency_s
+        Time by which they are late [s].
+
+    Raises
+    ------
+    SignalError
+        If there are fewer than four.
+    """
+    time_s, values = messages.for_spline(latency_s=latency_s)
+    if time_s.size < _FEWEST_MESSAGES:
+        raise no_numbers(channel)
+    grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
+    on_grid = scipy.interpolate.CubicSpline(time_s, values)(grid_s.clip(time_s[0], time_s[-1]))
+    gaps = tuple(replace(gap, reach_s=REACH_VALUES / channel.rate_hz) for gap in messages.gaps)
+    bridge(on_grid, gaps, start_s=clock.start_s + latency_s, rate_hz=clock.rate_hz)
+    return replace(messages, values=on_grid, gaps=gaps)
+
+
+def no_numbers(channel: "Channel") -> SignalError:
+    """Return the error of a channel without numbers."""
+    return SignalError(f"channel {channel.name}: expected numbers, found none; check the export of the logger.")
