@@ -73,7 +73,17 @@ class Case:
 CASES: Mapping[str, Case] = {
     "beside": Case(name="Pedal and torque from messages, beside pick-ups and torque gauge"),
     "only": Case(name="Pedal, torque and speed from messages, beside the torque gauge alone", speed=True),
-    "drawn": Case(name="The same, truth and nuisances drawn", speed=True, drawn=True),
+    "load": Case(
+        name="The same with percent load in place of percent torque",
+        speed=True,
+        rack={"channel": "EnginePercentLoadAtCurrentSpeed", "shows": "load"},
+    ),
+    "fuel": Case(
+        name="The same with the fuel rate",
+        speed=True,
+        rack={"channel": "EngineFuelRate", "unit": "L/h", "rated_l_h": 58.0},
+    ),
+    "drawn": Case(name="Pedal, torque and speed from messages, truth and nuisances drawn", speed=True, drawn=True),
 }
 
 
@@ -124,8 +134,7 @@ def ship_of(case: Case, seed: int) -> Ship:
     content["sensors"]["set_point"] |= {"message_latency_s": _late(rng, 0.01, 0.003)}
     if case.speed:
         content["sensors"]["speed"] = [SPEED | {"latency_s": _late(rng, 0.01, 0.002)}]
-    rack = known.sensors.rack
-    assert rack is not None
+    rack = content["sensors"]["rack"]
     true = replace(
         tug,
         proportional_gain=float(rng.uniform(4.5, 6.5)),
@@ -139,7 +148,7 @@ def ship_of(case: Case, seed: int) -> Ship:
         inertia_upstream_kg_m2=float(rng.normal(known.inertia_upstream_kg_m2, known.inertia_upstream_std_kg_m2)),
         inertia_downstream_kg_m2=float(rng.normal(known.inertia_downstream_kg_m2, known.inertia_downstream_std_kg_m2)),
         torque_zero_offset_nm=float(rng.normal(0.0, gauge.zero_std_nm or 0.0)),
-        rack_latency_s=_late(rng, rack.latency_s, rack.latency_std_s or 0.0),
+        rack_latency_s=_late(rng, rack["latency_s"], rack["latency_std_s"]),
         message_jitter=float(rng.uniform(0.02, 0.25)),
         messages_lost=float(rng.uniform(0.0, 0.03)),
         noise=replace(drawn_noise(rng), surge_rms=0.0),

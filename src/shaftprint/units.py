@@ -36,6 +36,7 @@ _SPELLINGS = {
     "turns": "rev", "revolution": "rev", "revolutions": "rev", "count": "counts", "cts": "counts", "tick": "counts",
     "ticks": "counts",
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "m s-1": "m/s",
+    "l/h": "L/h", "l/hr": "L/h", "lph": "L/h", "litre/h": "L/h", "liter/h": "L/h",
     "m s^-1": "m/s", "mps": "m/s", "hertz": "Hz", "hz": "Hz",
 }  # fmt: skip
 

@@ -13,9 +13,11 @@ from shaftprint.recording import read_recording
 from shaftprint.tug import Noise, Tug, sail, simulate_signals
 from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors import Bus, ControlUnit
-from shaftprint.vessel import RackSensor, Vessel
+from shaftprint.vessel import RackSensor, Vessel, load_vessel
 
 Make = Callable[..., Any]
+
+SHIP = load_vessel("stan-tug-1205-ecu")
 
 
 def with_sensor(vessel: Vessel, **changes: Any) -> Vessel:
@@ -24,11 +26,11 @@ def with_sensor(vessel: Vessel, **changes: Any) -> Vessel:
     return Vessel.model_validate(content)
 
 
-def stretch_of(rack: np.ndarray, start: int = 0) -> Stretch:
+def stretch_of(rack: np.ndarray, start: int = 0, *, engine_rpm: float = 0.0) -> Stretch:
     zeros = np.zeros(rack.size)
     return Stretch(
         time_s=(start + np.arange(rack.size)) / 2000.0,
-        shaft_speed_rev_s=zeros,
+        shaft_speed_rev_s=zeros + engine_rpm / 60.0 / 3.82,
         shaft_angle_rev=zeros,
         shaft_torque_nm=zeros,
         brake_torque_nm=zeros,
@@ -95,7 +97,7 @@ def test_every_message_holds_what_the_governor_gave_a_latency_ago(
 
 def test_beyond_125_percent_the_message_cannot_go() -> None:
     sensor = RackSensor(channel="X", unit="%", cycle_s=0.01, latency_s=0.0)
-    unit = ControlUnit(sensor, latency_s=0.0, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1))
+    unit = ControlUnit(sensor, SHIP, latency_s=0.0, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1))
     counts = unit.next(stretch_of(np.concatenate([np.full(200, 1.6), np.full(200, -1.6)])))
     assert set(counts.tolist()) == {250, 0}
 
@@ -105,7 +107,7 @@ def test_stretches_shorter_than_a_message_lose_none() -> None:
     rack = 0.4 + 1e-4 * np.arange(3000.0)
     counts = []
     for size in (3000, 7, 1):
-        unit = ControlUnit(sensor, latency_s=0.02, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1))
+        unit = ControlUnit(sensor, SHIP, latency_s=0.02, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1))
         parts = [unit.next(stretch_of(rack[start : start + size], start)) for start in range(0, 3000, size)]
         counts.append(np.concatenate(parts))
         # of a ramp of 20 % a second
@@ -156,7 +158,7 @@ def test_times_of_messages_do_not_depend_on_how_the_voyage_is_cut() -> None:
     results = []
     for size in (6000, 11, 1):
         unit = ControlUnit(
-            sensor, latency_s=0.03, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1),
+            sensor, SHIP, latency_s=0.03, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1),
             bus=Bus(jitter=0.25, lost=0.2),
         )  # fmt: skip
         parts = [unit.messages(stretch_of(rack[start : start + size], start)) for start in range(0, 6000, size)]
@@ -173,7 +175,9 @@ def test_messages_that_wait_carry_the_rack_of_their_cycle() -> None:
     sensor = RackSensor(channel="X", unit="%", cycle_s=0.02, latency_s=0.03, resolution_percent=0.01)
     rack = 0.4 + 1e-4 * np.arange(6000.0)
     bus = Bus(jitter=0.25, lost=0.2, waits=True)
-    unit = ControlUnit(sensor, latency_s=0.03, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1), bus=bus)
+    unit = ControlUnit(
+        sensor, SHIP, latency_s=0.03, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1), bus=bus
+    )
     counts, times = unit.messages(stretch_of(rack))
     cycle = unit.times.start_s + 0.02 * np.rint((times - unit.times.start_s) / 0.02)
     assert counts * 0.01 - 125.0 == pytest.approx(np.maximum(40.0 + 20.0 * (cycle - 0.03), 40.0), abs=0.0051)
@@ -187,3 +191,20 @@ def test_a_bus_that_cannot_be_is_refused(
     with pytest.raises(SettingsError, match="expected"):
         sail(vessel_with_bus, ask(5.0), tmp_path / "bus.nc", tug=Tug(**changes), seed=1)
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("fields", "expected", "step"),
+    [
+        # half way on the full-load curve from 1038 N m at 819 rpm to 1277 N m at 981 rpm; 1172.44 N m are rated
+        ({"unit": "%", "shows": "load"}, 40.0 * 1172.44 / 1157.5, 1.0),
+        # half of the rated speed
+        ({"unit": "L/h", "rated_l_h": 58.0}, 58.0 * 0.4 * 0.5, 0.05),
+    ],
+)
+def test_load_and_fuel_rate_are_those_of_rack_and_speed(fields: Any, expected: float, step: float) -> None:
+    sensor = RackSensor(channel="X", cycle_s=0.02, latency_s=0.0, **fields)
+    unit = ControlUnit(sensor, SHIP, latency_s=0.0, first_rack=0.4, rate_hz=2000.0, rng=np.random.default_rng(1))
+    counts = unit.next(stretch_of(np.full(4000, 0.4), engine_rpm=900.0))
+    assert (unit.scale, unit.offset) == (step, 0.0)
+    assert counts * step == pytest.approx(expected, abs=0.51 * step)

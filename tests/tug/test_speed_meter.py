@@ -61,3 +61,23 @@ def test_a_control_unit_sends_the_speed_in_messages(vessel, ask, sine, quiet, tm
     with read_recording(tmp_path / "even.nc") as recording:
         even = recording.channels["X"]
         assert (even.rate_hz, even.is_uneven, even.count) == (20.0, False, 420)
+
+
+def test_a_control_unit_reports_the_set_point_in_messages(vessel, ask, sine, quiet, tmp_path):
+    """SPN 91: 0.4 % a bit of a pedal from idle to rated speed, every 20 ms, 30 ms late."""
+    content = vessel.model_dump()
+    line = {"v_per_unit": -0.047814, "v_at_zero": -2.7233}
+    content["sensors"]["set_point"] = {"channel": "Pedal", "unit": "%", "message_latency_s": 0.03, **line}
+    campaign = ask(21.0, sines=[sine(0.5, 0.6)])
+    tug = Tug(noise=quiet, set_point_cycle_s=0.02, message_jitter=0.15, messages_lost=0.05)
+    sail(Vessel.model_validate(content), campaign, tmp_path / "x.nc", tug=tug, seed=1)
+    with read_recording(tmp_path / "x.nc") as recording:
+        pedal = recording.channels["Pedal"]
+        values, time_s = pedal.values(0, pedal.count), pedal.time_s(0, pedal.count)
+    assert (pedal.is_uneven, pedal.unit) == (True, "%")
+    assert pedal.count == pytest.approx(0.95 * 21.0 / 0.02, rel=0.02)
+    volts = -5.0 + 0.6 * np.sin(2.0 * np.pi * 0.5 * (time_s - 0.03)) + tug.set_point_offset_v
+    begun = (time_s > 0.05) & (time_s < 20.0)
+    shown = line["v_per_unit"] * values[begun] + line["v_at_zero"]
+    assert shown == pytest.approx(volts[begun], abs=0.501 * 0.4 * 0.047814)
+    assert values / 0.4 == pytest.approx(np.rint(values / 0.4), abs=1e-9)

@@ -109,5 +109,6 @@ def steady_state_of_legs(
         working_point=main.working_point,
         calibration=calibration,
         scale=DcScale(value=1.0, std=slope_std, findings=()),
+        speed_rev_s=readings.pick_ups[0].values,
     )
     return steady, states

@@ -279,7 +279,9 @@ def _steady_state(
         )
         _calibrated_in_place(n_set, calibration)
         scale = _rescale(n_set, speed, tests, coverage, calibration, **grid, about=point.engine_speed_rev_s)
-    steady = SteadyState(clock=clock, stretches=quiet, working_point=point, calibration=calibration, scale=scale)
+    steady = SteadyState(
+        clock=clock, stretches=quiet, working_point=point, calibration=calibration, scale=scale, speed_rev_s=speed
+    )
     return steady, strange, unsteady
 
 

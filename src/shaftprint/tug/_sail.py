@@ -28,7 +28,6 @@ from shaftprint.tug.plant import (
     voyage,
 )
 from shaftprint.tug.sensors import (
-    LOWEST_PERCENT,
     VOLT_PER_COUNT,
     Bus,
     ControlUnit,
@@ -223,7 +222,13 @@ class _Crew:
             return None
         latency_s = rack_latency_s(self._tug, sensor)
         return ControlUnit(
-            sensor, latency_s=latency_s, first_rack=first_rack, rate_hz=self._rate_hz, rng=rng, bus=Bus.of(self._tug)
+            sensor,
+            self._vessel,
+            latency_s=latency_s,
+            first_rack=first_rack,
+            rate_hz=self._rate_hz,
+            rng=rng,
+            bus=Bus.of(self._tug),
         )
 
     def _read_log(self, first_speed_m_s: float, rng: np.random.Generator) -> SpeedLog | None:
@@ -332,9 +337,9 @@ class _Crew:
         if self._control_unit is not None:
             writer.declare(
                 self._control_unit.channel,
-                unit="%",
+                unit=self._control_unit.unit,
                 scale=self._control_unit.scale,
-                offset=LOWEST_PERCENT,
+                offset=self._control_unit.offset,
                 long_name="demand percent torque of the engine's control unit, from its CAN bus",
                 **self._clock_of(self._control_unit),
             )

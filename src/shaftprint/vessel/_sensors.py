@@ -18,6 +18,7 @@ from shaftprint.settings import (
     Settings,
 )
 from shaftprint.units import ANGLES_REV, M_S_PER_KNOT, REV_S_PER_UNIT
+from shaftprint.vessel._machinery import Engine
 from shaftprint.vessel._plain_unit import PLAIN_UNIT
 from shaftprint.vessel._set_point import SetPointSensor
 from shaftprint.vessel._shaft_torque import ShaftTorqueSensor
@@ -184,23 +185,84 @@ class SpeedSensor(Settings):
 
 
 class RackSensor(Settings):
-    """Percent torque that the engine's control unit demands, as it stands on the CAN bus: the picture of the fuel rack.
+    """What the engine's control unit says of the torque that it demands: the picture of the fuel rack.
 
-    SAE J1939-71, message EEC1: 1 % a bit from -125 % on, 100 % for a rack of 1, a message every 10 to 100 ms.
+    SAE J1939-71: percent torque of EEC1, 1 % a bit from -125 % on, 100 % for a rack of 1; percent load of EEC2, 100 %
+    for the torque that the engine can give at its speed; or the fuel rate of LFE, which goes with rack and speed. A
+    message every 10 to 100 ms.
     """
 
     channel: Name
     """Name of the channel in the recording."""
-    unit: Literal["%"]
+    unit: Annotated[Literal["%", "L/h"], PLAIN_UNIT]
     """Unit of the channel."""
+    shows: Literal["torque", "load"] = "torque"
+    """Of what a percentage is: of rated torque, or of the full-load curve at the speed of the engine."""
+    rated_l_h: PositiveNumber | None = None
+    """Fuel rate at rated power and speed [L/h], for a channel in L/h."""
     cycle_s: PositiveNumber
     """Time from one message to the next [s]."""
     resolution_percent: PositiveNumber = 1.0
     """Step of the value [%]."""
+    resolution_l_h: PositiveNumber = 0.05
+    """Step of a fuel rate [L/h]."""
     latency_s: NotNegativeNumber
     """Time by which a value is late behind the output of the governor [s]."""
     latency_std_s: NotNegativeNumber | None = None
     """Standard deviation of the latency [s]."""
+
+    @model_validator(mode="after")
+    def _rate_has_a_scale(self) -> Self:
+        is_rate = self.unit == "L/h"
+        errors = []
+        if is_rate and self.rated_l_h is None:
+            errors.append("expected rated_l_h for a channel in L/h, found none.")
+        if not is_rate and self.rated_l_h is not None:
+            errors.append(f"expected rated_l_h left out for a channel in %, found {self.rated_l_h:g}.")
+        if is_rate and self.shows == "load":
+            errors.append('expected shows left out for a channel in L/h, found "load".')
+        if errors:
+            raise ValueError(" ".join(errors))
+        return self
+
+    @property
+    def words(self) -> str:
+        """What the channel holds, in words."""
+        return "fuel rate" if self.unit == "L/h" else f"percent {self.shows}"
+
+    @property
+    def rack_per_unit(self) -> float:
+        """Rack for one unit of the channel at rated speed [1 per unit]."""
+        return 0.01 if self.rated_l_h is None else 1.0 / self.rated_l_h
+
+    @property
+    def resolution(self) -> float:
+        """Step of the value, in the unit of the channel."""
+        return self.resolution_percent if self.unit == "%" else self.resolution_l_h
+
+    @property
+    def goes_with_speed(self) -> bool:
+        """Whether the rack hangs on the speed of the engine beside the value."""
+        return self.unit == "L/h" or self.shows == "load"
+
+    def share(self, speed_rpm: FloatArray, engine: Engine) -> FloatArray:
+        """Return the rack for one value at speeds of the engine over that at rated speed and torque.
+
+        Of a load it goes with the full-load curve; of a fuel rate, ``X n``, with one over the speed.
+
+        Parameters
+        ----------
+        speed_rpm
+            Speed of the engine [rpm], of any shape.
+        engine
+            The engine.
+        """
+        if self.unit == "L/h":
+            return engine.rated_speed_rpm / speed_rpm
+        if self.shows == "torque":
+            return np.ones_like(speed_rpm)
+        curve = (engine.full_load_speed_rpm, engine.full_load_torque_nm)
+        return np.asarray(np.interp(speed_rpm, *curve) / engine.rated_torque_nm)
 
 
 class ShipSpeedSensor(Settings):

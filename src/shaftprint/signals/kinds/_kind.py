@@ -67,6 +67,8 @@ class SteadyState:
     """The line from set-point voltage to speed."""
     scale: "DcScale"
     """By how much that line was stretched."""
+    speed_rev_s: "FloatArray"
+    """Engine speed on the grid [rev/s], shape (samples,)."""
 
 
 def steady_parts(values: "FloatArray", clock: "Clock", stretches: "Sequence[SteadyStretch]") -> "list[FloatArray]":

@@ -1,11 +1,11 @@
-"""Fuel rack from the percent torque on the CAN bus, at the times of the messages.
+"""Fuel rack from percent torque, percent load or fuel rate on the CAN bus, at the times of the messages.
 
 It is not brought on the common grid: between messages that come every 10 to 100 ms nothing is known, and whatever an
 interpolation put there would bend the response. Spectra are measured on the channel's own clock, or at the times of the
 messages where the file has them.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -21,6 +21,7 @@ from shaftprint.signals.conditioning import Reading
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.kinds._message_reading import MessageReading, read_messages
 from shaftprint.signals.levels import SteadyStretch, find_working_point
+from shaftprint.units import rpm_from_rev_s
 from shaftprint.vessel import RackSensor
 
 if TYPE_CHECKING:
@@ -28,14 +29,13 @@ if TYPE_CHECKING:
     from shaftprint.signals._clock import Clock
 
 # Beyond the range of the message stand "error" and "not available" (SAE J1939-71).
-_HIGHEST_PERCENT = 125.0
+_HIGHEST_PERCENT, _HIGHEST_L_H = 125.0, 3212.75
 _LONGEST_GAP_S = 2.0
 
 # A logger that repeats each value on its own clock: means of a tenth of a cycle keep the memory low.
 _PARTS_OF_A_CYCLE = 10
 _SAME_RATE, _HELD_RATE = 0.1, 2.0
 _BLOCK_S = 1.0
-_PERCENT = 0.01
 
 
 class Rack(ChannelKind[RackSensor]):
@@ -51,6 +51,13 @@ class Rack(ChannelKind[RackSensor]):
     def signal(self, source: Source[RackSensor], reading: Reading, steady: SteadyState) -> MessageSignal:
         """Return the rack with the working point that belongs to the mean load of the test."""
         torque_nm = find_working_point(steady.stretches).shaft_torque_nm
+
+        def share(time_s: FloatArray) -> FloatArray:
+            clock = steady.clock
+            grid_s = clock.start_s + np.arange(clock.count) / clock.rate_hz
+            speed_rpm = rpm_from_rev_s(np.interp(time_s, grid_s, steady.speed_rev_s))
+            return source.sensor.share(speed_rpm, source.vessel.engine)
+
         return rack_signal(
             reading.values,
             source.channel,
@@ -60,6 +67,7 @@ class Rack(ChannelKind[RackSensor]):
             gaps=reading.gaps,
             time_s=reading.time_s if isinstance(reading, MessageReading) else None,
             load=steady.working_point.shaft_torque_nm / torque_nm,
+            share=share if source.sensor.goes_with_speed else None,
         )
 
 
@@ -83,33 +91,37 @@ def read_rack(channel: "Channel", sensor: RackSensor, *, block_samples: int) -> 
     group = _samples_together(channel, sensor)
     if channel.is_uneven or (channel.stamps is not None and not _is_held(channel, sensor)):
         return _read_messages(channel, sensor)
-    percent = np.concatenate(list(_means(channel, group, block_samples)))
-    repairs, gaps = _bridge(percent, channel, group)
-    _expect_moving(percent, channel)
-    return Reading(values=_PERCENT * percent, repairs=repairs, gaps=tuple(gaps))
+    shown = np.concatenate(list(_means(channel, group, block_samples, highest=_highest(sensor))))
+    repairs, gaps = _bridge(shown, channel, sensor, group)
+    _expect_moving(shown, channel, sensor)
+    return Reading(values=sensor.rack_per_unit * shown, repairs=repairs, gaps=tuple(gaps))
 
 
-def _expect_moving(percent: FloatArray, channel: "Channel") -> None:
-    if np.ptp(percent) == 0.0:
+def _highest(sensor: RackSensor) -> float:
+    return _HIGHEST_PERCENT if sensor.unit == "%" else _HIGHEST_L_H
+
+
+def _expect_moving(shown: FloatArray, channel: "Channel", sensor: RackSensor) -> None:
+    if np.ptp(shown) == 0.0:
         raise SignalError(
-            f"channel {channel.name}: expected a percent torque that moves, found {percent[0]:g} % from beginning to "
-            "end; check the message it was taken from, or take [sensors.rack] out of the vessel file."
+            f"channel {channel.name}: expected a {sensor.words} that moves, found {shown[0]:g} {sensor.unit} from "
+            "beginning to end; check the message it was taken from, or take [sensors.rack] out of the vessel file."
         )
 
 
 def _read_messages(channel: "Channel", sensor: RackSensor) -> MessageReading:
     """Return the messages that hold a torque, at their own times; nothing is put between them."""
-    reading = read_messages(channel, highest=_HIGHEST_PERCENT)
+    reading = read_messages(channel, highest=_highest(sensor))
     if not reading.values.size:
-        raise _nothing_available(channel)
-    _expect_moving(reading.values, channel)
+        raise _nothing_available(channel, sensor)
+    _expect_moving(reading.values, channel, sensor)
     kept_s = reading.messages.value_period_s
     if not _is_held(channel, sensor) and kept_s > _HELD_RATE * sensor.cycle_s:
         raise SignalError(
             f"channel {channel.name}: expected a new value every {sensor.cycle_s:g} s, as cycle_s says, found each "
             f"sent again for {kept_s:.3g} s; set cycle_s to that in the vessel file."
         )
-    return replace(reading, values=_PERCENT * reading.values)
+    return replace(reading, values=sensor.rack_per_unit * reading.values)
 
 
 def rack_signal(
@@ -122,6 +134,7 @@ def rack_signal(
     gaps: tuple[Gap, ...] = (),
     time_s: FloatArray | None = None,
     load: float = 1.0,
+    share: Callable[[FloatArray], FloatArray] | None = None,
 ) -> MessageSignal:
     """Return the fuel rack with its clock, its sampling and its working point.
 
@@ -141,6 +154,8 @@ def rack_signal(
         Time of each value, where those are messages at times of their own [s], shape (values,).
     load
         Torque of the working point over that of the stretches; the rack follows it.
+    share
+        Rack over ``fraction`` at some times [s], where it hangs on the speed beside the value.
 
     Raises
     ------
@@ -151,15 +166,17 @@ def rack_signal(
     group = _samples_together(channel, sensor) if time_s is None else 1
     rate_hz, start_s = channel.rate_hz / group, time_of(channel, 0.5 * (group - 1)) - latency_s
     times = start_s + np.arange(fraction.size) / rate_hz if time_s is None else time_s - latency_s
-    resolution = _PERCENT * sensor.resolution_percent
+    if share is not None:
+        fraction = fraction * share(times)
+    resolution = sensor.rack_per_unit * sensor.resolution
     covered = Coverage(gaps=gaps)
     uninterrupted = [stretch for stretch in stretches if not covered.missing(stretch.start_s, stretch.stop_s)]
     inside = [_between(fraction, times, rate_hz, stretch) for stretch in uninterrupted]
     mean, std = _working_point(inside, rate_hz, resolution)
     if not mean > 0.0:
-        value = "none there" if np.isnan(mean) else f"{mean / _PERCENT:.3g} %"
+        value = "none there" if np.isnan(mean) else f"{mean / sensor.rack_per_unit:.3g} {sensor.unit}"
         raise SignalError(
-            f"channel {channel.name}: expected a positive percent torque while the line stands still, as near "
+            f"channel {channel.name}: expected a positive {sensor.words} while the line stands still, as near "
             f"{stretches[0].start_s:.0f} s, found {value}; check the message it was taken from and when it was logged."
         )
     return MessageSignal(
@@ -198,40 +215,47 @@ def _samples_together(channel: "Channel", sensor: RackSensor) -> int:
     return 1
 
 
-def _means(channel: "Channel", group: int, block_samples: int) -> Iterator[FloatArray]:
-    """Yield the means of so many samples in percent, not a number where no torque was available."""
+def _means(channel: "Channel", group: int, block_samples: int, *, highest: float) -> Iterator[FloatArray]:
+    """Yield the means of so many samples in the unit of the channel, not a number where no value was available."""
     waiting = np.empty(0)
     for counts in blocks(channel, block_samples):
-        percent = np.concatenate([waiting, counts * channel.scale + channel.offset])
-        count = percent.size - percent.size % group
-        waiting = percent[count:]
-        parts = percent[:count].reshape(-1, group)
-        available = parts <= _HIGHEST_PERCENT
+        shown = np.concatenate([waiting, counts * channel.scale + channel.offset])
+        count = shown.size - shown.size % group
+        waiting = shown[count:]
+        parts = shown[:count].reshape(-1, group)
+        available = parts <= highest
         number = available.sum(axis=1)
         mean = np.where(available, parts, 0.0).sum(axis=1) / np.maximum(number, 1)
         yield np.where(number > 0, mean, np.nan)
 
 
-def _bridge(percent: FloatArray, channel: "Channel", group: int) -> tuple[list[Repair], list[Gap]]:
-    """Put straight lines where no torque was available; what is longer than 2 s is a gap."""
-    missing = np.isnan(percent)
+def _bridge(shown: FloatArray, channel: "Channel", sensor: RackSensor, group: int) -> tuple[list[Repair], list[Gap]]:
+    """Put straight lines where no value was available; what is longer than 2 s is a gap."""
+    missing = np.isnan(shown)
     if missing.all():
-        raise _nothing_available(channel)
+        raise _nothing_available(channel, sensor)
     repairs, gaps = [], []
     for first, stop in runs_of(missing):
         start_s, stop_s = time_of(channel, first * group), time_of(channel, stop * group)
         if stop_s - start_s > _LONGEST_GAP_S:
-            gaps.append(Gap(channel=channel.name, start_s=start_s, stop_s=stop_s, reason="has no torque available"))
+            gaps.append(
+                Gap(
+                    channel=channel.name,
+                    start_s=start_s,
+                    stop_s=stop_s,
+                    reason=f"has no {sensor.words.split()[-1]} available",
+                )
+            )
         else:
             repairs.append(Repair(channel=channel.name, kind="dropout", time_s=start_s, count=(stop - first) * group))
-    percent[:] = joined(percent)
+    shown[:] = joined(shown)
     return repairs, [*gaps, *clock_gaps(channel)]
 
 
-def _nothing_available(channel: "Channel") -> SignalError:
+def _nothing_available(channel: "Channel", sensor: RackSensor) -> SignalError:
     return SignalError(
-        f"channel {channel.name}: expected percent torque, found only values above {_HIGHEST_PERCENT:g} %, which "
-        "mean that none is available, or no numbers; use another recording, or take [sensors.rack] out of the "
+        f"channel {channel.name}: expected {sensor.words}, found only values above {_highest(sensor):g} {sensor.unit}, "
+        "which mean that none is available, or no numbers; use another recording, or take [sensors.rack] out of the "
         "vessel file."
     )
 

@@ -118,7 +118,7 @@ def _read_messages(channel: "Channel", sensor: SetPointSensor, clock: "Clock") -
         values=sensor.volts(on_grid.values),
         repairs=(),
         gaps=tuple(gaps),
-        findings=came.findings,
+        findings=came.findings if channel.is_uneven else (),
         time_s=came.time_s - latency_s,
         shown_v=sensor.volts(came.values),
         step_v=0.0 if sensor.is_obeyed else abs(sensor.slope_v) * came.messages.step,

@@ -1,4 +1,4 @@
-"""The engine's control unit on the CAN bus: percent torque as it broadcasts it, message by message."""
+"""The engine's control unit on the CAN bus: percent torque, load or fuel rate as it broadcasts it, by messages."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,7 +7,8 @@ from shaftprint.arrays import FloatArray
 from shaftprint.tug.plant import Stretch
 from shaftprint.tug.sensors._bus import Bus, MessageStream, MessageTimes
 from shaftprint.tug.sensors._faults import Fault
-from shaftprint.vessel import RackSensor
+from shaftprint.units import rpm_from_rev_s
+from shaftprint.vessel import RackSensor, Vessel
 
 LOWEST_PERCENT = -125.0
 """What a count of 0 means [%]; SAE J1939-71, percent torque."""
@@ -19,14 +20,15 @@ REGULAR = Bus()
 
 
 class ControlUnit:
-    """Stream of the raw counts of the percent torque, at the times of its messages.
+    """Stream of the raw counts of the percent torque, load or fuel rate, at the times of its messages.
 
-    Each message carries the rack that the governor gave a latency ago, as a percentage in steps.
+    Each message carries the rack that the governor gave a latency ago, in steps.
     """
 
     def __init__(
         self,
         sensor: RackSensor,
+        vessel: Vessel,
         *,
         latency_s: float,
         first_rack: float,
@@ -37,8 +39,13 @@ class ControlUnit:
         self.channel = sensor.channel
         self.times = MessageTimes(bus, cycle_s=sensor.cycle_s, rng=rng)
         """When its messages come."""
-        self.scale = sensor.resolution_percent
-        """Value of one count [%]."""
+        self.scale = sensor.resolution
+        """Value of one count, in the unit of the channel."""
+        self.unit = sensor.unit
+        """Unit of the channel."""
+        self.offset = 0.0 if sensor.goes_with_speed else LOWEST_PERCENT
+        """Value of no count, in the unit of the channel."""
+        self._sensor, self._vessel = sensor, vessel
         # before the start the line ran steadily
         self._first_rack = first_rack
         self._stream = MessageStream(self.times, latency_s=latency_s, rate_hz=rate_hz)
@@ -49,9 +56,15 @@ class ControlUnit:
 
     def messages(self, stretch: Stretch) -> tuple[NDArray[np.int16], FloatArray]:
         """Return counts and times [s] of the messages of the next stretch, each of shape (messages,)."""
-        rack, time_s = self._stream.next(stretch.rack_given, first=self._first_rack)
-        percent = (100.0 * rack).clip(LOWEST_PERCENT, _HIGHEST_PERCENT)
-        counts: FloatArray = np.rint((percent - LOWEST_PERCENT) / self.scale)
+        rack, first = stretch.rack_given, self._first_rack
+        if self._sensor.goes_with_speed:
+            speed_rpm = rpm_from_rev_s(self._vessel.gearbox.ratio * stretch.shaft_speed_rev_s)
+            share = self._sensor.share(speed_rpm, self._vessel.engine)
+            rack, first = rack / share, first / float(share[0])
+        shown, time_s = self._stream.next(rack / self._sensor.rack_per_unit, first=first / self._sensor.rack_per_unit)
+        if self.unit == "%":
+            shown = shown.clip(self.offset, _HIGHEST_PERCENT)
+        counts: FloatArray = np.rint((shown - self.offset) / self.scale)
         return counts.astype(np.int16), time_s
 
     def faults(self) -> list[Fault]:
