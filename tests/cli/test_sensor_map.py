@@ -104,9 +104,34 @@ def test_signals_of_a_control_unit_are_known_by_their_numbers(run, tmp_path):
     found = _map(result)["sensors"]
     assert found["rack"] == {"channel": "EEC1_b", "unit": "%", "cycle_s": 0.02}
     assert [(speed["channel"], speed["unit"]) for speed in found["speed"]] == [("EEC1_c", "rpm")]
-    assert set(found) == {"rack", "speed"}
-    said = [line for line in result.output.splitlines() if line.endswith("; no sensor takes it")]
-    assert [line.split("'")[1] for line in said] == ["EEC2_a", "EEC2_b", "LFE"]
+    assert found["set_point"] == {"channel": "EEC2_a", "unit": "%"}
+    assert set(found) == {"rack", "set_point", "speed"}
+    said = [line for line in result.output.splitlines() if "another channel" in line]
+    assert [line.split("'")[1] for line in said] == ["EEC2_b", "LFE"]
+
+
+def test_what_a_control_unit_sends_for_want_of_better(run, tmp_path):
+    """A voltage asks faster than the pedal; without a torque the load shows the rack, else the fuel rate."""
+
+    def proposed(**channels):
+        path = tmp_path / f"{'_'.join(channels)}.nc"
+        with RecordingWriter(path) as writer:
+            for name, (unit, long_name, rate_hz) in channels.items():
+                writer.declare(name, unit=unit, rate_hz=rate_hz, dtype="float64", long_name=long_name)
+                writer.append(name, 40.0 + np.sin(np.arange(40_000.0)))
+        return run("inspect", path)
+
+    pedal, load, fuel = ("%", "SPN 91", 50.0), ("%", "SPN 92", 50.0), ("L/h", "SPN 183", 10.0)
+    beside = proposed(EEC2_a=pedal, Setpoint=("V", "", 2000.0), EEC2_b=load, LFE=fuel)
+    found = _map(beside)["sensors"]
+    assert found["set_point"] == {"channel": "Setpoint", "unit": "V"}
+    assert found["rack"] == {"channel": "EEC2_b", "unit": "%", "shows": "load", "cycle_s": 0.02}
+    assert "'EEC2_a': SPN 91, position of the accelerator pedal; the set point comes from another channel" in (
+        beside.output
+    )
+    alone = proposed(LFE=fuel)
+    assert _map(alone)["sensors"]["rack"] == {"channel": "LFE", "unit": "L/h", "cycle_s": 0.1}
+    assert "# rated_l_h =" in alone.output
 
 
 def test_gauges_are_proposed_with_what_their_unit_needs(run, tmp_path):

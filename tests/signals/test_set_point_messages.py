@@ -11,8 +11,8 @@ from shaftprint.signals import find_tests, prepare_signals
 from shaftprint.signals.excitation._quantum import rounding_error, steps_of_sine
 from shaftprint.vessel import Vessel
 
-# A pedal of 0 to 100 %, 0.4 % a bit: 19 mV.
-V_PER_PERCENT, V_AT_ZERO, STEP = -0.047814, -2.7233, 0.4
+# A pedal of 0 to 100 %, 0.4 % a bit: 19 mV. The offset of -5 V is shown as -4.991 V.
+V_PER_PERCENT, V_AT_ZERO, STEP = -0.047814, -2.7150, 0.4
 
 
 def sent(rng, count, *, jitter_s=0.003, lost=0.01):
@@ -114,6 +114,8 @@ def test_a_set_point_in_messages_is_that_of_the_voltage(vessel, ship, campaign, 
         # the scale is that of speed over set point, which the noise of the pick-ups knows to 5e-4
         assert abs(found / goal - 1.0) < 1.5e-3
         assert np.angle(found / goal) == pytest.approx(0.0, abs=5e-4)
+    # the sines say where the level between them lies
+    assert signals.working_point.set_point_v == pytest.approx(-5.0, abs=1e-3)
     moved = signals.excitations["n_set"]
     assert (moved.nyquist_hz, moved.is_obeyed) == (25.0, False)
     # by the law of the cardinal spline

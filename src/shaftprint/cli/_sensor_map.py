@@ -1,7 +1,7 @@
 """A proposal for the sensors of the vessel file, from what a recording's channels are called and look like."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
@@ -17,15 +17,20 @@ _PULSES = re.compile(r"ptm|pulse|tacho|pick|rpm|speed|\bn_?e", re.IGNORECASE)
 _ENCODER = re.compile(r"enc|crank|shaft|counter|turn", re.IGNORECASE)
 _ENGINE = re.compile(r"eng|motor|_e\b|crank|flywheel", re.IGNORECASE)
 
-# What an engine's control unit sends, by its number (SAE J1939-71). Of several torques the first is nearest to what the
-# governor gives: engine demand, actual torque, driver's demand.
+# What an engine's control unit sends, by its number (SAE J1939-71). Of several the first is nearest to what the
+# governor gives: engine demand, actual torque, driver's demand, load in % of the full-load curve, fuel rate.
 _SPN = re.compile(r"SPN (\d+)")
-_TORQUE_NUMBERS = (2432, 513, 512)
-_SPEED_NUMBER = 190
+_LOAD_NUMBER, _FUEL_NUMBER = 92, 183
+_RACK_NUMBERS = (2432, 513, 512, _LOAD_NUMBER, _FUEL_NUMBER)
+_SPEED_NUMBER, _PEDAL_NUMBER = 190, 91
+_OF_RACK = {
+    _LOAD_NUMBER: 'shows = "load"',
+    _FUEL_NUMBER: "# rated_l_h =                    # fuel rate at rated power and speed, from the data sheet [L/h]",
+}
 _NO_SENSOR = {
-    91: "position of the accelerator pedal, a set point in %",
-    92: "load of the engine in % of what it can give at its speed",
-    183: "fuel rate",
+    _PEDAL_NUMBER: "position of the accelerator pedal; the set point comes from another channel",
+    _LOAD_NUMBER: "load of the engine in % of what it can give at its speed; another channel shows the rack better",
+    _FUEL_NUMBER: "fuel rate; another channel shows the rack better",
 }
 
 _SPEEDS = ("speed", "instrument", "encoder")
@@ -74,6 +79,7 @@ _FIELDS = {
     "rack": (
         "channel = {channel}",
         "unit = {unit}",
+        "{of_rack}",
         "cycle_s = {cycle:g}",
         "# latency_s =                    # [s]",
     ),
@@ -125,7 +131,7 @@ def proposed_sensors(seen: Sequence[Seen]) -> list[str]:
     for needed in ("shaft_torque", "set_point"):
         if needed not in single:
             lines += [f"# [sensors.{needed}]: no channel looks like it", ""]
-    lines += _without_sensor(seen)
+    lines += _without_sensor(seen, uses)
     if not speeds:
         lines += ["# [[sensors.speed]]: no channel holds pulses, a speed or an angle", ""]
     rate = max((item.channel.rate_hz for item in seen), default=0.0)
@@ -139,24 +145,28 @@ def _number(channel: Channel) -> int | None:
 
 
 def _uses_by_number(seen: Sequence[Seen]) -> dict[str, Use | None]:
-    """Return what J1939 signals are used for, by name: speed, one of the torques, nothing of the others."""
+    """Return what J1939 signals are used for, by name: speed, one for the rack, the pedal where nothing else asks."""
     numbers = {item.channel.name: _number(item.channel) for item in seen}
-    torque = next((number for number in _TORQUE_NUMBERS if number in numbers.values()), None)
+    rack = next((number for number in _RACK_NUMBERS if number in numbers.values()), None)
+    others = [item for item in seen if numbers[item.channel.name] is None]
+    is_asked = any(_use(item) == "set_point" for item in others)
     uses: dict[str, Use | None] = {name: None for name, number in numbers.items() if number is not None}
     for name, number in numbers.items():
         if number == _SPEED_NUMBER:
             uses[name] = "instrument"
-        elif number is not None and number == torque:
+        elif number == _PEDAL_NUMBER and not is_asked:
+            uses[name] = "set_point"
+        elif number is not None and number == rack:
             uses[name] = "rack"
     return uses
 
 
-def _without_sensor(seen: Sequence[Seen]) -> list[str]:
-    """Return lines on the J1939 signals that the vessel file has no sensor for."""
+def _without_sensor(seen: Sequence[Seen], uses: Mapping[str, Use | None]) -> list[str]:
+    """Return lines on the J1939 signals that no sensor takes."""
     lines = [
-        f"# {item.channel.name!r}: SPN {number}, {_NO_SENSOR[number]}; no sensor takes it"
+        f"# {item.channel.name!r}: SPN {number}, {_NO_SENSOR[number]}"
         for item in seen
-        if (number := _number(item.channel)) in _NO_SENSOR and number is not None
+        if (number := _number(item.channel)) in _NO_SENSOR and number is not None and not uses[item.channel.name]
     ]
     return [*lines, ""] if lines else []
 
@@ -189,6 +199,7 @@ def _values(channel: Channel, speeds: int) -> dict[str, object]:
         "unit": toml_string(channel.unit),
         "name": f"n_{speeds}",
         "shaft": "engine" if _ENGINE.search(channel.name) else "propeller",
+        "of_rack": _OF_RACK.get(_number(channel) or 0, ""),
         "line": ""
         if channel.unit == "V"
         else f"# v_per_unit =                   # volts of the campaign for one {channel.unit}, and v_at_zero [V]",

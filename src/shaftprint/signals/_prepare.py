@@ -313,7 +313,7 @@ def _without_steps_in_place(readings: Readings, campaign: Campaign) -> None:
         reading.values,
         reading.time_s,
         reading.shown_v,
-        campaign.of_input().sines,
+        campaign.of_input(),
         step_v=reading.step_v,
         rate_hz=clock.rate_hz,
         start_s=clock.start_s,

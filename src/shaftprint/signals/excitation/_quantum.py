@@ -11,13 +11,11 @@ values; with noise of deviation ``s`` before rounding, that is
 from the messages, and so again.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 import scipy
 
 from shaftprint.arrays import FloatArray
-from shaftprint.campaign import Sine
+from shaftprint.campaign import Campaign, Staircase, setpoint
 
 # So many rounds, each half of the way: the error of a sine of few steps hangs on itself.
 _ROUNDS, _SHARE = 12, 0.5
@@ -28,7 +26,7 @@ _TERMS_BY_NOISE = 1.2
 # What is left must be smaller than so much of the variance that was there, else it is another course than a sine.
 _LEAST_GAIN = 0.8
 _FEWEST_MESSAGES = 30
-# Of a course in volts: fewer steps than this are none.
+# A sine from crest to trough of fewer steps says nothing.
 _FEWEST_STEPS = 1.0
 
 
@@ -36,13 +34,13 @@ def take_out_steps(
     set_point_v: FloatArray,
     time_s: FloatArray,
     shown_v: FloatArray,
-    sines: Sequence[Sine],
+    campaign: Campaign,
     *,
     step_v: float,
     rate_hz: float,
     start_s: float,
-) -> tuple[str, ...]:
-    """Take out of a set point, in place, what the steps of its messages make of each sine; return those it was.
+) -> None:
+    """Take out of a set point, in place, what the steps of its messages make of sines and of levels between them.
 
     Parameters
     ----------
@@ -50,27 +48,51 @@ def take_out_steps(
         The set point on the grid [V], shape (samples,).
     time_s, shown_v
         Time [s] and value [V] of its messages, shape (messages,).
-    sines
+    campaign
         What was asked.
     step_v
         Step of the values [V].
     rate_hz, start_s
         The grid.
     """
-    done = []
-    for sine in sines:
-        inside = slice(*np.searchsorted(time_s, [sine.start_s, sine.stop_s]))
-        times, first = np.unique(time_s[inside], return_index=True)
-        if times.size < _FEWEST_MESSAGES:
+    times, first = np.unique(time_s, return_index=True)
+    shown_v, error_v = shown_v[first], np.zeros(times.size)
+    middles, lengths = [], []
+    for sine in campaign.sines:
+        inside = slice(*np.searchsorted(times, [sine.start_s, sine.stop_s]))
+        if times[inside].size < _FEWEST_MESSAGES:
             continue
-        error_v = step_v * steps_of_sine(times, shown_v[inside][first] / step_v, sine.frequency_hz)
-        if not error_v.any():
-            continue
-        begin, end = (int(np.ceil((instant - start_s) * rate_hz)) for instant in (times[0], times[-1]))
-        places = np.arange(max(begin, 0), min(end, set_point_v.size))
-        set_point_v[places] -= scipy.interpolate.CubicSpline(times, error_v)(start_s + places / rate_hz)
-        done.append(sine.name)
-    return tuple(done)
+        error_v[inside] = step_v * steps_of_sine(times[inside], shown_v[inside] / step_v, sine.frequency_hz)
+        window = slice(*np.searchsorted(times, [sine.settled_s, sine.window_stop_s]))
+        if error_v[window].any():
+            middles.append(float(np.mean(shown_v[window] - error_v[window])))
+            lengths.append(sine.window_s)
+    if not middles:
+        return
+    middle_v = float(np.average(middles, weights=lengths))
+    error_v += _error_of_levels(times, shown_v, campaign, middle_v=middle_v, step_v=step_v)
+    begin, end = (int(np.ceil((instant - start_s) * rate_hz)) for instant in (times[0], times[-1]))
+    places = np.arange(max(begin, 0), min(end, set_point_v.size))
+    set_point_v[places] -= scipy.interpolate.CubicSpline(times, error_v)(start_s + places / rate_hz)
+
+
+def _error_of_levels(
+    time_s: FloatArray, shown_v: FloatArray, campaign: Campaign, *, middle_v: float, step_v: float
+) -> FloatArray:
+    """Return what rounding adds to levels that stand still [V], shape (messages,); zeros where the set point moves.
+
+    A level lies anywhere within its step. About the middle of the sines, which they know, it lies where the campaign
+    has it; where that would be rounded to another value, as near to it as the value allows.
+    """
+    stands = np.ones(time_s.size, dtype=np.bool_)
+    for item in campaign.excitations:
+        if not isinstance(item, Staircase):
+            stands[slice(*np.searchsorted(time_s, [item.start_s, item.stop_s]))] = False
+    asked_v = setpoint(campaign, time_s) + (middle_v - campaign.offset_v)
+    error_v = shown_v - asked_v
+    # another value than the next one is another course
+    stands &= np.abs(error_v) < step_v
+    return np.where(stands, error_v.clip(-0.5 * step_v, 0.5 * step_v), 0.0)
 
 
 def steps_of_sine(time_s: FloatArray, shown: FloatArray, frequency_hz: float) -> FloatArray:
