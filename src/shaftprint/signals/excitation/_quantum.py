@@ -47,7 +47,7 @@ def take_out_steps(
     set_point_v
         The set point on the grid [V], shape (samples,).
     time_s, shown_v
-        Time [s] and value [V] of its messages, shape (messages,).
+        Time [s], ascending, and value [V] of its messages, shape (messages,).
     campaign
         What was asked.
     step_v
@@ -55,25 +55,24 @@ def take_out_steps(
     rate_hz, start_s
         The grid.
     """
-    times, first = np.unique(time_s, return_index=True)
-    shown_v, error_v = shown_v[first], np.zeros(times.size)
+    error_v = np.zeros(time_s.size)
     middles, lengths = [], []
     for sine in campaign.sines:
-        inside = slice(*np.searchsorted(times, [sine.start_s, sine.stop_s]))
-        if times[inside].size < _FEWEST_MESSAGES:
+        inside = slice(*np.searchsorted(time_s, [sine.start_s, sine.stop_s]))
+        if time_s[inside].size < _FEWEST_MESSAGES:
             continue
-        error_v[inside] = step_v * steps_of_sine(times[inside], shown_v[inside] / step_v, sine.frequency_hz)
-        window = slice(*np.searchsorted(times, [sine.settled_s, sine.window_stop_s]))
+        error_v[inside] = step_v * steps_of_sine(time_s[inside], shown_v[inside] / step_v, sine.frequency_hz)
+        window = slice(*np.searchsorted(time_s, [sine.settled_s, sine.window_stop_s]))
         if error_v[window].any():
             middles.append(float(np.mean(shown_v[window] - error_v[window])))
             lengths.append(sine.window_s)
     if not middles:
         return
     middle_v = float(np.average(middles, weights=lengths))
-    error_v += _error_of_levels(times, shown_v, campaign, middle_v=middle_v, step_v=step_v)
-    begin, end = (int(np.ceil((instant - start_s) * rate_hz)) for instant in (times[0], times[-1]))
+    error_v += _error_of_levels(time_s, shown_v, campaign, middle_v=middle_v, step_v=step_v)
+    begin, end = (int(np.ceil((instant - start_s) * rate_hz)) for instant in (time_s[0], time_s[-1]))
     places = np.arange(max(begin, 0), min(end, set_point_v.size))
-    set_point_v[places] -= scipy.interpolate.CubicSpline(times, error_v)(start_s + places / rate_hz)
+    set_point_v[places] -= scipy.interpolate.CubicSpline(time_s, error_v)(start_s + places / rate_hz)
 
 
 def _error_of_levels(

@@ -33,7 +33,7 @@ class SetPointMessages(Reading):
     """A set point that came in messages, on the grid and as it came."""
 
     time_s: FloatArray
-    """When each message showed its value [s], shape (messages,)."""
+    """When each message showed its value [s], ascending, shape (messages,)."""
     shown_v: FloatArray
     """The values, in volts of the campaign [V], shape (messages,)."""
     step_v: float
@@ -113,14 +113,15 @@ def _read_messages(channel: "Channel", sensor: SetPointSensor, clock: "Clock") -
     highest = _HIGHEST_PERCENT if sensor.unit == "%" else math.inf
     came = read_messages(channel, highest=highest)
     on_grid = splined(came, channel, clock, latency_s)
+    time_s, shown = came.for_spline(latency_s=latency_s)
     gaps = (replace(gap, start_s=gap.start_s - latency_s, stop_s=gap.stop_s - latency_s) for gap in on_grid.gaps)
     return SetPointMessages(
         values=sensor.volts(on_grid.values),
         repairs=(),
         gaps=tuple(gaps),
         findings=came.findings if channel.is_uneven else (),
-        time_s=came.time_s - latency_s,
-        shown_v=sensor.volts(came.values),
+        time_s=time_s,
+        shown_v=sensor.volts(shown),
         step_v=0.0 if sensor.is_obeyed else abs(sensor.slope_v) * came.messages.step,
     )
 
