@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from asammdf import Signal
 from click.testing import CliRunner
-from tests.can_frames import DBC, EEC1, eec1, raw_log
+from tests.can_frames import DBC, EEC1, EEC2, eec1, eec2, raw_log
 
 from shaftprint.campaign import load_campaign
 from shaftprint.cli import shaftprint
@@ -58,3 +58,48 @@ def test_raw_log_of_a_bus_gives_the_gain_of_the_governor(tmp_path):
     content = json.loads((tmp_path / "result" / "fingerprint.json").read_text(encoding="utf-8"))
     gain = next(one for one in content["parameters"] if one["name"] == "K_p")
     assert gain["value"] == pytest.approx(truth["K_p"], rel=0.02)
+
+
+@pytest.mark.slow
+def test_the_pedal_of_a_raw_log_asks_in_place_of_a_voltage(tmp_path):
+    """EEC1 with the torque and EEC2 with the pedal, 0.4 % a bit, beside gauge and pick-ups; no set point is wired."""
+    line = 'unit = "%"\nv_per_unit = -0.047814\nv_at_zero = -2.7233\nmessage_latency_s = 0.01\n'
+    text = SHIPPED.read_text(encoding="utf-8").replace("cycle_s = 0.05", "cycle_s = 0.02")
+    text = text.replace('channel = "X_percent"', 'channel = "ActualEnginePercentTorque"')
+    old = 'channel = "U_setpoint"\nunit = "V"\n'
+    assert text.count(old) == 1
+    text = text.replace(old, f'channel = "AcceleratorPedalPosition1"\n{line}')
+    vessel, log, dbc = (tmp_path / name for name in ("vessel.toml", "log.mf4", "engine.dbc"))
+    vessel.write_text(text, encoding="utf-8")
+    dbc.write_text(DBC, encoding="utf-8")
+    tug = Tug(message_jitter=0.15, messages_lost=0.01, set_point_cycle_s=0.02)
+    truth = sail(load_vessel(vessel), load_campaign("short"), tmp_path / "sailed.nc", tug=tug, seed=8).normalised
+    with read_recording(tmp_path / "sailed.nc") as recording:
+        channels = dict(recording.channels)
+        pedal, torque = (channels.pop(name) for name in ("AcceleratorPedalPosition1", "ActualEnginePercentTorque"))
+        sent = [(one.stamps_s(0, one.count), one.values(0, one.count)) for one in (torque, pedal)]
+        analog = [
+            Signal(
+                one.read(0, one.count), one.time_s(0, one.count), name=name, unit=one.unit,
+                conversion={"a": one.scale, "b": one.offset},
+            )
+            for name, one in channels.items()
+        ]  # fmt: skip
+        frames = [
+            (sent[0][0], EEC1, eec1(sent[0][1], np.full(sent[0][0].size, 0xFFFF / 8.0))),
+            (sent[1][0], EEC2, eec2(sent[1][1], np.full(sent[1][0].size, 255.0))),
+        ]
+        raw_log(log, frames, analog)
+    call("convert", log, "--dbc", dbc, "-o", tmp_path / "log.nc", "--no-progress")
+    proposed = call("inspect", tmp_path / "log.nc")
+    assert '[sensors.set_point]\nchannel = "AcceleratorPedalPosition1"' in proposed
+    asked = [tmp_path / "log.nc", "--vessel", vessel, "--campaign", "short", "--no-progress"]
+    inspected = call("inspect", *asked)
+    assert "AcceleratorPedalPosition1: a message every 20 ms +/- 4.2 ms" in inspected
+    assert "Problems\n  * None." in inspected
+    call("identify", *asked, "--structure", "GAUGE-ECU", "-o", tmp_path / "result")
+    content = json.loads((tmp_path / "result" / "fingerprint.json").read_text(encoding="utf-8"))
+    found = {one["name"]: one for one in content["parameters"]}
+    for name in ("K_p", "K_i", "t_d", "t_sp"):
+        assert found[name]["value"] == pytest.approx(truth[name], abs=4.0 * found[name]["std"])
+    assert found["K_p"]["value"] == pytest.approx(truth["K_p"], rel=0.02)

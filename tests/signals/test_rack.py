@@ -1,14 +1,15 @@
 """Percent torque of the control unit: its own clock, its gaps, its working point, and what is wrong with a channel."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from shaftprint.errors import SignalError
 from shaftprint.recording import Channel
-from shaftprint.signals import inspect_channels, prepare_signals
-from shaftprint.signals.kinds import rack_signal, read_rack
+from shaftprint.signals import WorkingPoint, inspect_channels, prepare_signals
+from shaftprint.signals.kinds import KINDS, Source, SteadyState, rack_signal, read_rack
 from shaftprint.signals.levels import SteadyStretch
 from shaftprint.vessel import RackSensor, load_vessel
 
@@ -353,3 +354,55 @@ def test_inspection_tells_of_the_rack(logged, with_bus, vessel):
     dead = inspect_channels(logged(lambda percent: np.full_like(percent, 39.0)), with_bus)[-1]
     assert "expected a percent torque that moves, found 39 %" in dead.problem
     assert (dead.lowest, dead.highest) == (39.0, 39.0)
+
+
+@pytest.mark.parametrize("way", ["load", "fuel rate"])
+def test_load_and_fuel_rate_become_the_rack_by_the_speed(way):
+    """One rack as a share of the full-load curve and as litres an hour, while the speed swings by 15 %."""
+    vessel = load_vessel("stan-tug-1205-ecu")
+    engine = vessel.engine
+    times = stamps()
+    grid_s = 0.005 * np.arange(12_000)
+
+    def speed_rpm(when):
+        return 1200.0 + 180.0 * np.sin(0.4 * when)
+
+    # what a message shows is 10 ms old
+    rack, rpm = 0.4 + 0.02 * np.sin(3.0 * (times - 0.01)), speed_rpm(times - 0.01)
+    if way == "load":
+        shown = 100.0 * rack * 1172.44 / np.interp(rpm, engine.full_load_speed_rpm, engine.full_load_torque_nm)
+        fields = {"unit": "%", "shows": "load", "resolution_percent": 1.0}
+    else:
+        shown, fields = 58.0 * rack * rpm / 1800.0, {"unit": "L/h", "rated_l_h": 58.0}
+    sensor = RackSensor(channel="X_percent", cycle_s=0.02, latency_s=0.01, **fields)
+    channel = replace(came(shown, times), unit=fields["unit"], source=lambda first, stop: shown[first:stop])
+    kind = KINDS["X"]
+    source = Source(kind=kind, name="X", channel=channel, sensor=sensor, vessel=vessel)
+    clock = SimpleNamespace(
+        start_s=0.0,
+        rate_hz=200.0,
+        count=grid_s.size,
+        latency_s=lambda stated_s: stated_s,
+        block_samples=lambda _: BLOCK,
+    )
+    point = WorkingPoint(
+        engine_speed_rev_s=19.7, shaft_torque_nm=1725.0, engine_speed_std_rev_s=0.01, shaft_torque_std_nm=3.0,
+        set_point_v=-5.0, load_std=0.001,
+    )  # fmt: skip
+    steady = SteadyState(
+        clock=clock, stretches=(stretch(0.0, 60.0),), working_point=point, calibration=None, scale=None,
+        speed_rev_s=speed_rpm(grid_s) / 60.0,
+    )  # fmt: skip
+    signal = kind.signal(source, kind.read(source, clock), steady)
+    assert signal.values == pytest.approx(rack, rel=1e-4)
+
+
+def test_a_fuel_rate_needs_what_it_is_at_rated_power():
+    fields = {"channel": "LFE", "unit": "L/h", "cycle_s": 0.1, "latency_s": 0.0}
+    with pytest.raises(ValueError, match="expected rated_l_h for a channel in L/h, found none"):
+        RackSensor(**fields)
+    with pytest.raises(ValueError, match=r"expected rated_l_h left out for a channel in %, found 58\."):
+        RackSensor(**fields | {"unit": "%", "rated_l_h": 58.0})
+    with pytest.raises(ValueError, match='expected shows left out for a channel in L/h, found "load"'):
+        RackSensor(**fields | {"rated_l_h": 58.0, "shows": "load"})
+    assert RackSensor(**fields | {"unit": "l/h", "rated_l_h": 58.0}).unit == "L/h"

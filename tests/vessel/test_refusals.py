@@ -44,7 +44,11 @@ from shaftprint.vessel import ShaftTorqueSensor, SpeedSensor, load_vessel
         ("cylinders = 6", "cylinders = 6.5", "cylinders: expected a whole number"),
         ("# [sensors.rack]", '[sensors.rack]\nchannel = "X"', r"sensors\.rack\.cycle_s: expected a value, found none"),
         ("# [sensors.rack]", "[sensors.rack]\ncycle_s = 0.0", r"sensors\.rack\.cycle_s: expected a number greater"),
-        ("# [sensors.rack]", '[sensors.rack]\nunit = "bit"', r"sensors\.rack\.unit: expected '%', found 'bit'"),
+        (
+            "# [sensors.rack]",
+            '[sensors.rack]\nunit = "bit"',
+            r"sensors\.rack\.unit: expected '%' or 'L/h', found 'bit'",
+        ),
         (
             "# [sensors.rack]",
             '[sensors.rack]\nchannel = "M_s"\nunit = "%"\ncycle_s = 0.05\nlatency_s = 0.0',

@@ -4,7 +4,7 @@ from shaftprint.signals.excitation._found_test import FoundTest, common_shift_s
 from shaftprint.signals.excitation._found_tests import found_tests
 from shaftprint.signals.excitation._match import expect_campaign, left_out
 from shaftprint.signals.excitation._proposed_campaign import proposed_campaign
-from shaftprint.signals.excitation._quantum import take_out_steps
+from shaftprint.signals.excitation._quantum import rounding_error, steps_of_sine, take_out_steps
 from shaftprint.signals.excitation._steps import find_step_delays
 
 __all__ = [
@@ -15,5 +15,7 @@ __all__ = [
     "found_tests",
     "left_out",
     "proposed_campaign",
+    "rounding_error",
+    "steps_of_sine",
     "take_out_steps",
 ]
