@@ -11,6 +11,8 @@ values; with noise of deviation ``s`` before rounding, that is
 from the messages, and so again.
 """
 
+import math
+
 import numpy as np
 import scipy
 
@@ -154,4 +156,4 @@ def _design(time_s: FloatArray, frequency_hz: float) -> FloatArray:
 def _noise(values: FloatArray, course: FloatArray) -> float:
     """Return the noise before rounding [steps]: what the values scatter beyond the rounding of their course."""
     rounding = np.rint(course) - course
-    return float(np.sqrt(max(np.var(values - course) - np.var(rounding), 0.0)))
+    return math.sqrt(max(float(np.var(values - course)) - float(np.var(rounding)), 0.0))
