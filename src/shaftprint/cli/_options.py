@@ -39,16 +39,27 @@ class SettingsPath(click.types.StringParamType):
         )
 
 
+class NeededOfShips(click.Option):
+    """An option that has to be given, but beside ``--drive``."""
+
+    def process_value(self, ctx: click.Context, value: object) -> object:
+        """Return the value; None where it is missing beside ``--drive``."""
+        self.required = ctx.params.get("drive_file") is None
+        return super().process_value(ctx, value)
+
+
 def vessel_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the option ``--vessel``."""
     kind = SettingsPath("vessel", "stan-tug-1205")
-    return click.option("--vessel", required=True, type=kind, help=f"Vessel file: {NAMES} stan-tug-1205.")(command)
+    words = f"Vessel file: {NAMES} stan-tug-1205."
+    return click.option("--vessel", cls=NeededOfShips, required=True, type=kind, help=words)(command)
 
 
 def campaign_option(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the option ``--campaign``."""
     kind = SettingsPath("campaign", "thesis")
-    return click.option("--campaign", required=True, type=kind, help=f"Campaign file: {NAMES} thesis.")(command)
+    words = f"Campaign file: {NAMES} thesis."
+    return click.option("--campaign", cls=NeededOfShips, required=True, type=kind, help=words)(command)
 
 
 def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:

@@ -14,6 +14,14 @@ gauge zero share    %           zero offset of the torque gauge over the working
 """
 
 from shaftprint.fingerprint._clock_influence import NOTABLE_SHIFT, ClockInfluence, clock_findings, clock_influences
+from shaftprint.fingerprint._drive_fingerprint import (
+    DriveFingerprint,
+    DriveRecord,
+    drive_fingerprint_content,
+    is_of_a_drive,
+    read_drive_fingerprint,
+    write_drive_fingerprint,
+)
 from shaftprint.fingerprint._fingerprint import Conditions, Fingerprint, Quality, SourceFile
 from shaftprint.fingerprint._inertia import inertia_beside
 from shaftprint.fingerprint._json_file import fingerprint_sha256, read_fingerprint, write_fingerprint
@@ -33,6 +41,8 @@ __all__ = [
     "TVC",
     "ClockInfluence",
     "Conditions",
+    "DriveFingerprint",
+    "DriveRecord",
     "FieldValue",
     "Fingerprint",
     "IdentifiedModel",
@@ -43,9 +53,11 @@ __all__ = [
     "SourceFile",
     "clock_findings",
     "clock_influences",
+    "drive_fingerprint_content",
     "fingerprint_sha256",
     "identified_model",
     "inertia_beside",
+    "is_of_a_drive",
     "leg_record",
     "margin_numbers",
     "margin_quantities",
@@ -53,9 +65,11 @@ __all__ = [
     "noise_spectra",
     "physical_numbers",
     "physical_quantities",
+    "read_drive_fingerprint",
     "read_fingerprint",
     "stated_behind",
     "take_fingerprint",
     "vessel_fields",
+    "write_drive_fingerprint",
     "write_fingerprint",
 ]

@@ -26,7 +26,7 @@ SCHEMA_VERSION: Final = "2.0"
 class SourceFile(FrozenRecord):
     """A file that went into the fingerprint."""
 
-    role: Literal["recording", "vessel", "campaign", "structure"]
+    role: Literal["recording", "vessel", "campaign", "structure", "drive"]
     """What it is."""
     name: str
     """File name or the name of a shipped file."""

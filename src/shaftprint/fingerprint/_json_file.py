@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import FingerprintError, ShaftprintError
 from shaftprint.files import read_json, write_bytes
+from shaftprint.fingerprint._drive_fingerprint import is_of_a_drive
 from shaftprint.fingerprint._earlier_files import of_later_schema, of_schema_1, with_roles
 from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
 from shaftprint.publication import complete
@@ -82,6 +83,8 @@ def _fingerprint_text(json_path: Path) -> tuple[str, int | None]:
     where = "name the file, or the folder in which identify or demo has put it"
     text, content = read_json(json_path, noun="fingerprint", where=where, error=FingerprintError)
     schema = content.get("schema_version") if isinstance(content, dict) else None
+    if is_of_a_drive(content):
+        raise FingerprintError(f"{json_path}: expected the fingerprint of a ship, found that of a drive; add --drive.")
     if schema is None:
         raise FingerprintError(f"{json_path}: expected a fingerprint, found JSON without a schema_version.")
     second = _SCHEMA_2.fullmatch(schema) if isinstance(schema, str) else None

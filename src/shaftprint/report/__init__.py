@@ -18,6 +18,7 @@ Every ``plot_*`` function returns a matplotlib ``Figure`` that belongs to nobody
 
 from shaftprint.report._comparison import render_comparison
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
+from shaftprint.report._drive_page import render_drive
 from shaftprint.report._page import expect_reportlab
 from shaftprint.report._plot import plot
 from shaftprint.report._render import render_pdf, render_report
@@ -110,6 +111,7 @@ __all__ = [
     "plot",
     "profile_chart",
     "render_comparison",
+    "render_drive",
     "render_pdf",
     "render_plan",
     "render_report",

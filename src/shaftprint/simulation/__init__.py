@@ -3,7 +3,7 @@
 Everything follows from the equations that the blocks of a structure state; compiled once and kept on disk.
 """
 
-from shaftprint.simulation._equilibrium import Equilibrium, equilibrium
+from shaftprint.simulation._equilibrium import Equilibrium, equilibrium, state_names
 from shaftprint.simulation._linearise import Linearisation, linearise
 from shaftprint.simulation._simulate import Trace, simulate
 from shaftprint.simulation._simulate_exactly import simulate_exactly
@@ -16,4 +16,5 @@ __all__ = [
     "linearise",
     "simulate",
     "simulate_exactly",
+    "state_names",
 ]

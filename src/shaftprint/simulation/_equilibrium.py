@@ -59,6 +59,18 @@ def equilibrium(structure: Structure, values: ArrayLike, inputs: Mapping[str, fl
     return Equilibrium.of(built.program, inputs, built.steady.solve(vector, input_vector(structure, inputs)))
 
 
+def state_names(structure: Structure, values: ArrayLike) -> tuple[str, ...]:
+    """Return what the equations of a structure call their states, each once, as ``Equilibrium`` does.
+
+    Parameters
+    ----------
+    values
+        Parameter values, shape (parameters,): a lag that is held at zero has no state.
+    """
+    vector = np.asarray(values, dtype=np.float64)
+    return _each_once(build(structure, held_zeros(structure, vector)).program.states)
+
+
 def _each_once(names: Sequence[str]) -> tuple[str, ...]:
     """Return names with a number behind those that came before."""
     counts = [names[: index + 1].count(name) for index, name in enumerate(names)]

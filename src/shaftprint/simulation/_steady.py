@@ -97,8 +97,8 @@ class SteadyEquations:
             unknowns = self._led(values, inputs)
         if unknowns is None:
             raise StructureError(
-                f"structure {self.program.name}: no steady running was found at these inputs and parameters; is the "
-                "engine strong enough for it, and are all gains positive?"
+                f"structure {self.program.name}: no steady running was found at these inputs and parameters; is what "
+                "drives it strong enough, and are all gains positive?"
             )
         return self._split(unknowns, kept_states, self._at(self._show, values, inputs, unknowns, kept_states))
 

@@ -15,6 +15,7 @@ its letters (±, a true minus sign, a narrow space between thousands) into those
 """
 
 from shaftprint.digits import interval, p_value_text, plain, rounded, to_digit_of, unit_text, with_deviation
+from shaftprint.tables._drive import drive_assumed_table, drive_record_table
 from shaftprint.tables._fingerprint import (
     NO_TRUTH,
     budget_table,
@@ -74,6 +75,8 @@ __all__ = [
     "clock_map_table",
     "clock_table",
     "combination_table",
+    "drive_assumed_table",
+    "drive_record_table",
     "excerpt_name",
     "expected_inertia_table",
     "expected_text",

@@ -15,7 +15,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray
 from shaftprint.identify.fit import Estimate, PseudoInverse
 from shaftprint.models import Structure
-from shaftprint.simulation import equilibrium
+from shaftprint.simulation import state_names
 from shaftprint.time_domain._nuisance import without
 from shaftprint.time_domain._record import Record
 
@@ -44,8 +44,7 @@ class InitialStates:
     @property
     def names(self) -> tuple[str, ...]:
         """What the equations of the structure call the states."""
-        inputs = {name: float(self.record.drive[name][0]) for name in self.structure.inputs}
-        return equilibrium(self.structure, self.own, inputs).state_names
+        return state_names(self.structure, self.own)
 
 
 def best_states(

@@ -14,7 +14,7 @@ from shaftprint.models import Structure
 from shaftprint.simulation import Trace, equilibrium, simulate
 from shaftprint.time_domain._record import Record
 
-# Normalised deviations beyond this have run away.
+# Outputs beyond this have run away, and so have those beyond this times the largest that was measured.
 RUN_AWAY = 1e6
 
 
@@ -117,4 +117,6 @@ def on_record(
         for column, name in enumerate(structure.outputs):
             simulated[0, :, column] = record.decimator.thinned(fine.outputs[name][:, None])[:, 0]
             simulated[1:, :, column] = record.decimator.thinned(fine.derivatives[name].T).T
-    return simulated if np.all(np.abs(simulated[0]) < RUN_AWAY) and np.all(np.isfinite(simulated)) else None
+    largest = np.array([max(1.0, float(np.abs(record.outputs.get(name, 0.0)).max())) for name in structure.outputs])
+    stays = np.all(np.abs(simulated[0]) < RUN_AWAY * largest) and np.all(np.isfinite(simulated))
+    return simulated if stays else None

@@ -5,6 +5,8 @@ from pathlib import Path
 import click
 import numpy as np
 
+from shaftprint.cli._drive_identify import identify_on_the_bench
+from shaftprint.cli._drive_options import drive_option, only_recording
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
 from shaftprint.cli._options import campaign_option, structure_sources, vessel_option
@@ -18,7 +20,8 @@ from shaftprint.tables import fits_table, leg_test_table
 
 
 @click.command("identify")
-@click.argument("recording", type=click.Path(path_type=Path))
+@click.argument("recordings", metavar="RECORDING...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@drive_option
 @vessel_option
 @campaign_option
 @click.option(
@@ -38,7 +41,8 @@ from shaftprint.tables import fits_table, leg_test_table
 @force_option
 @no_progress_option
 def command(
-    recording: Path,
+    recordings: tuple[Path, ...],
+    drive_file: Path | None,
     vessel: str,
     campaign: str,
     names: tuple[TypedName, ...],
@@ -53,8 +57,15 @@ def command(
     """Identify the fingerprint from a recording.
 
     Writes the fingerprint as JSON, the figures and a report into a folder, and prints the tables.
-    --structure, --leg, --prior, --free and --hold may be repeated.
+    --structure, --leg, --prior, --free and --hold may be repeated. With --drive, several recordings of
+    one drive are fitted together.
     """
+    if drive_file is not None:
+        identify_on_the_bench(
+            recordings, drive_file, names, options, output, pictures=figures, force=force, no_progress=no_progress
+        )
+        return
+    recording = only_recording(recordings)
     structures = structures_of(names, options)
     # before the folder is made: a mistake in a settings file leaves none
     trial, rng = load_trial(vessel, campaign), np.random.default_rng(options.seed)

@@ -10,7 +10,7 @@ from shaftprint.report.sections._order import page_sections, thesis_sections
 from shaftprint.report.sections._quality import quality_section
 from shaftprint.report.sections._results import fit_section, stability_section, summary_section
 from shaftprint.report.sections._search import comparison_section, search_section
-from shaftprint.report.sections._sections import Inputs, Picture, Section
+from shaftprint.report.sections._sections import Inputs, Picture, Section, picture_name
 from shaftprint.report.sections._sketch import Sketch
 from shaftprint.report.sections._uncertainty import uncertainty_section
 from shaftprint.report.sections._validation import validation_section
@@ -34,6 +34,7 @@ __all__ = [
     "not_alike",
     "number_section",
     "page_sections",
+    "picture_name",
     "quality_section",
     "search_section",
     "stability_section",

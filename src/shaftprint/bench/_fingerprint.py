@@ -1,0 +1,125 @@
+"""From a fit of a drive to the record that is kept, and back to a model."""
+
+from collections.abc import Sequence
+from datetime import datetime
+
+import numpy as np
+
+import shaftprint
+from shaftprint.arguments import refusing_none
+from shaftprint.arrays import frozen_float
+from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.bench._fit import DriveFit
+from shaftprint.errors import FingerprintError
+from shaftprint.fingerprint import DriveFingerprint, DriveRecord, IdentifiedModel, Quantity, SourceFile
+from shaftprint.identify.fit import Estimate
+from shaftprint.models import Structure
+from shaftprint.time_domain import RecordFit
+
+
+@refusing_none(FingerprintError)
+def drive_fingerprint(fit: DriveFit, *, sources: Sequence[SourceFile], now: datetime) -> DriveFingerprint:
+    """Return what is kept of a fit.
+
+    Parameters
+    ----------
+    sources
+        Recordings, drive file and own structure with their hashes.
+    now
+        Time of making, with time zone.
+    """
+    identification, one = fit.identification, fit.equipped
+    structure = one.structure
+    meanings = {item.name: item.meaning for item in structure.parameters}
+    meanings |= {item.name: item.meaning for item in structure.combinations}
+    return DriveFingerprint(
+        shaftprint_version=shaftprint.__version__,
+        created=now,
+        sources=tuple(sources),
+        drive=one.drive.name,
+        structure=structure.name,
+        inputs={name: one.units[name] for name in structure.inputs},
+        outputs={name: one.units[name] for name in structure.outputs},
+        parameters=tuple(_quantity(fit, estimate, meanings) for estimate in identification.parameters),
+        held={p.name: p.value for p in structure.parameters if p.held},
+        priors=dict(identification.settings.priors),
+        covariance=tuple(tuple(row) for row in identification.covariance.tolist()),
+        combinations=tuple(_quantity(fit, estimate, meanings) for estimate in identification.combinations),
+        records=tuple(_record(part) for part in identification.parts if isinstance(part, RecordFit)),
+        p_value=identification.p_value,
+        starts=identification.settings.starts,
+        starts_at_optimum=identification.reached,
+        verdict=fit.verdict,
+    )
+
+
+def _quantity(fit: DriveFit, estimate: Estimate, meanings: dict[str, str]) -> Quantity:
+    interval = fit.intervals.get(estimate.name)
+    return Quantity(
+        name=estimate.name,
+        unit=estimate.unit,
+        value=estimate.value,
+        std=estimate.std,
+        interval_95=None if interval is None else (interval.lower, interval.upper),
+        interval_open=(False, False) if interval is None else (interval.lower_open, interval.upper_open),
+        at_bound=estimate.at_bound,
+        meaning=meanings[estimate.name],
+    )
+
+
+def _record(part: RecordFit) -> DriveRecord:
+    power = np.diag(part.noise.power)
+    return DriveRecord(
+        name=part.record.name,
+        seconds=part.seconds,
+        rate_hz=part.record.rate_hz,
+        fit_percent=dict(part.fit_percent),
+        fit_ceiling=dict(part.fit_ceiling),
+        noise_std={name: float(np.sqrt(power[i])) for i, name in enumerate(part.structure.outputs)},
+    )
+
+
+def identified_drive(fingerprint: DriveFingerprint, one: EquippedDrive) -> IdentifiedModel:
+    """Return the model that the fingerprint of a drive describes.
+
+    Parameters
+    ----------
+    fingerprint
+        A saved fingerprint.
+    one
+        The drive, whose structure it names.
+
+    Raises
+    ------
+    FingerprintError
+        If the structure has another name or other parameters than the fingerprint.
+    """
+    structure = one.structure
+    named = fingerprint.values
+    apart = sorted(set(structure.names) ^ set(named))
+    if apart or structure.name != fingerprint.structure:
+        what = f"a difference in {', '.join(apart)}" if apart else f"structure {structure.name}"
+        raise FingerprintError(
+            f"fingerprint of {fingerprint.drive}: expected the parameters of structure {fingerprint.structure}, found "
+            f"{what}; name the drive file that it was identified with."
+        )
+    return IdentifiedModel(
+        structure=_held_as_then(structure, fingerprint),
+        values=frozen_float([named[name] for name in structure.names]),
+        covariance=frozen_float(fingerprint.covariance_of(_free_in_order(structure, fingerprint))),
+    )
+
+
+def _free_in_order(structure: Structure, fingerprint: DriveFingerprint) -> list[str]:
+    free = {quantity.name for quantity in fingerprint.parameters}
+    return [name for name in structure.names if name in free]
+
+
+def _held_as_then(structure: Structure, fingerprint: DriveFingerprint) -> Structure:
+    """Return the structure with what was held then held at its value, and the rest free."""
+    bounds = {p.name: (p.lower, p.upper) for p in structure.parameters}
+    wide = {
+        name: (min(bounds[name][0], value), max(bounds[name][1], value)) for name, value in fingerprint.held.items()
+    }
+    free = {name: bounds[name] for name in _free_in_order(structure, fingerprint)}
+    return structure.free_between(**wide, **free).held_at(**fingerprint.held)

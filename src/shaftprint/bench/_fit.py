@@ -1,0 +1,178 @@
+"""The verb of the room: a drive's records to parameters and a verdict."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from shaftprint.arguments import refusing_none
+from shaftprint.arrays import FloatArray
+from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.errors import IdentificationError, SettingsError, StructureError
+from shaftprint.identify import Identification, LatinHypercube, Prior, Settings, Verdict, assess, profile
+from shaftprint.identify.search import Draw, GivenStarts
+from shaftprint.identify.uncertainty import Interval
+from shaftprint.models import Structure
+from shaftprint.notebook import Shown, Summary, shortened
+from shaftprint.simulation import Trace, equilibrium, state_names
+from shaftprint.spelling import meant
+from shaftprint.time_domain import ExactDelays, Record, Simulator, TimeSettings, identify_in_time
+
+STARTS = 4
+"""Starts of the search: a start in time costs a simulation of all records at each step."""
+STEPS_A_SAMPLE = 4
+"""Steps of the simulation from one sample to the next: an input goes straight between them."""
+# Bounds further apart than this are searched by magnitude.
+WIDE = 100.0
+# By magnitude from a lower bound of zero: from this share of the upper bound on.
+SMALLEST = 1e-5
+DEGREES = {"none": -1, "constant": 0, "drift": 1}
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
+class DriveFit(Shown):
+    """What was found of a drive, and whether it may be used."""
+
+    equipped: EquippedDrive
+    """The drive and its structure."""
+    identification: Identification
+    """The fit to all records."""
+    intervals: Mapping[str, Interval]
+    """95 % intervals by the profile likelihood."""
+    verdict: Verdict
+    """Which numbers may be used."""
+
+    def summary(self) -> Summary:
+        """Return the verdict, and which numbers may be used."""
+        facts = {"verdict": self.verdict.reason, "trusted": shortened(self.verdict.trusted)}
+        return Summary(title=f"Fit of the drive {self.equipped.drive.name}", facts=facts)
+
+
+@refusing_none(IdentificationError)
+def identify_drive(
+    one: EquippedDrive,
+    records: Sequence[Record],
+    *,
+    rng: np.random.Generator,
+    priors: Mapping[str, Prior] | None = None,
+    starts: int = STARTS,
+) -> DriveFit:
+    """Fit the structure of a drive to all its records, and judge the fit.
+
+    Parameters
+    ----------
+    one
+        The drive.
+    records
+        Its records, as ``read_records`` gives them.
+    rng
+        Source of the start values.
+    priors
+        What is known beside the drive file, by parameter; it replaces what that says.
+    starts
+        Starts of the search.
+
+    Raises
+    ------
+    IdentificationError
+        If there are too few data, or no start reached a model that stays within bounds.
+    SettingsError
+        If the start is known of a state that the equations do not have.
+    """
+    settings = drive_settings(one.structure, {**one.priors, **(priors or {})}, starts)
+    fit = identify_in_time(
+        [(one.structure, record) for record in records],
+        rng=rng,
+        settings=settings,
+        time=drive_time_settings(one, records),
+    )
+    profiled = profile(fit)
+    return DriveFit(
+        equipped=one, identification=fit, intervals=profiled.intervals, verdict=assess(fit, profile=profiled)
+    )
+
+
+def drive_settings(structure: Structure, priors: Mapping[str, Prior], starts: int) -> Settings:
+    """Return how a drive is searched: from the usual values first, and by magnitude between wide bounds."""
+    usual = np.array([[p.value for p in structure.free]])
+    return Settings(priors=dict(priors), starts=starts, draw=GivenStarts(usual, ByMagnitude()))
+
+
+@dataclass(frozen=True, slots=True)
+class ByMagnitude(Draw):
+    """Latin hypercube that draws the logarithm where bounds are positive and wide: an inertia may be grams or tons."""
+
+    def starts(self, lower: FloatArray, upper: FloatArray, count: int, rng: np.random.Generator) -> FloatArray:
+        """Return one start in every cell of every parameter, in random combination."""
+        wide = (lower >= 0.0) & (upper > 0.0) & (lower * WIDE <= upper)
+        least = np.where(wide, np.maximum(lower, SMALLEST * upper), 1.0)
+        low, high = np.where(wide, np.log(least), lower), np.where(wide, np.log(np.where(wide, upper, 1.0)), upper)
+        drawn = LatinHypercube().starts(low, high, count, rng)
+        return np.where(wide, np.exp(np.where(wide, drawn, 0.0)), drawn)
+
+
+def drive_time_settings(one: EquippedDrive, records: Sequence[Record]) -> TimeSettings:
+    """Return how the records of a drive are compared with its structure.
+
+    Raises
+    ------
+    SettingsError
+        If the start is known of a state that the equations do not have.
+    """
+    fit = one.drive.fit
+    step_s = fit.longest_step_s or 1.0 / (STEPS_A_SAMPLE * max(record.rate_hz for record in records))
+    known = {state.name: state.value for state in one.drive.start} if fit.start == "known" else None
+    if known is not None:
+        _expect_states(one, known)
+    return TimeSettings(
+        drift_degree=DEGREES[fit.offset],
+        initial_states=fit.start == "found",
+        simulator=FromStart(inner=ExactDelays(longest_step_s=step_s), known=known),
+    )
+
+
+def _expect_states(one: EquippedDrive, known: Mapping[str, float]) -> None:
+    names = state_names(one.structure, one.structure.vector({}))
+    for name in known:
+        if name not in names:
+            raise SettingsError(
+                f"drive {one.drive.name}, start: expected a state of {one.structure.name}, one of {', '.join(names)}, "
+                f"found {name}.{meant(name, names)}"
+            )
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class FromStart(Simulator):
+    """A simulation from known states; where none are known and nothing runs steadily, from rest."""
+
+    inner: ExactDelays
+    """How it is simulated."""
+    known: Mapping[str, float] | None = field(default=None)
+    """States at the start by name, the others zero; None for steady running."""
+
+    def __call__(
+        self,
+        structure: Structure,
+        values: FloatArray,
+        record: Record,
+        wanted: Sequence[str],
+        *,
+        initial: FloatArray | None = None,
+    ) -> Trace:
+        """Return the outputs at every sample of the drive, and their derivatives."""
+        states = initial
+        if states is None and self.known is not None:
+            states = self.rest(structure, values, record)
+        return self.inner(structure, values, record, wanted, initial=states)
+
+    def rest(self, structure: Structure, values: FloatArray, record: Record) -> FloatArray:
+        """Return the states at the first sample of the drive, shape (states,)."""
+        names = state_names(structure, values)
+        if self.known is not None:
+            return np.array([self.known.get(name, 0.0) for name in names])
+        inputs = {name: float(record.drive[name][0]) for name in structure.inputs}
+        try:
+            return equilibrium(structure, values, inputs).states
+        except StructureError:
+            # what integrates freely has no steady running: its states are found from rest on
+            return np.zeros(len(names))

@@ -1,0 +1,118 @@
+"""Records of a drive from logger files of any format that is read."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.drive import Drive, Signal, Stretch, unit_factor
+from shaftprint.errors import RecordingError
+from shaftprint.recording import Channel, Recording, read_recording
+from shaftprint.time_domain import Record, record_from_arrays
+
+FEWEST = 20
+"""Least number of samples of a record."""
+
+
+def read_records(paths: Sequence[Path], one: EquippedDrive, **hints: Any) -> tuple[Record, ...]:
+    """Return the records of a drive: each file one, or the stretches that the drive file names in each.
+
+    Parameters
+    ----------
+    paths
+        The files.
+    one
+        The drive, whose signals name the channels.
+    hints
+        What the files do not say, as for ``read_recording``.
+
+    Raises
+    ------
+    RecordingError
+        If a file cannot be read, a channel is missing or in another unit, the channels have different clocks, an input
+        is not finite, or a stretch is not in the file.
+    """
+    records = []
+    for path in paths:
+        with read_recording(path, **hints) as recording:
+            channels = {signal.name: _channel(recording, signal, path) for signal in one.drive.signals}
+            _expect_one_clock(channels, path)
+            records += [_record(path, channels, one, stretch) for stretch in one.drive.records or (None,)]
+    names = [record.name for record in records]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice is not None:
+        raise RecordingError(f"records: expected a name for each, found {twice} twice; give the files different names.")
+    return tuple(records)
+
+
+def _channel(recording: Recording, signal: Signal, path: Path) -> Channel:
+    channel = recording.channel(signal.channel)
+    if channel.unit not in ("", signal.unit) and unit_factor(channel.unit, signal.unit) != 1.0:
+        raise RecordingError(
+            f'{path}, channel "{signal.channel}": expected the unit {signal.unit} of the drive file, found '
+            f"{channel.unit}; correct unit of {signal.name} there."
+        )
+    if channel.is_uneven:
+        raise RecordingError(
+            f'{path}, channel "{signal.channel}": expected samples at one rate, found messages at times of their own; '
+            "resample the file."
+        )
+    return channel
+
+
+def _expect_one_clock(channels: dict[str, Channel], path: Path) -> None:
+    first, *others = channels.values()
+    for other in others:
+        same_rate = abs(other.rate_hz / first.rate_hz - 1.0) < 1e-6
+        same_start = abs(other.start_s - first.start_s) * first.rate_hz < 0.01
+        if not (same_rate and same_start and other.count == first.count):
+            raise RecordingError(
+                f"{path}: expected one clock for the channels of a drive, found {first.name} with {first.count} "
+                f"samples at {first.rate_hz:g} Hz from {first.start_s:g} s and {other.name} with {other.count} at "
+                f"{other.rate_hz:g} Hz from {other.start_s:g} s; resample the file."
+            )
+
+
+def _record(path: Path, channels: dict[str, Channel], one: EquippedDrive, stretch: Stretch | None) -> Record:
+    clock = next(iter(channels.values()))
+    first, last = 0, clock.count
+    name = path.stem
+    if stretch is not None:
+        name = f"{path.stem}, {stretch.name}"
+        first, last = round(clock.sample_at(stretch.from_s)), round(clock.sample_at(stretch.to_s)) + 1
+        if first < 0 or last > clock.count:
+            raise RecordingError(
+                f"{path}, record {stretch.name}: expected {stretch.from_s:g} to {stretch.to_s:g} s within the file, "
+                f"found {clock.start_s:g} to {clock.start_s + (clock.count - 1) / clock.rate_hz:g} s."
+            )
+    if last - first < FEWEST:
+        raise RecordingError(f"{path}: expected {FEWEST} samples or more in a record, found {last - first}.")
+    values = {key: one.factors[key] * channel.values(first, last) for key, channel in channels.items()}
+    drive = one.drive
+    return record_from_arrays(
+        name,
+        {key: _finite(values[key], channels[key], first, path) for key in one.structure.inputs},
+        {signal.name: values[signal.name] for signal in drive.outputs},
+        rate_hz=clock.rate_hz,
+        used=_used(values, drive),
+        start_s=clock.start_s + first / clock.rate_hz,
+        hold=drive.fit.inputs_hold,
+    )
+
+
+def _used(values: dict[str, FloatArray], drive: Drive) -> BoolArray:
+    return np.asarray(np.all([np.isfinite(values[signal.name]) for signal in drive.outputs], axis=0))
+
+
+def _finite(values: FloatArray, channel: Channel, first: int, path: Path) -> FloatArray:
+    wrong = np.flatnonzero(~np.isfinite(values))
+    if wrong.size:
+        at = channel.time_s(first + int(wrong[0]), first + int(wrong[0]) + 1)[0]
+        raise RecordingError(
+            f'{path}, channel "{channel.name}": expected numbers of an input throughout, found none at {at:g} s; cut '
+            "the record there with [[records]] in the drive file."
+        )
+    return values

@@ -1,0 +1,74 @@
+"""``shaftprint identify --drive``: from records of a drive to its fingerprint."""
+
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+
+from shaftprint.bench import STARTS, DriveFit, drive_fingerprint, identify_drive, read_records
+from shaftprint.cli._drive_options import drive_sources, equipped_drive, expect_not_given, is_given
+from shaftprint.cli._fit_options import FitOptions
+from shaftprint.cli._own_structure import TypedName
+from shaftprint.cli._results import print_paths
+from shaftprint.cli._terminal import print_findings, say
+from shaftprint.cli.output import FINGERPRINT, give, output_folder, print_tables, progress
+from shaftprint.fingerprint import DriveFingerprint, write_drive_fingerprint
+from shaftprint.report import render_drive
+from shaftprint.tables import drive_assumed_table, drive_record_table, quantity_table
+
+
+def identify_on_the_bench(
+    recordings: Sequence[Path],
+    drive_file: Path,
+    names: Sequence[TypedName],
+    options: FitOptions,
+    output: Path,
+    *,
+    pictures: bool,
+    force: bool,
+    no_progress: bool,
+) -> None:
+    """Identify a drive from its records, print what was found, and write fingerprint and page into a folder."""
+    expect_not_given("vessel", "campaign", "legs", "tested_at", "previous", "pdf")
+    (one,) = equipped_drive(drive_file, names if is_given("names") else (), options)
+    with output_folder(output, of="identify", force=force) as folder:
+        with progress(hidden=no_progress) as steps:
+            steps.begin("Reading the records")
+            records = read_records(recordings, one)
+            steps.begin("Fitting the records")
+            fit = identify_drive(
+                one,
+                records,
+                rng=np.random.default_rng(options.seed),
+                starts=options.starts if is_given("starts") else STARTS,
+            )
+        sources = drive_sources(recordings, drive_file, names if is_given("names") else ())
+        fingerprint = drive_fingerprint(fit, sources=sources, now=datetime.now(UTC))
+        print_drive(fingerprint)
+        _write(folder, fit, fingerprint, pictures=pictures, no_progress=no_progress)
+    print_paths(output)
+
+
+def _write(folder: Path, fit: DriveFit, fingerprint: DriveFingerprint, *, pictures: bool, no_progress: bool) -> None:
+    write_drive_fingerprint(fingerprint, folder / FINGERPRINT)
+    with progress(hidden=no_progress) as steps:
+        steps.begin("Writing the report", total=1.0)
+        render_drive(folder, fit, fingerprint, pictures=pictures, progress=steps.reach)
+
+
+def print_drive(fingerprint: DriveFingerprint) -> None:
+    """Print verdict, parameters, records and what was taken as known."""
+    verdict = fingerprint.verdict
+    print_findings(
+        f"Verdict: {'trustworthy' if verdict.trustworthy else 'not trustworthy'}", verdict.sentences, is_answer=True
+    )
+    give("fingerprint", fingerprint)
+    say(f"{fingerprint.drive}; structure {fingerprint.structure}")
+    tables = [quantity_table("Identified parameters", fingerprint.parameters)]
+    if fingerprint.combinations:
+        tables.append(quantity_table("Combinations of parameters", fingerprint.combinations))
+    tables.append(drive_record_table(fingerprint))
+    if fingerprint.priors or fingerprint.held:
+        tables.append(drive_assumed_table(fingerprint))
+    print_tables(tables)

@@ -1,0 +1,122 @@
+"""The report of a drive that is no ship's: verdict, numbers, records, files."""
+
+from collections.abc import Callable
+from functools import partial
+from hashlib import sha256
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from shaftprint.arguments import refusing_none
+from shaftprint.errors import ReportError
+from shaftprint.fingerprint import DriveFingerprint, drive_fingerprint_content
+from shaftprint.report._page import Page, write_page
+from shaftprint.report.figures import SimulatedSignal, simulation_chart
+from shaftprint.report.sections import Picture, Section, picture_name
+from shaftprint.tables import Table, drive_assumed_table, drive_record_table, quantity_table, texts
+from shaftprint.time_domain import RecordFit
+
+if TYPE_CHECKING:
+    from shaftprint.bench import DriveFit
+    from shaftprint.report.charts import Chart
+
+
+@refusing_none(ReportError)
+def render_drive(
+    directory: str | Path,
+    fit: "DriveFit",
+    fingerprint: DriveFingerprint,
+    *,
+    pictures: bool = False,
+    overwrite: bool = False,
+    progress: Callable[[float], None] | None = None,
+) -> Path:
+    """Write the page of a drive, ``index.html`` with its charts; return its path.
+
+    Parameters
+    ----------
+    directory
+        Where the page goes; made if it does not exist. Other files there are left alone.
+    fit
+        What was found, with the records.
+    fingerprint
+        What is kept of it.
+    pictures
+        Whether every chart is written as SVG, PDF and PNG too.
+    overwrite
+        Whether an earlier page there may be replaced.
+    progress
+        Is told the finished share, from 0 to 1.
+
+    Raises
+    ------
+    FileExistsError
+        If there is a page already and ``overwrite`` is false.
+    ReportError
+        If plotly is not installed.
+    """
+    page = Page(
+        title=f"Fingerprint of {fingerprint.drive}",
+        subtitle=f"Structure {fingerprint.structure}, {len(fingerprint.records)} records",
+        created=fingerprint.created,
+        version=fingerprint.shaftprint_version,
+        sections=(_verdict(fingerprint), _numbers(fingerprint), _records(fit, fingerprint), _assumed(fingerprint)),
+        files=_files(fingerprint),
+        ending=(
+            f"shaftprint {fingerprint.shaftprint_version}, fingerprint schema {fingerprint.schema_version}. ± is one "
+            "standard deviation throughout; intervals hold 95 %."
+        ),
+        fingerprint_sha256=sha256(drive_fingerprint_content(fingerprint)).hexdigest(),
+    )
+    return write_page(directory, page, pictures=pictures, overwrite=overwrite, progress=progress)
+
+
+def _verdict(fingerprint: DriveFingerprint) -> Section:
+    verdict = fingerprint.verdict
+    title = f"Verdict: {'trustworthy' if verdict.trustworthy else 'not trustworthy'}"
+    return Section(key="verdict", title=title, points=verdict.sentences)
+
+
+def _numbers(fingerprint: DriveFingerprint) -> Section:
+    tables = [quantity_table("Identified parameters", fingerprint.parameters)]
+    if fingerprint.combinations:
+        tables.append(quantity_table("Combinations of parameters", fingerprint.combinations))
+    return Section(key="numbers", title="Numbers", tables=tables)
+
+
+def _records(fit: "DriveFit", fingerprint: DriveFingerprint) -> Section:
+    parts = [part for part in fit.identification.parts if isinstance(part, RecordFit)]
+    drawn = [
+        Picture(
+            name=picture_name("record", str(number), part.record.name),
+            caption=f"{part.record.name}: inputs and outputs as they were measured, and the model with its offset.",
+            alt=f"Inputs, measured outputs and the model's outputs over time of the record {part.record.name}.",
+            chart=partial(_chart, part, fingerprint),
+        )
+        for number, part in enumerate(parts, start=1)
+    ]
+    return Section(key="records", title="Records", tables=(drive_record_table(fingerprint),), pictures=drawn)
+
+
+def _chart(part: RecordFit, fingerprint: DriveFingerprint) -> "Chart":
+    record, names = part.record, tuple(part.structure.outputs)
+    driving = [
+        SimulatedSignal(title=name, unit=fingerprint.inputs[name], values=values, is_input=True)
+        for name, values in record.inputs.items()
+    ]
+    measured = [
+        SimulatedSignal(title=name, unit=fingerprint.outputs[name], values=record.outputs[name]) for name in names
+    ]
+    model = [SimulatedSignal(title=name, unit=fingerprint.outputs[name], values=part.model[name]) for name in names]
+    return simulation_chart(record.time_s, [*driving, *measured], name="measured", beside={"model": model})
+
+
+def _assumed(fingerprint: DriveFingerprint) -> Section:
+    return Section(key="assumed", title="What was taken as known", tables=(drive_assumed_table(fingerprint),))
+
+
+def _files(fingerprint: DriveFingerprint) -> Table:
+    return Table(
+        title="Files that went into this report",
+        columns=texts("file", "what it is", "SHA-256"),
+        rows=tuple((source.name, source.role, source.sha256) for source in fingerprint.sources),
+    )
