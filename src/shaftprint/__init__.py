@@ -24,6 +24,7 @@ room            nouns                       verbs
 ``rehearsal``                               ``rehearse_on_tug``
 ``export``      ``ExportedModel``           ``exported_model``, ``write_fmu``, ``write_matlab``, ``write_modelica``
 ``survey``      ``Survey``                  ``run``, ``measure``, ``fit``, ``survey_of``
+``bench``       ``DriveFit``                ``equipped``, ``read_records``, ``identify_drive``
 ``tables``      ``Table``                   ``parameter_table``, ``physical_table``
 ``report``                                  ``render_report``, ``plot``, ``bode_chart``
 ``tug``         ``Truth``                   ``sail``
@@ -39,11 +40,13 @@ from typing import Any
 __version__ = "0.1.0"
 
 _ROOMS = (
+    "bench",
     "campaign",
     "card",
     "catalogue",
     "clocks",
     "design",
+    "drive",
     "errors",
     "export",
     "fingerprint",

@@ -1,6 +1,7 @@
 # What type checkers see of the rooms, which __init__.py loads when they are first used.
 from shaftprint import arguments as arguments
 from shaftprint import arrays as arrays
+from shaftprint import bench as bench
 from shaftprint import campaign as campaign
 from shaftprint import card as card
 from shaftprint import catalogue as catalogue
@@ -8,6 +9,7 @@ from shaftprint import clocks as clocks
 from shaftprint import design as design
 from shaftprint import digits as digits
 from shaftprint import distributions as distributions
+from shaftprint import drive as drive
 from shaftprint import errors as errors
 from shaftprint import escape as escape
 from shaftprint import export as export

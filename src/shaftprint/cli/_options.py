@@ -44,7 +44,8 @@ class NeededOfShips(click.Option):
 
     def process_value(self, ctx: click.Context, value: object) -> object:
         """Return the value; None where it is missing beside ``--drive``."""
-        self.required = ctx.params.get("drive_file") is None
+        # of an option that was not given click holds a mark of its own here
+        self.required = not isinstance(ctx.params.get("drive_file"), Path)
         return super().process_value(ctx, value)
 
 
