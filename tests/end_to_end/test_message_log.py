@@ -10,10 +10,13 @@ from click.testing import CliRunner
 from tests.can_frames import DBC, EEC1, EEC2, eec1, eec2, raw_log
 
 from shaftprint.campaign import load_campaign
+from shaftprint.catalogue import structure
 from shaftprint.cli import shaftprint
+from shaftprint.identify import Settings
 from shaftprint.recording import read_recording
+from shaftprint.survey import fit, leg_tests, load_trial, measure
 from shaftprint.tug import Tug, sail
-from shaftprint.vessel import load_vessel
+from shaftprint.vessel import Vessel, load_vessel
 
 SHIPPED = files("shaftprint.vessel") / "shipped" / "stan_tug_1205_ecu.toml"
 
@@ -103,3 +106,35 @@ def test_the_pedal_of_a_raw_log_asks_in_place_of_a_voltage(tmp_path):
     for name in ("K_p", "K_i", "t_d", "t_sp"):
         assert found[name]["value"] == pytest.approx(truth[name], abs=4.0 * found[name]["std"])
     assert found["K_p"]["value"] == pytest.approx(truth["K_p"], rel=0.02)
+
+
+@pytest.mark.slow
+def test_the_rack_of_two_legs_tells_governor_and_delay(tmp_path):
+    """Ten minutes at two speeds, nothing known beforehand: one model of both, the rack of each over its own mean."""
+    content = load_vessel("stan-tug-1205-ecu").model_dump()
+    content["sensors"]["rack"] |= {"cycle_s": 0.02}
+    trial = load_trial(Vessel.model_validate(content), load_campaign("two-speeds"))
+    tug = Tug(message_jitter=0.15, messages_lost=0.01)
+    true = sail(trial.vessel, trial.campaign, tmp_path / "legs.nc", tug=tug, seed=3)
+    measurement = measure(tmp_path / "legs.nc", trial)
+    assert [leg.spectra.response.outputs for leg in measurement.legs] == [("n", "M_s", "X")] * 2
+    ecu = structure("GAUGE-ECU")
+    (found,) = fit([ecu], measurement, settings={ecu.name: Settings()}, rng=np.random.default_rng(1))
+    assert all(one.test.p_value > 0.01 for one in leg_tests(found, measurement.working_points))
+    point, truth = measurement.signals.working_point, dict(true.normalised)
+    speed, torque = (
+        point.engine_speed_rev_s * 60.0 / true.engine_speed_rpm,
+        point.shaft_torque_nm / true.shaft_torque_nm,
+    )
+    rack = measurement.signals.channels["X"].reference / truth["X_0"]
+    changes = {"K_p": speed / rack, "K_i": speed / rack, "v": rack / torque}
+    changes |= dict.fromkeys(("tau_dn", "tau_up", "g"), speed / torque)
+    distance = {
+        one.name: (one.value - truth[one.name] * changes.get(one.name, 1.0)) / one.std
+        for one in found.parameters
+        if one.name in truth
+    }
+    assert len(distance) == 12
+    assert max(map(abs, distance.values())) < 3.0
+    share = {one.name: one.std / one.value for one in found.parameters}
+    assert (share["K_p"] < 5e-4, share["t_d"] < 0.01, share["omega_n"] < 4e-3) == (True, True, True)

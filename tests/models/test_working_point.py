@@ -51,6 +51,23 @@ def test_zero_of_the_gauge():
     check_structure(moved)
 
 
+def test_a_rack_that_does_not_go_with_the_torque():
+    """``dX = K dn`` and ``dM = V dX`` in physical units: normalised ``K n_0 / X_0`` and ``V X_0 / M_0``."""
+    ecu = structure("GAUGE-ECU")
+    physical = {"K_p": 0.12, "K_i": 0.09, "v": 4200.0}
+    points = ((5.165, 1725.0, 0.4), (4.1, 1000.0, 0.27))
+
+    def values(speed, torque, rack):
+        gains = {name: physical[name] * speed / rack for name in ("K_p", "K_i")}
+        times = {name: second * speed / torque for name, second in (("tau_dn", 110.0), ("tau_up", 330.0), ("g", 30.0))}
+        return ecu.vector(gains | times | {"v": physical["v"] * rack / torque})
+
+    speed, torque, rack = (second / first for first, second in zip(*points, strict=True))
+    s = 2j * np.pi * np.geomspace(0.03, 3.0, 20)
+    moved = at_working_point(ecu, speed_share=speed, torque_share=torque, shown_share=1.0, rack_share=rack)
+    assert moved.response(values(*points[0]), s) == pytest.approx(ecu.response(values(*points[1]), s), rel=1e-12)
+
+
 def test_shares_that_are_not_positive():
-    with pytest.raises(StructureError, match="expected positive shares of speed and torque, found 0 and 0"):
+    with pytest.raises(StructureError, match="expected positive shares of speed, torque and rack, found 0, 0 and 0"):
         at_working_point(structure("GAUGE-CLOSED"), speed_share=0.0)

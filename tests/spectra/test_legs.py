@@ -32,11 +32,11 @@ PER_VOLT = -4.0
 ORDER = TrackedOrder(name="shaft order 1", per_turn=0.185, speed="n_e")
 
 
-def _speed_over_set_point(omega_rad_s):
+def speed_over_set_point(omega_rad_s):
     return np.exp(-0.12j * omega_rad_s) / (1.0 + 0.3j * omega_rad_s)
 
 
-def _made(
+def made_leg(
     *,
     clock_ratio=0.0,
     wander=0.0,
@@ -60,7 +60,7 @@ def _made(
         omega = 2.0 * np.pi * harmonic / (leg.period_s * (1.0 + clock_ratio))
         wave = amplitude_v * np.exp(1j * (omega * (time_s - leg.start_s) + phase_rad - 0.5 * np.pi))
         set_point += size * wave.real * PER_VOLT / SPEED_REV_S
-        answer = size * _speed_over_set_point(omega) * wave * PER_VOLT / SPEED_REV_S
+        answer = size * speed_over_set_point(omega) * wave * PER_VOLT / SPEED_REV_S
         # twice the frequency, its phase that of the square of the line
         twice = second * (answer / np.abs(answer)) ** 2
         speed += (answer + twice).real
@@ -121,13 +121,13 @@ def _made(
 
 def _expected(response):
     omega = response.omega_rad_s
-    speed = _speed_over_set_point(omega)
+    speed = speed_over_set_point(omega)
     return np.stack([speed, (2.0 + 1j * omega * INERTIA_S) * speed])
 
 
 @pytest.mark.parametrize("clock_ratio", [0.0, 5e-5, -3e-4])
 def test_each_line_has_the_response_of_the_line_with_a_linear_propeller(clock_ratio):
-    signals = _made(clock_ratio=clock_ratio)
+    signals = made_leg(clock_ratio=clock_ratio)
     # so far that its square is as large as the slowest line
     assert np.ptp(signals.engine_speed.values) > 0.15 * SPEED_REV_S
     response = estimate_legs(signals, CAMPAIGN)["M1"].response
@@ -143,7 +143,7 @@ def test_the_stated_covariance_is_the_scatter_over_repeats():
     rng = np.random.default_rng(5)
     distances = []
     for _ in range(60):
-        response = estimate_legs(_made(noise=0.02, rng=rng), CAMPAIGN)["M1"].response
+        response = estimate_legs(made_leg(noise=0.02, rng=rng), CAMPAIGN)["M1"].response
         error = response.response[:, 0] - _expected(response)
         real = np.concatenate([error.real, error.imag]).T
         distances.append(np.einsum("ka,kab,kb->k", real, np.linalg.inv(response.covariance), real))
@@ -156,7 +156,7 @@ def test_the_stated_covariance_is_the_scatter_over_repeats():
 def test_the_wander_of_the_load_is_no_noise_under_the_lines():
     rng = np.random.default_rng(6)
     calm, wandering = (
-        estimate_legs(_made(noise=0.002, wander=wander, rng=rng), CAMPAIGN)["M1"].response for wander in (0.0, 0.02)
+        estimate_legs(made_leg(noise=0.002, wander=wander, rng=rng), CAMPAIGN)["M1"].response for wander in (0.0, 0.02)
     )
     calm_std, std = (np.sqrt(np.diagonal(one.covariance, axis1=1, axis2=2))[:, 1] for one in (calm, wandering))
     # the sidebands of a wander of 2 % would be ten times the noise of the torque
@@ -166,7 +166,8 @@ def test_the_wander_of_the_load_is_no_noise_under_the_lines():
 def test_a_wander_that_carries_one_line_onto_the_next_does_not_move_them():
     # harmonics 3 and 5 are two periods apart: left in, their sidebands change both by up to a per cent
     still, moving = (
-        estimate_legs(_made(wander=wander, wander_s=PERIOD_S / 2.0), CAMPAIGN)["M1"].response for wander in (0.0, 0.01)
+        estimate_legs(made_leg(wander=wander, wander_s=PERIOD_S / 2.0), CAMPAIGN)["M1"].response
+        for wander in (0.0, 0.01)
     )
     ratio = [one.response[1, 0] / one.response[0, 0] for one in (still, moving)]
     assert np.abs(ratio[1] / ratio[0] - 1.0).max() < 2e-4
@@ -174,7 +175,7 @@ def test_a_wander_that_carries_one_line_onto_the_next_does_not_move_them():
 
 def test_what_the_pick_up_takes_from_fast_lines_is_given_back():
     # the cardinal cubic spline shows a quarter of the pulse rate 0.9809 times too small: sinc^4 over its images
-    signals = _made(pulse_rate_hz=4.0 * HARMONICS[-1] / PERIOD_S)
+    signals = made_leg(pulse_rate_hz=4.0 * HARMONICS[-1] / PERIOD_S)
     response = estimate_legs(signals, CAMPAIGN)["M1"].response
     images = np.sinc(0.25 + np.arange(-60, 61)) ** 4
     seen = _expected(response)[0, -1] / (images[60] / images.sum())
@@ -182,13 +183,13 @@ def test_what_the_pick_up_takes_from_fast_lines_is_given_back():
 
 
 def test_lines_above_half_the_pulse_rate_are_not_used():
-    spectra = estimate_legs(_made(pulse_rate_hz=4.0), CAMPAIGN)["M1"]
+    spectra = estimate_legs(made_leg(pulse_rate_hz=4.0), CAMPAIGN)["M1"]
     assert spectra.response.used.tolist() == [True] * 5 + [False]
     assert "half the pulse rate of n_e: aliased" in spectra.remarks["M1/21"]
 
 
 def test_a_set_point_that_is_smaller_than_asked_is_remarked_and_used():
-    spectra = estimate_legs(_made(size=0.8), CAMPAIGN)["M1"]
+    spectra = estimate_legs(made_leg(size=0.8), CAMPAIGN)["M1"]
     assert spectra.response.used.all()
     # 0.2 V of 240 rpm/V
     assert "set point has an amplitude of 38.4 rpm where the campaign asks for 48 rpm" in spectra.remarks["M1/1"]
@@ -199,36 +200,36 @@ def test_a_line_that_was_not_put_out_is_left_out():
         update={"harmonics": (1, 3, 5, 7, 9, 15, 21), "amplitudes_v": (0.2, 0.15, 0.15, 0.1, 0.1, 0.1, 0.2)}
     )
     asked = asked.model_copy(update={"phases_rad": (0.0,) * 7})
-    spectra = estimate_legs(_made(), CAMPAIGN.model_copy(update={"multisines": (asked,)}))["M1"]
+    spectra = estimate_legs(made_leg(), CAMPAIGN.model_copy(update={"multisines": (asked,)}))["M1"]
     assert "M1/7" not in spectra.response.lines
     assert spectra.remarks["M1/7"].startswith("left out: set point has an amplitude of")
 
 
 def test_a_set_point_that_is_cut_off_is_named():
-    signals = _made()
+    signals = made_leg()
     cut_v = 0.5 * float(signals.channels["n_set"].values.max() / SPEED_REV_S - 1.0)
     (reason,) = (
         one
-        for one in estimate_legs(_made(cut_v=cut_v), CAMPAIGN)["M1"].response.reasons
+        for one in estimate_legs(made_leg(cut_v=cut_v), CAMPAIGN)["M1"].response.reasons
         if one.kind == "set-point shape"
     )
     assert "check whether its channel is cut off" in reason.sentence
 
 
 def test_a_clock_that_is_a_thousandth_off_is_named():
-    reasons = estimate_legs(_made(clock_ratio=1e-3), CAMPAIGN)["M1"].response.reasons
+    reasons = estimate_legs(made_leg(clock_ratio=1e-3), CAMPAIGN)["M1"].response.reasons
     assert [reason.kind for reason in reasons] == ["recording clock"]
     assert "periods of M1 are +0.10 % longer than the campaign file says" in reasons[0].sentence
 
 
 def test_a_leg_that_was_cut_off_gives_a_response_of_its_whole_periods():
-    spectra = estimate_legs(_made(periods=4), CAMPAIGN)["M1"]
+    spectra = estimate_legs(made_leg(periods=4), CAMPAIGN)["M1"]
     assert spectra.remarks["M1"] == "4 of 9 periods are in the recording"
     assert np.abs(spectra.response.response[:, 0] - _expected(spectra.response)).max() < 2e-5
 
 
 def test_a_dead_gauge_is_refused():
-    signals = _made()
+    signals = made_leg()
     dead = signals.with_channel("M_s", values=np.full(signals.samples, TORQUE_NM))
     with pytest.raises(Exception, match="M1: expected M_s to move, found a constant from 10 to 82 s"):
         estimate_legs(replace(dead), CAMPAIGN)
@@ -238,7 +239,7 @@ def test_an_order_that_swings_across_the_lines_is_taken_out_of_them():
     rng = np.random.default_rng(7)
     errors, stds, bare = [], [], []
     for _ in range(20):
-        signals = _made(order=0.09, noise=0.02, rng=rng)
+        signals = made_leg(order=0.09, noise=0.02, rng=rng)
         tracked, untracked = (
             estimate_legs(replace(signals, orders=orders), CAMPAIGN)["M1"].response for orders in ((ORDER,), ())
         )
@@ -257,8 +258,8 @@ def test_the_square_of_the_speed_is_a_load_of_the_line():
     # n = a cos(w t) + b cos(2 w t): of n^2 there is a b cos(w t) at the line, half of b is added to its load
     leg = LEG.model_copy(update={"harmonics": (3,), "amplitudes_v": (0.2,), "phases_rad": (1.0,)})
     campaign = CAMPAIGN.model_copy(update={"multisines": (leg,)})
-    response = estimate_legs(_made(leg=leg, second=0.03), campaign)["M1"].response
-    speed = _speed_over_set_point(response.omega_rad_s)
+    response = estimate_legs(made_leg(leg=leg, second=0.03), campaign)["M1"].response
+    speed = speed_over_set_point(response.omega_rad_s)
     assert response.load == pytest.approx(1.015, abs=1e-4)
     assert np.abs(response.response[0, 0] - speed).max() < 1e-4
     torque = (2.0 * 1.015 + 1j * response.omega_rad_s * INERTIA_S) * speed
@@ -280,7 +281,7 @@ def test_a_share_of_the_speed_in_the_torque_brings_the_noise_of_the_speed():
 def test_an_order_may_come_late_and_repeat_with_the_leg(late_s):
     # 21 turns a period: nothing of the order is between the harmonics, where the noise is measured
     order = replace(ORDER, per_turn=21.0 / PERIOD_S / SPEED_REV_S)
-    made = [_made(order=size, order_late_s=late_s, tracked=order) for size in (0.09, 0.0)]
+    made = [made_leg(order=size, order_late_s=late_s, tracked=order) for size in (0.09, 0.0)]
     with_order, without = (
         estimate_legs(replace(signals, orders=(order,)), CAMPAIGN)["M1"].response.response[1, 0] for signals in made
     )
@@ -289,7 +290,7 @@ def test_an_order_may_come_late_and_repeat_with_the_leg(late_s):
 
 
 def test_a_leg_without_orders_keeps_its_response():
-    signals = _made(noise=0.02, rng=np.random.default_rng(8))
+    signals = made_leg(noise=0.02, rng=np.random.default_rng(8))
     searched, plain = (
         estimate_legs(replace(signals, orders=orders), CAMPAIGN)["M1"].response for orders in ((ORDER,), ())
     )

@@ -5,7 +5,12 @@ from shaftprint.models._structure import Structure
 
 
 def at_working_point(
-    structure: Structure, *, speed_share: float, torque_share: float | None = None, shown_share: float | None = None
+    structure: Structure,
+    *,
+    speed_share: float,
+    torque_share: float | None = None,
+    shown_share: float | None = None,
+    rack_share: float | None = None,
 ) -> Structure:
     """Return a structure as it is normalised at another working point; its parameters keep their values at the first.
 
@@ -23,6 +28,9 @@ def at_working_point(
     shown_share
         The same of the mean torque that is shown, in which a swinging speed has no part of a zero; ``torque_share``
         where it is not given.
+    rack_share
+        The same of the fuel rack, where it is logged: gains are then over the rack, and the slope of the engine is
+        that of the torque over it. Not given, both go as if the rack were the torque.
 
     Raises
     ------
@@ -31,12 +39,17 @@ def at_working_point(
     """
     torque = speed_share**2 if torque_share is None else torque_share
     shown = torque if shown_share is None else shown_share
-    if not (speed_share > 0.0 and torque > 0.0 and shown > 0.0):
+    rack = torque if rack_share is None else rack_share
+    if not (speed_share > 0.0 and torque > 0.0 and shown > 0.0 and rack > 0.0):
         raise StructureError(
-            f"structure {structure.name} at another working point: expected positive shares of speed and torque, "
-            f"found {speed_share:g} and {torque:g}."
+            f"structure {structure.name} at another working point: expected positive shares of speed, torque and rack, "
+            f"found {speed_share:g}, {torque:g} and {rack:g}."
         )
-    over_torque = {name: speed_share / torque for name, role in structure.roles.items() if role.over_torque}
+    factors = {
+        name: (speed_share / torque if role.over_torque else 1.0) * (rack / torque) ** role.rack_power
+        for name, role in structure.roles.items()
+        if role.over_torque or (role.rack_power and rack_share is not None)
+    }
     laws = {name: role.law for name, role in structure.roles.items() if role.law is not None}
-    moved = structure.scaled(**over_torque, **dict.fromkeys(laws, 1.0 / shown))
+    moved = structure.scaled(**factors, **dict.fromkeys(laws, 1.0 / shown))
     return moved.offset(**{name: law * (1.0 - 1.0 / shown) for name, law in laws.items()})

@@ -226,7 +226,7 @@ class Signals(Shown, Labelled):
     def about(self, leg: str) -> "Signals":
         """Return the signals with the working point of one leg as what everything is divided by.
 
-        Channels on clocks of their own are left out: a leg has no response of them yet. The scale of the set point
+        Channels on clocks of their own that do not cover the leg are left out. The scale of the set point
         carries no deviation: what its line is off, it is off at all lines of all legs alike, which is a parameter of
         the structures.
 

@@ -85,9 +85,9 @@ def _leg(signals: "Signals", leg: "Leg", state: "LegState") -> Spectra:
         response=replace(response, reasons=(*signals.reasons, *against)),
         windows=tuple(line.window for line in lines),
         signal_to_noise=signal_to_noise(
-            [line.variances for line in lines],
+            [line.variances_with(*signals.messages) for line in lines],
             lines=tuple(line.window.line for line in lines),
-            channels=measured.window.channels,
+            channels=(*measured.window.channels, *signals.messages),
         ),
         harmonics=collect_harmonics(lines, speed=sensor.name),
         load_drift=LoadDrift(delta=np.zeros(len(lines)), standard_deviation=0.0),
@@ -113,14 +113,14 @@ def _judged(
         if aliased:
             alias = f"above {sensor.nyquist_hz:.2f} Hz, half the pulse rate of {sensor.name}: aliased"
             remarks[name] = "; ".join(part for part in (remarks.get(name), alias) if part)
-        if line.order_remark:
-            remarks[name] = "; ".join(part for part in (remarks.get(name), line.order_remark) if part)
+        for remark in filter(None, (line.order_remark, *line.message_remarks.values())):
+            remarks[name] = "; ".join(part for part in (remarks.get(name), remark) if part)
         used[row] = not aliased and name not in finding.unusable
     return remarks, used
 
 
 def _measured(signals: "Signals", leg: "Leg", state: "LegState", sensor: "SpeedSignal") -> "LegLines":
-    """Return the lines of a leg in every channel on the grid but further set points."""
+    """Return the lines of a leg in every channel but further set points."""
     highest = _HIGHEST_SHARE_OF_RATE * signals.rate_hz * leg.length_of_period_s
     harmonics = [harmonic for harmonic in leg.lines if harmonic <= highest]
     apart = {*signals.excitations, *signals.messages} - {"n_set"}
@@ -150,4 +150,5 @@ def _measured(signals: "Signals", leg: "Leg", state: "LegState", sensor: "SpeedS
         speed=sensor.name,
         orders=signals.orders,
         references={name: signal.reference for name, signal in channels.items()},
+        messages=signals.messages,
     )

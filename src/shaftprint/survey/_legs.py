@@ -25,6 +25,8 @@ class LegMeasurement:
     """Mean speed and torque of its whole periods."""
     spectra: Spectra
     """Response about that working point."""
+    rack: float | None = None
+    """Mean fuel rack of the leg, where it was logged throughout."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -43,13 +45,26 @@ def legs_of(signals: "Signals", campaign: "Campaign") -> tuple[LegMeasurement, .
     """Return every leg of a campaign that the recording holds, that of the recording's working point first."""
     spectra = estimate_legs(signals, campaign)
     legs = (
-        LegMeasurement(name=state.name, working_point=state.working_point, spectra=spectra[state.name])
+        LegMeasurement(
+            name=state.name,
+            working_point=state.working_point,
+            spectra=spectra[state.name],
+            rack=rack_of(signals.about(state.name)),
+        )
         for state in signals.legs
     )
     return tuple(sorted(legs, key=lambda leg: leg.working_point != signals.working_point))
 
 
-def structure_at(structure: Structure, point: "WorkingPoint", *, main: "WorkingPoint") -> Structure:
+def rack_of(signals: "Signals") -> float | None:
+    """Return the fuel rack by which signals are divided; None where it was not logged."""
+    rack = signals.channels.get("X")
+    return None if rack is None else rack.reference
+
+
+def structure_at(
+    structure: Structure, point: "WorkingPoint", *, main: "WorkingPoint", rack_share: float | None = None
+) -> Structure:
     """Return a structure at another working point, with its parameters still those of the first.
 
     What is a physical value over the torque and times the speed goes with ``n_0 / M_0`` (thesis eqs 2.14-2.25), with
@@ -61,6 +76,8 @@ def structure_at(structure: Structure, point: "WorkingPoint", *, main: "WorkingP
         A structure whose parameters have roles.
     point, main
         The other working point, and that of the parameters.
+    rack_share
+        Fuel rack of the one over that of the other, where the structure gives it.
     """
     torque_share = point.shaft_torque_nm / main.shaft_torque_nm
     return at_working_point(
@@ -68,6 +85,7 @@ def structure_at(structure: Structure, point: "WorkingPoint", *, main: "WorkingP
         speed_share=point.engine_speed_rev_s / main.engine_speed_rev_s,
         torque_share=torque_share,
         shown_share=torque_share * point.harmonic_mean_square / main.harmonic_mean_square,
+        rack_share=rack_share,
     )
 
 

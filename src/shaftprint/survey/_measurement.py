@@ -24,7 +24,7 @@ from shaftprint.spectra import (
     open_loop,
     plant_from_closed_loop,
 )
-from shaftprint.survey._legs import LegMeasurement, legs_of, structure_at
+from shaftprint.survey._legs import LegMeasurement, legs_of, rack_of, structure_at
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._ripple import torque_ripple
 from shaftprint.survey._trial import Trial
@@ -83,6 +83,9 @@ def measure(
     progress.begin("Measuring the test lines")
     method = ExactBin() if mode == "thesis" else WholePeriodSine()
     legs = legs_of(signals, trial.campaign)
+    if legs and not trial.campaign.sines and "X" in signals.channels:
+        # one mean of the rack for the leg and for what is told of it
+        signals = signals.with_channel("X", reference=legs[0].rack or signals.channels["X"].reference)
     # without sines the leg of the working point is what everything is told of
     spectra = estimate_spectra(signals, trial.campaign, method=method) if trial.campaign.sines else legs[0].spectra
     influences = clock_influences(clocks, spectra=spectra, signals=signals)
@@ -174,13 +177,19 @@ def pairs_of(structure: Structure, measurement: Measurement) -> tuple[tuple[Stru
     excited = {response.inputs[0]: response for response in responses if answers <= {*response.outputs}}
     if len(structure.inputs) > 1 and {*structure.inputs} <= {*excited}:
         return tuple((structure.of_input(name), excited[name]) for name in structure.inputs)
-    main = measurement.signals.working_point
+    main, rack = measurement.signals.working_point, rack_of(measurement.signals)
     further = (leg for leg in measurement.legs if leg.working_point != main)
+    knows_rack = "X" in (*structure.outputs, *structure.inputs)
     return (
         (structure, response_of(structure, responses)),
         *(
             (
-                structure_at(structure, leg.working_point, main=main),
+                structure_at(
+                    structure,
+                    leg.working_point,
+                    main=main,
+                    rack_share=leg.rack / rack if knows_rack and leg.rack and rack else None,
+                ),
                 response_of(structure, responses_of(leg.spectra.response)),
             )
             for leg in further

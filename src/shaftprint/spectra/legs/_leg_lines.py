@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import ComplexArray, FloatArray, IntArray
+from shaftprint.spectra.legs._leg_messages import LegMessages, measure_leg_messages
 from shaftprint.spectra.legs._leg_orders import LegOrders, without_leg_orders
 from shaftprint.spectra.legs._leg_window import LegWindow
 from shaftprint.spectra.legs._load_wander import linear_torque
@@ -33,6 +34,7 @@ from shaftprint.spectra.lines import (
     LineMeasurement,
     LineNoise,
     LineVariances,
+    MessageLine,
     Neighbours,
     ShaftRelation,
     Window,
@@ -41,7 +43,7 @@ from shaftprint.spectra.lines import (
 from shaftprint.spectra.orders import LineOrders
 
 if TYPE_CHECKING:
-    from shaftprint.signals import TrackedOrder
+    from shaftprint.signals import MessageSignal, TrackedOrder
 
 _TORQUE = "M_s"
 _NOISE_BINS = 36
@@ -72,6 +74,7 @@ def measure_leg(
     speed: str,
     orders: "Sequence[TrackedOrder]" = (),
     references: Mapping[str, float] = MappingProxyType({}),
+    messages: "Mapping[str, MessageSignal]" = MappingProxyType({}),
 ) -> LegLines:
     """Measure every line of a leg in all channels.
 
@@ -89,6 +92,8 @@ def measure_leg(
         Orders of the shaft line, which are taken out of the torque.
     references
         Value of each channel at the working point, for the angle of the shaft.
+    messages
+        Channels on clocks of their own, about the working point of the leg.
     """
     linear, found = _linear_window(window, harmonics, orders, references, excitation=excitation, speed=speed)
     spectrum, periods = linear.spectrum(), window.state.periods
@@ -106,6 +111,7 @@ def measure_leg(
         mean=window.values.mean(axis=(1, 2)),
         # of a sum of lines each answers for its share of the variance, so that all together answer for the whole
         overall=linear.values.reshape(len(linear.values), -1).var(axis=1) / len(harmonics),
+        messages={name: measure_leg_messages(one, window, harmonics) for name, one in messages.items()},
     )
     lines = tuple(_line(leg, harmonic, of_square) for harmonic, of_square in zip(harmonics, square, strict=True))
     return LegLines(window=linear, harmonics=tuple(harmonics), lines=lines, square=square)
@@ -135,6 +141,8 @@ class _LegSpectrum:
     """Mean of each channel over the working point, shape (channels,)."""
     overall: FloatArray
     """Variance of each channel for one line to answer for, shape (channels,)."""
+    messages: Mapping[str, LegMessages | None]
+    """Channels on clocks of their own; None of one that shows nothing of the leg."""
 
 
 def _linear_window(
@@ -170,9 +178,14 @@ def _line(leg: _LegSpectrum, harmonic: int, square: complex) -> LineMeasurement:
     share = square / amplitude[leg.speed]
     amplitude[leg.torque] += square
     cost = None if leg.orders is None else leg.orders.at(place)
-    noise = _noise(leg.spectrum, leg.beside, place, cost, speed=leg.speed, torque=leg.torque)
+    noise = _noise(leg.spectrum, leg.beside, place, cost, _relation(leg, place))
     # the fit is given the share as a number: what it adds to the torque has the noise of the speed
     noise = noise.with_share_of(leg.speed, leg.torque, complex(share))
+    messages = {
+        name: _message_line(leg, one, harmonic, cost, complex(share))
+        for name, one in leg.messages.items()
+        if one is not None and harmonic in one.lines
+    }
     not_fitted = (_NOT_FITTED, amplitude.size)
     return LineMeasurement(
         window=_window(leg.window, harmonic),
@@ -189,6 +202,38 @@ def _line(leg: _LegSpectrum, harmonic: int, square: complex) -> LineMeasurement:
         ),
         stretches=leg.by_period[:, :, harmonic],
         excitation_frequency_hz=harmonic / state.period_s,
+        messages=messages,
+        message_remarks={
+            name: f"{name} is not measured: its messages are too few or too seldom for {harmonic / state.period_s:g} Hz"
+            for name in leg.messages
+            if name not in messages
+        },
+    )
+
+
+def _message_line(
+    leg: _LegSpectrum, messages: LegMessages, harmonic: int, orders: LineOrders | None, share: complex
+) -> MessageLine:
+    """Return what messages tell of one line, with the noise that they share with the other channels."""
+    place = harmonic * leg.window.state.periods
+    near = _nearest(leg.beside, place, _NOISE_BINS)
+    left = messages.spectrum(near)
+    together = np.concatenate([leg.spectrum[:, near], left[np.newaxis]])
+    noise = _noise_of(together, near, place, _relation(leg, place), orders)
+    row = messages.lines.index(harmonic)
+    gain = complex(messages.gain[row])
+    seen = noise.with_share_of(leg.speed, leg.torque, share).covariance[-1]
+    covariance = seen / gain
+    covariance[-1] = messages.with_steps(float(seen[-1].real) / abs(gain) ** 2)
+    amplitude = complex(messages.amplitude[row])
+    return MessageLine(
+        amplitude=amplitude,
+        covariance=covariance,
+        variances=LineVariances(
+            signal=np.array([0.5 * abs(amplitude) ** 2]),
+            local=np.array([0.5 * float((np.abs(left) ** 2).sum()) * _LOCAL_BINS / _NOISE_BINS]),
+            overall=np.array([messages.variance / len(messages.lines)]),
+        ),
     )
 
 
@@ -214,16 +259,27 @@ def _drift(values: FloatArray) -> FloatArray:
 
 
 def _noise(
-    spectrum: ComplexArray, beside: IntArray, line: int, orders: LineOrders | None, *, speed: int, torque: int
+    spectrum: ComplexArray, beside: IntArray, line: int, orders: LineOrders | None, relation: ShaftRelation
 ) -> LineNoise:
     """Return the noise at a line from the bins nearest to it that are no lines."""
     near = _nearest(beside, line, _NOISE_BINS)
+    return _noise_of(spectrum[:, near], near, line, relation, orders)
+
+
+def _noise_of(
+    values: ComplexArray, near: IntArray, line: int, relation: ShaftRelation, orders: LineOrders | None
+) -> LineNoise:
     neighbours = Neighbours(bins=near.astype(np.float64), log_ratio=np.log(near / line), weight=np.ones(near.size))
-    relation = ShaftRelation(speed=speed, torque=torque, ratio=complex(spectrum[torque, line] / spectrum[speed, line]))
     if orders is None:
-        return noise_from_neighbours(spectrum[:, near], neighbours, relation)
-    noise = noise_from_neighbours(spectrum[:, near], neighbours, relation, taken=orders.taken[near])
-    return noise.with_torque_variance(torque, orders.variance)
+        return noise_from_neighbours(values, neighbours, relation)
+    noise = noise_from_neighbours(values, neighbours, relation, taken=orders.taken[near])
+    return noise.with_torque_variance(relation.torque, orders.variance)
+
+
+def _relation(leg: _LegSpectrum, line: int) -> ShaftRelation:
+    """Return how the torque goes with the speed at a line."""
+    ratio = complex(leg.spectrum[leg.torque, line] / leg.spectrum[leg.speed, line])
+    return ShaftRelation(speed=leg.speed, torque=leg.torque, ratio=ratio)
 
 
 def _nearest(beside: IntArray, line: int, count: int) -> IntArray:

@@ -7,8 +7,8 @@ from shaftprint.spectra.lines._harmonics import Harmonics, collect_harmonics
 from shaftprint.spectra.lines._line_fit import LineFit, SineMethod, WindowSamples, cut_window, window_slice
 from shaftprint.spectra.lines._line_measurement import LineMeasurement, measure_line, strongest_frequency_hz
 from shaftprint.spectra.lines._load_drift import LoadDrift, load_drift
-from shaftprint.spectra.lines._message_line import cut_messages
-from shaftprint.spectra.lines._message_times import times_of_values
+from shaftprint.spectra.lines._message_line import MessageLine, cut_messages
+from shaftprint.spectra.lines._message_times import times_of_course, times_of_values
 from shaftprint.spectra.lines._modulation import without_modulation
 from shaftprint.spectra.lines._noise import (
     LineNoise,
@@ -39,6 +39,7 @@ __all__ = [
     "LineNoise",
     "LineVariances",
     "LoadDrift",
+    "MessageLine",
     "Neighbours",
     "ShaftRelation",
     "SignalToNoise",
@@ -64,6 +65,7 @@ __all__ = [
     "shape_reasons",
     "signal_to_noise",
     "strongest_frequency_hz",
+    "times_of_course",
     "times_of_values",
     "whole_period_window",
     "window_slice",

@@ -37,17 +37,40 @@ def times_of_values(fit: LineFit) -> FloatArray | None:
     sender keeps no cycle, or the line is too slow or too weak to tell.
     """
     time_s = fit.samples.time_s
-    late_s = _from_cycle(time_s, fit.samples.rate_hz)
-    if late_s is None:
-        return None
     omega_rad_s = 2.0 * np.pi * fit.samples.window.frequency_hz
     slope = (1j * omega_rad_s * fit.amplitude[0, 0] * np.exp(1j * omega_rad_s * time_s)).real
+    return times_of_course(time_s, fit.residual[0], slope, rate_hz=fit.samples.rate_hz)
+
+
+def times_of_course(
+    time_s: FloatArray, residual: FloatArray, slope: FloatArray, *, rate_hz: float
+) -> FloatArray | None:
+    """Return when the values of messages were taken, where that is not at their stamps.
+
+    Parameters
+    ----------
+    time_s
+        The stamps [s], shape (messages,).
+    residual
+        What a course that was fitted at the stamps does not explain, shape (messages,).
+    slope
+        Slope of the course at the stamps [1/s], shape (messages,).
+    rate_hz
+        Messages a second, as a rule [Hz].
+
+    Returns
+    -------
+    As `times_of_values`.
+    """
+    late_s = _from_cycle(time_s, rate_hz)
+    if late_s is None:
+        return None
     moved = -late_s * slope
     power = float(moved @ moved)
     if power == 0.0:
         return None
-    share = float(fit.residual[0] @ moved) / power
-    std = float(fit.residual[0].std()) / math.sqrt(power)
+    share = float(residual @ moved) / power
+    std = float(residual.std()) / math.sqrt(power)
     return time_s - late_s if share - _HALF > _SURE * std else None
 
 
