@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from shaftprint.design import limits_from_vessel, usual_speeds
+from shaftprint.design import GaugeRange, limits_from_vessel, usual_speeds
 from shaftprint.errors import DesignError, SettingsError
 from shaftprint.settings import write_template
 from shaftprint.vessel import OperatingLimits, load_vessel
@@ -77,6 +77,27 @@ def test_usual_speeds_are_those_of_the_vessel_file_after_a_first_test_too(limits
     first_test = replace(tug, engine_speed_rpm=1361.4)
     shares = usual_speeds(first_test, working_point_rpm=1183.8)
     assert [1361.4 * share for share in shares] == pytest.approx(levels)
+
+
+def test_usual_speeds_leave_room_below_full_load_and_in_the_range_of_the_gauge(limits):
+    tug = replace(
+        limits,
+        engine_speed_rpm=1000.0,
+        brake_torque_nm=100.0,
+        lowest_speed_rpm=300.0,
+        highest_speed_rpm=2000.0,
+        set_point_rpm=50.0,
+        full_load=((500.0, 150.0), (2000.0, 150.0)),
+        gauge=None,
+    )
+    # 1.5 times the load is 150 N m at 1000 rpm; the second speed is as many times lower as between 1.15 and 0.78
+    high, low = usual_speeds(tug)
+    assert 0.985 <= high <= 1.0
+    assert low / high == pytest.approx(0.78 / 1.15, abs=2e-3)
+    gauge = GaugeRange(vessel="Tug", lowest_nm=-640.0, highest_nm=640.0, shaft_over_brake=4.0, ripple=0.5)
+    # 640 N m over 400 N m: 1.8 times the load of 0.943 of the speed
+    high, _ = usual_speeds(replace(tug, full_load=((500.0, 900.0), (2000.0, 900.0)), gauge=gauge))
+    assert 0.93 <= high <= 0.943
 
 
 def test_barred_ranges_narrow_the_free_speeds(limits):

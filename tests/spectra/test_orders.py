@@ -10,7 +10,7 @@ from shaftprint.identify import STAN_TUG_NOISE, planned_response
 from shaftprint.recording import read_recording
 from shaftprint.signals import TrackedOrder, prepare_signals, tracked_orders
 from shaftprint.spectra import estimate_spectra
-from shaftprint.spectra.orders import fit_orders
+from shaftprint.spectra.orders import fit_orders, order_bands, turns_of, with_measured_gears
 from shaftprint.tug import Tug, linearised_response, sail
 from shaftprint.vessel import Vessel, load_vessel
 
@@ -129,6 +129,41 @@ def test_an_order_through_rounded_gears_is_found_where_it_is(made):
     found, lost = np.median(ratios, axis=0)
     assert found == pytest.approx(1.0, abs=0.1)
     assert lost > 2.0
+
+
+@pytest.mark.parametrize("error", [0.0, 3e-4, -1.2e-3])
+def test_the_ratio_is_measured_beside_lines_that_are_left_out(error):
+    """A leg of ten periods of 34.3 s in which the shaft turns 60.94 times a period: the order stands beside a line."""
+    rate_hz, periods, period_s = 25.0, 10, 34.3
+    samples = round(periods * period_s * rate_hz)
+    time_s = np.arange(samples) / rate_hz
+    swing = sum(0.05 * np.cos(2.0 * np.pi * k * time_s / period_s + k) for k in (1, 3, 5))
+    speed = 60.94 / period_s / SHAFT.per_turn * (1.0 + swing)
+    load = (1.0 + swing) ** 2
+    angle = 2.0 * np.pi * SHAFT.per_turn * (1.0 + error) * turns_of(speed, rate_hz)
+    through = replace(SHAFT, through_gears=True)
+    chosen = np.zeros(samples // 2 + 1, dtype=bool)
+    chosen[periods * 45 : periods * 80] = True
+    chosen[periods :: 2 * periods] = False
+    measured = []
+    for seed in range(12):
+        rng = np.random.default_rng(seed)
+        torque = load * 0.09 * np.cos(angle + rng.uniform(0.0, 6.28)) + 0.05 * rng.standard_normal(samples)
+        (band,) = with_measured_gears(
+            order_bands([through], {"n_e": speed}, rate_hz=rate_hz),
+            {"n_e": speed},
+            load,
+            np.fft.rfft(torque),
+            chosen,
+            rate_hz=rate_hz,
+            transform=lambda waves: np.fft.rfft(waves, axis=1),
+        )
+        measured.append(band.order.per_turn / SHAFT.per_turn - 1.0)
+    # a tone's frequency is known to sqrt(6 / samples) sigma / (pi a T): over 609 turns
+    std = np.sqrt(6.0 / samples) * 0.05 / (np.pi * 0.09) / 609.4
+    z = (np.array(measured) - error) / std
+    assert np.sqrt(np.mean(z**2)) < 1.6
+    assert abs(z.mean()) < 1.0
 
 
 def test_without_the_order_in_the_record_rounded_gears_change_nothing(made):

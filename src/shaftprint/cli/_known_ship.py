@@ -80,6 +80,12 @@ def stated_ship(vessel_name: str, structure_name: TypedName | None, options: Kno
     )
 
 
+_SET_POINT_LIMIT = (
+    "--limit set-point=..., the largest deviation of the set point from the level of a leg, in V or rpm, such as "
+    "--limit set-point=1.0V"
+)
+
+
 def knowledge_of(stated: Stated, *, steps: Steps) -> Knowledge:
     """Return what is known of the ship.
 
@@ -170,7 +176,8 @@ def _line(stated: Stated, recorded: _Recorded | None) -> SetPointLine:
         raise click.UsageError(
             "expected --rpm-per-volt and --offset, what one volt of set point asks for and the voltage at "
             f"{point.engine_speed_rpm:g} rpm, such as --rpm-per-volt -251 --offset -5; or a first test that has "
-            "measured them, with --after or --noise-from."
+            "measured them, with --after or --noise-from"
+            f"{'' if any(limit.name == 'set-point' for limit in stated.options.limits) else f'; and {_SET_POINT_LIMIT}'}."
         )
     return SetPointLine(slope_rpm_per_v=slope, offset_v=offset_v)
 
@@ -178,10 +185,7 @@ def _line(stated: Stated, recorded: _Recorded | None) -> SetPointLine:
 def _limits(stated: Stated, line: SetPointLine, recorded: _Recorded | None) -> Limits:
     set_point_rpm = set_point_rpm_of(stated.options.limits, line.slope_rpm_per_v)
     if set_point_rpm is None:
-        raise click.UsageError(
-            "expected --limit set-point=..., the largest deviation of the set point from the level of a leg, in V or "
-            "rpm, such as --limit set-point=1.0V."
-        )
+        raise click.UsageError(f"expected {_SET_POINT_LIMIT}.")
     limits = limits_from_vessel(stated.vessel, set_point_rpm=set_point_rpm)
     if stated.first_test is not None:
         limits = limits_of_fingerprint(limits, stated.first_test, stated.vessel)

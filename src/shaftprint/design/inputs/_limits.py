@@ -5,6 +5,8 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Self, TypeAlias
 
+import numpy as np
+
 from shaftprint.design.inputs._gauge_range import GaugeRange, gauge_range_of
 from shaftprint.errors import DesignError
 from shaftprint.notebook import Shown
@@ -24,6 +26,10 @@ HIGHEST_FREQUENCY_HZ = 3.4
 # set point they keep away from the limits of the speed: a leg reaches farther than its set point does.
 USUAL_SHARES = (1.15, 0.78)
 _CLEAR = 1.3
+# What a leg wants above its mean torque, over that torque: noise of four standard deviations takes half of what is kept
+# below full load; what the gauge shows must hold the lines beside orders and noise.
+_TORQUE_ROOM, _GAUGE_ROOM = 0.5, 0.15
+_SHARE_STEP = 0.01
 # Lines end where the demand has four messages a period.
 MESSAGES_PER_PERIOD = 4.0
 
@@ -148,7 +154,8 @@ def limits_from_vessel(vessel: "Vessel", *, set_point_rpm: float) -> Limits:
 def usual_speeds(limits: Limits, *, working_point_rpm: float | None = None) -> tuple[float, ...]:
     """Return two speeds as far apart as the limits leave room for, at most 1.15 and 0.78 of the working point.
 
-    A second speed separates what one alone cannot. Where there is no room for two it is the working point alone.
+    A second speed separates what one alone cannot. Where full load, gauge or highest speed lower the first, the second
+    is lower by as much. Where there is no room for two it is the working point alone.
 
     Parameters
     ----------
@@ -163,12 +170,28 @@ def usual_speeds(limits: Limits, *, working_point_rpm: float | None = None) -> t
         Shares of ``limits.engine_speed_rpm``.
     """
     point_rpm = limits.engine_speed_rpm if working_point_rpm is None else working_point_rpm
-    high, low = USUAL_SHARES
+    to_stated = point_rpm / limits.engine_speed_rpm
     clear = _CLEAR * limits.set_point_rpm
-    high = min(high, (limits.highest_speed_rpm - clear) / point_rpm)
-    low = max(low, (limits.lowest_speed_rpm + clear) / point_rpm)
+    usual = min(USUAL_SHARES[0], (limits.highest_speed_rpm - clear) / point_rpm)
+    high = usual
+    while not _has_torque_room(limits, high * to_stated) and high > USUAL_SHARES[1]:
+        high -= _SHARE_STEP
+    low = max(USUAL_SHARES[1] * min(high / usual, 1.0), (limits.lowest_speed_rpm + clear) / point_rpm)
     shares = (round(high, 3), round(low, 3)) if high > low else (1.0,)
-    return tuple(share * point_rpm / limits.engine_speed_rpm for share in shares)
+    return tuple(share * to_stated for share in shares)
+
+
+def _has_torque_room(limits: Limits, speed_share: float) -> bool:
+    """Return whether a leg at a speed, over that of the working point, has room for lines below full load and in the
+    range of the gauge, in bollard pull, where torque goes with the square of the speed."""
+    torque_nm = speed_share**2 * limits.brake_torque_nm
+    speeds_rpm, torques_nm = zip(*limits.full_load, strict=True)
+    full_nm = float(np.interp(speed_share * limits.engine_speed_rpm, speeds_rpm, torques_nm))
+    gauge = limits.gauge
+    shown = gauge is None or gauge.highest_nm > (1.0 + gauge.rare_ripple + _GAUGE_ROOM) * gauge.shaft_torque_nm(
+        limits.brake_torque_nm, speed_share
+    )
+    return shown and full_nm > (1.0 + _TORQUE_ROOM) * torque_nm
 
 
 def _curve(speeds_rpm: Sequence[float], torques_nm: Sequence[float]) -> Curve:

@@ -89,14 +89,22 @@ def without_leg_orders(
     spectrum = window.spectrum()
     duration_s = state.period_s * state.periods
     chosen = _bins_of(bands, spectrum[window.channels.index(excitation)], state.periods, duration_s)
-    bands = with_measured_gears(bands, speeds, load.ravel(), spectrum[torque], chosen, rate_hz=rate_hz)
+    bands = with_measured_gears(
+        bands, speeds, load.ravel(), spectrum[torque], chosen, rate_hz=rate_hz, transform=_amplitudes
+    )
     waves = with_speed(order_waves(bands, speeds, load.ravel(), rate_hz=rate_hz), bands, speeds)
-    transformed = np.fft.rfft(waves, axis=1) * (2.0 / waves.shape[1])
+    transformed = _amplitudes(waves)
     fit = fit_orders(spectrum[torque], transformed, chosen)
     values = window.values.copy()
     values[torque] -= (fit.coefficient @ waves).reshape(values[torque].shape)
     found = LegOrders(bands=bands, fit=fit, waves=transformed, duration_s=duration_s)
     return replace(window, values=values), found
+
+
+def _amplitudes(waves: FloatArray) -> ComplexArray:
+    """Return the Fourier amplitudes of waves, shape (waves, bins)."""
+    transformed: ComplexArray = np.fft.rfft(waves, axis=1) * (2.0 / waves.shape[1])
+    return transformed
 
 
 def _bins_of(bands: Sequence[OrderBand], moved: ComplexArray, periods: int, duration_s: float) -> BoolArray:

@@ -57,7 +57,15 @@ def without_orders(
     alone = _fit(samples, samples.of(_TORQUE)[np.newaxis])
     torque = residual_spectrum(alone)[0]
     chosen = _bins_of(bands, samples, torque.size, len(alone.amplitude))
-    bands = with_measured_gears(bands, speeds, load, torque, chosen, rate_hz=samples.rate_hz)
+    bands = with_measured_gears(
+        bands,
+        speeds,
+        load,
+        torque,
+        chosen,
+        rate_hz=samples.rate_hz,
+        transform=lambda waves: residual_spectrum(_fit(samples, waves)),
+    )
     waves = order_waves(bands, speeds, load, rate_hz=samples.rate_hz)
     fit = _fit(samples, waves)
     found = fit_orders(torque, residual_spectrum(fit), chosen)

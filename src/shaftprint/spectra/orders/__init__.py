@@ -3,7 +3,7 @@
 from shaftprint.spectra.orders._gears import with_measured_gears
 from shaftprint.spectra.orders._line_orders import LineOrders
 from shaftprint.spectra.orders._order_fit import OrderFit, fit_orders
-from shaftprint.spectra.orders._order_waves import OrderBand, order_bands, order_waves, with_speed
+from shaftprint.spectra.orders._order_waves import OrderBand, order_bands, order_waves, turns_of, with_speed
 
 __all__ = [
     "LineOrders",
@@ -12,6 +12,7 @@ __all__ = [
     "fit_orders",
     "order_bands",
     "order_waves",
+    "turns_of",
     "with_measured_gears",
     "with_speed",
 ]

@@ -89,11 +89,24 @@ def order_waves(
     waves = np.empty((2 * len(bands), load.size))
     for place, band in enumerate(bands):
         speed = speeds_rev_s[band.order.speed]
-        # trapezoids: their errors cancel from pulse to pulse
-        turns = (np.cumsum(speed) - 0.5 * (speed + speed[0])) / rate_hz
-        angle = 2.0 * np.pi * band.order.per_turn * turns
+        angle = 2.0 * np.pi * band.order.per_turn * turns_of(speed, rate_hz)
         waves[2 * place], waves[2 * place + 1] = load * np.cos(angle), load * np.sin(angle)
     return waves
+
+
+def turns_of(speed_rev_s: FloatArray, rate_hz: float) -> FloatArray:
+    """Return the turns of a shaft since the first sample [rev], shape of its speed [rev/s].
+
+    Parameters
+    ----------
+    speed_rev_s
+        Speed, shape (samples,).
+    rate_hz
+        Rate of the samples [Hz].
+    """
+    # trapezoids: their errors cancel from pulse to pulse
+    turns: FloatArray = (np.cumsum(speed_rev_s) - 0.5 * (speed_rev_s + speed_rev_s[0])) / rate_hz
+    return turns
 
 
 def with_speed(waves: FloatArray, bands: Sequence[OrderBand], speeds_rev_s: Mapping[str, FloatArray]) -> FloatArray:
