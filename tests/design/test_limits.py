@@ -5,8 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from shaftprint.design import GaugeRange, limits_from_vessel, usual_speeds
+from shaftprint.catalogue import structure
+from shaftprint.design import GaugeRange, assumed_ship, limits_from_vessel, ship_before_test, usual_speeds
 from shaftprint.errors import DesignError, SettingsError
+from shaftprint.identify import Prior
+from shaftprint.models import stable_rows
 from shaftprint.settings import write_template
 from shaftprint.vessel import OperatingLimits, load_vessel
 
@@ -119,3 +122,20 @@ def test_barred_ranges_narrow_the_free_speeds(limits):
 def test_limits_that_contradict_each_other(limits, changed, words):
     with pytest.raises(DesignError, match=words):
         replace(limits, **changed)
+
+
+def test_gains_that_nobody_states_are_lowered_for_a_light_line():
+    closed = structure("GAUGE-CLOSED")
+    light = {"tau_up": Prior(0.12, 0.06), "tau_dn": Prior(0.05, 0.02)}
+    (held,) = stable_rows(closed, assumed_ship(closed, {"tau_up": 0.12, "tau_dn": 0.05}).values[np.newaxis])
+    assert not held
+    ship = ship_before_test(closed, light)
+    lowered, usual = ship.by_name, assumed_ship(closed).by_name
+    assert lowered["K_p"] < 0.5 * usual["K_p"]
+    assert lowered["K_p"] / lowered["K_i"] == pytest.approx(usual["K_p"] / usual["K_i"])
+    # with gains half as large again it does not hunt either
+    more = assumed_ship(closed, lowered | {"K_p": 1.5 * lowered["K_p"], "K_i": 1.5 * lowered["K_i"]})
+    assert stable_rows(closed, more.values[np.newaxis]).all()
+    # what is stated stays
+    stated = ship_before_test(closed, light, {"K_p": 5.0, "K_i": 4.0})
+    assert (stated.by_name["K_p"], stated.by_name["K_i"]) == (5.0, 4.0)

@@ -173,11 +173,12 @@ def _line(stated: Stated, recorded: _Recorded | None) -> SetPointLine:
     offset_v = offset_v if offset_v is not None else getattr(known, "offset_v", None)
     if slope is None or offset_v is None:
         point = stated.vessel.working_point
+        limited = any(limit.name == "set-point" for limit in stated.options.limits)
         raise click.UsageError(
             "expected --rpm-per-volt and --offset, what one volt of set point asks for and the voltage at "
             f"{point.engine_speed_rpm:g} rpm, such as --rpm-per-volt -251 --offset -5; or a first test that has "
             "measured them, with --after or --noise-from"
-            f"{'' if any(limit.name == 'set-point' for limit in stated.options.limits) else f'; and {_SET_POINT_LIMIT}'}."
+            f"{'' if limited else f'; and {_SET_POINT_LIMIT}'}."
         )
     return SetPointLine(slope_rpm_per_v=slope, offset_v=offset_v)
 

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.catalogue import ShipRole
 from shaftprint.design.inputs._assumed_ship import AssumedShip, assumed_ship
 from shaftprint.fingerprint import identified_model
+from shaftprint.models import stable_rows
 
 if TYPE_CHECKING:
     from shaftprint.design.inputs._limits import Limits
@@ -16,6 +18,10 @@ if TYPE_CHECKING:
     from shaftprint.identify import Prior
     from shaftprint.models import Structure
     from shaftprint.vessel import Vessel
+
+_GAINS = (ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN, ShipRole.DERIVATIVE_GAIN)
+# How far from hunting a governor is left, and the smallest share of the usual gains that is tried.
+_GAIN_MARGIN, _LEAST_SHARE, _SHARES = 1.6, 0.02, 60
 
 
 def ship_before_test(
@@ -30,14 +36,32 @@ def ship_before_test(
     priors
         What is known beforehand, by parameter: where it is known better than ships usually are, with its deviation.
     values
-        Assumed values by name; means of priors, or the structure's own, where not given.
+        Assumed values by name; means of priors, or the structure's own, where not given. Gains of the governor that
+        nobody states are lowered until the loop is stable: the governor of a light line is not set as that of a heavy
+        one.
     """
     bounds = {p.name: (p.lower, p.upper) for p in structure.free}
     means = {name: float(np.clip(prior.mean, *bounds[name])) for name, prior in priors.items() if name in bounds}
-    usual = assumed_ship(structure, means | dict(values or {}))
+    stated = means | dict(values or {})
+    usual = assumed_ship(structure, stated)
+    usual = assumed_ship(structure, stated | _stable_gains(usual, stated))
     std = dict(zip(structure.names, np.sqrt(np.diag(usual.covariance)).tolist(), strict=True))
     std |= {name: min(std[name], prior.std) for name, prior in priors.items() if name in bounds}
     return assumed_ship(structure, usual.by_name, std=std)
+
+
+def _stable_gains(ship: AssumedShip, stated: Mapping[str, float]) -> dict[str, float]:
+    """Return the gains that are not stated, by name, lowered where the loop is unstable with them."""
+    gains = [p.name for p in ship.structure.free if p.role in _GAINS and p.name not in stated]
+    if not gains or stable_rows(ship.structure, ship.values[np.newaxis])[0]:
+        return {}
+    shares = np.geomspace(1.0, _LEAST_SHARE, _SHARES)
+    rows = np.tile(ship.values, (_SHARES, 1))
+    places = [ship.structure.names.index(name) for name in gains]
+    rows[:, places] *= _GAIN_MARGIN * shares[:, np.newaxis]
+    stable = stable_rows(ship.structure, rows)
+    share = float(shares[np.argmax(stable)]) if stable.any() else 1.0
+    return {name: share * ship.by_name[name] for name in gains}
 
 
 def ship_of_fingerprint(fingerprint: "Fingerprint", structure: "Structure") -> AssumedShip:

@@ -182,8 +182,10 @@ def usual_speeds(limits: Limits, *, working_point_rpm: float | None = None) -> t
 
 
 def _has_torque_room(limits: Limits, speed_share: float) -> bool:
-    """Return whether a leg at a speed, over that of the working point, has room for lines below full load and in the
-    range of the gauge, in bollard pull, where torque goes with the square of the speed."""
+    """Return whether a leg at a speed has room for lines below full load and in the range of the gauge.
+
+    In bollard pull, where torque goes with the square of the speed.
+    """
     torque_nm = speed_share**2 * limits.brake_torque_nm
     speeds_rpm, torques_nm = zip(*limits.full_load, strict=True)
     full_nm = float(np.interp(speed_share * limits.engine_speed_rpm, speeds_rpm, torques_nm))
