@@ -135,7 +135,7 @@ def test_time_without_zone_is_refused(gauge_fit, take):
 
 
 def test_keeps_what_is_needed_to_judge_it_in_ten_years(fingerprint):
-    assert fingerprint.schema_version == "2.0"
+    assert fingerprint.schema_version == "2.1"
     assert [(s.role, s.name, s.sha256[:2]) for s in fingerprint.sources] == [
         ("recording", "port.nc", "ab"),
         ("vessel", "tug.toml", "cd"),
@@ -265,7 +265,7 @@ def test_cut_file(fingerprint, path):
 
 def test_unknown_fields_are_refused_with_their_place(fingerprint, path):
     with_field(fingerprint, path, lambda c: c.update(colour="red"))
-    with pytest.raises(FingerprintError, match=r"not a fingerprint of schema 2.0: colour: Extra inputs"):
+    with pytest.raises(FingerprintError, match=r"not a fingerprint of schema 2.1: colour: Extra inputs"):
         read_fingerprint(path)
     with_field(fingerprint, path, lambda c: c["conditions"].update(tide_m=1.2))
     with pytest.raises(FingerprintError, match=r"conditions\.tide_m: Extra inputs"):

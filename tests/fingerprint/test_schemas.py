@@ -63,20 +63,35 @@ def test_legs_and_noise_come_back_as_they_were(of_legs, path):
     assert np.array_equal(levels.density, LEVELS.density)
     assert np.array_equal(levels.at([0.2]), LEVELS.at([0.2]))
     content = json.loads(path.read_text(encoding="utf-8"))
-    assert content["schema_version"] == "2.0"
+    assert content["schema_version"] == "2.1"
     assert content["torque_ripple"] == 0.51
     assert content["noise"][0]["density_imaginary"][0] == [[0.0, 5e-7], [-5e-7, 0.0]]
 
 
 def test_a_file_of_schema_1_is_read(fingerprint, path):
     def as_schema_1(content):
-        del content["legs"], content["noise"]
+        del content["legs"], content["noise"], content["with_limits"], content["validation"]
         content["schema_version"] = 1
 
     write_changed(fingerprint, path, as_schema_1)
     kept = read_fingerprint(path)
     assert kept == fingerprint
     assert (kept.legs, kept.noise) == ((), ())
+
+
+def test_a_file_of_schema_2_0_is_read(of_legs, path):
+    def as_schema_2_0(content):
+        del content["with_limits"], content["validation"]
+        content["schema_version"] = "2.0"
+
+    write_changed(of_legs, path, as_schema_2_0)
+    assert read_fingerprint(path) == of_legs
+
+
+def test_a_file_of_schema_2_0_with_limits_is_refused(of_legs, path):
+    write_changed(of_legs, path, lambda content: content.update(schema_version="2.0"))
+    with pytest.raises(FingerprintError, match=r"with_limits: expected no such field in schema 2\.0"):
+        read_fingerprint(path)
 
 
 def test_a_file_of_schema_1_with_an_unknown_field_is_refused(fingerprint, path):
@@ -96,11 +111,11 @@ def test_every_later_2_is_read_and_says_what_it_left_out(of_legs, path):
     kept = read_fingerprint(path)
     assert kept.model_copy(update={"findings": of_legs.findings}) == of_legs
     (finding,) = kept.findings[len(of_legs.findings) :]
-    assert finding.startswith("The file is of schema 2.7; what is not known in 2.0 was left out: ")
+    assert finding.startswith("The file is of schema 2.7; what is not known in 2.1 was left out: ")
     for name in ("hull", "legs.1.orders", "noise.0.shaft_orders", "parameters.0.drift"):
         assert name in finding
     # nothing new: nothing to say
-    write_changed(of_legs, path, lambda content: content.update(schema_version="2.1"))
+    write_changed(of_legs, path, lambda content: content.update(schema_version="2.2"))
     assert read_fingerprint(path) == of_legs
 
 

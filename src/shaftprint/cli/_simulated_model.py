@@ -1,6 +1,6 @@
 """The model that ``simulate`` takes through time: from a fingerprint, by name, or from the user's own file."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import click
@@ -9,7 +9,7 @@ import numpy as np
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.cli._own_structure import TypedName, chosen_structures, structure_to_use
 from shaftprint.errors import FingerprintError, StructureError
-from shaftprint.fingerprint import Fingerprint
+from shaftprint.fingerprint import Fingerprint, Quantity, model_with_limits
 from shaftprint.models import Structure
 from shaftprint.spelling import meant
 
@@ -34,19 +34,36 @@ class SimulatedModel:
     """Parameters of which the test said nothing: no band holds them."""
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class _Identified:
+    """What was identified, of the line for small signals or of that with its limits."""
+
+    name: str
+    parameters: tuple[Quantity, ...]
+    held: Mapping[str, float]
+    covariance: FloatArray
+
+    def covariance_of(self, names: Sequence[str]) -> FloatArray:
+        order = [quantity.name for quantity in self.parameters]
+        places = [order.index(name) for name in names]
+        return self.covariance.reshape(len(order), len(order))[np.ix_(places, places)]
+
+
 def simulated_model(
-    name: TypedName | None, fingerprint: Fingerprint | None, given: Mapping[str, float]
+    name: TypedName | None, fingerprint: Fingerprint | None, given: Mapping[str, float], *, linear: bool = False
 ) -> SimulatedModel:
     """Return the model to simulate.
 
     Parameters
     ----------
     name
-        Structure; that of the fingerprint if not given.
+        Structure; that of the fingerprint, with its limits where they were found, if not given.
     fingerprint
         Where values and covariance come from.
     given
         Values that the user states.
+    linear
+        Whether the linear model is wanted although the fingerprint has the line with its limits.
 
     Raises
     ------
@@ -57,7 +74,10 @@ def simulated_model(
     StructureError
         If there is no such structure or parameter, or a value is missing.
     """
-    if fingerprint is not None:
+    line = fingerprint.with_limits if fingerprint is not None and name is None and not linear else None
+    if line is not None:
+        chosen = model_with_limits(line).structure
+    elif fingerprint is not None:
         chosen = structure_to_use(name, fingerprint)
     elif name is not None:
         (chosen,) = chosen_structures([name])
@@ -71,7 +91,14 @@ def simulated_model(
         )
     if fingerprint is None:
         return _by_name(chosen, given)
-    return _of_fingerprint(chosen, fingerprint, given)
+    source = line or fingerprint
+    identified = _Identified(
+        name=fingerprint.structure,
+        parameters=source.parameters,
+        held=source.held,
+        covariance=np.array(source.covariance),
+    )
+    return _of_fingerprint(chosen, identified, given)
 
 
 def _by_name(chosen: Structure, given: Mapping[str, float]) -> SimulatedModel:
@@ -85,13 +112,13 @@ def _by_name(chosen: Structure, given: Mapping[str, float]) -> SimulatedModel:
     )
 
 
-def _of_fingerprint(chosen: Structure, fingerprint: Fingerprint, given: Mapping[str, float]) -> SimulatedModel:
+def _of_fingerprint(chosen: Structure, fingerprint: _Identified, given: Mapping[str, float]) -> SimulatedModel:
     identified = {quantity.name: quantity.value for quantity in fingerprint.parameters}
-    values = identified | fingerprint.held
+    values = identified | dict(fingerprint.held)
     foreign = [name for name in values if name not in chosen.names]
     if foreign:
         raise FingerprintError(
-            f"fingerprint of {fingerprint.structure}: expected the parameters of structure {chosen.name}, found "
+            f"fingerprint of {fingerprint.name}: expected the parameters of structure {chosen.name}, found "
             f"{', '.join(foreign)} too; name the structure that it was identified with, or one that has all of them."
         )
     missing = [p for p in chosen.parameters if not p.held and p.name not in values and p.name not in given]
@@ -99,12 +126,12 @@ def _of_fingerprint(chosen: Structure, fingerprint: Fingerprint, given: Mapping[
         usual = " ".join(f"--set {p.name}={p.value:g}" for p in missing)
         raise StructureError(
             f"structure {chosen.name}: expected values of {', '.join(p.name for p in missing)}, which the fingerprint "
-            f"of {fingerprint.structure} does not have; give them, usual ones are {usual}."
+            f"of {fingerprint.name} does not have; give them, usual ones are {usual}."
         )
     std = {quantity.name: quantity.std for quantity in fingerprint.parameters}
     free = [name for name in identified if name not in given]
     uncertain = [name for name in free if np.isfinite(std[name]) and std[name] > 0.0]
-    fixed = {name: value for name, value in (fingerprint.held | dict(given)).items() if name in chosen.names}
+    fixed = {name: value for name, value in (dict(fingerprint.held) | dict(given)).items() if name in chosen.names}
     origins = dict.fromkeys(chosen.names, "usual value") | dict.fromkeys(values, "fingerprint")
     origins |= dict.fromkeys(given, "--set")
     return SimulatedModel(

@@ -1,6 +1,7 @@
 """What ``validate`` works with and leaves behind: the model of a fingerprint, the figures, the tables."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +15,18 @@ from shaftprint.fingerprint import Fingerprint, identified_model
 from shaftprint.models import Structure
 from shaftprint.report import save_chart, validation_chart, validation_summary_chart
 from shaftprint.signals import Signals
+from shaftprint.survey import Measurement, Trial, limited_model, limits_of, validated_apart
 from shaftprint.tables import excerpt_name, misfit_table, step_number_table
 from shaftprint.units import rpm_from_rev_s
-from shaftprint.validation import ExcerptComparison, Model, Validation
+from shaftprint.validation import (
+    ExcerptComparison,
+    Model,
+    Predict,
+    Validation,
+    linear_prediction,
+    simulated_prediction,
+    validate,
+)
 
 # As the thesis shares its sets between the parts (a) and (b) of figures 5.7 to 5.9.
 GROUPS = {"a": ("CL4", "OL1+OL5", "benchmark"), "b": ("CL3", "OL1+OL4", "benchmark")}
@@ -86,6 +96,63 @@ def _groups(validations: Sequence[Validation]) -> dict[str, list[Validation]]:
 _SAME_WORKING_POINT = 0.02
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Asked:
+    """What a model is to be held against."""
+
+    records: tuple[str, ...]
+    """Chirps and staircases; empty for the usual ones."""
+    used: tuple[str, ...]
+    """Tests that the model was identified from besides those that it names itself."""
+    allow_in_sample: bool
+    """Whether records of the identification are shown."""
+    seed: int
+    """Start of the random numbers."""
+
+    def validated(
+        self,
+        model: Model,
+        signals: Signals,
+        trial: Trial,
+        *,
+        quadratic_propeller: bool = True,
+        predict: Predict = linear_prediction,
+    ) -> Validation:
+        """Return a model held against them."""
+        return validate(
+            model,
+            signals,
+            trial.campaign,
+            rng=np.random.default_rng(self.seed),
+            records=self.records or None,
+            used=self.used,
+            allow_in_sample=self.allow_in_sample,
+            quadratic_propeller=quadratic_propeller,
+            predict=predict,
+        )
+
+
+def validated_with_limits(
+    fingerprint: Fingerprint, measurement: Measurement, trial: Trial, asked: Asked, *, steps: Steps
+) -> Validation:
+    """Return the line with its limits held against a recording; against its own, by fits that did not use it.
+
+    Raises
+    ------
+    FingerprintError
+        If the working points of both differ by more than 2 %, or the fingerprint has no limits.
+    ValidationError
+        If no stretch can be judged.
+    """
+    signals, line = measurement.signals, limits_of(fingerprint)
+    _expect_working_point(fingerprint, signals)
+    if _is_of(fingerprint, signals):
+        rng = np.random.default_rng(asked.seed)
+        return validated_apart(fingerprint, signals, trial, rng=rng, records=asked.records or None, progress=steps)
+    model = limited_model(line)
+    return asked.validated(model, signals, trial, quadratic_propeller=False, predict=simulated_prediction)
+
+
 def fingerprint_model(fingerprint: Fingerprint, structure: Structure, signals: Signals) -> Model:
     """Return the model of a fingerprint; the lines that it was identified from count where it is of this recording.
 
@@ -96,6 +163,24 @@ def fingerprint_model(fingerprint: Fingerprint, structure: Structure, signals: S
         2 %.
     """
     model = identified_model(fingerprint, structure)
+    _expect_working_point(fingerprint, signals)
+    lost = ~np.isfinite(np.diag(model.covariance))
+    return Model(
+        name=fingerprint.structure,
+        structure=model.structure,
+        values=model.values,
+        covariance=frozen_float(np.where(lost[:, None] | lost[None, :], 0.0, model.covariance)),
+        used=fingerprint.conditions.lines_used if _is_of(fingerprint, signals) else (),
+        not_known=model.not_known,
+    )
+
+
+def _is_of(fingerprint: Fingerprint, signals: Signals) -> bool:
+    """Return whether a fingerprint is of a recording."""
+    return any(s.role == "recording" and s.sha256 == signals.recording_sha256 for s in fingerprint.sources)
+
+
+def _expect_working_point(fingerprint: Fingerprint, signals: Signals) -> None:
     here = rpm_from_rev_s(signals.working_point.engine_speed_rev_s)
     there = fingerprint.conditions.engine_speed.value
     if abs(here / there - 1.0) > _SAME_WORKING_POINT:
@@ -103,16 +188,6 @@ def fingerprint_model(fingerprint: Fingerprint, structure: Structure, signals: S
             f"fingerprint of {fingerprint.conditions.vessel}: expected a recording around its working point of "
             f"{there:.1f} rpm, found {here:.1f} rpm; identify the recording at its own working point."
         )
-    lost = ~np.isfinite(np.diag(model.covariance))
-    same_recording = any(s.role == "recording" and s.sha256 == signals.recording_sha256 for s in fingerprint.sources)
-    return Model(
-        name=fingerprint.structure,
-        structure=model.structure,
-        values=model.values,
-        covariance=frozen_float(np.where(lost[:, None] | lost[None, :], 0.0, model.covariance)),
-        used=fingerprint.conditions.lines_used if same_recording else (),
-        not_known=model.not_known,
-    )
 
 
 def print_validation(validation: Validation) -> None:

@@ -15,7 +15,7 @@ from shaftprint.export._fmu import WrittenFmu, write_fmu
 from shaftprint.export._fmu_build import PLATFORMS, host_platform
 from shaftprint.export._json import write_json
 from shaftprint.export._matlab import WrittenMatlab, write_matlab
-from shaftprint.export._model import ExportedModel, exported_model
+from shaftprint.export._model import ExportedModel, exported_model, validation_remark
 from shaftprint.export._osp import write_osp
 from shaftprint.export._ssp import write_ssv
 from shaftprint.export._xarray import to_xarray
@@ -33,6 +33,7 @@ __all__ = [
     "host_platform",
     "to_control",
     "to_xarray",
+    "validation_remark",
     "write_csv",
     "write_fmu",
     "write_json",

@@ -82,7 +82,7 @@ def to_control(
         raise ExportError(
             f"to_control: expected a band with two ascending frequencies above 0 rad/s, found {band_rad_s}."
         )
-    chosen = exported_model(model) if isinstance(model, Fingerprint) else model
+    chosen = exported_model(model, linear=True) if isinstance(model, Fingerprint) else model
     linear = delay_model(chosen)
     order = _order(linear, pade_order)
     a, b, c, d = _without_delays(linear, order)

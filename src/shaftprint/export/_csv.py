@@ -65,7 +65,7 @@ def write_csv(
     FileExistsError
         If a file exists and is not to be replaced.
     """
-    model = exported_model(fingerprint, of=of)
+    model = exported_model(fingerprint, of=of, linear=True)
     stem = Path(path).with_suffix("") if Path(path).suffix == ".csv" else Path(path)
     written = WrittenTables(
         **{name: stem.with_name(f"{stem.name}-{name}.csv") for name in ("parameters", "combinations", "response")}

@@ -15,6 +15,7 @@ import numpy as np
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ExportError
+from shaftprint.escape import printable
 from shaftprint.export._c_text import identifier
 from shaftprint.export._fmu_build import PLATFORMS, build_binary, can_build
 from shaftprint.export._fmu_description import (
@@ -157,7 +158,7 @@ def _described(
     description = FmuDescription(
         title=title,
         words=f"{structure.title}; identified by shaftprint about {model.engine_speed_rpm:.1f} rpm and "
-        f"{model.shaft_torque_nm:.0f} N m",
+        f"{model.shaft_torque_nm:.0f} N m{_remark(model)}",
         identifier=name,
         token=token,
         variables=variables(model, equations),
@@ -166,6 +167,11 @@ def _described(
         sources=tuple(sorted(key for key in texts if key.endswith(".c"))),
     )
     return description, texts
+
+
+def _remark(model: ExportedModel) -> str:
+    """Return what whoever uses the model must know, as the end of a description."""
+    return f"; {printable(model.remark)}" if model.remark else ""
 
 
 def _indicators(equations: FmuEquations) -> tuple[Variable, ...]:

@@ -61,7 +61,7 @@ def write_json(
     FileExistsError
         If the file exists and is not to be replaced.
     """
-    model = exported_model(fingerprint, of=of)
+    model = exported_model(fingerprint, of=of, linear=True)
     content = {
         "layout": LAYOUT,
         "written_by": f"shaftprint {__version__}",
@@ -69,6 +69,7 @@ def write_json(
         "created": fingerprint.created.isoformat(),
         "trustworthy": fingerprint.verdict.trustworthy,
         "verdict": fingerprint.verdict.reason,
+        "validation": _validation(fingerprint),
         "structure": {"name": model.structure.name, "title": model.structure.title},
         "working_point": {"engine_speed_rpm": model.engine_speed_rpm, "shaft_torque_nm": model.shaft_torque_nm},
         "inputs": [_signal(model, name) for name in model.structure.inputs],
@@ -77,6 +78,7 @@ def write_json(
         "covariance": {"names": list(model.uncertain), "matrix": model.covariance_matrix.tolist()},
         "not_known": list(model.not_known),
         "numbers": number_rows(fingerprint),
+        "with_limits": _with_limits(fingerprint),
         "linear": _linear(delay_model(model)),
         "response": _response(model_response(model, omega_rad_s)),
     }
@@ -96,6 +98,36 @@ def _signal(model: ExportedModel, name: str) -> dict[str, Any]:
         "unit": scaled.signal.unit,
         "scale": scaled.scale,
         "offset": scaled.offset,
+    }
+
+
+def _validation(fingerprint: Fingerprint) -> dict[str, Any] | None:
+    """Return what the model was worth on records that its fit had not seen; None where it was held against none."""
+    record = fingerprint.validation
+    if record is None:
+        return None
+    return {
+        "model": record.model,
+        "outcome": record.outcome,
+        "headline": record.headline,
+        "stretches": {f"{one.record}, {one.title}": one.outcome for one in record.stretches},
+    }
+
+
+def _with_limits(fingerprint: Fingerprint) -> dict[str, Any] | None:
+    """Return the line with its limits: structure, values and covariance; None where limits were not looked for."""
+    line = fingerprint.with_limits
+    if line is None:
+        return None
+    model = exported_model(fingerprint)
+    return {
+        "structure": {"name": model.structure.name, "title": model.structure.title},
+        "limits": list(line.limits),
+        "full_load_curve": [list(corner) for corner in line.curve],
+        "parameters": dict(zip(model.structure.names, model.values.tolist(), strict=True)),
+        "covariance": {"names": list(model.uncertain), "matrix": model.covariance_matrix.tolist()},
+        "not_known": list(model.not_known),
+        "not_seen": list(line.not_seen),
     }
 
 

@@ -105,11 +105,15 @@ def _script(name: str, data: str, model: ExportedModel) -> str:
         "NAME": name,
         "DATA": matlab_string(data),
         "DATA_WORDS": matlab_comment(data),
-        "TITLE": matlab_comment(f"{model.title}, {model.structure.name}: {model.structure.title}"),
+        "TITLE": matlab_comment(f"{model.title}, {model.structure.name}: {model.structure.title}{_remark(model)}"),
         "VERSION": __version__,
     }
     # in one pass: what is put in is never searched for marks again
     return re.sub(r"@([A-Z_]+)@", lambda mark: words[mark[1]], text)
+
+
+def _remark(model: ExportedModel) -> str:
+    return f"; {model.remark}" if model.remark else ""
 
 
 def _content(
@@ -121,6 +125,7 @@ def _content(
         "title_utf8": np.frombuffer(printable(model.title).encode(), dtype=np.uint8),
         "structure": model.structure.name,
         "structure_title": model.structure.title,
+        "remark": printable(model.remark),
         "version": __version__,
         "working_point": {
             "engine_speed_rpm": model.engine_speed_rpm,

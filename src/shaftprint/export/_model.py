@@ -8,7 +8,7 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import ExportError
-from shaftprint.fingerprint import Fingerprint, identified_model, named_structure
+from shaftprint.fingerprint import Fingerprint, identified_model, model_with_limits, named_structure
 from shaftprint.models import Structure
 from shaftprint.notebook import Shown, Summary, shortened
 
@@ -35,6 +35,8 @@ class ExportedModel(Shown):
     """Parameters of which the test said nothing."""
     intervals: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """95 % intervals of parameters whose standard deviation does not tell what the interval tells."""
+    remark: str = ""
+    """What whoever uses it must know, such as that it fails its own validation; empty where there is nothing."""
 
     def __post_init__(self) -> None:
         """Check that every number may stand in a file that others compute with.
@@ -86,22 +88,32 @@ class ExportedModel(Shown):
 
 
 @refusing_none(ExportError)
-def exported_model(fingerprint: Fingerprint, *, of: Structure | None = None) -> ExportedModel:
+def exported_model(fingerprint: Fingerprint, *, of: Structure | None = None, linear: bool = False) -> ExportedModel:
     """Return the model of a fingerprint, with the covariance of its parameters.
 
     Parameters
     ----------
     of
         The structure that was identified; the shipped one of its name if not given.
+    linear
+        Whether the linear model is wanted although the fingerprint has the line with its limits. A structure that is
+        given is the linear one.
 
     Raises
     ------
     FingerprintError
         If there is no shipped structure of that name, or it has other parameters than the fingerprint.
     """
-    model = identified_model(fingerprint, named_structure(fingerprint) if of is None else of)
-    std = {quantity.name: quantity.std for quantity in fingerprint.parameters}
+    line = None if linear or of is not None else fingerprint.with_limits
+    if line is None:
+        model = identified_model(fingerprint, named_structure(fingerprint) if of is None else of)
+        quantities = fingerprint.parameters
+    else:
+        model, quantities = model_with_limits(line), line.parameters
+    std = {quantity.name: quantity.std for quantity in quantities}
+    names = [parameter.name for parameter in model.structure.free]
     uncertain = tuple(name for name in std if np.isfinite(std[name]) and std[name] > 0.0)
+    places = [names.index(name) for name in uncertain]
     return ExportedModel(
         title=fingerprint.conditions.vessel,
         structure=model.structure,
@@ -109,7 +121,14 @@ def exported_model(fingerprint: Fingerprint, *, of: Structure | None = None) -> 
         engine_speed_rpm=fingerprint.conditions.engine_speed.value,
         shaft_torque_nm=fingerprint.conditions.shaft_torque.value,
         uncertain=uncertain,
-        intervals={q.name: q.interval_95 for q in fingerprint.parameters if q.interval_95 and q.stated_std is None},
-        covariance=frozen_float(fingerprint.covariance_of(uncertain)),
+        intervals={q.name: q.interval_95 for q in quantities if q.interval_95 and q.stated_std is None},
+        covariance=frozen_float(model.covariance[np.ix_(places, places)]),
         not_known=model.not_known,
+        remark=validation_remark(fingerprint, model.structure.name),
     )
+
+
+def validation_remark(fingerprint: Fingerprint, structure: str) -> str:
+    """Return what the validation of a fingerprint says against one of its models; empty where nothing."""
+    record = fingerprint.validation
+    return record.remark if record is not None and record.model == structure else ""

@@ -51,6 +51,8 @@ def parameter_set(model: ExportedModel) -> bytes:
     register_namespace("ssc", SSC)
     name = f"{model.title}, {model.structure.name}"
     root = Element(f"{{{SSV}}}ParameterSet", version=VERSION, name=name, generationTool=f"shaftprint {__version__}")
+    if model.remark:
+        root.set("description", model.remark)
     listed, units = SubElement(root, f"{{{SSV}}}Parameters"), dict[str, None]()
     for parameter, unit, value, words in _entries(model):
         entry = SubElement(listed, f"{{{SSV}}}Parameter", name=parameter, description=words)

@@ -32,8 +32,10 @@ def parameter_rows(fingerprint: Fingerprint, structure: Structure) -> list[Row]:
 
 
 def number_rows(fingerprint: Fingerprint) -> list[Row]:
-    """Return a row for each combination, physical value, margin and calibration."""
+    """Return a row for each combination, physical value, margin, calibration and number of a limit."""
     kinds = {kind: numbers for kind, numbers in fingerprint.numbers.items() if kind != "parameter"}
+    if fingerprint.with_limits is not None:
+        kinds["limit"] = tuple(one.quantity for one in fingerprint.with_limits.numbers)
     return [{"kind": kind, **quantity_row(quantity)} for kind, quantities in kinds.items() for quantity in quantities]
 
 

@@ -35,7 +35,7 @@ def to_xarray(model: ExportedModel | Fingerprint, omega_rad_s: ArrayLike | None 
         If xarray is missing, or the frequencies are not positive and ascending.
     """
     xarray = library("xarray", "to_xarray")
-    model = exported_model(model) if isinstance(model, Fingerprint) else model
+    model = exported_model(model, linear=True) if isinstance(model, Fingerprint) else model
     modelled, std = model_response(model, omega_rad_s), model.std
     axes = ("output", "input", "omega")
     names = list(model.structure.names)

@@ -26,12 +26,14 @@ from shaftprint.fingerprint._fingerprint import Conditions, Fingerprint, Quality
 from shaftprint.fingerprint._inertia import inertia_beside
 from shaftprint.fingerprint._json_file import fingerprint_sha256, read_fingerprint, write_fingerprint
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum, leg_record, noise_spectra
+from shaftprint.fingerprint._line_with_limits import LimitNumber, LineWithLimits
 from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
-from shaftprint.fingerprint._model import IdentifiedModel, identified_model, named_structure
+from shaftprint.fingerprint._model import IdentifiedModel, identified_model, model_with_limits, named_structure
 from shaftprint.fingerprint._physical import GAUGE_ZERO, physical_numbers, physical_quantities
 from shaftprint.fingerprint._quantity import Quantity
 from shaftprint.fingerprint._take import take_fingerprint
+from shaftprint.fingerprint._validation_record import StretchRecord, ValidationRecord
 from shaftprint.fingerprint._vessel_fields import BEHIND, TVC, FieldValue, stated_behind, vessel_fields
 
 __all__ = [
@@ -47,10 +49,14 @@ __all__ = [
     "Fingerprint",
     "IdentifiedModel",
     "LegRecord",
+    "LimitNumber",
+    "LineWithLimits",
     "NoiseSpectrum",
     "Quality",
     "Quantity",
     "SourceFile",
+    "StretchRecord",
+    "ValidationRecord",
     "clock_findings",
     "clock_influences",
     "drive_fingerprint_content",
@@ -61,6 +67,7 @@ __all__ = [
     "leg_record",
     "margin_numbers",
     "margin_quantities",
+    "model_with_limits",
     "named_structure",
     "noise_spectra",
     "physical_numbers",

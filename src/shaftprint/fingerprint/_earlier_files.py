@@ -11,7 +11,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from shaftprint.catalogue import ROLES, ShipRole, shipped_structure
-from shaftprint.errors import StructureError
+from shaftprint.errors import FingerprintError, StructureError
 from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
 from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.fingerprint._quantity import Quantity
@@ -25,9 +25,23 @@ PHYSICAL: Mapping[str, Role] = {
 }
 
 
-def of_schema_1(text: str) -> Fingerprint:
-    """Return the fingerprint of a file of schema 1, which has neither legs nor noise."""
-    return Fingerprint.model_validate_json(json.dumps(json.loads(text) | {"schema_version": SCHEMA_VERSION}))
+NEW_IN_2_1 = ("with_limits", "validation")
+
+
+def of_earlier_schema(text: str) -> Fingerprint:
+    """Return the fingerprint of a file of schema 1, which has neither legs nor noise, or 2.0, which has no limits.
+
+    Raises
+    ------
+    ValidationError
+        If a field is wrong.
+    """
+    content = json.loads(text)
+    earlier = Fingerprint.model_validate_json(json.dumps(content | {"schema_version": SCHEMA_VERSION}))
+    for name in NEW_IN_2_1:
+        if name in content:
+            raise FingerprintError(f"{name}: expected no such field in schema {content['schema_version']}.")
+    return earlier
 
 
 def of_later_schema(text: str) -> Fingerprint:

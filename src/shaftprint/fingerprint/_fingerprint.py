@@ -13,13 +13,15 @@ from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._labelled_numbers import labelled_numbers
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
+from shaftprint.fingerprint._line_with_limits import LineWithLimits
 from shaftprint.fingerprint._quantity import FrozenRecord, Quantity
+from shaftprint.fingerprint._validation_record import ValidationRecord
 from shaftprint.fingerprint._vessel_fields import FieldValue
 from shaftprint.identify import NoiseLevels, Prior, Verdict
 from shaftprint.identify.uncertainty import Budget
 from shaftprint.notebook import Labelled, LabelledData, Shown, Summary, shortened
 
-SCHEMA_VERSION: Final = "2.0"
+SCHEMA_VERSION: Final = "2.1"
 """Version of the layout: the second number grows with what is added to it, see ``docs/fingerprint-file.md``."""
 
 
@@ -95,7 +97,7 @@ class Quality(FrozenRecord):
 class Fingerprint(Shown, Labelled, FrozenRecord):
     """Physical and normalised parameters of one propulsion line with uncertainty, margins and conditions."""
 
-    schema_version: Literal["2.0"] = SCHEMA_VERSION
+    schema_version: Literal["2.1"] = SCHEMA_VERSION
     """Version of this record's layout."""
     shaftprint_version: str
     """Version of shaftprint that made it."""
@@ -138,6 +140,10 @@ class Fingerprint(Shown, Labelled, FrozenRecord):
     """What the recording itself told of its sensors: the set-point line and the angles of the strips."""
     quality: Quality
     """Fit and data quality."""
+    with_limits: LineWithLimits | None = None
+    """The same line with its limits, for large moves; None where limits were not looked for."""
+    validation: ValidationRecord | None = None
+    """What the model was worth on records that its fit had not seen; None where it was held against none."""
     verdict: Verdict
     """Whether the numbers may be used, and which of them."""
     findings: tuple[str, ...]

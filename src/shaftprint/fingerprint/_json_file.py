@@ -10,7 +10,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.errors import FingerprintError, ShaftprintError
 from shaftprint.files import read_json, write_bytes
 from shaftprint.fingerprint._drive_fingerprint import is_of_a_drive
-from shaftprint.fingerprint._earlier_files import of_later_schema, of_schema_1, with_roles
+from shaftprint.fingerprint._earlier_files import of_earlier_schema, of_later_schema, with_roles
 from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
 from shaftprint.publication import complete
 
@@ -55,8 +55,8 @@ def read_fingerprint(path: str | Path) -> Fingerprint:
     complete(json_path.parent)
     text, minor = _fingerprint_text(json_path)
     try:
-        if minor is None:
-            return with_roles(of_schema_1(text))
+        if minor is None or minor < MINOR:
+            return with_roles(of_earlier_schema(text))
         return with_roles(of_later_schema(text) if minor > MINOR else Fingerprint.model_validate_json(text))
     except ValidationError as error:
         wrong = "; ".join(_described(details["loc"], details["msg"]) for details in error.errors())

@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from shaftprint.arrays import FloatArray, frozen_float
-from shaftprint.catalogue import shipped_structure
+from shaftprint.catalogue import limited, shipped_structure
 from shaftprint.errors import FingerprintError, StructureError
 from shaftprint.escape import printable
 from shaftprint.fingerprint._fingerprint import Fingerprint
+from shaftprint.fingerprint._line_with_limits import LineWithLimits
 from shaftprint.models import Structure
 
 
@@ -62,6 +63,22 @@ def identified_model(fingerprint: Fingerprint, structure: Structure) -> Identifi
         structure=identified,
         values=frozen_float([named[name] for name in identified.names]),
         covariance=frozen_float(fingerprint.covariance_of([parameter.name for parameter in identified.free])),
+    )
+
+
+def model_with_limits(line: LineWithLimits) -> IdentifiedModel:
+    """Return the model of a line with its limits."""
+    estimates = {quantity.name: quantity.value for quantity in line.parameters}
+    named = estimates | line.held
+    structure = limited(*line.limits, curve=line.curve)
+    bounds = {p.name: (p.lower, p.upper) for p in structure.parameters if p.name in estimates}
+    identified = structure.held_at(**line.held).free_between(**bounds)
+    order = [quantity.name for quantity in line.parameters]
+    places = [order.index(parameter.name) for parameter in identified.free]
+    return IdentifiedModel(
+        structure=identified,
+        values=frozen_float([named[name] for name in identified.names]),
+        covariance=frozen_float(np.array(line.covariance).reshape(len(order), len(order))[np.ix_(places, places)]),
     )
 
 

@@ -29,8 +29,9 @@ STRUCTURE_LIMITS: Mapping[Kind, tuple[str, ...]] = {
     Kind.SMOKE: ("torque", "smoke"),
     Kind.RATE: ("rate",),
     Kind.DEADBAND: ("deadband",),
+    Kind.RAMP: ("ramp",),
 }
-"""Limits of ``time_domain.structure_for``; what happens to the set point before the governor has no place in it."""
+"""Limits of ``catalogue.limited`` and ``time_domain.structure_for``; a set point that is held or rounded has none."""
 
 # Values with which a limit does nothing. None of them is a round zero, for that would be another simulation.
 IDLE: Mapping[str, float] = {

@@ -70,10 +70,7 @@ def identify_limits(
     test = governor_test(signals, campaign, vessel)
     units = Units.of(signals, vessel)
     governor = whole_governor()
-    priors = {
-        GovernorSymbol.SET_POINT_SCALE: Prior(1.0, max(signals.dc_scale_std / signals.dc_scale, 1e-4)),
-        GovernorSymbol.SET_POINT_OFFSET: Prior(0.0, _offset_std(signals)),
-    }
+    priors = set_point_priors(signals)
     looking = partial(say, "Looking for limits")
     search = Search.of(governor, test, campaign, drive_hz=COARSE_HZ, full=units.full, priors=priors, say=looking)
     here, scanned = search.run()
@@ -104,6 +101,14 @@ def identify_limits(
         not_seen=not_seen,
         identification=identification,
     )
+
+
+def set_point_priors(signals: Signals) -> dict[str, Prior]:
+    """Return what the calibration says of scale and offset of the set point."""
+    return {
+        GovernorSymbol.SET_POINT_SCALE: Prior(1.0, max(signals.dc_scale_std / signals.dc_scale, 1e-4)),
+        GovernorSymbol.SET_POINT_OFFSET: Prior(0.0, _offset_std(signals)),
+    }
 
 
 def _offset_std(signals: Signals) -> float:

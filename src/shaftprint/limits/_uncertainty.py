@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from shaftprint.arrays import FloatArray
+from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.catalogue import GovernorSymbol
 from shaftprint.distributions import NORMAL_95
 from shaftprint.errors import IdentificationError
@@ -48,6 +48,23 @@ class LevelScatter:
         """Return the standard deviation of a parameter, all of it."""
         row = self.names.index(name)
         return float(np.hypot(self.noise[row], self.systematic[row]))
+
+    def covariance(self, of_model: FloatArray) -> FloatArray:
+        """Return a covariance with these deviations and the correlations of another, shape (free, free).
+
+        Parameters
+        ----------
+        of_model
+            Covariance by the noise model, shape (free, free); infinite where the data say nothing.
+        """
+        std = np.hypot(self.noise, self.systematic)
+        of_noise = np.sqrt(np.diag(of_model))
+        known = np.isfinite(std) & np.isfinite(of_noise) & (of_noise > 0.0)
+        factor = np.zeros(std.size)
+        factor[known] = std[known] / of_noise[known]
+        both = known[:, None] & known[None, :]
+        covariance = np.where(both, of_model, 0.0) * np.outer(factor, factor)
+        return frozen_float(covariance + np.diag(np.where(known, 0.0, np.inf)))
 
 
 def spread_of(fit: Fitted, test: GovernorTest, signals: Signals, vessel: Vessel) -> LevelScatter:

@@ -9,6 +9,8 @@ from shaftprint.survey._fits import comparisons_of, fit, priors_of, stated_worki
 from shaftprint.survey._legs import LegMeasurement, LegTest, leg_pairs, leg_tests, legs_of, structure_at
 from shaftprint.survey._legs_apart import LegAlone, apart_reasons, legs_alone
 from shaftprint.survey._limit_hints import hints_of
+from shaftprint.survey._limits import with_limits
+from shaftprint.survey._line_with_limits import expect_limitable, line_with_limits
 from shaftprint.survey._measurement import Measurement, measure, of_legs, pairs_of, response_of, responses_of
 from shaftprint.survey._noise import noise_at_speeds
 from shaftprint.survey._progress import SILENT, Progress, Silent
@@ -16,7 +18,8 @@ from shaftprint.survey._survey import SettingsOf, Survey, fingerprint_of, judged
 from shaftprint.survey._thesis_mode import SET_POINT_OFF, ThesisMode
 from shaftprint.survey._thesis_way import GAUGE, line_selections, set_point_scaled, thesis_way, weighted_fits
 from shaftprint.survey._trial import Trial, load_trial, settings_text
-from shaftprint.survey._validations import failed_steps, validations_of
+from shaftprint.survey._validation_apart import limited_model, limits_of, validated_apart, with_validation
+from shaftprint.survey._validations import failed_steps, validations_of, validations_with_limits
 
 __all__ = [
     "GAUGE",
@@ -34,6 +37,7 @@ __all__ = [
     "Trial",
     "apart_reasons",
     "comparisons_of",
+    "expect_limitable",
     "failed_steps",
     "fingerprint_of",
     "fit",
@@ -43,7 +47,10 @@ __all__ = [
     "leg_tests",
     "legs_alone",
     "legs_of",
+    "limited_model",
+    "limits_of",
     "line_selections",
+    "line_with_limits",
     "load_trial",
     "measure",
     "noise_at_speeds",
@@ -60,6 +67,10 @@ __all__ = [
     "structure_at",
     "survey_of",
     "thesis_way",
+    "validated_apart",
     "validations_of",
+    "validations_with_limits",
     "weighted_fits",
+    "with_limits",
+    "with_validation",
 ]

@@ -16,6 +16,9 @@ class Progress(Protocol):
     def reach(self, amount: float) -> None:
         """Set the amount of work that is done."""
 
+    def tell(self, step: str, detail: str) -> None:
+        """Say what is being done of a step whose amount of work is not known."""
+
 
 @dataclass(frozen=True, slots=True)
 class Silent:
@@ -28,6 +31,9 @@ class Silent:
         """Do nothing."""
 
     def reach(self, amount: float) -> None:
+        """Do nothing."""
+
+    def tell(self, step: str, detail: str) -> None:
         """Do nothing."""
 
 

@@ -26,6 +26,7 @@ from shaftprint.fingerprint import (
 )
 from shaftprint.identify import Identification, Settings
 from shaftprint.identify.comparison import StructureComparison
+from shaftprint.limits import LimitFit
 from shaftprint.models import Structure
 from shaftprint.notebook import Shown, Summary, shortened
 from shaftprint.reasons import Reason
@@ -39,7 +40,8 @@ from shaftprint.survey._measurement import Measurement, measure, of_legs
 from shaftprint.survey._noise import noise_at_speeds
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._trial import Trial, load_trial
-from shaftprint.survey._validations import failed_steps, validations_of
+from shaftprint.survey._validation_apart import with_validation
+from shaftprint.survey._validations import failed_steps, validations_of, validations_with_limits
 from shaftprint.validation import Validation
 from shaftprint.vessel import Vessel
 
@@ -65,8 +67,10 @@ class Survey(Shown):
     """How well the first structure explains each leg of the campaign."""
     legs_alone: tuple[LegAlone, ...] = ()
     """Each leg with a model of its own, where one model does not explain all."""
+    limit_fit: LimitFit | None = None
+    """Limits of governor and engine; None where they were not looked for."""
     validations: tuple[Validation, ...] = ()
-    """The first structure held against records that it has not seen."""
+    """The first structure, with its limits where they were looked for, held against records that it has not seen."""
     remarks: tuple[str, ...] = ()
     """What could not be done, in words."""
 
@@ -275,14 +279,13 @@ def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SIL
     rng
         For the starts of the fits without a line, and for the parameter sets that bands are drawn from.
     """
-    validated = partial(
-        validations_of,
-        survey.identification,
-        survey.measurement,
-        survey.trial,
-        rng=copy.deepcopy(rng),
-        progress=progress,
+    beside_rng = copy.deepcopy(rng)
+    validated = (
+        partial(validations_of, survey.identification, survey.measurement, survey.trial)
+        if survey.limit_fit is None
+        else partial(validations_with_limits, survey.fingerprint, survey.measurement, survey.trial)
     )
+    validated = partial(validated, rng=beside_rng, progress=progress)
     comparisons: tuple[StructureComparison, ...] = ()
     if len(survey.fits) == 1:
         validations, remarks = validated()
@@ -294,6 +297,7 @@ def judged(survey: Survey, *, rng: np.random.Generator, progress: Progress = SIL
             validations, remarks = validating.result()
     return replace(
         survey,
+        fingerprint=with_validation(survey.fingerprint, validations),
         comparisons=comparisons,
         validations=validations,
         remarks=(*survey.remarks, *remarks),

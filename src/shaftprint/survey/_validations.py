@@ -4,11 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from shaftprint.errors import ValidationError
+from shaftprint.errors import IdentificationError, ValidationError
+from shaftprint.fingerprint import Fingerprint
 from shaftprint.identify import Identification
 from shaftprint.survey._measurement import Measurement
 from shaftprint.survey._progress import SILENT, Progress
 from shaftprint.survey._trial import Trial
+from shaftprint.survey._validation_apart import validated_apart
 from shaftprint.validation import Validation, validate
 
 INPUTS, OUTPUTS = ("n_set",), {"n", "M_s"}
@@ -44,6 +46,23 @@ def validations_of(
     try:
         return (validate(identification, measurement.signals, campaign, rng=rng),), ()
     except ValidationError as error:
+        return (), (f"The model is not validated: {error}",)
+
+
+def validations_with_limits(
+    fingerprint: Fingerprint,
+    measurement: Measurement,
+    trial: Trial,
+    *,
+    rng: np.random.Generator,
+    progress: Progress = SILENT,
+) -> tuple[tuple[Validation, ...], tuple[str, ...]]:
+    """Return the line with its limits, each stretch judged by a fit that did not use it; and remarks."""
+    if not trial.campaign.chirps and not trial.campaign.staircases:
+        return (), ()
+    try:
+        return (validated_apart(fingerprint, measurement.signals, trial, rng=rng, progress=progress),), ()
+    except (ValidationError, IdentificationError) as error:
         return (), (f"The model is not validated: {error}",)
 
 

@@ -17,7 +17,7 @@ from shaftprint.validation._prediction import Predict, linear_prediction, simula
 from shaftprint.validation._settings import ValidationSettings
 from shaftprint.validation._step_comparison import StepNumber
 from shaftprint.validation._thesis_models import thesis_models
-from shaftprint.validation._validate import validate
+from shaftprint.validation._validate import joined, validate
 from shaftprint.validation._validation import ExcerptComparison, ExcerptTraces, Validation
 from shaftprint.validation._validation_records import Excerpt, default_records, excerpts_of
 from shaftprint.validation.measures import Misfit, Outcome, RemainingDelay
@@ -37,6 +37,7 @@ __all__ = [
     "default_records",
     "excerpts_of",
     "identified_model",
+    "joined",
     "linear_prediction",
     "model_of",
     "simulated_prediction",

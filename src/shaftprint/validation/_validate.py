@@ -1,6 +1,6 @@
 """The verb of the room: hold a model against records that it was not identified from."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -26,6 +26,11 @@ from shaftprint.validation._validation_records import Excerpt, default_records, 
 from shaftprint.validation.measures import LONGEST_S, Compared, Outcome, RemainingDelay, misfit_of, remaining_delay
 
 
+def _any(excerpt: Excerpt) -> bool:
+    """Take every excerpt."""
+    return True
+
+
 @refusing_none(ValidationError)
 def validate(
     model: Model | Identification | Structure,
@@ -38,6 +43,7 @@ def validate(
     allow_in_sample: bool = False,
     predict: Predict = linear_prediction,
     quadratic_propeller: bool = True,
+    chosen: Callable[[Excerpt], bool] = _any,
     settings: ValidationSettings | None = None,
 ) -> Validation:
     """Hold a model against chirps and staircases that it was not identified from.
@@ -63,6 +69,8 @@ def validate(
     quadratic_propeller
         Whether the square of the speed is added to the torque, which a linear model of a propeller in bollard pull
         lacks; not for a structure that has the propeller's law itself.
+    chosen
+        Whether an excerpt is compared; all of them by default.
     settings
         How records are cut and compared.
 
@@ -73,9 +81,10 @@ def validate(
         was used for the identification, or no noise can be measured.
     """
     settings = settings or ValidationSettings()
-    chosen = _with_sensor(_as_model(model, used), signals)
-    names = default_records(campaign, chosen.used) if records is None else tuple(dict.fromkeys(records))
-    planned = excerpts_of(campaign, names, used=chosen.used, allow_in_sample=allow_in_sample, settings=settings)
+    validated = _with_sensor(_as_model(model, used), signals)
+    names = default_records(campaign, validated.used) if records is None else tuple(dict.fromkeys(records))
+    planned = excerpts_of(campaign, names, used=validated.used, allow_in_sample=allow_in_sample, settings=settings)
+    planned = tuple(excerpt for excerpt in planned if chosen(excerpt))
     excerpts, lost = whole_excerpts(planned, signals.coverage, settings)
     linear = predict is linear_prediction
     data = Data.of(signals, campaign, settings)
@@ -84,24 +93,54 @@ def validate(
         of_record = [excerpt for excerpt in excerpts if excerpt.record == name]
         if not of_record:
             continue
-        run = run_model(chosen, data, of_record, settings, predict=predict, quadratic_propeller=quadratic_propeller)
+        run = run_model(validated, data, of_record, settings, predict=predict, quadratic_propeller=quadratic_propeller)
         for excerpt in of_record:
-            comparisons.append(_compared(excerpt, run, chosen, settings, rng))
+            comparisons.append(_compared(excerpt, run, validated, settings, rng))
             give_back_memory()
         # its derivatives are gone before those of the next record are made
         del run
         give_back_memory()
     return Validation(
-        model=chosen,
+        model=validated,
         settings=settings,
         comparisons=tuple(comparisons),
         outcome=_outcome(comparisons),
         headline=headline_of(comparisons, linear=linear),
-        sentences=outcome_sentences(chosen, comparisons, settings, linear=linear),
+        sentences=outcome_sentences(validated, comparisons, settings, linear=linear),
         findings=(
             *lost,
-            *findings_of(chosen, comparisons, data.noise, quadratic_propeller=quadratic_propeller, linear=linear),
+            *findings_of(validated, comparisons, data.noise, quadratic_propeller=quadratic_propeller, linear=linear),
         ),
+    )
+
+
+def joined(validations: Sequence[Validation], model: Model) -> Validation:
+    """Return several validations as one: the same line, each excerpt judged by the fit that has not seen it.
+
+    Parameters
+    ----------
+    validations
+        At least one, each of other excerpts, taken through time with limits.
+    model
+        The model that is used in the end, of which the outcome is stated.
+
+    Raises
+    ------
+    ValidationError
+        If there are none.
+    """
+    if not validations:
+        raise ValidationError(f"{model.name}: expected at least one validation, found none.")
+    comparisons = tuple(comparison for one in validations for comparison in one.comparisons)
+    settings = validations[0].settings
+    return Validation(
+        model=model,
+        settings=settings,
+        comparisons=comparisons,
+        outcome=_outcome(comparisons),
+        headline=headline_of(comparisons, linear=False),
+        sentences=outcome_sentences(model, comparisons, settings, linear=False),
+        findings=tuple(dict.fromkeys(finding for one in validations for finding in one.findings)),
     )
 
 

@@ -4,35 +4,75 @@ import math
 from pathlib import Path
 
 import click
+import numpy as np
 
 from shaftprint.cli._options import campaign_option, vessel_option
-from shaftprint.cli._terminal import print_findings
-from shaftprint.cli.output import give, no_progress_option, print_tables, progress
+from shaftprint.cli._results import print_paths, write_results
+from shaftprint.cli._terminal import print_findings, say
+from shaftprint.cli._validation import print_validation
+from shaftprint.cli.output import force_option, give, no_progress_option, output_folder, print_tables, progress
 from shaftprint.digits import fine_unit, interval, stated_interval
 from shaftprint.distributions import NORMAL_95
 from shaftprint.identify.fit import Estimate
 from shaftprint.limits import LimitEstimate, LimitFit, identify_limits
-from shaftprint.survey import load_trial, measure
+from shaftprint.survey import Trial, judged, load_trial, measure, run, with_limits
 from shaftprint.tables import MEANING, Symbol, Table, numbers, texts, unit_text, with_deviation
+
+# As for ``identify``.
+SEED = 1
 
 
 @click.command("limits")
 @click.argument("recording", type=click.Path(path_type=Path))
 @vessel_option
 @campaign_option
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Folder for a fingerprint that holds the limits, validated with them, and its report.",
+)
+@force_option
 @no_progress_option
-def command(recording: Path, vessel: str, campaign: str, no_progress: bool) -> None:
+def command(recording: Path, vessel: str, campaign: str, output: Path | None, force: bool, no_progress: bool) -> None:
     """Find which limits a line has, and their levels and rates with uncertainty.
 
     Looked for are torque limit, motoring limit, smoke limiter, rate limits of rack and set point, deadband, and a set
     point held between messages or rounded to steps. Of what does not act it says up to which level the recording
-    excludes it.
+    excludes it. With --output the line is identified too: limits and line are one model, which exports take.
     """
     trial = load_trial(vessel, campaign)
+    if output is not None:
+        _identify(recording, trial, output, force=force, no_progress=no_progress)
+        return
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode="shaftprint", progress=steps)
         limits = identify_limits(measurement.signals, trial.campaign, trial.vessel, progress=steps.tell)
     print_limits(limits)
+
+
+def _identify(recording: Path, trial: Trial, output: Path, *, force: bool, no_progress: bool) -> None:
+    """Write the fingerprint of a line with its limits, validated with them, and its report."""
+    rng = np.random.default_rng(SEED)
+    with output_folder(output, of="limits", force=force) as folder:
+        with progress(hidden=no_progress) as steps:
+            survey = with_limits(
+                run(
+                    recording, trial.vessel, trial.campaign, sources=trial.sources, rng=rng, judge=False, progress=steps
+                ),
+                progress=steps,
+            )
+        if survey.limit_fit is not None:
+            print_limits(survey.limit_fit)
+        with progress(hidden=no_progress) as steps:
+            survey = judged(survey, rng=rng, progress=steps)
+        for remark in survey.remarks:
+            say(remark)
+        for validation in survey.validations:
+            print_validation(validation)
+        with progress(hidden=no_progress) as steps:
+            write_results(folder, recording, survey, steps=steps)
+    print_paths(output)
 
 
 def print_limits(limits: LimitFit) -> None:

@@ -47,7 +47,10 @@ def span_of_time(
 @click.option(
     "--structure",
     metavar="NAME",
-    help=f"Model structure, the fingerprint's by default: {OWN_FILE_HELP}; or {LIMITED_HELP}.",
+    help=f"Model structure, the fingerprint's with its limits by default: {OWN_FILE_HELP}; or {LIMITED_HELP}.",
+)
+@click.option(
+    "--linear", is_flag=True, help="Model for small signals, although the fingerprint has the line with its limits."
 )
 @click.option(
     "--set",
@@ -91,6 +94,7 @@ def span_of_time(
 def command(
     fingerprint: Path | None,
     structure: TypedName | None,
+    linear: bool,
     given: tuple[tuple[str, float], ...],
     campaign: str | None,
     table: Path | None,
@@ -114,7 +118,7 @@ def command(
             expect_no_input(path, table, None if fingerprint is None else fingerprint_file(fingerprint))
             expect_free(path, force=force)
     identified = None if fingerprint is None else fingerprint_at(fingerprint)
-    model = simulated_model(structure, identified, dict(given))
+    model = simulated_model(structure, identified, dict(given), linear=linear)
     working_point = place_of(identified, vessel, rpm_per_volt)
     drive = _drive(campaign, table, model.structure, working_point, hold=hold, span=span, rate_hz=rate_hz)
     with progress(hidden=no_progress) as steps:

@@ -1,6 +1,5 @@
 """``shaftprint validate``: a model against chirps and steps that it was not identified from."""
 
-from functools import partial
 from pathlib import Path
 
 import click
@@ -10,7 +9,13 @@ from shaftprint.cli._fit_options import FitOptions, fit_options, held_structures
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
 from shaftprint.cli._terminal import echo
-from shaftprint.cli._validation import fingerprint_model, print_validation, write_validations
+from shaftprint.cli._validation import (
+    Asked,
+    fingerprint_model,
+    print_validation,
+    validated_with_limits,
+    write_validations,
+)
 from shaftprint.cli.output import (
     Steps,
     fingerprint_at,
@@ -24,7 +29,7 @@ from shaftprint.fingerprint import Fingerprint
 from shaftprint.models import Structure
 from shaftprint.survey import Measurement, Trial, fit, load_trial, measure, settings_by_name
 from shaftprint.tables import models_table
-from shaftprint.validation import Model, identified_model, thesis_models, validate
+from shaftprint.validation import Model, identified_model, thesis_models
 
 DEFAULT_STRUCTURE = TypedName("GAUGE-CLOSED")
 
@@ -54,6 +59,11 @@ DEFAULT_STRUCTURE = TypedName("GAUGE-CLOSED")
     "--used", multiple=True, metavar="NAME", help="Test that the model was identified from and that is not to be used."
 )
 @click.option("--allow-in-sample", is_flag=True, help="Show records of the identification too; they do not count.")
+@click.option(
+    "--linear",
+    is_flag=True,
+    help="Validate the model for small signals, although the fingerprint has the line with its limits.",
+)
 @click.option("--linear-torque", is_flag=True, help="Leave the torque linear in the speed, as the thesis did.")
 @click.option(
     "--thesis-sets", is_flag=True, help="Put CL4, CL3, OL1+OL5, OL1+OL4 and the benchmark of the thesis beside."
@@ -71,6 +81,7 @@ def command(
     records: tuple[str, ...],
     used: tuple[str, ...],
     allow_in_sample: bool,
+    linear: bool,
     linear_torque: bool,
     thesis_sets: bool,
     options: FitOptions,
@@ -81,7 +92,8 @@ def command(
     """Validate a model on chirps and steps that it was not identified from.
 
     Prints for each stretch how much of the motion the model misses beyond noise, the delay that is left,
-    overshoot, rise and settling of steps beside those that the model predicts, and whether the model passes.
+    overshoot, rise and settling of steps beside those that the model predicts, and whether the model passes. A
+    fingerprint that has the line with its limits is validated with them, each stretch by a fit without it.
     --record, --used, --prior, --free and --hold may be repeated.
     """
     trial = load_trial(vessel, campaign)
@@ -92,21 +104,19 @@ def command(
         structures = held_structures([structure_to_use(structure, kept)], options)
     with progress(hidden=no_progress) as steps:
         measurement = measure(recording, trial, mode=options.mode, progress=steps)
-        model = _model(kept, structures, measurement, trial, options, steps=steps)
-        models: tuple[Model, ...] = (model, *(thesis_models() if thesis_sets else ()))
-        steps.begin("Validating", total=float(len(models)))
-        validated = partial(
-            validate,
-            records=records or None,
-            used=used,
-            allow_in_sample=allow_in_sample,
-            quadratic_propeller=not linear_torque,
-        )
-        validations = []
-        for one in models:
-            rng = np.random.default_rng(options.seed)
-            validations.append(validated(one, measurement.signals, trial.campaign, rng=rng))
-            steps.advance(1.0)
+        asked = Asked(records=records, used=used, allow_in_sample=allow_in_sample, seed=options.seed)
+        with_limits = kept is not None and kept.with_limits is not None and structure is None and not linear
+        if kept is not None and with_limits:
+            first = validated_with_limits(kept, measurement, trial, asked, steps=steps)
+        else:
+            model = _model(kept, structures, measurement, trial, options, steps=steps)
+            first = asked.validated(model, measurement.signals, trial, quadratic_propeller=not linear_torque)
+        steps.begin("Validating the sets of the thesis")
+        others = thesis_models() if thesis_sets else ()
+        beside = [
+            asked.validated(one, measurement.signals, trial, quadratic_propeller=not linear_torque) for one in others
+        ]
+        validations = [first, *beside]
     if output is not None:
         with output_folder(output, of="validate", force=force) as folder, progress(hidden=no_progress) as steps:
             write_validations(folder, validations, steps=steps)

@@ -112,16 +112,22 @@ def modelica_text(model: ExportedModel, package: str) -> tuple[str, ModelicaEqua
     relations += [f"{modelica_name(signal.name)} = {_outwards(signal, name, sizes)};" for name, signal in out]
     inner = [f"Real {name} {modelica_string(f'deviation, {signal.meaning}')};" for name, signal in into]
     block = _class("block", BLOCK, model, lines, [*inner, *equations.variables], relations)
-    title = modelica_string(f"{model.title}, {model.structure.name}; written by shaftprint {__version__}")
+    title = modelica_string(
+        f"{model.title}, {model.structure.name}; written by shaftprint {__version__}{_remark(model)}"
+    )
     text = f"within;\npackage {package} {title}\n{CONNECTORS}\n{block}\n{_experiment(inputs, sizes)}end {package};\n"
     return text, equations
+
+
+def _remark(model: ExportedModel) -> str:
+    return f"; {model.remark}" if model.remark else ""
 
 
 def _class(kind: str, name: str, model: ExportedModel, lines: list[str], inner: list[str], relations: list[str]) -> str:
     info = (
         f"<html><p>{html_text(model.structure.title)}, identified about {model.engine_speed_rpm:.1f} rpm of the "
         f"engine and {model.shaft_torque_nm:.0f} N m at the gauge. It begins in steady running at the working point."
-        "</p></html>"
+        f"</p>{f'<p>{html_text(model.remark)}</p>' if model.remark else ''}</html>"
     )
     return (
         f"  {kind} {name} {modelica_string(model.structure.title)}\n"

@@ -79,6 +79,11 @@ class GovernorTest:
         torque = (1.0 + self.shaft_torque) / factor - 1.0
         return replace(self, shaft_torque=frozen_float(torque), upstream_s=self.upstream_s / factor)
 
+    def without(self, stretches: Sequence[tuple[float, float]]) -> "GovernorTest":
+        """Return the test as if some stretches of it, each from a time to another [s], had not been measured."""
+        apart = [(self.time_s >= begin_s) & (self.time_s < end_s) for begin_s, end_s in stretches]
+        return replace(self, lost=frozen_bool(np.any([self.lost, *apart], axis=0)))
+
     def held(self, cycle_s: float, late_s: FloatArray) -> "GovernorTest":
         """Return the test as if the set point were held between messages.
 

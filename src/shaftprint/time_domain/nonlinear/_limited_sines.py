@@ -15,6 +15,7 @@ IDLE: Mapping[str, float] = {
     GovernorSymbol.TORQUE_LIMIT: 6.0,
     GovernorSymbol.MOTORING_LIMIT: -2.0,
     GovernorSymbol.RACK_RATE: 100.0,
+    GovernorSymbol.SET_POINT_RATE: 50.0,
     GovernorSymbol.DEADBAND: 0.0,
     GovernorSymbol.UNBOOSTED_TORQUE: 1.0,
 }

@@ -12,7 +12,7 @@ from shaftprint.signals import WorkingPoint
 from shaftprint.units import rev_s_from_rpm
 from shaftprint.vessel import Vessel
 
-ORDER = ("torque", "rate", "deadband", "smoke")
+ORDER = ("torque", "rate", "deadband", "ramp", "smoke")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -22,7 +22,7 @@ class LimitedModel:
     structure: Structure
     """The structure; what no data can show of it is held."""
     limits: tuple[str, ...]
-    """Its limits, of ``torque``, ``rate``, ``deadband`` and ``smoke``."""
+    """Its limits, of ``torque``, ``rate``, ``deadband``, ``ramp`` and ``smoke``."""
     start: Mapping[str, float]
     """Values from which the parameters of the limits may start, where something is known."""
 
@@ -44,7 +44,7 @@ def structure_for(
     Parameters
     ----------
     limits
-        Of ``torque``, ``rate``, ``deadband``, ``smoke``.
+        Of ``torque``, ``rate``, ``deadband``, ``ramp``, ``smoke``.
     vessel, working_point
         The full-load curve, and the speed about which deviations are taken.
     start

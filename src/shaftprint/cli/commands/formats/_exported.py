@@ -8,15 +8,19 @@ import click
 from shaftprint.cli._known_values import named_value
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
+from shaftprint.cli._terminal import say
 from shaftprint.cli.output import expect_free, expect_no_input, fingerprint_at, fingerprint_file
 from shaftprint.escape import plain_name
-from shaftprint.export import ExportedModel
+from shaftprint.export import ExportedModel, validation_remark
 
 fingerprint_argument = click.argument("fingerprint", type=click.Path(path_type=Path))
 structure_option = click.option(
     "--structure",
     metavar="NAME",
-    help=f"Model structure, the fingerprint's by default: {OWN_FILE_HELP}; {LIMITED_HELP}.",
+    help=f"Model structure, the fingerprint's with its limits by default: {OWN_FILE_HELP}; {LIMITED_HELP}.",
+)
+linear_option = click.option(
+    "--linear", is_flag=True, help="Model for small signals, although the fingerprint has the line with its limits."
 )
 set_option = click.option(
     "--set",
@@ -32,8 +36,10 @@ output_option = click.option(
 force_option = click.option("--force", is_flag=True, help="Replace an earlier file.")
 
 
-def model_to_export(fingerprint: Path, structure: TypedName | None, given: Mapping[str, float]) -> ExportedModel:
-    """Return the model of a fingerprint file, or of the folder with it.
+def model_to_export(
+    fingerprint: Path, structure: TypedName | None, given: Mapping[str, float], *, linear: bool = False
+) -> ExportedModel:
+    """Return the model of a fingerprint file, or of the folder with it; what speaks against it is said.
 
     Raises
     ------
@@ -43,7 +49,10 @@ def model_to_export(fingerprint: Path, structure: TypedName | None, given: Mappi
         If there is no such structure or parameter, or a value is missing.
     """
     identified = fingerprint_at(fingerprint)
-    model = simulated_model(structure, identified, given)
+    model = simulated_model(structure, identified, given, linear=linear)
+    remark = validation_remark(identified, model.structure.name)
+    if remark:
+        say(remark)
     return ExportedModel(
         title=identified.conditions.vessel,
         structure=model.structure,
@@ -53,6 +62,7 @@ def model_to_export(fingerprint: Path, structure: TypedName | None, given: Mappi
         uncertain=model.uncertain,
         covariance=model.covariance,
         not_known=model.not_known,
+        remark=remark,
     )
 
 

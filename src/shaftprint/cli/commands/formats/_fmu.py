@@ -12,6 +12,7 @@ from shaftprint.cli.commands.formats._exported import (
     file_to_write,
     fingerprint_argument,
     force_option,
+    linear_option,
     model_to_export,
     output_option,
     set_option,
@@ -24,6 +25,7 @@ from shaftprint.export import PLATFORMS, WrittenFmu, write_fmu
 @click.command("fmu")
 @fingerprint_argument
 @structure_option
+@linear_option
 @set_option
 @click.option(
     "--fmi", "version", type=click.Choice(["2", "3"]), default="2", show_default=True, help="Version of the interface."
@@ -52,6 +54,7 @@ from shaftprint.export import PLATFORMS, WrittenFmu, write_fmu
 def command(
     fingerprint: Path,
     structure: TypedName | None,
+    linear: bool,
     given: tuple[tuple[str, float], ...],
     version: str,
     platforms: tuple[str, ...],
@@ -70,7 +73,7 @@ def command(
     """
     if source_only and platforms:
         raise click.UsageError("--source-only compiles nothing: leave --platform out.")
-    model = model_to_export(fingerprint, structure, dict(given))
+    model = model_to_export(fingerprint, structure, dict(given), linear=linear)
     path = file_to_write(output, model, ".fmu", inputs=(fingerprint,), force=force)
     number: Literal[2, 3] = 2 if version == "2" else 3
     with progress(hidden=no_progress) as steps:

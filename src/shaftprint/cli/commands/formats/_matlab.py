@@ -11,6 +11,7 @@ from shaftprint.cli.commands.formats._exported import (
     file_to_write,
     fingerprint_argument,
     force_option,
+    linear_option,
     model_to_export,
     set_option,
     structure_option,
@@ -25,6 +26,7 @@ from shaftprint.survey import load_trial, measure, response_of
 @click.command("matlab")
 @fingerprint_argument
 @structure_option
+@linear_option
 @set_option
 @click.option(
     "--recording",
@@ -42,6 +44,7 @@ from shaftprint.survey import load_trial, measure, response_of
 def command(
     fingerprint: Path,
     structure: TypedName | None,
+    linear: bool,
     given: tuple[tuple[str, float], ...],
     recording: Path | None,
     vessel: str | None,
@@ -56,7 +59,7 @@ def command(
     written beside the data: called in MATLAB it makes the state space with its delays, frd and idfrd
     objects; in bare Octave it computes the response.
     """
-    model = model_to_export(fingerprint, structure, dict(given))
+    model = model_to_export(fingerprint, structure, dict(given), linear=linear)
     path = file_to_write(output, model, ".mat", inputs=(fingerprint, recording), force=force)
     measured = None
     if recording is not None:

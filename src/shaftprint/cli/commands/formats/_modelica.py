@@ -10,6 +10,7 @@ from shaftprint.cli.commands.formats._exported import (
     file_to_write,
     fingerprint_argument,
     force_option,
+    linear_option,
     model_to_export,
     output_option,
     set_option,
@@ -21,12 +22,14 @@ from shaftprint.export import write_modelica
 @click.command("modelica")
 @fingerprint_argument
 @structure_option
+@linear_option
 @set_option
 @output_option
 @force_option
 def command(
     fingerprint: Path,
     structure: TypedName | None,
+    linear: bool,
     given: tuple[tuple[str, float], ...],
     output: Path | None,
     force: bool,
@@ -37,7 +40,7 @@ def command(
     library; its block Line has inputs and outputs in rpm and N m about the working point, and Step is an
     experiment with it.
     """
-    model = model_to_export(fingerprint, structure, dict(given))
+    model = model_to_export(fingerprint, structure, dict(given), linear=linear)
     written = write_modelica(
         model, file_to_write(output, model, ".mo", inputs=(fingerprint,), force=force), overwrite=force
     )

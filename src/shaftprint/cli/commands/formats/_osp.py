@@ -10,6 +10,7 @@ from shaftprint.cli.commands.formats._exported import (
     file_to_write,
     fingerprint_argument,
     force_option,
+    linear_option,
     model_to_export,
     set_option,
     structure_option,
@@ -20,6 +21,7 @@ from shaftprint.export import write_osp
 @click.command("osp")
 @fingerprint_argument
 @structure_option
+@linear_option
 @set_option
 @click.option(
     "-o",
@@ -31,6 +33,7 @@ from shaftprint.export import write_osp
 def command(
     fingerprint: Path,
     structure: TypedName | None,
+    linear: bool,
     given: tuple[tuple[str, float], ...],
     output: Path | None,
     force: bool,
@@ -40,6 +43,6 @@ def command(
     FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. The description is
     written beside the FMU that `shaftprint export fmu` writes, as name_OspModelDescription.xml.
     """
-    model = model_to_export(fingerprint, structure, dict(given))
+    model = model_to_export(fingerprint, structure, dict(given), linear=linear)
     # the FMU may be there already: it stays as it is
     answer(write_osp(model, file_to_write(output, model, ".fmu", inputs=(fingerprint,), force=True), overwrite=force))

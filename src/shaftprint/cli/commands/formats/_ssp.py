@@ -10,6 +10,7 @@ from shaftprint.cli.commands.formats._exported import (
     file_to_write,
     fingerprint_argument,
     force_option,
+    linear_option,
     model_to_export,
     output_option,
     set_option,
@@ -21,12 +22,14 @@ from shaftprint.export import write_ssv
 @click.command("ssp")
 @fingerprint_argument
 @structure_option
+@linear_option
 @set_option
 @output_option
 @force_option
 def command(
     fingerprint: Path,
     structure: TypedName | None,
+    linear: bool,
     given: tuple[tuple[str, float], ...],
     output: Path | None,
     force: bool,
@@ -36,5 +39,5 @@ def command(
     FINGERPRINT is the JSON file, or the folder in which identify or demo has put it. The names are those of
     the FMU's parameters, so that the set can be given to it in a system structure.
     """
-    model = model_to_export(fingerprint, structure, dict(given))
+    model = model_to_export(fingerprint, structure, dict(given), linear=linear)
     answer(write_ssv(model, file_to_write(output, model, ".ssv", inputs=(fingerprint,), force=force), overwrite=force))

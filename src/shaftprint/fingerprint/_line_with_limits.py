@@ -1,0 +1,95 @@
+"""The line with its limits as a fingerprint keeps it: the whole model for large moves, with one covariance.
+
+It stands beside the numbers of the linear fit and repeats their values, so that it can be used without them: a joint
+fit gives all of them other values.
+"""
+
+import math
+from itertools import pairwise
+from typing import Annotated, Final, Literal, Self
+
+from pydantic import Field, FiniteFloat, model_validator
+
+from shaftprint.catalogue import limited
+from shaftprint.errors import StructureError
+from shaftprint.fingerprint._covariance_check import covariance_fault
+from shaftprint.fingerprint._quantity import Deviation, FrozenRecord, Quantity
+
+# More corners than any full-load curve has; the equations of the model grow with them.
+MOST_CORNERS: Final = 200
+LimitName = Literal["torque", "rate", "deadband", "ramp", "smoke"]
+
+
+class LimitNumber(FrozenRecord):
+    """One number of a limit in the units of the ship, as ``limits`` states it."""
+
+    limit: str
+    """The limit that it belongs to, in words."""
+    name: str
+    """Symbol."""
+    unit: str
+    """Unit, ``-`` where there is none."""
+    value: float
+    """Estimate."""
+    std: Deviation
+    """Standard deviation."""
+    interval_95: tuple[float, float]
+    """95 % interval; an end that the data did not set is infinite."""
+    meaning: str
+    """What it is."""
+    doubt: str = ""
+    """Why the number is not trusted; empty where it is."""
+
+    @property
+    def quantity(self) -> Quantity:
+        """The number as other numbers of a fingerprint are."""
+        return Quantity(
+            name=self.name,
+            unit=self.unit,
+            value=self.value,
+            std=self.std,
+            interval_95=self.interval_95,
+            interval_open=(math.isinf(self.interval_95[0]), math.isinf(self.interval_95[1])),
+            meaning=self.meaning,
+        )
+
+
+class LineWithLimits(FrozenRecord):
+    """Governor, limits, engine, shaft and a propeller that takes the square of the speed, with their values."""
+
+    found_by: Literal["limits", "joint fit"]
+    """``limits``: the linear fit to small signals, and limits found on the governor beside it; ``joint fit``: all in
+    one likelihood."""
+    limits: tuple[LimitName, ...]
+    """Limits that the structure has, by the names of ``catalogue.limited``; empty where none acts."""
+    curve: Annotated[tuple[tuple[FiniteFloat, FiniteFloat], ...], Field(max_length=MOST_CORNERS)] = ()
+    """Shape of the full-load torque: deviation of the speed, and torque over that at the working-point speed."""
+    numbers: tuple[LimitNumber, ...]
+    """Levels, rates and widths in the units of the ship; those of a set point that is held or rounded, which the
+    structure does not have, too."""
+    not_seen: tuple[str, ...] = ()
+    """Up to which level the test excludes each limit that does not act, in words."""
+    parameters: tuple[Quantity, ...]
+    """Parameters of the whole model that were identified, normalised."""
+    held: dict[str, FiniteFloat]
+    """The others."""
+    covariance: tuple[tuple[float, ...], ...]
+    """Covariance of the identified parameters, in their order."""
+
+    @model_validator(mode="after")
+    def _expect_a_model(self) -> Self:
+        fault = covariance_fault(self.covariance, [quantity.std for quantity in self.parameters])
+        if fault:
+            raise ValueError(f"covariance: {fault}")
+        speeds = [speed for speed, _ in self.curve]
+        if any(one >= next_one for one, next_one in pairwise(speeds)) or len(speeds) == 1:
+            raise ValueError("curve: expected two or more corners whose speeds ascend, found others")
+        try:
+            names = limited(*self.limits).names
+        except StructureError as error:
+            raise ValueError(f"limits: {error}") from None
+        stated = [*(quantity.name for quantity in self.parameters), *self.held]
+        if sorted(stated) != sorted(names):
+            apart = sorted({*stated} ^ {*names}) or stated
+            raise ValueError(f"parameters: expected each of the model once, found a difference in {', '.join(apart)}")
+        return self

@@ -1,0 +1,151 @@
+"""Levels of limits beside a governor that is known from elsewhere, to put both into one model of the line.
+
+The governor of ``identify_limits`` is found with the limits, from the torque below 6 Hz; that of a fit to small signals
+is the better one where both are known, and it belongs to the rest of the line. Here it is held, and the levels are
+what the test then asks of them. With ``I`` the information of levels and governor together a level changes with the
+governor by ``S = -I_ll^-1 I_lg``, by which the errors of both are related.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.campaign import Campaign
+from shaftprint.catalogue import GovernorSymbol
+from shaftprint.errors import IdentificationError
+from shaftprint.limits._candidates import IDLE, STRUCTURE_LIMITS, Kind, parameters_of
+from shaftprint.limits._governor_fit import GOVERNOR, Fitted, fitted, identified, schwarz, values_without_limits
+from shaftprint.limits._identify_limits import COARSE_HZ, FINE, set_point_priors, whole_governor
+from shaftprint.limits._numbers import Units
+from shaftprint.limits._search import LEAST_GAIN
+from shaftprint.limits._uncertainty import spread_of
+from shaftprint.limits.prediction import PredictionError, governor_test
+from shaftprint.signals import Signals
+from shaftprint.vessel import Vessel
+
+OF_SET_POINT = (GovernorSymbol.SET_POINT_SCALE, GovernorSymbol.SET_POINT_OFFSET)
+"""What follows the recording, and not the governor."""
+LEAST_SLOPE = 1e-12
+"""A slope of zero is a small one: a round zero would be another simulation."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Levels:
+    """Limits beside a given governor."""
+
+    kinds: tuple[Kind, ...]
+    """The limits that the test shows."""
+    values: Mapping[str, float]
+    """Value of each parameter of every limit; of those that do not act one at which they do nothing."""
+    names: tuple[str, ...]
+    """The parameters that were found."""
+    covariance: FloatArray
+    """Their covariance with the governor as given, shape (found, found); infinite where the data say nothing."""
+    governor: tuple[str, ...]
+    """Parameters of the governor, which was given."""
+    slopes: FloatArray
+    """How they change with it, shape (found, governor)."""
+
+    @property
+    def structure_limits(self) -> tuple[str, ...]:
+        """The limits by the names of ``catalogue.limited``."""
+        return tuple(dict.fromkeys(name for kind in self.kinds for name in STRUCTURE_LIMITS.get(kind, ())))
+
+
+def levels_beside(
+    governor: Mapping[str, float],
+    signals: Signals,
+    campaign: Campaign,
+    vessel: Vessel,
+    *,
+    kinds: Sequence[Kind],
+    start: Mapping[str, float],
+    apart: Sequence[tuple[float, float]] = (),
+) -> Levels:
+    """Fit the levels of some limits, the governor as it is known from elsewhere.
+
+    A limit that the test does not ask for goes. Where stretches are taken out, its level would be what they had said.
+
+    Parameters
+    ----------
+    governor
+        Parameters of the governor, delays and ``g`` by name; others do not count.
+    signals, campaign, vessel
+        As for ``identify_limits``.
+    kinds
+        The limits; a set point that is held or rounded does not count.
+    start
+        Values of their parameters to begin with.
+    apart
+        Stretches that are not used, begin and end of each [s].
+
+    Raises
+    ------
+    SignalError
+        If the recording does not hold the tests of the campaign.
+    IdentificationError
+        If the governor cannot be simulated on the measured speed.
+    """
+    test = governor_test(signals, campaign, vessel).without(apart)
+    whole, record, priors = whole_governor(), test.record(drive_hz=COARSE_HZ), set_point_priors(signals)
+    held = tuple(name for name in GOVERNOR if name not in OF_SET_POINT)
+    slope = GovernorSymbol.ENGINE_SPEED_SLOPE
+    known = {**values_without_limits(whole), **{n: v for n, v in governor.items() if n in (*GOVERNOR, slope)}}
+    known[slope] = known[slope] or LEAST_SLOPE
+
+    def best(values: Mapping[str, float], wanted: Sequence[Kind]) -> Fitted:
+        return fitted(whole, record, values, wanted, priors=priors, iterations=FINE, held=held)
+
+    wanted = tuple(kind for kind in kinds if parameters_of([kind]))
+    if Kind.SMOKE in wanted and Kind.TORQUE not in wanted:
+        # a smoke limit is a share of the full-load torque, here that of the vessel file
+        known[GovernorSymbol.TORQUE_LIMIT] = Units.of(signals, vessel).full
+    here = best({**known, **{name: value for name, value in start.items() if name in parameters_of(wanted)}}, wanted)
+    here = _without_idle(here, best)
+    there, identification = identified(here)
+    spread = spread_of(there, test, signals, vessel)
+    names = parameters_of(there.kinds)
+    order = [estimate.name for estimate in identification.parameters]
+    places = [order.index(name) for name in names]
+    bounds = {p.name: (p.lower, p.upper) for p in whole.parameters}
+    return Levels(
+        kinds=there.kinds,
+        values={name: float(np.clip(there.values[name], *bounds[name])) for name in IDLE},
+        names=names,
+        covariance=frozen_float(spread.covariance(identification.covariance)[np.ix_(places, places)]),
+        governor=held,
+        slopes=_slopes(there, names, held),
+    )
+
+
+def _without_idle(here: Fitted, best: Callable[[Mapping[str, float], Sequence[Kind]], Fitted]) -> Fitted:
+    """Return a governor without the limits that chance explains as well."""
+    for kind in here.kinds:
+        others = tuple(other for other in here.kinds if other is not kind)
+        gone = {name: IDLE[name] for name in set(parameters_of([kind])) - set(parameters_of(others))}
+        less = best({**here.values, **gone}, others)
+        if schwarz(less) - schwarz(here) < LEAST_GAIN:
+            here = less
+    return here
+
+
+def _slopes(fit: Fitted, names: Sequence[str], governor: Sequence[str]) -> FloatArray:
+    """Return how levels change with the governor, set point and levels at their best, shape (levels, governor)."""
+    free = (*OF_SET_POINT, *names)
+    term = PredictionError.of(fit.term.whole, fit.term.record, fit.values, (*free, *governor))
+    order = [p.name for p in term.structure.free]
+    rows = term.with_scale_at(fit.own).rows(fit.own)
+    if rows is None:
+        raise IdentificationError(f"{term.name}: the simulation runs away where it was fitted.")
+    known = np.array([1.0 / fit.priors[name].std if name in fit.priors else 0.0 for name in order])
+    information = rows[1:] @ rows[1:].T + np.diag(known**2)
+    size = np.sqrt(np.diag(information))
+    # what the data say nothing of follows nothing
+    size = np.where(size > 0.0, size, 1.0)
+    scaled = information / np.outer(size, size)
+    own, others = [order.index(name) for name in free], [order.index(name) for name in governor]
+    follows = -np.linalg.pinv(scaled[np.ix_(own, own)], hermitian=True) @ scaled[np.ix_(own, others)]
+    slopes = follows / size[own][:, None] * size[others]
+    return frozen_float(slopes[len(OF_SET_POINT) :])

@@ -1,0 +1,86 @@
+"""The line with its limits in a fingerprint: what was written comes back, and what cannot be a model is refused."""
+
+import json
+
+import numpy as np
+import pytest
+
+from shaftprint.errors import FingerprintError
+from shaftprint.fingerprint import (
+    LimitNumber,
+    LineWithLimits,
+    Quantity,
+    model_with_limits,
+    read_fingerprint,
+    write_fingerprint,
+)
+
+CURVE = ((-0.5, 0.6), (0.0, 1.0), (0.5, 1.1))
+
+
+@pytest.fixture(scope="module")
+def with_limits(fingerprint):
+    levels = (
+        Quantity(name="m_max", unit="-", value=2.8, std=0.05),
+        Quantity(name="T_aw", unit="s", value=0.5, std=0.02),
+    )
+    size = len(fingerprint.parameters)
+    covariance = np.zeros((size + 2, size + 2))
+    covariance[:size, :size] = fingerprint.covariance
+    covariance[size:, size:] = np.diag([0.05**2, 0.02**2])
+    line = LineWithLimits(
+        found_by="limits",
+        limits=("torque",),
+        curve=CURVE,
+        numbers=(
+            LimitNumber(
+                limit="torque limit", name="M_max", unit="N m", value=1300.0, std=30.0,
+                interval_95=(1240.0, float("inf")), meaning="highest torque", doubt="the data set no upper end",
+            ),
+        ),
+        not_seen=("deadband: not seen, none wider than d_e_rpm = 2 rpm",),
+        parameters=(*fingerprint.parameters, *levels),
+        held=fingerprint.held | {"m_min": -0.6, "droop": 0.0},
+        covariance=tuple(map(tuple, covariance.tolist())),
+    )  # fmt: skip
+    return fingerprint.model_copy(update={"with_limits": line})
+
+
+def test_what_was_written_comes_back(with_limits, tmp_path):
+    path = tmp_path / "fingerprint.json"
+    write_fingerprint(with_limits, path)
+    assert read_fingerprint(path) == with_limits
+
+
+def test_the_model_has_every_value_in_the_order_of_its_structure(with_limits):
+    line = with_limits.with_limits
+    model = model_with_limits(line)
+    named = dict(zip(model.structure.names, model.values, strict=True))
+    assert (named["m_max"], named["T_aw"], named["m_min"]) == (2.8, 0.5, -0.6)
+    for quantity in with_limits.parameters:
+        assert named[quantity.name] == quantity.value
+    std = dict(zip((p.name for p in model.structure.free), np.sqrt(np.diag(model.covariance)), strict=True))
+    assert std["T_aw"] == pytest.approx(0.02)
+    assert std["K_p"] == pytest.approx(with_limits.quantity("K_p").std)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda line: line.update(limits=["torque", "wind"]), "with_limits.limits.1: Input should be 'torque'"),
+        (lambda line: line.update(limits=["smoke"]), "limits: a smoke limit needs the torque limit"),
+        (lambda line: line["held"].pop("droop"), "parameters: expected each of the model once, found a difference in"),
+        (lambda line: line["held"].update(m_max=1.0), "parameters: expected each of the model once"),
+        (lambda line: line["curve"].reverse(), "curve: expected two or more corners whose speeds ascend"),
+        (lambda line: line["covariance"].pop(), "covariance: expected"),
+        (lambda line: line["held"].update(m_min="NaN"), "with_limits.held.m_min: Input should be a finite number"),
+    ],
+)
+def test_what_cannot_be_a_model_is_refused_in_a_sentence(with_limits, tmp_path, change, words):
+    content = json.loads(with_limits.model_dump_json())
+    change(content["with_limits"])
+    path = tmp_path / "fingerprint.json"
+    path.write_text(json.dumps(content), encoding="utf-8")
+    with pytest.raises(FingerprintError) as error:
+        read_fingerprint(path)
+    assert words in str(error.value)
