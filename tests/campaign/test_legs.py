@@ -118,3 +118,16 @@ def test_the_lines_of_a_binary_sequence_are_those_of_its_held_values():
     assert leg.lines.keys() == set(range(1, 28, 2))
     for harmonic, amplitude_v in leg.lines.items():
         assert spectrum[harmonic] == pytest.approx(amplitude_v, rel=1e-3)
+
+
+def test_a_binary_sequence_begins_at_any_clock_and_is_upside_down_half_a_period_on():
+    first = BinarySequence(
+        name="B", level_v=-4.0, amplitude_v=0.3, clock_s=0.5, order=4, start_s=10.0, settled_s=20.0, stop_s=60.0
+    )
+    time = 10.0 + 0.25 + 0.5 * np.arange(60)
+    later = first.model_copy(update={"first_clock": 7})
+    assert later.value_at(time).tolist() == np.roll(first.value_at(time)[:30], -7).tolist() * 2
+    inverted = first.model_copy(update={"first_clock": 15})
+    assert inverted.value_at(time) + first.value_at(time) == pytest.approx(np.full(60, -8.0))
+    with pytest.raises(ValueError, match="expected first_clock below the 30 clocks of a period, found 30"):
+        BinarySequence.model_validate(first.model_dump() | {"first_clock": 30})

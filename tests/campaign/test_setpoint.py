@@ -24,6 +24,23 @@ def test_a_sine_starts_at_phase_zero_and_ends_at_its_stop():
     assert setpoint(ALL, times) == pytest.approx([-5.0, -5.0, -4.4, -5.0, -5.6, -5.0, -5.6, -5.0])
 
 
+def test_a_sine_starts_at_any_phase_and_sign():
+    falling = SINE.model_copy(update={"phase_rad": np.pi})
+    cosine = SINE.model_copy(update={"phase_rad": np.pi / 2.0})
+    times = [10.0, 11.0, 12.0, 13.0]
+    assert setpoint(_campaign(sines=(falling,)), times) == pytest.approx([-5.0, -5.6, -5.0, -4.4])
+    assert setpoint(_campaign(sines=(cosine,)), times) == pytest.approx([-4.4, -5.0, -5.6, -5.0])
+
+
+@pytest.mark.parametrize("sweep", ["logarithmic", "linear"])
+def test_a_chirp_upside_down_is_one_with_half_a_turn(sweep):
+    up = UP.model_copy(update={"sweep": sweep})
+    down = up.model_copy(update={"phase_rad": np.pi})
+    time = np.linspace(90.0, 310.0, 5001)
+    both = setpoint(_campaign(chirps=(up,)), time) + setpoint(_campaign(chirps=(down,)), time)
+    assert both == pytest.approx(np.full(time.size, -10.0), abs=1e-9)
+
+
 def test_outside_of_excitations_the_offset_is_held():
     assert setpoint(ALL, [-1.0, 0.0, 60.0, 350.0, 650.0, 900.0, 5000.0]).tolist() == [-5.0] * 7
 

@@ -101,8 +101,18 @@ def test_phase_of_slow_and_fast_sines(name, phase_deg):
     if name == "S1":
         # its next rise through the middle lies in the test before it, or 37 s after its begin: the begin stays
         assert proposed.sines[0].start_s == pytest.approx(230.0, abs=0.05)
-    else:
-        assert findings_of(volts, proposed) == ()
+        assert np.degrees(proposed.sines[0].phase_rad) == pytest.approx(phase_deg, abs=1.5)
+    assert findings_of(volts, proposed) == ()
+
+
+@pytest.mark.parametrize("name", ["S1", "S6"])
+def test_a_sine_whose_phase_the_campaign_states(name):
+    time = grid()
+    stated = changed(SHORT, **{name: {"phase_rad": 2.0}})
+    assert findings_of(setpoint(stated, time), stated) == ()
+    (finding,) = findings_of(setpoint(SHORT, time), stated)
+    assert finding.startswith(f"{name} begins at a phase of 0 degrees where the campaign says 115: phase_rad = ")
+    assert float(finding.split("phase_rad = ")[1].removesuffix(" fits")) == pytest.approx(0.0, abs=0.01)
 
 
 @pytest.mark.slow

@@ -1,9 +1,9 @@
 """A pseudo-random binary sequence that repeats itself, at a level of its own."""
 
-from typing import Annotated
+from typing import Annotated, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from shaftprint.arrays import FloatArray
 from shaftprint.campaign._leg import Leg
@@ -44,6 +44,15 @@ class BinarySequence(Leg):
     """Time for which each value is held at least [s]."""
     order: Annotated[int, Field(strict=True, ge=min(_FED_BACK), le=max(_FED_BACK))]
     """Length of the shift register."""
+    first_clock: Annotated[int, Field(strict=True, ge=0)] = 0
+    """Clock of the period with which it begins. Half a period later, ``2^order - 1``, it is upside down."""
+
+    @model_validator(mode="after")
+    def _begins_within_its_period(self) -> Self:
+        clocks = 2 * ((1 << self.order) - 1)
+        if self.first_clock >= clocks:
+            raise ValueError(f"expected first_clock below the {clocks} clocks of a period, found {self.first_clock}.")
+        return self
 
     @property
     def length_of_period_s(self) -> float:
@@ -52,8 +61,8 @@ class BinarySequence(Leg):
 
     @property
     def signs(self) -> FloatArray:
-        """The values of one period, 1 or -1, shape (2 N,)."""
-        return _inverse_repeat(self.order)
+        """The values of one period from the start on, 1 or -1, shape (2 N,)."""
+        return np.roll(_inverse_repeat(self.order), -self.first_clock)
 
     @property
     def lines(self) -> dict[int, float]:

@@ -25,8 +25,10 @@ class Sine(Settings):
     """Frequency [Hz]."""
     amplitude_v: PositiveNumber
     """Amplitude [V], half of peak to peak."""
+    phase_rad: Number = 0.0
+    """Phase at the start [rad]: 0 for a sine that rises through its middle, pi for one that falls."""
     start_s: NotNegativeNumber
-    """When the sine begins, at phase zero [s]."""
+    """When the sine begins [s]."""
     settled_s: NotNegativeNumber
     """When the analysis may begin [s]: the response to the start has died out."""
     stop_s: PositiveNumber
@@ -75,8 +77,10 @@ class Chirp(Settings):
     """Amplitude [V], half of peak to peak."""
     sweep: Literal["logarithmic", "linear"] = "logarithmic"
     """How the frequency goes with time: a linear one stays as long in each hertz, a logarithmic one in each octave."""
+    phase_rad: Number = 0.0
+    """Phase at the start [rad]: 0 for a chirp that rises through its middle, pi for one that falls."""
     start_s: NotNegativeNumber
-    """When it begins, at phase zero [s]."""
+    """When it begins [s]."""
     stop_s: PositiveNumber
     """When it ends [s]."""
 

@@ -8,6 +8,8 @@ from shaftprint.escape import toml_string
 TESTS = ("staircases", "sines", "multisines", "binary_sequences", "chirps")
 """Lists of tests, in the order in which a file has them."""
 
+# Fields that few tests need: they stand in a file where they say something.
+_SELDOM = {"phase_rad": 0.0, "first_clock": 0}
 # Digits behind the point: a period of half a minute is then right to the last sample of a day.
 _DIGITS = 12
 
@@ -37,7 +39,8 @@ def tests_text(campaign: Campaign) -> str:
     parts = []
     for section in TESTS:
         for test in getattr(campaign, section):
-            lines = [f"{key} = {_value(value)}" for key, value in test.model_dump(exclude_none=True).items()]
+            fields = test.model_dump(exclude_none=True).items()
+            lines = [f"{key} = {_value(value)}" for key, value in fields if _SELDOM.get(key) != value]
             parts.append("\n".join([f"[[{section}]]", *lines]))
     return "\n\n".join(parts) + "\n"
 

@@ -57,12 +57,12 @@ def _voltage(excitation: Excitation, time_s: FloatArray, offset_v: float) -> Flo
     match excitation:
         case Sine():
             turns = excitation.frequency_hz * elapsed_s
-            return offset_v + excitation.amplitude_v * np.sin(2.0 * math.pi * turns)
+            return offset_v + excitation.amplitude_v * np.sin(2.0 * math.pi * turns + excitation.phase_rad)
         case Multisine() | BinarySequence():
             return excitation.value_at(time_s)
         case Chirp():
             phase = _linear_phase if excitation.sweep == "linear" else _chirp_phase
-            return offset_v + excitation.amplitude_v * np.sin(phase(excitation, elapsed_s))
+            return offset_v + excitation.amplitude_v * np.sin(phase(excitation, elapsed_s) + excitation.phase_rad)
         case Staircase():
             step = np.floor(elapsed_s / excitation.dwell_s).astype(np.intp)
             # the quotient may round up to the number of levels just before the end
@@ -73,7 +73,7 @@ def _voltage(excitation: Excitation, time_s: FloatArray, offset_v: float) -> Flo
 
 
 def _chirp_phase(chirp: Chirp, elapsed_s: FloatArray) -> FloatArray:
-    """Return the phase [rad] of a logarithmic sweep: the integral of ``2 pi f_0 k^(t/T)``.
+    """Return the phase since the start [rad] of a logarithmic sweep: the integral of ``2 pi f_0 k^(t/T)``.
 
     ``2 pi f_0 T / ln(k) (k^(t/T) - 1)`` with ``k = f_1 / f_0``, as in the logarithmic method of
     ``scipy.signal.chirp``.
@@ -85,6 +85,6 @@ def _chirp_phase(chirp: Chirp, elapsed_s: FloatArray) -> FloatArray:
 
 
 def _linear_phase(chirp: Chirp, elapsed_s: FloatArray) -> FloatArray:
-    """Return the phase [rad] of a linear sweep: the integral of ``2 pi (f_0 + (f_1 - f_0) t / T)``."""
+    """Return the phase since the start [rad] of a linear sweep: the integral of ``2 pi (f_0 + (f_1 - f_0) t / T)``."""
     rate_hz_per_s = (chirp.stop_frequency_hz - chirp.start_frequency_hz) / (chirp.stop_s - chirp.start_s)
     return 2.0 * math.pi * (chirp.start_frequency_hz + 0.5 * rate_hz_per_s * elapsed_s) * elapsed_s

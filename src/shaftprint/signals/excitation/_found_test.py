@@ -1,5 +1,6 @@
 """One test of a campaign as the recorded set point shows it, and what is other than planned."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -73,18 +74,27 @@ class FoundTest:
         if self.frequency_hz != planned.frequency_hz:
             sentences.append(f"has {self.frequency_hz:.4g} Hz where the campaign says {planned.frequency_hz:g} Hz")
         elif not sentences and not self._has_planned_phase:
-            sentences.append(
-                f"begins at a phase of {self.phase_error_deg:.0f} degrees: start_s = {self.rising_s:.3f} fits"
-            )
+            sentences.append(self._phase_words(planned))
         if abs(self.amplitude_v / planned.amplitude_v - 1.0) > _SAME_AMPLITUDE:
             sentences.append(f"has {self.amplitude_v:.3g} V where the campaign says {planned.amplitude_v:g} V")
         if self.end_s < planned.window_stop_s - _SAME_BEGIN_S:
             sentences.append(f"ends at {self.end_s:.2f} s, before its window does at {planned.window_stop_s:.2f} s")
         return tuple(sentences)
 
+    def _phase_words(self, planned: Sine) -> str:
+        """Return with which phase a sine begins, and what fits."""
+        if planned.phase_rad == 0.0:
+            return f"begins at a phase of {self.phase_error_deg:.0f} degrees: start_s = {self.rising_s:.3f} fits"
+        phase_rad = math.remainder(planned.phase_rad + math.radians(self.phase_error_deg), 2.0 * math.pi)
+        planned_rad = math.remainder(planned.phase_rad, 2.0 * math.pi)
+        return (
+            f"begins at a phase of {round(math.degrees(phase_rad))} degrees where the campaign says "
+            f"{round(math.degrees(planned_rad))}: phase_rad = {round(phase_rad, 3) + 0.0:g} fits"
+        )
+
     @property
     def _has_planned_phase(self) -> bool:
-        """Whether a sine rises through its middle when the campaign says so."""
+        """Whether a sine has the phase at its start that the campaign states."""
         error_s = self.phase_error_deg / 360.0 / self.frequency_hz
         return abs(self.phase_error_deg) <= _SAME_PHASE_DEG and abs(error_s) <= _SAME_BEGIN_S
 
@@ -92,8 +102,8 @@ class FoundTest:
     def _begin_tolerance_s(self) -> float:
         """How far its begin may be from the stated one [s].
 
-        The campaign states when a sine rises through its middle: one that begins at another phase begins up to half a
-        period from there, but before its window.
+        A campaign may state when a sine rises through its middle, not when it begins: one that begins at another phase
+        begins up to half a period from there, but before its window.
         """
         planned = self.planned
         if not isinstance(planned, Sine) or not self._has_planned_phase:
@@ -103,10 +113,10 @@ class FoundTest:
 
     @property
     def phase_error_deg(self) -> float:
-        """Phase of a sine at the begin that the campaign states [deg], from -180 to 180; 0 for another test."""
+        """Phase of a sine beyond that which the campaign states for its start [deg], -180 to 180; 0 for another test."""
         if not isinstance(self.planned, Sine) or not self.is_found:
             return 0.0
-        turns = (self.planned.start_s - self.rising_s) * self.frequency_hz
+        turns = (self.planned.start_s - self.rising_s) * self.frequency_hz - self.planned.phase_rad / (2.0 * math.pi)
         return 360.0 * (turns - round(turns))
 
 

@@ -16,7 +16,7 @@ def proposed_campaign(found: tuple[FoundTest, ...], campaign: Campaign) -> Campa
     """Return the campaign with begin, phase, sign and frequency of every test as the set point shows them.
 
     A sine begins where it rises through its middle, the time nearest to its real begin that leaves the test before it
-    alone, or at its real begin where that would be too late for its window. Its analysis begins as long after the real
+    alone, or at its real begin, with its phase there, where that would be too late for its window. Its analysis begins as long after the real
     begin as was planned. Tests that were not found are left out.
 
     Parameters
@@ -86,13 +86,16 @@ def _sine(test: FoundTest, sine: Sine, last_s: float) -> dict[str, Any] | None:
     # a slow sine leaves its middle so slowly that its phase knows the begin better
     real_s = start_s if abs(start_s - test.begin_s) < _SAME_S else test.begin_s
     settled_s = max(_rounded(real_s + sine.settled_s - sine.start_s), last_s)
+    phase_rad = 0.0
     if begin_s > settled_s:
-        # no such instant between the test before it and its window: the begin itself must do
+        # no such instant between the test before it and its window: the begin itself, with the phase that it has there
         begin_s = max(_rounded(min(test.begin_s, settled_s)), last_s)
+        turn_rad = 2.0 * math.pi * test.frequency_hz * (begin_s - test.rising_s)
+        phase_rad = round(math.remainder(turn_rad, 2.0 * math.pi), _DIGITS)
     if (stop_s - settled_s) * test.frequency_hz < 1.0:
         return None
     times = {"start_s": begin_s, "settled_s": settled_s, "stop_s": stop_s}
-    same = {"frequency_hz": float(f"{test.frequency_hz:.6g}")}
+    same = {"frequency_hz": float(f"{test.frequency_hz:.6g}"), "phase_rad": phase_rad}
     return sine.model_dump() | times | same
 
 
