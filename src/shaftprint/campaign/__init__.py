@@ -12,7 +12,8 @@ amplitude             V        half of peak to peak
 frequency             Hz       of a test line; never rad/s
 ===================== ======== ====================================================================
 
-A sine and a chirp start at their phase, ``U = offset + amplitude sin(phase)``, 0 where none is stated. A staircase jumps.
+A sine and a chirp start at their phase, ``U = offset + amplitude sin(phase)``, 0 where none is stated. A
+staircase jumps.
 Every excitation holds in the half-open interval from its start to its stop.
 """
 

@@ -20,12 +20,14 @@ from shaftprint.signals._channel_signals import ChannelRole, ChannelSignal, Exci
 from shaftprint.signals._clock import Mode
 from shaftprint.signals._content import Content, content_of
 from shaftprint.signals._contradictions import contradictions
+from shaftprint.signals._describe_recording import describe_set_point
 from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._inspect import ChannelReport, PulseReport, channel_reports, inspect_channels
 from shaftprint.signals._orders import TrackedOrder, tracked_orders
 from shaftprint.signals._prepare import find_tests, prepare_signals
 from shaftprint.signals._signals import Repair, SetPointCalibration, Signals, StepDelay, StripAngles
 from shaftprint.signals._working_points import LegState, WorkingPoint
+from shaftprint.signals.description import Description
 from shaftprint.signals.excitation import FoundTest, common_shift_s, proposed_campaign
 from shaftprint.signals.kinds import KINDS, ChannelKind
 from shaftprint.signals.levels import deviation
@@ -39,6 +41,7 @@ __all__ = [
     "ChannelSignal",
     "Content",
     "Coverage",
+    "Description",
     "ExcitationSignal",
     "FoundTest",
     "Gap",
@@ -58,6 +61,7 @@ __all__ = [
     "common_shift_s",
     "content_of",
     "contradictions",
+    "describe_set_point",
     "deviation",
     "find_tests",
     "inspect_channels",

@@ -1,4 +1,4 @@
-"""``shaftprint new``: a commented settings file to fill in."""
+"""``shaftprint new``: a commented settings file to fill in, or the campaign that a recording shows."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,6 +8,8 @@ import click
 
 from shaftprint.card import write_vessel
 from shaftprint.cli._card_options import card_of, card_options
+from shaftprint.cli._options import NAMES
+from shaftprint.cli._recorded_campaign import write_recorded_campaign
 from shaftprint.cli._terminal import answer
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.settings import write_template
@@ -23,31 +25,70 @@ TESTS: Mapping[str, str] = {
 
 @click.command("new")
 @click.argument("kind", type=click.Choice(["vessel", "campaign"]))
-@click.argument("file", type=click.Path(path_type=Path))
+@click.argument("file", type=click.Path(path_type=Path), required=False)
 @click.option(
     "--test",
     type=click.Choice([*TESTS]),
     help=f"A campaign to begin with: {'; '.join(f'{name}, {words}' for name, words in TESTS.items())}.",
 )
+@click.option(
+    "--from",
+    "recorded",
+    metavar="RECORDING",
+    type=click.Path(path_type=Path),
+    help="A recording: the campaign file says what its set point shows. Needs --vessel.",
+)
+@click.option("--vessel", help=f"Vessel file of that recording, {NAMES} stan-tug-1205: says which channel it is.")
+@click.option("-o", "--output", type=click.Path(path_type=Path), help="The file, in place of FILE.")
 @card_options
-def command(kind: Literal["vessel", "campaign"], file: Path, test: str | None, **said: object) -> None:
+def command(
+    kind: Literal["vessel", "campaign"],
+    file: Path | None,
+    test: str | None,
+    recorded: Path | None,
+    vessel: str | None,
+    output: Path | None,
+    **said: object,
+) -> None:
     """Write a commented vessel or campaign file to fill in.
 
     FILE must not exist yet. It can be loaded as it stands; every key carries its unit in its name. The campaigns of
     --test are made for the Stan Tug 1205: predict says what they would ask of another ship.
+
+    With --from RECORDING and --vessel the campaign file says what the recorded set point shows, each sine, multisine,
+    binary sequence, chirp, staircase and ramp with its times; what is none of these is named.
 
     With what stands on a ship's card the vessel file is filled in. It needs --power-kw, --rated-rpm, --cylinders,
     --diameter-m, --blades, --pitch-ratio and --ratio or --propeller-rpm; the rest is derived or usual, and comments in
     the file say where each number is from and how uncertain it is.
     """
     card = card_of(said)
+    path = _path(file, output)
     if test is not None and kind != "campaign":
         raise click.UsageError("--test names a campaign to begin with; write `shaftprint new campaign`.")
     if card is not None and kind != "vessel":
         raise click.UsageError("A ship's card makes a vessel file; write `shaftprint new vessel`.")
-    if card is not None:
-        print_disagreements(write_vessel(card, file), str(file))
-        answer(f"{file}: a vessel file from the card; its comments say what was derived and what is usual only.")
+    if recorded is not None and vessel is not None:
+        if kind != "campaign" or test is not None or card is not None:
+            raise click.UsageError(
+                "--from makes a campaign file of a recording; write `shaftprint new campaign` alone."
+            )
+        write_recorded_campaign(recorded, vessel, path)
         return
-    write_template(kind, file, shipped=test)
-    answer(f"{file}: a {kind} to fill in." if test is None else f"{file}: {TESTS[test]}, for the Stan Tug 1205.")
+    if recorded is not None or vessel is not None:
+        raise click.UsageError("--from needs --vessel, which says what is in the recording, and --vessel --from.")
+    if card is not None:
+        print_disagreements(write_vessel(card, path), str(path))
+        answer(f"{path}: a vessel file from the card; its comments say what was derived and what is usual only.")
+        return
+    write_template(kind, path, shipped=test)
+    answer(f"{path}: a {kind} to fill in." if test is None else f"{path}: {TESTS[test]}, for the Stan Tug 1205.")
+
+
+def _path(file: Path | None, output: Path | None) -> Path:
+    """Return the file to write, which is named once."""
+    if file is not None and output is None:
+        return file
+    if output is not None and file is None:
+        return output
+    raise click.UsageError("expected the file to write once: FILE or -o FILE.")

@@ -113,7 +113,7 @@ class FoundTest:
 
     @property
     def phase_error_deg(self) -> float:
-        """Phase of a sine beyond that which the campaign states for its start [deg], -180 to 180; 0 for another test."""
+        """Phase of a sine beyond that which the campaign states at its start [deg], -180 to 180; 0 for another test."""
         if not isinstance(self.planned, Sine) or not self.is_found:
             return 0.0
         turns = (self.planned.start_s - self.rising_s) * self.frequency_hz - self.planned.phase_rad / (2.0 * math.pi)

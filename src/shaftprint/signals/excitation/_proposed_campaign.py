@@ -16,8 +16,8 @@ def proposed_campaign(found: tuple[FoundTest, ...], campaign: Campaign) -> Campa
     """Return the campaign with begin, phase, sign and frequency of every test as the set point shows them.
 
     A sine begins where it rises through its middle, the time nearest to its real begin that leaves the test before it
-    alone, or at its real begin, with its phase there, where that would be too late for its window. Its analysis begins as long after the real
-    begin as was planned. Tests that were not found are left out.
+    alone, or at its real begin, with its phase there, where that would be too late for its window. Its analysis begins
+    as long after the real begin as was planned. Tests that were not found are left out.
 
     Parameters
     ----------
