@@ -47,6 +47,7 @@ from shaftprint.signals.levels import (
     expect_steady_gauge,
     find_working_point,
     leg_state,
+    scale_of_sines,
     steady_stretches,
     stretches_at_working_point,
     working_point_of_test,
@@ -278,7 +279,10 @@ def _steady_state(
             stretches, tests, speed_rev_s=speed, torque_nm=torque, **grid, channel=gauge, coverage=coverage
         )
         _calibrated_in_place(n_set, calibration)
-        scale = _rescale(n_set, speed, tests, coverage, calibration, **grid, about=point.engine_speed_rev_s)
+        if calibration.level_v.size > 1:
+            scale = _rescale(n_set, speed, tests, coverage, calibration, **grid, about=point.engine_speed_rev_s)
+        else:
+            scale = scale_of_sines(calibration)
     steady = SteadyState(
         clock=clock, stretches=quiet, working_point=point, calibration=calibration, scale=scale, speed_rev_s=speed
     )

@@ -1,7 +1,14 @@
 """Steady stretches, the wander about them, and what is read from their means: calibration and working point."""
 
 from shaftprint.signals.levels._calibrate import calibrate, calibrate_through_wander
-from shaftprint.signals.levels._dc_scale import DcScale, LowLines, dc_scale, low_lines, zero_frequency_ratio
+from shaftprint.signals.levels._dc_scale import (
+    DcScale,
+    LowLines,
+    dc_scale,
+    low_lines,
+    scale_of_sines,
+    zero_frequency_ratio,
+)
 from shaftprint.signals.levels._leg_periods import LegPeriods, leg_periods
 from shaftprint.signals.levels._leg_state import LegSamples, calibration_of_legs, leg_state, stretch_of
 from shaftprint.signals.levels._load import torque_of_mean_load
@@ -41,6 +48,7 @@ __all__ = [
     "low_lines",
     "mean_of_stretches",
     "repeated_periods",
+    "scale_of_sines",
     "steady_stretches",
     "stretch_of",
     "stretches_at_working_point",

@@ -15,6 +15,7 @@ from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import SignalError
 from shaftprint.signals._gaps import EVERYTHING, Coverage
 from shaftprint.signals._signals import SetPointCalibration
+from shaftprint.signals.levels._dc_scale import FEWEST_LINES, low_lines, period_amplitudes, zero_frequency_ratio
 from shaftprint.signals.levels._wander import fit_through_wander
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 _SAME_LEVEL = 0.02
 _SAME_LEVEL_V = 0.05
 _LEAST_RELATIVE_STD = 1e-5
+_FEWEST_LEVELS = 2
 # Stretches and sines are cut into windows of this length [s], longer where there would be too many of them and shorter
 # where there would be too few.
 _WINDOWS_S = (10.0, 5.0, 2.5)
@@ -77,6 +79,8 @@ def calibrate_through_wander(
 ) -> tuple[SetPointCalibration, float, float]:
     """Return the line through steady levels and sines, its speed at the working voltage and that one's deviation.
 
+    Where the set point stands at one level only, its slope is that with which the speed follows the slow sines.
+
     Parameters
     ----------
     stretches
@@ -99,9 +103,15 @@ def calibrate_through_wander(
     Raises
     ------
     SignalError
-        If there are fewer than two levels.
+        If there are fewer than two levels, and fewer than three slow sines.
     """
-    level_v, level_rev_s, level_std = _two_levels(stretches, channel)
+    level_v, level_rev_s, level_std = _levels(stretches)
+    by_sines = None
+    if level_v.size < _FEWEST_LEVELS:
+        grid = {"rate_hz": rate_hz, "start_s": start_s}
+        by_sines = _slope_of_sines(set_point_v - about_v, speed_rev_s, campaign, **grid, coverage=coverage)
+    if by_sines is None:
+        level_v, level_rev_s, level_std = _two_levels(stretches, channel)
     total = sum(stretch.duration_s for stretch in stretches) + sum(sine.window_s for sine in campaign.sines)
     for length_s in (max(_WINDOWS_S[0], total / _MOST_WINDOWS), *_WINDOWS_S[1:]):
         windows = [
@@ -116,21 +126,58 @@ def calibrate_through_wander(
         np.array([values[first:stop].mean() for first, stop in windows]) for values in (set_point_v, speed_rev_s)
     )
     begins, ends = np.array(windows).T / rate_hz
-    columns = np.column_stack([np.ones(volts.size), volts - about_v])
-    line = fit_through_wander(speed, columns, begins, ends)
+    if by_sines is not None:
+        at_voltage = fit_through_wander(speed - by_sines[0] * (volts - about_v), np.ones((volts.size, 1)), begins, ends)
+        value = np.array([at_voltage.value[0], by_sines[0]])
+        covariance = np.diag([at_voltage.std[0], by_sines[1]]) ** 2
+    else:
+        columns = np.column_stack([np.ones(volts.size), volts - about_v])
+        line = fit_through_wander(speed, columns, begins, ends)
+        value, covariance = line.value, line.covariance
     # from (speed at the working voltage, slope) to (slope, intercept)
     turn = np.array([[0.0, 1.0], [1.0, -about_v]])
-    slope, intercept = turn @ line.value
-    spread = np.array([0.0, step_v * slope]) ** 2 / (12.0 * np.sum((level_v - level_v.mean()) ** 2))
+    slope, intercept = turn @ value
+    apart = np.sum((level_v - level_v.mean()) ** 2)
+    spread = np.array([0.0, step_v * slope]) ** 2 / (12.0 * apart) if by_sines is None else np.zeros(2)
     calibration = SetPointCalibration(
         slope_rev_s_per_v=float(slope),
         intercept_rev_s=float(intercept),
-        covariance=frozen_float(turn @ (line.covariance + np.diag(spread)) @ turn.T),
+        covariance=frozen_float(turn @ (covariance + np.diag(spread)) @ turn.T),
         level_v=frozen_float(level_v),
         level_rev_s=frozen_float(level_rev_s),
         level_std_rev_s=frozen_float(level_std),
     )
-    return calibration, float(line.value[0]), float(line.std[0])
+    return calibration, float(value[0]), float(np.sqrt(covariance[0, 0]))
+
+
+def _slope_of_sines(
+    about_v: FloatArray,
+    speed_rev_s: FloatArray,
+    campaign: "Campaign",
+    *,
+    rate_hz: float,
+    start_s: float,
+    coverage: Coverage,
+) -> tuple[float, float] | None:
+    """Return the slope of the line [rev/s per V] that makes slow sines of the speed follow, and its deviation.
+
+    Nothing is returned where there are too few slow sines.
+    """
+    grid = {"rate_hz": rate_hz, "start_s": start_s}
+    whole = [
+        sine
+        for sine in sorted(campaign.sines, key=lambda sine: sine.frequency_hz)
+        if sine.settled_s >= start_s and not coverage.missing(sine.settled_s, sine.window_stop_s)
+    ]
+    if not whole:
+        return None
+    volts, speed = (period_amplitudes(values, whole[0], **grid) for values in (about_v, speed_rev_s))
+    roughly = float(np.vdot(volts, speed).real / np.sum(np.abs(volts) ** 2))
+    lines = low_lines(roughly * about_v, speed_rev_s, campaign, **grid, coverage=coverage)
+    if roughly == 0.0 or lines.omega_rad_s.size < FEWEST_LINES:
+        return None
+    ratio, std = zero_frequency_ratio(lines)
+    return roughly * ratio, abs(roughly) * std
 
 
 def _windows(
@@ -151,11 +198,12 @@ def _windows(
 def _two_levels(stretches: "tuple[SteadyStretch, ...]", channel: str) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return voltage, speed and standard deviation of the speed of each level; two at least."""
     volts, speed, deviation = _levels(stretches)
-    if volts.size < 2:
+    if volts.size < _FEWEST_LEVELS:
         level_list = ", ".join(f"{level:.3f} V" for level in volts) or "none"
         raise SignalError(
             f"channel {channel}: expected at least two steady levels of the set point to find its "
-            f"line, found {level_list}; record a staircase with two or more levels of at least 30 s."
+            f"line, found {level_list}; record a staircase with two or more levels of at least 30 s, or three slow "
+            "sines with two periods or more."
         )
     return volts, speed, deviation
 

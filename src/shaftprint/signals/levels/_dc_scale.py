@@ -18,12 +18,14 @@ from shaftprint.arrays import ComplexArray, FloatArray
 from shaftprint.campaign import Campaign, Sine
 from shaftprint.digits import stated
 from shaftprint.signals._gaps import EVERYTHING, Coverage
+from shaftprint.signals._signals import SetPointCalibration
 
 # Lines whose ratio is further from 1 are beyond the reach of the low-order form: up to here the delays
 # of the reference ship turn into an error of 2e-4, up to 0.3 into 1e-3.
 _LARGEST_DEPARTURE = 0.2
 _MOST_LINES = 9
-_FEWEST_LINES = 3
+FEWEST_LINES = 3
+"""So many slow sines know the scale of the set point."""
 
 # The scatter of a line with few periods is drawn towards that of all lines, as with so many more.
 _PRIOR_DEGREES = 4.0
@@ -89,13 +91,13 @@ def dc_scale(
         Says where the gaps are.
     """
     lines = low_lines(set_point_rev_s, speed_rev_s, campaign, rate_hz=rate_hz, start_s=start_s, coverage=coverage)
-    if lines.omega_rad_s.size < _FEWEST_LINES:
+    if lines.omega_rad_s.size < FEWEST_LINES:
         return DcScale(
             value=1.0,
             std=slope_std,
             findings=(
                 f"the scale of the set point rests on the steady levels alone: expected at least "
-                f"{_FEWEST_LINES} slow sines with two periods or more to check it, found "
+                f"{FEWEST_LINES} slow sines with two periods or more to check it, found "
                 f"{lines.omega_rad_s.size}",
             ),
         )
@@ -117,6 +119,13 @@ def dc_scale(
     )
 
 
+def scale_of_sines(calibration: SetPointCalibration) -> DcScale:
+    """Return the factor where the line is from the slow sines already: 1, with the deviation of its slope."""
+    std = float(calibration.covariance[0, 0]) ** 0.5 / abs(calibration.slope_rev_s_per_v)
+    finding = "the line of the set point rests on the slow sines: the set point stood at one level only"
+    return DcScale(value=1.0, std=std, findings=(finding,))
+
+
 def low_lines(
     set_point_rev_s: FloatArray,
     speed_rev_s: FloatArray,
@@ -131,7 +140,7 @@ def low_lines(
     for sine in sorted(campaign.sines, key=lambda sine: sine.frequency_hz)[:_MOST_LINES]:
         if sine.periods < 2 or sine.settled_s < start_s or coverage.missing(sine.settled_s, sine.window_stop_s):
             continue
-        pair = [_period_amplitudes(values, sine, rate_hz, start_s) for values in (set_point_rev_s, speed_rev_s)]
+        pair = [period_amplitudes(values, sine, rate_hz, start_s) for values in (set_point_rev_s, speed_rev_s)]
         set_point_power = float(np.sum(np.abs(pair[0]) ** 2))
         response = complex(np.vdot(pair[0], pair[1])) / set_point_power
         if abs(response - 1.0) > _LARGEST_DEPARTURE:
@@ -176,7 +185,7 @@ def zero_frequency_ratio(lines: LowLines) -> tuple[float, float]:
     return float(coefficients[0]), float(np.sqrt(covariance[0, 0] * enlarged))
 
 
-def _period_amplitudes(values: FloatArray, sine: Sine, rate_hz: float, start_s: float) -> ComplexArray:
+def period_amplitudes(values: FloatArray, sine: Sine, rate_hz: float, start_s: float) -> ComplexArray:
     """Return the complex amplitude in each whole period.
 
     Offset, drift and harmonics are those of the whole window, fitted together. A drift
