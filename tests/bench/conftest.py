@@ -137,3 +137,31 @@ def run_program():
         return CliRunner().invoke(shaftprint, [str(argument) for argument in arguments], catch_exceptions=False)
 
     return run
+
+
+SHORT = ("binary", "slow", "load")
+
+
+def identified(folder, run_program, **truth):
+    """Identify the motor from three short records in a folder."""
+    tests = bench_truth.motor_tests(seconds=1.6)
+    paths = motor_files(folder, tests={name: tests[name] for name in SHORT}, **truth)
+    (folder / "motor.toml").write_text(MOTOR_TOML, encoding="utf-8")
+    result = run_program(
+        "identify", *paths.values(), "--drive", folder / "motor.toml", "--starts", "1", "-o", folder / "result"
+    )
+    assert result.exit_code == 0, result.output
+    return folder, result
+
+
+@pytest.fixture(scope="session")
+def motor(tmp_path_factory, run_program):
+    """The motor as it was identified, and what the program said."""
+    return identified(tmp_path_factory.mktemp("bench"), run_program)
+
+
+@pytest.fixture(scope="session")
+def heavier(tmp_path_factory, run_program):
+    """The same motor on another day, with a flywheel that adds three hundredths of its inertia."""
+    inertia = 1.03 * bench_truth.MOTOR["J"]
+    return identified(tmp_path_factory.mktemp("heavier"), run_program, J=inertia)

@@ -22,19 +22,6 @@ def expect_truth(fingerprint, truth, names):
         assert found[name].std < 0.1 * abs(truth[name]), name
 
 
-@pytest.fixture(scope="module")
-def motor(tmp_path_factory, run_program):
-    folder = tmp_path_factory.mktemp("bench")
-    tests = bench_truth.motor_tests(seconds=1.6)
-    paths = motor_files(folder, tests={name: tests[name] for name in ("binary", "slow", "load")})
-    (folder / "motor.toml").write_text(MOTOR_TOML, encoding="utf-8")
-    result = run_program(
-        "identify", *paths.values(), "--drive", folder / "motor.toml", "--starts", "1", "-o", folder / "result"
-    )
-    assert result.exit_code == 0, result.output
-    return folder, result
-
-
 def test_motor_is_identified_from_several_records(motor):
     folder, result = motor
     fingerprint = read_drive_fingerprint(folder / "result" / "fingerprint.json")

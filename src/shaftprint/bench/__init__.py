@@ -9,22 +9,38 @@ parameter           stated    in its own unit, with one standard deviation
 =================== ========= ========================================================================================
 """
 
+from shaftprint.bench._compare import DriveDifference, drive_differences
 from shaftprint.bench._composed import composed
 from shaftprint.bench._equipped import EquippedDrive, equipped
 from shaftprint.bench._fingerprint import drive_fingerprint, identified_drive
 from shaftprint.bench._fit import STARTS, DriveFit, drive_settings, drive_time_settings, identify_drive
+from shaftprint.bench._kept import kept_drive
+from shaftprint.bench._predict import predict_drive
 from shaftprint.bench._records import read_records
+from shaftprint.bench._structures import TimeCandidate, TimeComparison, TimeRatio, compare_in_time, without
+from shaftprint.bench._validate import ValidatedRecord, validate_drive
 
 __all__ = [
     "STARTS",
+    "DriveDifference",
     "DriveFit",
     "EquippedDrive",
+    "TimeCandidate",
+    "TimeComparison",
+    "TimeRatio",
+    "ValidatedRecord",
+    "compare_in_time",
     "composed",
+    "drive_differences",
     "drive_fingerprint",
     "drive_settings",
     "drive_time_settings",
     "equipped",
     "identified_drive",
     "identify_drive",
+    "kept_drive",
+    "predict_drive",
     "read_records",
+    "validate_drive",
+    "without",
 ]

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from shaftprint.arrays import BoolArray, FloatArray
+from shaftprint.arrays import FloatArray
 from shaftprint.bench._equipped import EquippedDrive
-from shaftprint.drive import Drive, Signal, Stretch, unit_factor
+from shaftprint.drive import Signal, Stretch, unit_factor
 from shaftprint.errors import RecordingError
 from shaftprint.recording import Channel, Recording, read_recording
 from shaftprint.time_domain import Record, record_from_arrays
@@ -17,7 +17,9 @@ FEWEST = 20
 """Least number of samples of a record."""
 
 
-def read_records(paths: Sequence[Path], one: EquippedDrive, **hints: Any) -> tuple[Record, ...]:
+def read_records(
+    paths: Sequence[Path], one: EquippedDrive, *, planned: bool = False, **hints: Any
+) -> tuple[Record, ...]:
     """Return the records of a drive: each file one, or the stretches that the drive file names in each.
 
     Parameters
@@ -26,6 +28,8 @@ def read_records(paths: Sequence[Path], one: EquippedDrive, **hints: Any) -> tup
         The files.
     one
         The drive, whose signals name the channels.
+    planned
+        Whether the files hold inputs only; the outputs of the records are then zero.
     hints
         What the files do not say, as for ``read_recording``.
 
@@ -38,7 +42,10 @@ def read_records(paths: Sequence[Path], one: EquippedDrive, **hints: Any) -> tup
     records = []
     for path in paths:
         with read_recording(path, **hints) as recording:
-            channels = {signal.name: _channel(recording, signal, path) for signal in one.drive.signals}
+            channels = {
+                signal.name: _channel(recording, signal, path)
+                for signal in (one.drive.inputs if planned else one.drive.signals)
+            }
             _expect_one_clock(channels, path)
             records += [_record(path, channels, one, stretch) for stretch in one.drive.records or (None,)]
     names = [record.name for record in records]
@@ -91,20 +98,15 @@ def _record(path: Path, channels: dict[str, Channel], one: EquippedDrive, stretc
     if last - first < FEWEST:
         raise RecordingError(f"{path}: expected {FEWEST} samples or more in a record, found {last - first}.")
     values = {key: one.factors[key] * channel.values(first, last) for key, channel in channels.items()}
-    drive = one.drive
+    drive, nothing = one.drive, np.zeros(last - first)
     return record_from_arrays(
         name,
         {key: _finite(values[key], channels[key], first, path) for key in one.structure.inputs},
-        {signal.name: values[signal.name] for signal in drive.outputs},
+        {signal.name: values.get(signal.name, nothing) for signal in drive.outputs},
         rate_hz=clock.rate_hz,
-        used=_used(values, drive),
         start_s=clock.start_s + first / clock.rate_hz,
         hold=drive.fit.inputs_hold,
     )
-
-
-def _used(values: dict[str, FloatArray], drive: Drive) -> BoolArray:
-    return np.asarray(np.all([np.isfinite(values[signal.name]) for signal in drive.outputs], axis=0))
 
 
 def _finite(values: FloatArray, channel: Channel, first: int, path: Path) -> FloatArray:

@@ -1,7 +1,7 @@
 """The option ``--drive`` and what the commands do with it: a drive file in place of vessel and campaign."""
 
 import hashlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -9,13 +9,15 @@ from typing import Any
 import click
 from click.core import ParameterSource
 
-from shaftprint.bench import EquippedDrive, equipped
+from shaftprint.bench import EquippedDrive, equipped, kept_drive
 from shaftprint.cli._fit_options import FitOptions, held_structures
 from shaftprint.cli._options import structure_sources
 from shaftprint.cli._own_structure import TypedName, chosen_structures, own_file
+from shaftprint.cli.output import fingerprint_file
 from shaftprint.drive import Drive, load_drive
-from shaftprint.errors import SettingsError
-from shaftprint.fingerprint import SourceFile
+from shaftprint.errors import FingerprintError, SettingsError
+from shaftprint.files import read_json
+from shaftprint.fingerprint import DriveFingerprint, SourceFile, is_of_a_drive, read_drive_fingerprint
 from shaftprint.identify import Prior
 
 
@@ -106,13 +108,14 @@ def drive_sources(recordings: Sequence[Path], drive_file: Path, names: Sequence[
     """Return recordings, drive file and own structures with their hashes."""
     files = [("recording", path) for path in recordings]
     return (
-        *(SourceFile.model_validate({"role": role, "name": p.name, "sha256": _sha256(p)}) for role, p in files),
-        SourceFile(role="drive", name=drive_file.name, sha256=_sha256(drive_file)),
+        *(SourceFile.model_validate({"role": role, "name": p.name, "sha256": file_sha256(p)}) for role, p in files),
+        SourceFile(role="drive", name=drive_file.name, sha256=file_sha256(drive_file)),
         *structure_sources(names),
     )
 
 
-def _sha256(path: Path) -> str:
+def file_sha256(path: Path) -> str:
+    """Return the SHA-256 of a file, hexadecimal."""
     with path.open("rb") as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
@@ -131,3 +134,36 @@ def only_recording(recordings: Sequence[Path]) -> Path:
             "`shaftprint join`, those of several by `shaftprint merge`."
         )
     return recordings[0]
+
+
+def is_drive_place(place: Path) -> bool:
+    """Return whether a fingerprint, named by its file or folder, says that it is of a drive; False where it is none."""
+    try:
+        _, content = read_json(fingerprint_file(place), noun="fingerprint", where="", error=FingerprintError)
+    except FingerprintError:
+        # what is wrong with it says whoever reads it
+        return False
+    return is_of_a_drive(content)
+
+
+def drive_fingerprint_at(place: Path) -> DriveFingerprint:
+    """Return the fingerprint of a drive that is named by its file or folder.
+
+    Raises
+    ------
+    FingerprintError
+        If there is none.
+    """
+    return read_drive_fingerprint(fingerprint_file(place))
+
+
+def kept_one(kept: DriveFingerprint, drive_file: Path | None, name: TypedName | None) -> EquippedDrive:
+    """Return the drive of a fingerprint: from its file where that is given, with the user's structure where named."""
+    own = None if name is None else chosen_structures([name])[0]
+    return kept_drive(kept, None if drive_file is None else load_drive(drive_file), own=own)
+
+
+def holding(one: EquippedDrive, held: Mapping[str, float]) -> EquippedDrive:
+    """Return a drive with some parameters held at values."""
+    priors = {name: prior for name, prior in one.priors.items() if name not in held}
+    return replace(one, structure=one.structure.held_at(**held), priors=priors)

@@ -27,7 +27,6 @@ from shaftprint.export._fmu_description import (
 from shaftprint.export._fmu_equations import FmuEquations
 from shaftprint.export._fmu_program import FmuProgram, fmu_program, largest_pole
 from shaftprint.export._fmu_samples import posterior_deviations
-from shaftprint.export._fmu_signals import fmu_signal
 from shaftprint.export._fmu_variables import Variable, variables
 from shaftprint.export._model import ExportedModel
 from shaftprint.files import written_whole
@@ -110,8 +109,8 @@ def write_fmu(
     pole = largest_pole(ready, model.values + draws)
     equations = FmuEquations(
         ready=ready,
-        inputs=tuple(fmu_signal(name) for name in ready.program.inputs),
-        outputs=tuple(fmu_signal(name) for name in ready.program.outputs),
+        inputs=tuple(model.signal(name) for name in ready.program.inputs),
+        outputs=tuple(model.signal(name) for name in ready.program.outputs),
         start=model.values,
         settings=(model.engine_speed_rpm, model.shaft_torque_nm, _internal_step(model, pole)),
         draws=draws,
@@ -157,8 +156,7 @@ def _described(
     texts["model.h"] = equations.header(token)
     description = FmuDescription(
         title=title,
-        words=f"{structure.title}; identified by shaftprint about {model.engine_speed_rpm:.1f} rpm and "
-        f"{model.shaft_torque_nm:.0f} N m{_remark(model)}",
+        words=f"{structure.title}; identified by shaftprint{_about(model)}{_remark(model)}",
         identifier=name,
         token=token,
         variables=variables(model, equations),
@@ -172,6 +170,12 @@ def _described(
 def _remark(model: ExportedModel) -> str:
     """Return what whoever uses the model must know, as the end of a description."""
     return f"; {printable(model.remark)}" if model.remark else ""
+
+
+def _about(model: ExportedModel) -> str:
+    if not model.is_of_a_ship:
+        return ""
+    return f" about {model.engine_speed_rpm:.1f} rpm and {model.shaft_torque_nm:.0f} N m"
 
 
 def _indicators(equations: FmuEquations) -> tuple[Variable, ...]:
@@ -253,4 +257,4 @@ def _late_outputs(ready: FmuProgram, model: ExportedModel) -> tuple[str, ...]:
     leaves = {("parameter", i): value for i, value in enumerate(model.values)}
     delays_s = evaluate(ready.lateness, leaves)
     names = ready.program.outputs
-    return tuple(fmu_signal(name).name for name, late in zip(names, delays_s, strict=True) if float(late) > 0.0)
+    return tuple(model.signal(name).name for name, late in zip(names, delays_s, strict=True) if float(late) > 0.0)

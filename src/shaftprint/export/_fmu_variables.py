@@ -50,7 +50,7 @@ def variables(model: ExportedModel, equations: FmuEquations) -> tuple[Variable, 
             unit="s",
         ),
         *_signals(model, equations),
-        *_settings(equations),
+        *_settings(model, equations),
         *_parameters(model, equations),
         *_inner(equations),
     )
@@ -82,7 +82,7 @@ def _signals(model: ExportedModel, equations: FmuEquations) -> Iterator[Variable
         )
 
 
-def _settings(equations: FmuEquations) -> Iterator[Variable]:
+def _settings(model: ExportedModel, equations: FmuEquations) -> Iterator[Variable]:
     references = equations.references
     speed, torque, step = equations.settings
     names = (
@@ -91,6 +91,8 @@ def _settings(equations: FmuEquations) -> Iterator[Variable]:
         ("internal_step", "s", step, "fixed", "upper bound of the internal step in co-simulation"),
     )
     for i, (name, unit, start, variability, meaning) in enumerate(names):
+        if name.startswith("working_point.") and not model.is_of_a_ship:
+            continue
         yield Variable(
             name=name,
             reference=references["SETTING"] + i,

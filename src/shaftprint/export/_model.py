@@ -8,6 +8,7 @@ import numpy as np
 from shaftprint.arguments import refusing_none
 from shaftprint.arrays import FloatArray, frozen_float
 from shaftprint.errors import ExportError
+from shaftprint.export._fmu_signals import DEVIATION, FmuSignal, fmu_signal
 from shaftprint.fingerprint import Fingerprint, identified_model, model_with_limits, named_structure
 from shaftprint.models import Structure
 from shaftprint.notebook import Shown, Summary, shortened
@@ -23,10 +24,10 @@ class ExportedModel(Shown):
     """The structure."""
     values: FloatArray
     """All its parameters, shape (parameters,)."""
-    engine_speed_rpm: float
-    """Engine speed of the working point [rpm]."""
-    shaft_torque_nm: float
-    """Shaft torque at the gauge of the working point [N m]."""
+    engine_speed_rpm: float = 1.0
+    """Engine speed of the working point [rpm]; of no use for a drive."""
+    shaft_torque_nm: float = 1.0
+    """Shaft torque at the gauge of the working point [N m]; of no use for a drive."""
     uncertain: tuple[str, ...] = ()
     """Parameters whose uncertainty is known."""
     covariance: FloatArray | None = None
@@ -37,6 +38,8 @@ class ExportedModel(Shown):
     """95 % intervals of parameters whose standard deviation does not tell what the interval tells."""
     remark: str = ""
     """What whoever uses it must know, such as that it fails its own validation; empty where there is nothing."""
+    units: Mapping[str, str] = field(default_factory=dict)
+    """Unit of each input and output of a drive, which are whole values; empty for a ship's line."""
 
     def __post_init__(self) -> None:
         """Check that every number may stand in a file that others compute with.
@@ -69,12 +72,25 @@ class ExportedModel(Shown):
         """Return which model it is, and what of it is known."""
         facts = {
             "structure": f"{self.structure.name}: {self.structure.title}",
-            "working point": f"{self.engine_speed_rpm:.1f} rpm, {self.shaft_torque_nm:.0f} N m",
+            "working point": f"{self.engine_speed_rpm:.1f} rpm, {self.shaft_torque_nm:.0f} N m"
+            if self.is_of_a_ship
+            else "",
             "values": shortened(f"{n} {v:.4g}" for n, v in zip(self.structure.names, self.values, strict=True)),
             "uncertain": shortened(self.uncertain),
             "not known": shortened(self.not_known),
         }
         return Summary(title=f"Model of {self.title}", facts=facts)
+
+    @property
+    def is_of_a_ship(self) -> bool:
+        """Whether it deviates from the working point of a ship's line, which a drive does not have."""
+        return not self.units
+
+    def signal(self, name: str) -> FmuSignal:
+        """Return what an input or output is outside of the equations."""
+        if self.is_of_a_ship:
+            return fmu_signal(name)
+        return FmuSignal(name, self.units[name], DEVIATION, is_whole=False, meaning=f"{name} of the drive")
 
     @property
     def covariance_matrix(self) -> FloatArray:

@@ -12,7 +12,7 @@ from xml.etree.ElementTree import Element, SubElement
 
 from shaftprint.arguments import refusing_none
 from shaftprint.errors import ExportError
-from shaftprint.export._fmu_signals import ENGINE_SPEED, SHAFT_TORQUE, FmuSignal, fmu_signal
+from shaftprint.export._fmu_signals import ENGINE_SPEED, SHAFT_TORQUE, FmuSignal
 from shaftprint.export._fmu_units import unit_definitions, unit_name
 from shaftprint.export._fmu_variables import structured_name
 from shaftprint.export._model import ExportedModel
@@ -52,8 +52,8 @@ def write_osp(model: ExportedModel, fmu: str | Path, *, overwrite: bool = False)
 
 def osp_description(model: ExportedModel) -> bytes:
     """Return the description of a model's variable groups as XML."""
-    inputs = [fmu_signal(name) for name in model.structure.inputs]
-    outputs = [fmu_signal(name) for name in model.structure.outputs]
+    inputs = [model.signal(name) for name in model.structure.inputs]
+    outputs = [model.signal(name) for name in model.structure.outputs]
     root = Element("OspModelDescription", xmlns=NAMESPACE, version=VERSION)
     root.append(unit_definitions(signal.unit for signal in (*inputs, *outputs)))
     groups = SubElement(root, "VariableGroups")

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from shaftprint.digits import interval, plain_letters, to_digit_of
 from shaftprint.distributions import NORMAL_95
-from shaftprint.export._fmu_signals import FmuSignal, fmu_signal
+from shaftprint.export._fmu_signals import FmuSignal
 from shaftprint.export._model import ExportedModel
 from shaftprint.models import Parameter
 
@@ -24,7 +24,7 @@ class ScaledSignal:
 
 def scaled_signal(model: ExportedModel, name: str) -> ScaledSignal:
     """Return an input or output of a structure as it is outside."""
-    signal = fmu_signal(name)
+    signal = model.signal(name)
     sizes = (model.engine_speed_rpm, model.shaft_torque_nm)
     scale = sizes[signal.setting] if signal.setting >= 0 else 1.0
     return ScaledSignal(signal=signal, scale=scale, offset=scale if signal.is_whole else 0.0)

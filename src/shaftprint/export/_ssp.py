@@ -73,5 +73,7 @@ def _entries(model: ExportedModel) -> list[tuple[str, str, float, str]]:
         ("working_point.engine_speed", "rpm", model.engine_speed_rpm, "engine speed of the working point"),
         ("working_point.shaft_torque", "N m", model.shaft_torque_nm, "shaft torque at the gauge of the working point"),
     ]
+    if not model.is_of_a_ship:
+        entries = []
     entries += [(structured_name(p.name), p.unit, value, words) for p, value, words in described_parameters(model)]
     return entries

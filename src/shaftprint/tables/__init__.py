@@ -15,7 +15,14 @@ its letters (±, a true minus sign, a narrow space between thousands) into those
 """
 
 from shaftprint.digits import interval, p_value_text, plain, rounded, to_digit_of, unit_text, with_deviation
-from shaftprint.tables._drive import drive_assumed_table, drive_record_table
+from shaftprint.tables._drive import (
+    drive_assumed_table,
+    drive_difference_table,
+    drive_prediction_table,
+    drive_record_table,
+    time_comparison_table,
+    validated_drive_table,
+)
 from shaftprint.tables._fingerprint import (
     NO_TRUTH,
     budget_table,
@@ -76,6 +83,8 @@ __all__ = [
     "clock_table",
     "combination_table",
     "drive_assumed_table",
+    "drive_difference_table",
+    "drive_prediction_table",
     "drive_record_table",
     "excerpt_name",
     "expected_inertia_table",
@@ -115,10 +124,12 @@ __all__ = [
     "strip_table",
     "structure_tables",
     "texts",
+    "time_comparison_table",
     "to_digit_of",
     "truth_of_combinations",
     "two_mass_sentence",
     "unit_text",
+    "validated_drive_table",
     "water_table",
     "window_table",
     "wish_table",

@@ -1,12 +1,18 @@
-"""Tables of a drive that is no ship's: records, and what was known or held."""
+"""Tables of a drive that is no ship's: records, what was known or held, differences, validation, structures."""
 
+import math
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.digits import p_value_text, rounded, stated, unit_text
-from shaftprint.tables._table import Symbol, Table, numbers, texts
+from shaftprint.digits import p_value_text, rounded, stated, unit_text, with_deviation
+from shaftprint.tables._table import MEANING, Symbol, Table, numbers, texts
 
 if TYPE_CHECKING:
+    from shaftprint.bench import DriveDifference, TimeComparison, ValidatedRecord
     from shaftprint.fingerprint import DriveFingerprint
+    from shaftprint.models import Structure
+
+PERCENT = 100.0
 
 NOTE = "FitPercent is 100 % where nothing is left; its ceiling is what a perfect model would have beside this noise."
 
@@ -45,3 +51,84 @@ def drive_assumed_table(fingerprint: "DriveFingerprint") -> Table:
     ]
     rows += [(Symbol(name), "held", f"{value:g}") for name, value in fingerprint.held.items()]
     return Table(title="What was taken as known", columns=texts("parameter", "how", "value"), rows=tuple(rows))
+
+
+def drive_difference_table(first: str, other: str, differences: "Sequence[DriveDifference]") -> Table:
+    """Return numbers of two fingerprints of a drive beside each other.
+
+    Parameters
+    ----------
+    first, other
+        What the fingerprints are called.
+    """
+    rows = []
+    for one in differences:
+        change = one.other.value - one.first.value
+        p_value = "" if one.p_value is None else p_value_text(one.p_value)
+        rows.append(
+            (
+                Symbol(one.first.name),
+                with_deviation(one.first.value, one.first.std),
+                with_deviation(one.other.value, one.other.std),
+                "" if one.p_value is None else with_deviation(change, one.std),
+                p_value,
+                one.outcome,
+                unit_text(one.first.unit),
+            )
+        )
+    columns = (*texts("quantity"), *numbers(first, other, "difference", "p"), *texts("outcome", "unit"))
+    return Table(title=f"{other} beside {first}", columns=columns, rows=tuple(rows))
+
+
+def validated_drive_table(records: "Sequence[ValidatedRecord]") -> Table:
+    """Return how well a drive's model explains records that it was not identified from."""
+    rows = [
+        (
+            record.fit.record.name,
+            Symbol(name),
+            f"{record.fit.fit_percent[name]:.2f}",
+            f"{record.fit.fit_ceiling[name]:.2f}",
+            f"{PERCENT * missed:.2f}",
+            record.outcome,
+        )
+        for record in records
+        for name, missed in record.missed.items()
+    ]
+    columns = (*texts("record", "output"), *numbers("FitPercent", "ceiling", "missed [%]"), *texts("outcome"))
+    note = (
+        "Missed is what other values or a more flexible model would explain, unless by chance, over the motion, root "
+        "mean square; up to 5 % passes."
+    )
+    return Table(title="Records beside the model", columns=columns, rows=tuple(rows), note=note)
+
+
+def drive_prediction_table(
+    structure: "Structure", values: Mapping[str, float], deviations: Mapping[str, float]
+) -> Table:
+    """Return the standard deviation that planned records would give of each free parameter."""
+    rows = []
+    for parameter in structure.free:
+        value, std = values[parameter.name], deviations[parameter.name]
+        share = f"{PERCENT * std / abs(value):.2g}" if value != 0.0 and math.isfinite(std) else "-"
+        rows.append(
+            (Symbol(parameter.name), with_deviation(value, std), share, unit_text(parameter.unit), parameter.meaning)
+        )
+    columns = (*texts("parameter"), *numbers("value ± std", "std [%]"), *texts("unit"), MEANING)
+    return Table(title="What the records would tell", columns=columns, rows=tuple(rows))
+
+
+def time_comparison_table(comparison: "TimeComparison") -> Table:
+    """Return the structures that were fitted to records, the best first."""
+    best = comparison.candidates[0].bic
+    rows = [
+        (
+            one.name,
+            str(len(one.fit.parameters)),
+            f"{2.0 * one.fit.cost:.1f}",
+            f"{one.bic - best:.1f}",
+            "-" if one.own.p_value is None else p_value_text(one.own.p_value),
+        )
+        for one in comparison.candidates
+    ]
+    columns = (*texts("structure"), *numbers("parameters", "deviance", "BIC above the best", "p of its own fit"))
+    return Table(title="Structures on the noise of the best", columns=columns, rows=tuple(rows))

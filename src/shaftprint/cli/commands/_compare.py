@@ -4,6 +4,8 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._drive_judge import compare_on_the_bench
+from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.cli.output import FINGERPRINT, REPORT, fingerprint_at, force_option, give, output_folder, print_tables
@@ -60,8 +62,15 @@ def command(
     """Compare fingerprints: what differs, and whether by more than chance.
 
     FINGERPRINTS are two or more JSON files, or the folders in which identify or demo has put them. All are
-    compared with the first. --name and --structure may be repeated.
+    compared with the first. --name and --structure may be repeated. Fingerprints of a drive are known as such.
     """
+    if len(fingerprints) >= FEWEST and all(map(is_drive_place, fingerprints)):
+        if output is not None:
+            raise click.UsageError("--output is for ships; fingerprints of a drive are compared on the terminal.")
+        compare_on_the_bench(
+            dict(zip(_called(fingerprints, names), map(drive_fingerprint_at, fingerprints), strict=True))
+        )
+        return
     named = _named(fingerprints, names)
     structures = {structure.name: structure for structure in chosen_structures(own)}
     load = load_percent / PERCENT
@@ -86,6 +95,11 @@ def command(
 
 
 def _named(places: tuple[Path, ...], names: tuple[str, ...]) -> dict[str, Fingerprint]:
+    return {name: fingerprint_at(path) for name, path in zip(_called(places, names), places, strict=True)}
+
+
+def _called(places: tuple[Path, ...], names: tuple[str, ...]) -> tuple[str, ...]:
+    """Return what fingerprints are called, each by a name of its own."""
     if len(places) < FEWEST:
         raise click.UsageError(f"expected two or more fingerprints, found {len(places)}; name another one.")
     if names and len(names) != len(places):
@@ -93,7 +107,7 @@ def _named(places: tuple[Path, ...], names: tuple[str, ...]) -> dict[str, Finger
     called = names or _short_names(places)
     if len(set(called)) < len(called):
         raise click.UsageError(f"expected different names, found {', '.join(called)}; tell them apart with --name.")
-    return {name: fingerprint_at(path) for name, path in zip(called, places, strict=True)}
+    return called
 
 
 def _short_names(places: tuple[Path, ...]) -> tuple[str, ...]:

@@ -5,6 +5,8 @@ from pathlib import Path
 import click
 import numpy as np
 
+from shaftprint.cli._drive_judge import compare_structures_on_the_bench
+from shaftprint.cli._drive_options import drive_option, expect_not_given, only_recording
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
@@ -15,14 +17,14 @@ from shaftprint.survey import load_trial, measure, pairs_of, settings_by_name
 
 
 @click.command("compare-structures")
-@click.argument("recording", type=click.Path(path_type=Path))
+@click.argument("recordings", metavar="RECORDING...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@drive_option
 @vessel_option
 @campaign_option
 @click.option(
     "--structure",
     "names",
     multiple=True,
-    required=True,
     metavar="NAME",
     help=f"Model structure, two or more of the same input and outputs: {OWN_FILE_HELP}.",
 )
@@ -33,14 +35,23 @@ from shaftprint.survey import load_trial, measure, pairs_of, settings_by_name
     show_default=True,
     help="Parts into which the lines are dealt, each to be predicted from the others; 0 for none.",
 )
+@click.option(
+    "--without",
+    "left_out",
+    multiple=True,
+    metavar="NAME",
+    help="With --drive: the first structure once more without a parameter, which is held at zero; may be repeated.",
+)
 @fit_options
 @no_progress_option
 def command(
-    recording: Path,
+    recordings: tuple[Path, ...],
+    drive_file: Path | None,
     vessel: str,
     campaign: str,
     names: tuple[TypedName, ...],
     folds: int,
+    left_out: tuple[str, ...],
     options: FitOptions,
     no_progress: bool,
 ) -> None:
@@ -49,7 +60,15 @@ def command(
     Each structure is fitted to the same lines, those of all legs where the campaign has legs. It wins that explains
     them with the fewest parameters (BIC); beside it stand a test of each fit, of each structure within a larger one,
     and how well each predicts lines that were left out. --structure, --prior, --free and --hold may be repeated.
+    With --drive, structures are fitted to records in time and held against each other on a common noise.
     """
+    if drive_file is not None:
+        expect_not_given("folds")
+        compare_structures_on_the_bench(recordings, drive_file, names, left_out, options, no_progress=no_progress)
+        return
+    if left_out:
+        raise click.UsageError("--without is for drives; hold a parameter of a ship with --hold.")
+    recording = only_recording(recordings)
     structures = structures_of(names, options)
     expect_comparable(structures)
     trial = load_trial(vessel, campaign)

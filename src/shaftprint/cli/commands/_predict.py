@@ -9,6 +9,8 @@ import numpy as np
 
 from shaftprint.campaign import Campaign, load_campaign
 from shaftprint.catalogue import structure
+from shaftprint.cli._drive_judge import predict_on_the_bench
+from shaftprint.cli._drive_options import drive_option, expect_not_given, is_given
 from shaftprint.cli._known_values import hold_option, named_value, prior_option, rpm_per_volt_option
 from shaftprint.cli._limit_uses import print_limit_uses
 from shaftprint.cli._options import NAMES, campaign_option
@@ -56,6 +58,27 @@ class _Ship:
 
 
 @click.command("predict")
+@drive_option
+@click.option(
+    "--input",
+    "inputs",
+    multiple=True,
+    type=click.Path(path_type=Path),
+    help="With --drive: a file with the planned inputs, a column each; may be repeated.",
+)
+@click.option(
+    "--noise",
+    "noise",
+    multiple=True,
+    metavar="NAME=STD",
+    type=named_value,
+    help="With --drive: noise of one sample of an output; may be repeated.",
+)
+@click.option(
+    "--fingerprint",
+    type=click.Path(path_type=Path),
+    help="With --drive: a result of identify, for values and noise.",
+)
 @campaign_option
 @click.option(
     "--structure", "name", default=CLOSED_LOOP, show_default=True, metavar="NAME", help=f"Structure: {OWN_FILE_HELP}."
@@ -84,6 +107,10 @@ class _Ship:
 )
 @no_progress_option
 def command(
+    drive_file: Path | None,
+    inputs: tuple[Path, ...],
+    noise: tuple[tuple[str, float], ...],
+    fingerprint: Path | None,
     campaign: str,
     name: TypedName,
     vessel: str | None,
@@ -101,7 +128,17 @@ def command(
     Prints the standard deviation of every parameter that the lines of a campaign would give, what they cannot
     separate, and what no test of these outputs can find. With --vessel also where the test would leave the limits of
     ship and engine. --prior, --free, --hold and --value may be repeated.
+    With --drive, the records of planned inputs are predicted instead.
     """
+    if drive_file is not None:
+        expect_not_given("campaign", "vessel", "recording", "recorded", "rpm_per_volt", "freed")
+        chosen_names = (name,) if is_given("name") else ()
+        predict_on_the_bench(
+            drive_file, inputs, chosen_names, dict(noise), fingerprint, dict(values), dict(priors), dict(held)
+        )
+        return
+    if inputs or noise or fingerprint is not None:
+        raise click.UsageError("--input, --noise and --fingerprint need --drive.")
     (chosen,) = chosen_structures([name])
     chosen = chosen.held_at(**dict(held))
     known = None

@@ -5,6 +5,8 @@ from pathlib import Path
 import click
 import numpy as np
 
+from shaftprint.cli._drive_judge import validate_on_the_bench
+from shaftprint.cli._drive_options import drive_option, expect_not_given, only_recording
 from shaftprint.cli._fit_options import FitOptions, fit_options, held_structures, settings_of, structures_of
 from shaftprint.cli._options import campaign_option, vessel_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, structure_to_use
@@ -35,7 +37,8 @@ DEFAULT_STRUCTURE = TypedName("GAUGE-CLOSED")
 
 
 @click.command("validate")
-@click.argument("recording", type=click.Path(path_type=Path))
+@click.argument("recordings", metavar="RECORDING...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@drive_option
 @vessel_option
 @campaign_option
 @click.option(
@@ -73,7 +76,8 @@ DEFAULT_STRUCTURE = TypedName("GAUGE-CLOSED")
 @force_option
 @no_progress_option
 def command(
-    recording: Path,
+    recordings: tuple[Path, ...],
+    drive_file: Path | None,
     vessel: str,
     campaign: str,
     fingerprint: Path | None,
@@ -94,8 +98,14 @@ def command(
     Prints for each stretch how much of the motion the model misses beyond noise, the delay that is left,
     overshoot, rise and settling of steps beside those that the model predicts, and whether the model passes. A
     fingerprint that has the line with its limits is validated with them, each stretch by a fit without it.
-    --record, --used, --prior, --free and --hold may be repeated.
+    --record, --used, --prior, --free and --hold may be repeated. With --drive, the model of --fingerprint is
+    held against other records of the drive.
     """
+    if drive_file is not None:
+        expect_not_given("records", "used", "allow_in_sample", "linear_torque", "thesis_sets", "output")
+        validate_on_the_bench(recordings, drive_file, fingerprint, structure, no_progress=no_progress)
+        return
+    recording = only_recording(recordings)
     trial = load_trial(vessel, campaign)
     kept = None if fingerprint is None else fingerprint_at(fingerprint)
     if kept is None:

@@ -9,7 +9,7 @@ from shaftprint.arguments import refusing_none
 from shaftprint.errors import ExportError
 from shaftprint.escape import html_text, modelica_string
 from shaftprint.export._c_text import identifier
-from shaftprint.export._fmu_signals import ENGINE_SPEED, FmuSignal, fmu_signal
+from shaftprint.export._fmu_signals import ENGINE_SPEED, FmuSignal
 from shaftprint.export._model import ExportedModel
 from shaftprint.export._parameter_descriptions import described_parameters
 from shaftprint.export.modelica._equations import ModelicaEquations, Names, modelica_equations
@@ -88,8 +88,8 @@ def package_name(text: str) -> str:
 def modelica_text(model: ExportedModel, package: str) -> tuple[str, ModelicaEquations]:
     """Return the text of a package and the equations in it."""
     names = Names()
-    inputs = [fmu_signal(name) for name in model.structure.inputs]
-    outputs = [fmu_signal(name) for name in model.structure.outputs]
+    inputs = [model.signal(name) for name in model.structure.inputs]
+    outputs = [model.signal(name) for name in model.structure.outputs]
     for signal in (*inputs, *outputs):
         names(signal.name)
     working_point = {
@@ -101,7 +101,7 @@ def modelica_text(model: ExportedModel, package: str) -> tuple[str, ModelicaEqua
     lines = [
         *(_connector(s, "RealInput", -110, i, len(inputs)) for i, s in enumerate(inputs)),
         *(_connector(s, "RealOutput", 110, i, len(outputs)) for i, s in enumerate(outputs)),
-        *(_parameter(name, *entry) for name, entry in working_point.items()),
+        *(_parameter(name, *entry) for name, entry in working_point.items() if model.is_of_a_ship),
         *(_parameter(parameters[p.name], p.unit, value, words) for p, value, words in described_parameters(model)),
         *equations.parameters,
     ]
@@ -124,11 +124,14 @@ def _remark(model: ExportedModel) -> str:
 
 
 def _class(kind: str, name: str, model: ExportedModel, lines: list[str], inner: list[str], relations: list[str]) -> str:
-    info = (
-        f"<html><p>{html_text(model.structure.title)}, identified about {model.engine_speed_rpm:.1f} rpm of the "
-        f"engine and {model.shaft_torque_nm:.0f} N m at the gauge. It begins in steady running at the working point."
-        f"</p>{f'<p>{html_text(model.remark)}</p>' if model.remark else ''}</html>"
+    about = (
+        f", identified about {model.engine_speed_rpm:.1f} rpm of the engine and {model.shaft_torque_nm:.0f} N m at the "
+        "gauge. It begins in steady running at the working point."
+        if model.is_of_a_ship
+        else ". It begins in steady running."
     )
+    remark = f"<p>{html_text(model.remark)}</p>" if model.remark else ""
+    info = f"<html><p>{html_text(model.structure.title)}{about}</p>{remark}</html>"
     return (
         f"  {kind} {name} {modelica_string(model.structure.title)}\n"
         + "".join(f"    {line}\n" for line in lines)

@@ -1,24 +1,51 @@
 """The model that ``export`` writes: of a fingerprint, its own structure or one that has limits too."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import click
+import numpy as np
 
+from shaftprint.arrays import frozen_float
+from shaftprint.bench import identified_drive
+from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place, kept_one
 from shaftprint.cli._known_values import named_value
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._simulated_model import LIMITED_HELP, simulated_model
 from shaftprint.cli._terminal import say
 from shaftprint.cli.output import expect_free, expect_no_input, fingerprint_at, fingerprint_file
+from shaftprint.errors import StructureError
 from shaftprint.escape import plain_name
 from shaftprint.export import ExportedModel, validation_remark
+from shaftprint.spelling import meant
 
 fingerprint_argument = click.argument("fingerprint", type=click.Path(path_type=Path))
-structure_option = click.option(
-    "--structure",
-    metavar="NAME",
-    help=f"Model structure, the fingerprint's with its limits by default: {OWN_FILE_HELP}; {LIMITED_HELP}.",
-)
+DRIVE = "shaftprint.drive"
+"""Where the context keeps the drive file."""
+
+
+def _keep_drive(context: click.Context, parameter: click.Parameter, value: Path | None) -> None:
+    context.meta[DRIVE] = value
+
+
+def structure_option(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Add ``--structure``, and ``--drive``, which ``model_to_export`` takes from the context."""
+    drive = click.option(
+        "--drive",
+        type=click.Path(path_type=Path),
+        expose_value=False,
+        callback=_keep_drive,
+        help="Drive file of a fingerprint of a drive, where its structure is composed in the file.",
+    )
+    structure = click.option(
+        "--structure",
+        metavar="NAME",
+        help=f"Model structure, the fingerprint's with its limits by default: {OWN_FILE_HELP}; {LIMITED_HELP}.",
+    )
+    return structure(drive(command))
+
+
 linear_option = click.option(
     "--linear", is_flag=True, help="Model for small signals, although the fingerprint has the line with its limits."
 )
@@ -48,6 +75,9 @@ def model_to_export(
     StructureError
         If there is no such structure or parameter, or a value is missing.
     """
+    drive_file = click.get_current_context().meta.get(DRIVE)
+    if drive_file is not None or is_drive_place(fingerprint):
+        return _drive_to_export(fingerprint, structure, given, drive_file)
     identified = fingerprint_at(fingerprint)
     model = simulated_model(structure, identified, given, linear=linear)
     remark = validation_remark(identified, model.structure.name)
@@ -63,6 +93,31 @@ def model_to_export(
         covariance=model.covariance,
         not_known=model.not_known,
         remark=remark,
+    )
+
+
+def _drive_to_export(
+    place: Path, structure: TypedName | None, given: Mapping[str, float], drive_file: Path | None
+) -> ExportedModel:
+    """Return the model of a drive's fingerprint."""
+    kept = drive_fingerprint_at(place)
+    one = kept_one(kept, drive_file, structure)
+    model = identified_drive(kept, one)
+    unknown = [name for name in given if name not in model.structure.names]
+    if unknown:
+        raise StructureError(
+            f"--set {unknown[0]}: expected a parameter of {model.structure.name}, one of "
+            f"{', '.join(model.structure.names)}.{meant(unknown[0], model.structure.names)}"
+        )
+    known = [q.name for q in kept.parameters if np.isfinite(q.std) and q.std > 0.0 and q.name not in given]
+    return ExportedModel(
+        title=kept.drive,
+        structure=model.structure,
+        values=frozen_float([given.get(n, v) for n, v in zip(model.structure.names, model.values, strict=True)]),
+        uncertain=tuple(known),
+        covariance=frozen_float(kept.covariance_of(known)),
+        not_known=model.not_known,
+        units=dict(one.units),
     )
 
 

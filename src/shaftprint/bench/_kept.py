@@ -1,0 +1,49 @@
+"""The drive that a fingerprint describes, without its file: signals and the shipped structure that it names."""
+
+from shaftprint.bench._equipped import EquippedDrive, equipped
+from shaftprint.catalogue import DRIVES
+from shaftprint.drive import Drive, Signal
+from shaftprint.errors import FingerprintError
+from shaftprint.escape import printable
+from shaftprint.fingerprint import DriveFingerprint
+from shaftprint.models import Structure
+
+
+def kept_drive(
+    fingerprint: DriveFingerprint, drive: Drive | None = None, *, own: Structure | None = None
+) -> EquippedDrive:
+    """Return the drive of a fingerprint with its structure.
+
+    Parameters
+    ----------
+    fingerprint
+        What was kept.
+    drive
+        Its drive file; not needed where the structure is a shipped one.
+    own
+        The user's own structure, where it was identified with one.
+
+    Raises
+    ------
+    FingerprintError
+        If the structure is none that is shipped, and neither file nor structure is given.
+    """
+    if drive is not None:
+        return equipped(_without_structure(drive) if own is not None else drive, own=own)
+    if own is None and fingerprint.structure not in DRIVES:
+        raise FingerprintError(
+            f"fingerprint of {printable(fingerprint.drive)}: expected the name of a shipped structure, found "
+            f"{printable(fingerprint.structure)!r}; give its drive file with --drive, or --structure FILE.py:NAME. A "
+            "fingerprint is data, and no file that it names is run."
+        )
+    kept = Drive(
+        name=fingerprint.drive,
+        structure=None if own is not None else fingerprint.structure,
+        inputs=tuple(Signal(name=n, channel=n, unit=unit) for n, unit in fingerprint.inputs.items()),
+        outputs=tuple(Signal(name=n, channel=n, unit=unit) for n, unit in fingerprint.outputs.items()),
+    )
+    return equipped(kept, own=own)
+
+
+def _without_structure(drive: Drive) -> Drive:
+    return drive.model_copy(update={"structure": None, "blocks": (), "parameters": ()})

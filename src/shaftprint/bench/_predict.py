@@ -1,0 +1,88 @@
+"""What records that are only planned would tell of a drive: standard deviations to first order."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from shaftprint.arguments import refusing_none
+from shaftprint.arrays import FloatArray, frozen_float
+from shaftprint.bench._equipped import EquippedDrive
+from shaftprint.bench._fit import drive_time_settings
+from shaftprint.errors import IdentificationError
+from shaftprint.identify import Prior
+from shaftprint.time_domain import NoiseModel, Record, Whitening, output_error
+
+
+@refusing_none(IdentificationError)
+def predict_drive(
+    one: EquippedDrive,
+    records: Sequence[Record],
+    *,
+    noise_std: Mapping[str, float],
+    values: Mapping[str, float] | None = None,
+    priors: Mapping[str, Prior] | None = None,
+) -> dict[str, float]:
+    """Return the standard deviation that each free parameter would have; infinite where the records say nothing.
+
+    Parameters
+    ----------
+    one
+        The drive.
+    records
+        Planned inputs; what stands as outputs is replaced by those of the model.
+    noise_std
+        Standard deviation of the noise of a sample of each output, white, in its unit.
+    values
+        Values of parameters at which to predict; usual ones where not given.
+    priors
+        What is known beside the drive file.
+
+    Raises
+    ------
+    IdentificationError
+        If the noise of an output is not stated, or the simulation runs away.
+    """
+    structure = one.structure
+    missing = [name for name in structure.outputs if not noise_std.get(name, 0.0) > 0.0]
+    if missing:
+        raise IdentificationError(
+            f"prediction: expected the noise of {missing[0]}, a positive standard deviation of one sample, found none."
+        )
+    at = structure.vector({**{name: p.mean for name, p in one.priors.items()}, **(values or {})})
+    settings = drive_time_settings(one, records)
+    noise = NoiseModel(
+        coefficients=frozen_float(np.zeros((0, len(structure.outputs), len(structure.outputs)))),
+        covariance=frozen_float(np.diag([noise_std[name] ** 2 for name in structure.outputs])),
+    )
+    names = [parameter.name for parameter in structure.free]
+    information = np.zeros((len(names), len(names)))
+    for record in records:
+        term = output_error(structure, _as_noise(record, noise_std), settings=settings)
+        term = term.with_noise(Whitening(noise=noise))
+        rows = term.rows(at)
+        if rows is None:
+            raise IdentificationError(
+                f"prediction: the simulation of {structure.name} runs away under {record.name}; state other values."
+            )
+        information += rows[1:] @ rows[1:].T
+    for name, prior in {**one.priors, **(priors or {})}.items():
+        information[names.index(name), names.index(name)] += 1.0 / prior.std**2
+    return dict(zip(names, _deviations(information).tolist(), strict=True))
+
+
+def _as_noise(record: Record, noise_std: Mapping[str, float]) -> Record:
+    """Return a record whose outputs are as large as their noise: none of them is used, but its size stands for one."""
+    turns = 1.0 - 2.0 * (np.arange(record.samples) % 2)
+    return replace(record, outputs={name: frozen_float(noise_std[name] * turns) for name in record.outputs})
+
+
+def _deviations(information: FloatArray) -> FloatArray:
+    """Return the root of the diagonal of the inverse; infinite where nothing is known."""
+    scale = np.sqrt(np.diag(information))
+    safe = np.where(scale > 0.0, scale, 1.0)
+    values, vectors = np.linalg.eigh(information / np.outer(safe, safe))
+    known = values > 1e-12 * values[-1]
+    variance = np.sum(vectors[:, known] ** 2 / values[known], axis=1) / safe**2
+    lost = np.any(np.abs(vectors[:, ~known]) > 1e-6, axis=1) | (scale == 0.0)
+    return np.where(lost, np.inf, np.sqrt(variance))
