@@ -166,7 +166,9 @@ def shipped_names(shipped: Traversable) -> tuple[str, ...]:
     return tuple(sorted(name.removesuffix(".toml").replace("_", "-") for name in names))
 
 
-def write_template(kind: Literal["vessel", "campaign"], path: str | Path, *, shipped: str | None = None) -> None:
+def write_template(
+    kind: Literal["vessel", "campaign", "drive"], path: str | Path, *, shipped: str | None = None
+) -> None:
     """Write a commented settings file that can be loaded as it stands, to be filled in or changed.
 
     Parameters

@@ -13,7 +13,9 @@ import numpy as np
 import pytest
 from pages import PAGES, ROOT, blocks, python_of
 
+from shaftprint.bench import equipped
 from shaftprint.campaign import Campaign
+from shaftprint.drive import Drive
 from shaftprint.export import exported_model, write_matlab
 from shaftprint.fingerprint import read_fingerprint
 from shaftprint.recording import read_recording
@@ -81,7 +83,7 @@ def test_a_reader_that_a_package_names_so_is_used(acme):
 
 
 def test_toml_is_of_a_page_with_a_check_of_its_own():
-    assert {page.values[0] for page in of("toml")} == {"docs/formats.md", "docs/legs.md"}
+    assert {page.values[0] for page in of("toml")} == {"docs/drives.md", "docs/formats.md", "docs/legs.md"}
 
 
 def test_the_campaign_of_the_page_on_legs_is_one():
@@ -90,6 +92,13 @@ def test_the_campaign_of_the_page_on_legs_is_one():
     # as its comments say
     multisine, binary = campaign.legs
     assert (multisine.periods, binary.length_of_period_s) == (4, 126 * 0.25)
+
+
+def test_the_drives_of_their_page_have_structures():
+    texts = (text for kind, text in blocks("docs/drives.md") if kind == "toml")
+    loaded, fan = (equipped(Drive.model_validate(tomllib.loads(text))) for text in texts)
+    assert (loaded.structure.name, loaded.priors["R"].std) == ("LOADED-MOTOR", 0.05)
+    assert fan.structure.names == ("K", "T")
 
 
 def test_json_loads():

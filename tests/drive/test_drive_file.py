@@ -1,9 +1,12 @@
 """The drive file: what it may hold, and every mistake by file and field."""
 
+import re
+
 import pytest
 
 from shaftprint.drive import load_drive, unit_factor
 from shaftprint.errors import SettingsError
+from shaftprint.settings import write_template
 
 MOTOR = """\
 name = "bench 3"
@@ -107,3 +110,14 @@ def test_units_of_one_quantity(given, wanted, factor):
 @pytest.mark.parametrize(("given", "wanted"), [("rpm", "rad"), ("furlong", "m"), ("V", "A")])
 def test_units_of_different_quantities_have_no_factor(given, wanted):
     assert unit_factor(given, wanted) is None
+
+
+def test_the_template_can_be_used_as_it_stands_and_with_all_its_rows(tmp_path):
+    write_template("drive", tmp_path / "drive.toml")
+    assert load_drive(tmp_path / "drive.toml").structure == "MOTOR"
+    text = (tmp_path / "drive.toml").read_text(encoding="utf-8")
+    whole = re.sub(r"^# (\[\[\w+\]\]|\w+ = )", r"\1", text, flags=re.MULTILINE)
+    whole = whole.replace('start = "steady"', 'start = "known"')
+    (tmp_path / "whole.toml").write_text(whole, encoding="utf-8")
+    drive = load_drive(tmp_path / "whole.toml")
+    assert (drive.searched[0].name, drive.records[0].name, drive.start[0].name) == ("theta_y", "steps", "omega")

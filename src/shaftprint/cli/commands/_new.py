@@ -24,7 +24,7 @@ TESTS: Mapping[str, str] = {
 
 
 @click.command("new")
-@click.argument("kind", type=click.Choice(["vessel", "campaign"]))
+@click.argument("kind", type=click.Choice(["vessel", "campaign", "drive"]))
 @click.argument("file", type=click.Path(path_type=Path), required=False)
 @click.option(
     "--test",
@@ -42,7 +42,7 @@ TESTS: Mapping[str, str] = {
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="The file, in place of FILE.")
 @card_options
 def command(
-    kind: Literal["vessel", "campaign"],
+    kind: Literal["vessel", "campaign", "drive"],
     file: Path | None,
     test: str | None,
     recorded: Path | None,
@@ -50,7 +50,7 @@ def command(
     output: Path | None,
     **said: object,
 ) -> None:
-    """Write a commented vessel or campaign file to fill in.
+    """Write a commented vessel, campaign or drive file to fill in.
 
     FILE must not exist yet. It can be loaded as it stands; every key carries its unit in its name. The campaigns of
     --test are made for the Stan Tug 1205: predict says what they would ask of another ship.
