@@ -94,6 +94,7 @@ def test_signals_of_a_control_unit_are_known_by_their_numbers(run, tmp_path):
         "EEC2_a": ("%", "SPN 91"),
         "EEC2_b": ("%", "SPN 92"),
         "LFE": ("L/h", "SPN 183"),
+        "EEC3": ("rpm", "SPN 515: desired operating speed"),
     }
     path = tmp_path / "bus.nc"
     with RecordingWriter(path) as writer:
@@ -105,7 +106,8 @@ def test_signals_of_a_control_unit_are_known_by_their_numbers(run, tmp_path):
     assert found["rack"] == {"channel": "EEC1_b", "unit": "%", "cycle_s": 0.02}
     assert [(speed["channel"], speed["unit"]) for speed in found["speed"]] == [("EEC1_c", "rpm")]
     assert found["set_point"] == {"channel": "EEC2_a", "unit": "%"}
-    assert set(found) == {"rack", "set_point", "speed"}
+    assert found["demand"] == {"channel": "EEC3", "unit": "rpm", "cycle_s": 0.02}
+    assert set(found) == {"rack", "set_point", "speed", "demand"}
     said = [line for line in result.output.splitlines() if "another channel" in line]
     assert [line.split("'")[1] for line in said] == ["EEC2_b", "LFE"]
 

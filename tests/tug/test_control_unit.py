@@ -37,6 +37,7 @@ def stretch_of(rack: np.ndarray, start: int = 0, *, engine_rpm: float = 0.0) -> 
         rack_given=rack,
         limited=zeros > 0.0,
         ship_speed_m_s=zeros,
+        demand_rev_s=zeros,
     )
 
 

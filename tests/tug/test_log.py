@@ -34,6 +34,7 @@ def values(log: SpeedLog, speed: np.ndarray, stretch_samples: int) -> np.ndarray
                     rack_given=zeros[part],
                     limited=zeros[part] > 0.0,
                     ship_speed_m_s=speed[part],
+                    demand_rev_s=np.zeros(1),
                 )
             )
         )

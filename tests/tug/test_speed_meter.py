@@ -81,3 +81,20 @@ def test_a_control_unit_reports_the_set_point_in_messages(vessel, ask, sine, qui
     shown = line["v_per_unit"] * values[begun] + line["v_at_zero"]
     assert shown == pytest.approx(volts[begun], abs=0.501 * 0.4 * 0.047814)
     assert values / 0.4 == pytest.approx(np.rint(values / 0.4), abs=1e-9)
+
+
+def test_a_control_unit_reports_its_demand_in_messages(vessel, ask, sine, quiet, tmp_path):
+    """The desired speed, 0.125 rpm a bit: that of the voltage a latency ago, and 10 ms on the bus."""
+    content = vessel.model_dump()
+    content["sensors"]["demand"] = {"channel": "Desired", "unit": "rpm", "cycle_s": 0.05, "latency_s": 0.01}
+    campaign = ask(21.0, sines=[sine(0.5, 0.6)])
+    tug = Tug(noise=quiet, message_jitter=0.15, messages_lost=0.05)
+    sail(Vessel.model_validate(content), campaign, tmp_path / "x.nc", tug=tug, seed=1)
+    with read_recording(tmp_path / "x.nc") as recording:
+        demand = recording.channels["Desired"]
+        values, time_s = demand.values(0, demand.count), demand.time_s(0, demand.count)
+    late_s = tug.set_point_latency_s + 0.01
+    inside = (time_s > 0.1) & (time_s < 20.0)
+    volts = -5.0 + 0.6 * np.sin(2.0 * np.pi * 0.5 * (time_s[inside] - late_s)) + tug.set_point_offset_v
+    assert values[inside] == pytest.approx(-250.97 * volts - 83.467, abs=0.08)
+    assert values / 0.125 == pytest.approx(np.rint(values / 0.125), abs=1e-9)

@@ -9,7 +9,7 @@ from shaftprint.escape import toml_string
 from shaftprint.recording import Channel
 from shaftprint.units import ANGLES_REV, NM_PER_UNIT, REV_S_PER_UNIT
 
-Use: TypeAlias = Literal["speed", "instrument", "encoder", "shaft_torque", "set_point", "rack", "ship_speed"]
+Use: TypeAlias = Literal["speed", "instrument", "encoder", "shaft_torque", "set_point", "rack", "demand", "ship_speed"]
 
 _SET_POINT = re.compile(r"set[ _-]*p|setpoint|demand|lever|throttle|soll|u_set|command", re.IGNORECASE)
 _TORQUE = re.compile(r"torque|m_s\b|\bms\b|koppel|drehmoment|strain", re.IGNORECASE)
@@ -22,7 +22,7 @@ _ENGINE = re.compile(r"eng|motor|_e\b|crank|flywheel", re.IGNORECASE)
 _SPN = re.compile(r"SPN (\d+)")
 _LOAD_NUMBER, _FUEL_NUMBER = 92, 183
 _RACK_NUMBERS = (2432, 513, 512, _LOAD_NUMBER, _FUEL_NUMBER)
-_SPEED_NUMBER, _PEDAL_NUMBER = 190, 91
+_SPEED_NUMBER, _PEDAL_NUMBER, _DEMAND_NUMBER = 190, 91, 515
 _OF_RACK = {
     _LOAD_NUMBER: 'shows = "load"',
     _FUEL_NUMBER: "# rated_l_h =                    # fuel rate at rated power and speed, from the data sheet [L/h]",
@@ -80,6 +80,12 @@ _FIELDS = {
         "channel = {channel}",
         "unit = {unit}",
         "{of_rack}",
+        "cycle_s = {cycle:g}",
+        "# latency_s =                    # [s]",
+    ),
+    "demand": (
+        "channel = {channel}",
+        "unit = {unit}",
         "cycle_s = {cycle:g}",
         "# latency_s =                    # [s]",
     ),
@@ -154,6 +160,8 @@ def _uses_by_number(seen: Sequence[Seen]) -> dict[str, Use | None]:
     for name, number in numbers.items():
         if number == _SPEED_NUMBER:
             uses[name] = "instrument"
+        elif number == _DEMAND_NUMBER:
+            uses[name] = "demand"
         elif number == _PEDAL_NUMBER and not is_asked:
             uses[name] = "set_point"
         elif number is not None and number == rack:

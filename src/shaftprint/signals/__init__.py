@@ -25,7 +25,7 @@ from shaftprint.signals._gaps import Coverage, Gap
 from shaftprint.signals._inspect import ChannelReport, PulseReport, channel_reports, inspect_channels
 from shaftprint.signals._orders import TrackedOrder, tracked_orders
 from shaftprint.signals._prepare import find_tests, prepare_signals
-from shaftprint.signals._signals import Repair, SetPointCalibration, Signals, StepDelay, StripAngles
+from shaftprint.signals._signals import Repair, SetPointCalibration, SetPointDelay, Signals, StepDelay, StripAngles
 from shaftprint.signals._working_points import LegState, WorkingPoint
 from shaftprint.signals.description import Description
 from shaftprint.signals.excitation import FoundTest, common_shift_s, proposed_campaign
@@ -51,6 +51,7 @@ __all__ = [
     "PulseReport",
     "Repair",
     "SetPointCalibration",
+    "SetPointDelay",
     "Signals",
     "SpeedSignal",
     "StepDelay",

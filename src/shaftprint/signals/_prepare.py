@@ -14,6 +14,7 @@ from shaftprint.signals._channel_readings import ChannelReadings, logger_channel
 from shaftprint.signals._channel_signals import ChannelSignal, SpeedSignal
 from shaftprint.signals._channels import find_channel
 from shaftprint.signals._clock import Mode, clock_of
+from shaftprint.signals._demand import delay_of_demand
 from shaftprint.signals._gaps import Coverage
 from shaftprint.signals._leg_steady_state import samples_of_legs, steady_state_of_legs, stopped_generators
 from shaftprint.signals._orders import tracked_orders
@@ -121,6 +122,8 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
     reasons = [*expect_one_rate(recording, logger_channels(readings.sources)), *_cut_crests(readings.sources)]
     lost, mismatches = _differences_from_campaign(recording, vessel, campaign, readings)
     _without_steps_in_place(readings, campaign)
+    sensor = vessel.sensors.demand
+    late, asked = (None, ()) if sensor is None else delay_of_demand(recording, sensor, campaign, readings)
     _straightened_in_place(readings.set_point, vessel.sensors.set_point, campaign)
     differences = compare_speeds(readings.pick_ups, vessel)
     legs = samples_of_legs(campaign, readings)
@@ -156,6 +159,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
         strips=tuple(pick_up.strips for pick_up in readings.pick_ups if pick_up.strips is not None),
         step_delays=delays,
         legs=states,
+        set_point_delay=late,
         orders=tracked_orders(vessel, {one.name: one for one in signals.values() if isinstance(one, SpeedSignal)}),
         repairs=readings.repairs,
         gaps=readings.gaps,
@@ -168,6 +172,7 @@ def _prepared(recording: "Recording", vessel: "Vessel", campaign: Campaign, read
             *strange,
             *expect_asked_speed(steady.working_point, vessel),
             *differences,
+            *asked,
             *scale.findings,
             *absent,
             *missed,

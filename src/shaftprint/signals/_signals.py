@@ -110,6 +110,20 @@ class StepDelay:
         return self.speed_time_s - self.set_point_time_s
 
 
+@dataclass(frozen=True, kw_only=True, slots=True)
+class SetPointDelay:
+    """How late the demand inside the control unit is behind the set point, by the sines of a test."""
+
+    channel: str
+    """Name of the channel with the demand."""
+    delay_s: float
+    """The delay, without the known latency of the channel [s]."""
+    std_s: float
+    """Its standard deviation, without that of the latency [s]."""
+    lines: int
+    """Number of sines that say so."""
+
+
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False, repr=False)
 class Signals(Shown, Labelled):
     """A recording in physical units on one uniform time grid, with every repair and calibration listed.
@@ -140,6 +154,8 @@ class Signals(Shown, Labelled):
     """What was repaired, in order of time."""
     legs: tuple[LegState, ...] = ()
     """Working point of each leg that the recording holds, in order of time."""
+    set_point_delay: SetPointDelay | None = None
+    """How late the demand is behind the set point, where it was logged beside it."""
     orders: tuple[TrackedOrder, ...] = ()
     """What comes back in the torque with the turns of engine, shaft and propeller."""
     gaps: tuple[Gap, ...] = ()

@@ -1,10 +1,12 @@
 """Structures fitted to the responses of a measurement, and compared where they explain the same data."""
 
 import copy
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from shaftprint.catalogue import ShipRole
 from shaftprint.identify import Identification, Prior, Settings, identify, identify_jointly, priors_from_vessel
 from shaftprint.identify.comparison import StructureComparison, compare_fits
 from shaftprint.models import Structure
@@ -19,7 +21,19 @@ def priors_of(
     structure: Structure, vessel: Vessel, signals: Signals, stated: Mapping[str, Prior] | None = None
 ) -> dict[str, Prior]:
     """Return the priors of a structure: those of the vessel file, and what the user states instead or besides."""
-    return priors_from_vessel(structure, vessel, signals.working_point, mode=signals.mode) | dict(stated or {})
+    known = priors_from_vessel(structure, vessel, signals.working_point, mode=signals.mode)
+    return known | _from_demand(structure, vessel, signals) | dict(stated or {})
+
+
+def _from_demand(structure: Structure, vessel: Vessel, signals: Signals) -> dict[str, Prior]:
+    """Return what the demand that was logged beside the set point says of its latency."""
+    found, sensor = signals.set_point_delay, vessel.sensors.demand
+    if found is None or sensor is None:
+        return {}
+    parts = {"demand noise": found.std_s, "demand latency": sensor.latency_std_s or 0.0}
+    sources = {name: part for name, part in parts.items() if part}
+    prior = Prior(mean=found.delay_s, std=math.hypot(*parts.values()), sources=sources)
+    return {one.name: prior for one in structure.free if one.role == ShipRole.SET_POINT_LATENCY}
 
 
 def stated_working_point(vessel: Vessel) -> WorkingPoint:

@@ -31,6 +31,7 @@ from shaftprint.tug.sensors import (
     VOLT_PER_COUNT,
     Bus,
     ControlUnit,
+    DemandMessages,
     Encoder,
     Fault,
     Helm,
@@ -48,7 +49,7 @@ RATE_HZ = 2000.0
 """Sample rate where the vessel file names no logger [Hz]."""
 
 # What sends messages.
-SENDERS = (ControlUnit, HelmMessages, SpeedMessages)
+SENDERS = (ControlUnit, DemandMessages, HelmMessages, SpeedMessages)
 
 # As many samples as one compressed block of the container holds: no block is copied.
 _CHUNK = 262_144
@@ -143,9 +144,9 @@ class _Crew:
                 f"found a duration of {campaign.duration_s:g} s."
             )
         self._expect_fast_logger()
-        # bus, log and pitch come last: without them the others draw the same numbers
-        process, torque, set_point, *speeds, bus, log, pitch = (
-            np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(6 + len(vessel.sensors.speed))
+        # bus, log, pitch and demand come last: without them the others draw the same numbers
+        process, torque, set_point, *speeds, bus, log, pitch, demand = (
+            np.random.default_rng(child) for child in np.random.SeedSequence(seed).spawn(7 + len(vessel.sensors.speed))
         )
         duration_s = campaign.duration_s
         plant = build_plant(tug, vessel)
@@ -169,7 +170,11 @@ class _Crew:
         self._control_unit = self._watch_bus(float(first[RACK]), bus)
         self._log = self._read_log(float(first[WAY]), log)
         self._lever = self._stand_by_lever(pitch)
-        on_board = (self._helm, *self._speeds, self._gauge, self._control_unit, self._log, self._lever)
+        asked = vessel.sensors.demand
+        self._demand = (
+            None if asked is None else DemandMessages(asked, rate_hz=self._rate_hz, rng=demand, bus=Bus.of(tug))
+        )
+        on_board = (self._helm, *self._speeds, self._gauge, self._control_unit, self._log, self._lever, self._demand)
         self._sensors: tuple[_Sensor, ...] = tuple(sensor for sensor in on_board if sensor is not None)
         self._limited = {excitation.name: 0 for excitation in campaign.excitations}
 
@@ -342,6 +347,15 @@ class _Crew:
                 offset=self._control_unit.offset,
                 long_name="demand percent torque of the engine's control unit, from its CAN bus",
                 **self._clock_of(self._control_unit),
+            )
+        if self._demand is not None:
+            writer.declare(
+                self._demand.channel,
+                unit="rpm",
+                scale=self._demand.scale,
+                offset=self._demand.offset,
+                long_name="desired engine speed of the control unit, from its CAN bus",
+                **self._clock_of(self._demand),
             )
         if self._log is not None:
             writer.declare(

@@ -32,6 +32,7 @@ from shaftprint.vessel._links import ShaftLink
 from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, RackMap, WorkingPoint
 from shaftprint.vessel._orders import Order
 from shaftprint.vessel._sensors import (
+    DemandSensor,
     Logger,
     PitchSetPointSensor,
     RackSensor,
@@ -48,6 +49,7 @@ __all__ = [
     "ALIVE_MA",
     "LIVE_ZERO_MA",
     "SAMPLES_A_TOOTH",
+    "DemandSensor",
     "Engine",
     "GaugedShaft",
     "Gearbox",

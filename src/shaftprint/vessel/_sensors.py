@@ -265,6 +265,24 @@ class RackSensor(Settings):
         return np.asarray(np.interp(speed_rpm, *curve) / engine.rated_torque_nm)
 
 
+class DemandSensor(Settings):
+    """The speed that the engine's control unit says it has been asked for, logged beside the set point.
+
+    SAE J1939-71: the desired operating speed of EEC3, 0.125 rpm a bit; or the pedal beside a voltage.
+    """
+
+    channel: Name
+    """Name of the channel in the recording."""
+    unit: Annotated[Literal["rpm", "%", "V"], PLAIN_UNIT]
+    """Unit of the channel; its scale does not matter."""
+    cycle_s: PositiveNumber
+    """Time from one message to the next [s]."""
+    latency_s: NotNegativeNumber
+    """Time by which a value is late behind the demand [s]."""
+    latency_std_s: NotNegativeNumber | None = None
+    """Standard deviation of the latency [s]."""
+
+
 class ShipSpeedSensor(Settings):
     """A log or a satellite receiver that gives the speed of the ship.
 
@@ -325,6 +343,8 @@ class Sensors(Settings):
     """The speed set point."""
     rack: RackSensor | None = None
     """Percent torque from the engine's control unit, where it was logged."""
+    demand: DemandSensor | None = None
+    """The demand inside the engine's control unit, where it was logged beside the set point."""
     ship_speed: ShipSpeedSensor | None = None
     """Speed of the ship, where it was logged."""
 
@@ -336,7 +356,7 @@ class Sensors(Settings):
         names = [sensor.name for sensor in self.speed]
         channels = [sensor.channel for sensor in self.speed]
         channels += [self.shaft_torque.channel, self.set_point.channel]
-        further = (self.rack, self.ship_speed, self.pitch_set_point)
+        further = (self.rack, self.demand, self.ship_speed, self.pitch_set_point)
         channels += [sensor.channel for sensor in further if sensor is not None]
         errors = []
         for what, values in (("name", names), ("channel", channels)):

@@ -4,6 +4,7 @@ from shaftprint.signals.kinds._compare import LARGEST_DIFFERENCE, compare_speeds
 from shaftprint.signals.kinds._encoder_speed import speed_channel
 from shaftprint.signals.kinds._kind import ChannelKind, Source, SteadyState
 from shaftprint.signals.kinds._kinds import KINDS, find_sources
+from shaftprint.signals.kinds._message_reading import MessageReading, read_messages
 from shaftprint.signals.kinds._pick_up import PulseReading, read_pick_up
 from shaftprint.signals.kinds._rack import rack_signal, read_rack
 from shaftprint.signals.kinds._set_point import SetPointMessages, read_set_point
@@ -15,6 +16,7 @@ __all__ = [
     "KINDS",
     "LARGEST_DIFFERENCE",
     "ChannelKind",
+    "MessageReading",
     "PulseReading",
     "SetPointMessages",
     "Source",
@@ -24,6 +26,7 @@ __all__ = [
     "expect_moving_torque",
     "find_sources",
     "rack_signal",
+    "read_messages",
     "read_pick_up",
     "read_rack",
     "read_set_point",

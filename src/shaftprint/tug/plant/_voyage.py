@@ -39,6 +39,8 @@ class Stretch:
     """Whether a limit of torque or rack acts, shape (steps,)."""
     ship_speed_m_s: FloatArray
     """Speed of the ship through the water [m/s], 0 at the quay, shape (steps,)."""
+    demand_rev_s: FloatArray
+    """Speed that the control unit has been asked for [rev/s], engine side, shape (steps,)."""
 
 
 def voyage(
@@ -110,6 +112,7 @@ def voyage(
             rack_given=rack,
             limited=limited,
             ship_speed_m_s=way,
+            demand_rev_s=asked[: 2 * count : 2],
         )
 
 

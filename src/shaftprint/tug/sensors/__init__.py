@@ -5,6 +5,7 @@ Each takes the stretches of a voyage of ``shaftprint.tug.plant`` in order and gi
 
 from shaftprint.tug.sensors._bus import Bus
 from shaftprint.tug.sensors._control_unit import LOWEST_PERCENT, ControlUnit
+from shaftprint.tug.sensors._demand_messages import DemandMessages
 from shaftprint.tug.sensors._encoder import Encoder
 from shaftprint.tug.sensors._faults import Fault, draw_dropouts, draw_times
 from shaftprint.tug.sensors._gauge import TorqueGauge, shaft_orders
@@ -19,6 +20,7 @@ __all__ = [
     "VOLT_PER_COUNT",
     "Bus",
     "ControlUnit",
+    "DemandMessages",
     "Encoder",
     "Fault",
     "Helm",
