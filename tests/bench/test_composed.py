@@ -136,6 +136,15 @@ def test_a_mistake_in_the_wiring_is_named(written, old, new, words):
         composed(load_drive(written(text.replace(old, new, 1))))
 
 
+def test_blocks_of_a_drive_that_is_called_as_a_shipped_structure_keep_their_units(written):
+    text = (
+        (BLOCKS + ROWS).replace('name = "motor of blocks"', 'name = "MOTOR"').replace('unit = "rad/s"', 'unit = "rpm"')
+    )
+    one = equipped(load_drive(written(text)))
+    assert one.structure.name == "MOTOR (blocks)"
+    assert (one.units["omega"], one.factors["omega"]) == ("rpm", 1.0)
+
+
 def test_text_of_a_file_is_never_run(written):
     """A structure that looks like Python or a path is a name that is not known."""
     for text in ("my_drive.py:motor", "__import__('os')", "../MOTOR"):

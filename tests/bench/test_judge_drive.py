@@ -94,3 +94,36 @@ def test_fmu_does_what_the_simulation_does(motor, tmp_path, run_program):
     ours = simulate(model.structure, model.values, time, {"u": voltage, "T_L": 0.0 * time}, hold=True)
     for name in ("omega", "i"):
         assert np.abs(moved[name][: time.size] - ours.outputs[name]).max() < 1e-3 * np.abs(ours.outputs[name]).max()
+
+
+HOSTILE = 'x"></title><script>alert(1)</script>\n=cmd|*/ system("ls"); end \u202e'
+
+
+@pytest.mark.parametrize("kind", ["modelica", "ssp", "fmu"])
+def test_text_of_a_fingerprint_stands_for_itself_in_every_export(motor, tmp_path, run_program, kind):
+    content = json.loads((motor[0] / "result" / "fingerprint.json").read_text(encoding="utf-8"))
+    (tmp_path / "fingerprint.json").write_text(json.dumps(content | {"drive": HOSTILE}), encoding="utf-8")
+    path = tmp_path / f"out.{kind}"
+    options = ("--source-only",) if kind == "fmu" else ()
+    result = run_program("export", kind, tmp_path / "fingerprint.json", *options, "-o", path)
+    assert result.exit_code == 0, result.output
+    files = [path.read_bytes()]
+    if kind == "fmu":
+        with zipfile.ZipFile(path) as archive:
+            files = [archive.read(name) for name in archive.namelist()]
+    for text in files:
+        assert b"\n=cmd" not in text
+        assert not (text.startswith(b"<?xml") and b"<script>" in text)
+        assert b'"ls"' not in text
+        assert "\u202e".encode() not in text
+
+
+def test_structure_that_a_fingerprint_names_is_never_a_path(motor, tmp_path, run_program):
+    (tmp_path / "evil.py").write_text("raise SystemExit('run')", encoding="utf-8")
+    content = json.loads((motor[0] / "result" / "fingerprint.json").read_text(encoding="utf-8"))
+    evil = json.dumps(content | {"structure": f"{tmp_path}/evil.py:motor"})
+    (tmp_path / "fingerprint.json").write_text(evil, encoding="utf-8")
+    result = run_program("export", "ssp", tmp_path / "fingerprint.json", "-o", tmp_path / "out.ssv")
+    assert result.exit_code == 1
+    assert "expected the name of a shipped structure" in " ".join(result.stderr.split())
+    assert not (tmp_path / "out.ssv").exists()

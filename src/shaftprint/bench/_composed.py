@@ -115,7 +115,8 @@ def composed(drive: Drive) -> Structure:
 
     diagram = Diagram(drive.name, inputs[0], outputs, equations, parameters, further=inputs[1:])
     return Structure(
-        name=drive.name,
+        # no name of a shipped structure, whatever the drive is called
+        name=f"{drive.name} (blocks)",
         title=f"blocks of the drive file: {', '.join(block.output for block in drive.blocks)}",
         inputs=inputs,
         outputs={
