@@ -103,6 +103,22 @@ def test_tdms_waveforms_scales_and_start_times(tmp_path):
         assert recording.channel("alone").rate_hz == 50.0
 
 
+def test_tdms_signals_that_lie_sample_by_sample_in_one_channel(tmp_path):
+    """LabVIEW writes an array of two dimensions row by row; its clock is that of the rows."""
+    path = tmp_path / "log.tdms"
+    table = np.arange(900.0).reshape(300, 3) + np.array([0.0, 0.25, 0.5])
+    with nptdms.TdmsWriter(str(path)) as writer:
+        writer.write_segment([nptdms.ChannelObject("a", "all", table.ravel(), {"wf_increment": 0.01})])
+    with read_recording(path, interleaved=3) as recording:
+        assert list(recording.channels) == ["all 1", "all 2", "all 3"]
+        for column, name in enumerate(recording.channels):
+            assert recording.channel(name).rate_hz == 100.0
+            assert np.array_equal(_values(recording, name), table[:, column])
+        assert recording.channel("all 2").values(7, 9).tolist() == [22.25, 25.25]
+    with pytest.raises(RecordingError, match="expected rows of 7 samples, found 900 samples"):
+        read_recording(path, interleaved=7)
+
+
 def test_tdms_with_a_channel_of_times(tmp_path):
     path = tmp_path / "log.tdms"
     dates = np.datetime64("2026-03-04T05:06:07") + (np.arange(300) * 20_000).astype("timedelta64[us]")

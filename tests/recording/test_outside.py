@@ -36,6 +36,11 @@ class Channel:
         self.sample_rate, self.times, self.values, self.array_size = rate, times, values, size
         self.number_of_samples = len(times)
 
+class Closed(Channel):
+    @property
+    def description(self):
+        raise DWError("no such channel")
+
 K = np.arange(600_000)
 CHANNELS = [
     Channel(0, "M_s", "Nm", 0, 2000.0, 0.25 + K / 2000.0, K * 0.5),
@@ -44,7 +49,10 @@ CHANNELS = [
     Channel(3, "triggered", "V", 0, 2000.0, K[:300] / 2000.0 + 5.0 * (K[:300] > 100), K[:300]),
     Channel(4, "spectrum", "V", 0, 10.0, K[:300] / 10.0, K[:300], size=8),
     Channel(5, "single", "V", 2, 0.0, K[:1], K[:1]),
+    Channel(6, "CAN/EngineSpeed", "rpm", 1, 0.0, K[:300] / 50.0, K[:300]),
+    Closed(7, "CAN/Demand", "%", 1, 0.0, K[:300] / 50.0, K[:300]),
 ]
+REFUSED = 6
 
 class DWFile(dict):
     reader_handle = None
@@ -60,6 +68,8 @@ class DWFile(dict):
 
 class Library:
     def DWIGetScaledSamples(self, handle, index, start, count, data, time):
+        if index == REFUSED:
+            return 10
         part = slice(start.value, start.value + count.value)
         for view, values in ((data, CHANNELS[index].values), (time, CHANNELS[index].times)):
             found = np.ascontiguousarray(values[part], dtype=float)
@@ -137,7 +147,9 @@ def test_dewesoft_channels_with_clocks_and_without(dewesoft):
         assert (torque.unit, torque.rate_hz, torque.start_s, torque.count) == ("N m", 2000.0, 0.25, 600_000)
         assert torque.values(262_143, 262_146).tolist() == [131_071.5, 131_072.0, 131_072.5]
         assert (percent.rate_hz, percent.values(298, 300).tolist()) == (20.0, [-298.0, -299.0])
-        assert set(recording.left_out) == {"triggered", "spectrum", "single"}
+        assert set(recording.left_out) == {"triggered", "spectrum", "single", "CAN/EngineSpeed", "CAN/Demand"}
+        for name in ("CAN/EngineSpeed", "CAN/Demand"):
+            assert "Dewesoft's library refuses the channel" in recording.left_out[name]
         assert recording.channel("bus").is_uneven
         assert "triggered" in recording.left_out["triggered"]
         assert recording.began.isoformat() == "2026-03-04T05:06:07+00:00"

@@ -64,7 +64,7 @@ def campaign_option(command: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add ``--sample-rate``, ``--columns``, ``--delimiter``, ``--decimal``, ``--encoding`` and ``--dbc``."""
+    """Add the options that say what a file does not say itself: its rate, its columns, its letters, its messages."""
     rate = click.option("--sample-rate", type=float, help="Samples a second, where the file has no clock [Hz].")
     columns = click.option(
         "--columns", metavar="NAME,...", help='Titles of a text file without them, such as "time [s],u,y [rad/s]".'
@@ -73,7 +73,10 @@ def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     decimal = click.option("--decimal", type=click.Choice([".", ","]), help="Decimal sign of a text file.")
     encoding = click.option("--encoding", help="Encoding of a text file that is not UTF-8, such as cp1252.")
     dbc = click.option("--dbc", type=click.Path(path_type=Path), help="DBC file: what raw messages of a CAN bus hold.")
-    return rate(columns(delimiter(decimal(encoding(dbc(command))))))
+    interleaved = click.option(
+        "--interleaved", type=click.IntRange(min=2), help="Signals that each TDMS channel holds, sample by sample."
+    )
+    return rate(columns(delimiter(decimal(encoding(dbc(interleaved(command)))))))
 
 
 def cut_options(command: Callable[..., Any]) -> Callable[..., Any]:

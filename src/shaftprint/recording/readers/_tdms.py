@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,14 +38,18 @@ def is_mine(path: Path) -> bool:
 def read(path: Path, **hints: object) -> Recording:
     """Open a TDMS file; samples are read, and scaled as the file says, as channels are asked for them.
 
-    Hint: ``sample_rate_hz`` for channels without a clock.
+    Hints: ``sample_rate_hz`` for channels without a clock; ``interleaved``, how many signals each channel holds sample
+    by sample, as LabVIEW writes an array of two dimensions: they become channels of their own, on the clock of rows.
 
     Raises
     ------
     RecordingError
         If the file is damaged or no channel can be used.
     """
-    rate = rate_hint(path, hints)
+    rate = rate_hint(path, hints, {"interleaved": int})
+    parts = cast(int, hints.get("interleaved", 1))
+    if parts < 1:
+        raise RecordingError(f"{path}: the hint interleaved cannot be {parts}; it is a number of signals.")
     nptdms = library(path, "nptdms", NAME)
     # the library leaves a file open that it fails to read
     raw = path.open("rb")
@@ -53,14 +57,14 @@ def read(path: Path, **hints: object) -> Recording:
     try:
         with told_as_damage(path, NAME):
             file = nptdms.TdmsFile.open(raw)
-            gathered = _gather(path, file, opened, rate)
+            gathered = _gather(path, file, opened, rate, parts)
             return gathered.recording(NAME, opened.close, _began(file))
     except BaseException:
         opened.close()
         raise
 
 
-def _gather(path: Path, file: Any, opened: Opened, rate_hz: float | None) -> Gathered:
+def _gather(path: Path, file: Any, opened: Opened, rate_hz: float | None, parts: int) -> Gathered:
     gathered = Gathered(path=path)
     channels = [channel for group in file.groups() for channel in group.channels()]
     names = unique_names([(channel.group_name, channel.name) for channel in channels])
@@ -70,22 +74,31 @@ def _gather(path: Path, file: Any, opened: Opened, rate_hz: float | None) -> Gat
         if channel is clocks[channel.group_name]:
             continue
 
-        def make(channel: Any = channel, name: str = name) -> Channel:
-            clock = _clock(path, channel, clocks[channel.group_name], rate_hz, began)
-            return _channel(path, name, channel, clock, opened)
+        for part in range(parts):
+            own_name = name if parts == 1 else f"{name} {part + 1}"
 
-        gathered.add(name, make)
+            def make(channel: Any = channel, own_name: str = own_name, part: int = part) -> Channel:
+                clock = _clock(path, channel, clocks[channel.group_name], rate_hz, began, parts)
+                return _channel(path, own_name, channel, clock, opened, part, parts)
+
+            gathered.add(own_name, make)
     return gathered
 
 
-def _channel(path: Path, name: str, channel: Any, clock: SampleClock, opened: Opened) -> Channel:
+def _channel(path: Path, name: str, channel: Any, clock: SampleClock, opened: Opened, part: int, parts: int) -> Channel:
+    """Return a channel, or one part of the signals that it holds one after the other."""
     kind = np.dtype(channel.dtype)
     _expect_samples(path, name, channel)
+    if len(channel) % parts:
+        raise RecordingError(
+            f"{path}, channel {name}: expected rows of {parts} samples, found {len(channel)} samples, no whole number "
+            "of rows; give the number of signals in one row."
+        )
     is_counts = kind == np.dtype(np.int16)
 
     def source(start: int, stop: int) -> NDArray[Any]:
         with opened.reading(name), told_as_damage(path, NAME):
-            values = channel.read_data(start, stop - start)
+            values = channel.read_data(start * parts, (stop - start) * parts)[part::parts]
             if len(values) != stop - start:
                 raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are missing; is the file cut?")
             return np.ascontiguousarray(values, dtype=np.int16 if is_counts else np.float64)
@@ -95,7 +108,7 @@ def _channel(path: Path, name: str, channel: Any, clock: SampleClock, opened: Op
         unit=plain_unit(_unit(channel.properties)),
         rate_hz=clock.rate_hz,
         start_s=clock.start_s,
-        count=len(channel),
+        count=len(channel) // parts,
         source=source,
         long_name=str(channel.properties.get("description", "")),
     )
@@ -112,7 +125,9 @@ def _expect_samples(path: Path, name: str, channel: Any) -> None:
     expect_plausible(path, name, samples=len(channel), sample_bytes=1, stored_bytes=size, is_packed=False)
 
 
-def _clock(path: Path, channel: Any, time: Any, rate_hz: float | None, began: np.datetime64 | None) -> SampleClock:
+def _clock(
+    path: Path, channel: Any, time: Any, rate_hz: float | None, began: np.datetime64 | None, parts: int
+) -> SampleClock:
     """Take the clock of the waveform, else that of the group's channel of times, else the hint."""
     increment = channel.properties.get("wf_increment")
     if isinstance(increment, int | float) and np.isfinite(increment) and increment > 0.0:
@@ -121,7 +136,7 @@ def _clock(path: Path, channel: Any, time: Any, rate_hz: float | None, began: np
         if isinstance(start_time, np.datetime64) and began is not None and start_time > _NO_DATE:
             start += float((start_time - began) / np.timedelta64(1, "us")) * 1e-6
         return SampleClock(rate_hz=float(f"{1.0 / increment:.12g}"), start_s=start)
-    if time is not None and len(time) == len(channel):
+    if time is not None and len(time) * parts == len(channel):
         clock = clock_of_times(path, f"channel {time.name}", len(time), lambda start, stop: _times(time, start, stop))
         is_date = np.dtype(time.dtype).kind == "M"
         return replace(clock, start_s=0.0) if is_date else clock

@@ -26,10 +26,21 @@ def unpack(source: Path, folder: Path) -> None:
     """
     library = importlib.import_module("dwdatareader")
     with library.DWFile(str(source)) as file:
-        channels = [_unpack(library, file, number, key, folder) for number, key in enumerate(file)]
+        channels = [_unpacked(library, file, number, key, folder) for number, key in enumerate(file)]
         began = file.info.start_store_time.isoformat() if file.info.start_store_time.year > 1900 else None
     index = {"began": began, "channels": [channel.as_dict() for channel in channels]}
     (folder / INDEX).write_text(json.dumps(index), encoding="utf-8")
+
+
+def _unpacked(library: Any, file: Any, number: int, key: str, folder: Path) -> UnpackedChannel:
+    """Return a channel, or that the library refuses it: those of a CAN bus it refuses in files that it reads else."""
+    try:
+        return _unpack(library, file, number, key, folder)
+    except library.DWError as error:
+        reason = (
+            f"expected samples, found that Dewesoft's library refuses the channel ({error}); export it in Dewesoft X."
+        )
+        return UnpackedChannel(name=str(key), unit="", reason=reason)
 
 
 def _unpack(library: Any, file: Any, number: int, key: str, folder: Path) -> UnpackedChannel:
