@@ -58,14 +58,14 @@ def drawn(seed: int) -> Drawn:
     """Return the ship of a seed."""
     rng = np.random.default_rng([SEED, seed])
     kind = KINDS[seed % len(KINDS)]
-    tug = _line(rng)
+    tug = line_of(rng)
     while True:
         one = _LIMITED[kind](rng, tug)
         if LEAST_S <= one.acts_s <= MOST_S or np.isinf(one.acts_s):
             return one
 
 
-def _line(rng: np.random.Generator) -> Tug:
+def line_of(rng: np.random.Generator) -> Tug:
     """Return a line without limits."""
     return Tug(
         proportional_gain=float(rng.uniform(4.0, 7.0)),

@@ -5,6 +5,7 @@ The single steps are verbs too: ``measure``, ``fit``, ``survey_of``. Numbers in 
 rooms that they come from.
 """
 
+from shaftprint.survey._everything import of_joint_fit, with_everything
 from shaftprint.survey._fits import comparisons_of, fit, priors_of, stated_working_point
 from shaftprint.survey._legs import LegMeasurement, LegTest, leg_pairs, leg_tests, legs_of, structure_at
 from shaftprint.survey._legs_apart import LegAlone, apart_reasons, legs_alone
@@ -54,6 +55,7 @@ __all__ = [
     "load_trial",
     "measure",
     "noise_at_speeds",
+    "of_joint_fit",
     "of_legs",
     "pairs_of",
     "priors_of",
@@ -71,6 +73,7 @@ __all__ = [
     "validations_of",
     "validations_with_limits",
     "weighted_fits",
+    "with_everything",
     "with_limits",
     "with_validation",
 ]

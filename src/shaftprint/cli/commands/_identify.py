@@ -9,13 +9,14 @@ from shaftprint.cli._drive_identify import identify_on_the_bench
 from shaftprint.cli._drive_options import drive_option, only_recording
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli._fit_options import FitOptions, fit_options, settings_of, structures_of
+from shaftprint.cli._limit_tables import print_limits, print_line
 from shaftprint.cli._options import campaign_option, structure_sources, vessel_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._report_options import ReportOptions, report_options
 from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._terminal import print_findings, say
-from shaftprint.cli.output import force_option, no_progress_option, output_folder, print_table, progress
-from shaftprint.survey import Survey, judged, load_trial, run
+from shaftprint.cli.output import Steps, force_option, no_progress_option, output_folder, print_table, progress
+from shaftprint.survey import Survey, judged, load_trial, run, with_everything, with_limits
 from shaftprint.tables import fits_table, leg_test_table
 
 
@@ -35,6 +36,12 @@ from shaftprint.tables import fits_table, leg_test_table
 )
 @click.option("--figures", is_flag=True, help="Write every chart as SVG, PDF and PNG, too: half a minute more.")
 @click.option("--leg", "legs", multiple=True, metavar="NAME", help="Leg of the campaign to use; all when not given.")
+@click.option(
+    "--with",
+    "more",
+    type=click.Choice(["limits", "all"]),
+    help="limits: find the limits too, and put them into the line; all: fit sines, steps, chirps and limits at once.",
+)
 @fit_options
 @click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the results.")
 @report_options
@@ -48,6 +55,7 @@ def command(
     names: tuple[TypedName, ...],
     figures: bool,
     legs: tuple[str, ...],
+    more: str | None,
     options: FitOptions,
     output: Path,
     about: ReportOptions,
@@ -60,6 +68,8 @@ def command(
     --structure, --leg, --prior, --free and --hold may be repeated. With --drive, several recordings of
     one drive are fitted together.
     """
+    if more is not None and (drive_file is not None or options.mode != "shaftprint"):
+        raise click.UsageError(f"--with {more} is for ships, and for signals of --mode shaftprint: leave it out.")
     if drive_file is not None:
         identify_on_the_bench(
             recordings, drive_file, names, options, output, pictures=figures, force=force, no_progress=no_progress
@@ -88,6 +98,9 @@ def command(
         # the answer first: what follows takes as long again
         print_fingerprint(survey.fingerprint)
         with progress(hidden=no_progress) as steps:
+            survey = _with_more(survey, more, rng=rng, steps=steps)
+        _print_line(survey)
+        with progress(hidden=no_progress) as steps:
             survey = judged(survey, rng=rng, progress=steps)
         _print_judgement(survey)
         with progress(hidden=no_progress) as steps:
@@ -95,6 +108,25 @@ def command(
                 folder, recording, survey, steps=steps, pictures=figures, previous=about.previous, pdf=about.pdf
             )
     print_paths(output)
+
+
+def _with_more(survey: Survey, more: str | None, *, rng: np.random.Generator, steps: Steps) -> Survey:
+    """Return the survey with what was asked for besides the sines or legs."""
+    match more:
+        case "limits":
+            return with_limits(survey, progress=steps)
+        case "all":
+            return with_everything(survey, rng=rng.spawn(1)[0], progress=steps)
+        case _:
+            return survey
+
+
+def _print_line(survey: Survey) -> None:
+    """Print the limits and the line with them, where they were looked for."""
+    line = survey.fingerprint.with_limits
+    if survey.limit_fit is not None and line is not None:
+        print_limits(survey.limit_fit)
+        print_line(line)
 
 
 def _print_judgement(survey: Survey) -> None:

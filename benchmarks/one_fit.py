@@ -1,0 +1,137 @@
+"""Sines, steps and limits in one fit: does the truth lie in its intervals? 14 minutes, drawn ships.
+
+``python -m benchmarks.one_fit --seeds 100 --outcomes build/one_fit --write`` sails what is not there yet, fits it, and
+writes the table of ``docs/nonlinear.md``; an outcome is a small JSON file, so that a run goes on where it ended.
+"""
+
+import argparse
+import json
+import tempfile
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.limits import VESSEL, line_of
+from shaftprint.campaign import load_campaign
+from shaftprint.catalogue import structure
+from shaftprint.cli._demo_truth import fingerprint_truth
+from shaftprint.distributions import NORMAL_95
+from shaftprint.errors import ShaftprintError
+from shaftprint.signals import Signals
+from shaftprint.survey import run, with_everything
+from shaftprint.tug import Truth, Tug, sail
+
+CAMPAIGN = load_campaign("short")
+SEED = 2026
+SHARE, MOTORING_NM = (0.85, 1.0), (200.0, 350.0)
+JUDGED = ("K_p", "K_i", "t_d", "t_sp", "omega_n", "zeta", "tau_dn", "k_q", "m_max", "m_min", "T_aw")
+PAGE = Path(__file__).parents[1] / "docs" / "nonlinear.md"
+BEGIN, END = "<!-- one fit: begin -->\n", "<!-- one fit: end -->\n"
+
+
+def ship(seed: int) -> tuple[Tug, float]:
+    """Return a line with torque limits, and its full-load torque over that of the vessel file."""
+    rng = np.random.default_rng([SEED, seed])
+    return replace(line_of(rng), motoring_torque_nm=float(rng.uniform(*MOTORING_NM))), float(rng.uniform(*SHARE))
+
+
+def outcome(seed: int) -> dict[str, object]:
+    """Sail and fit the ship of a seed."""
+    tug, share = ship(seed)
+    torques = tuple(share * torque for torque in VESSEL.engine.full_load_torque_nm)
+    sailed = VESSEL.model_copy(update={"engine": VESSEL.engine.model_copy(update={"full_load_torque_nm": torques})})
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "test.nc"
+        truth = sail(sailed, CAMPAIGN, path, tug=tug, seed=seed)
+        survey = run(path, VESSEL, CAMPAIGN, judge=False, rng=np.random.default_rng(1))
+        begin = time.process_time()
+        try:
+            survey = with_everything(survey, rng=np.random.default_rng(2))
+        except ShaftprintError as error:
+            return {"seed": seed, "refused": str(error)}
+    line = survey.fingerprint.with_limits
+    if line is None:
+        return {"seed": seed, "refused": "no limits"}
+    true = _true(truth, tug, share, survey.signals)
+    found = {quantity.name: quantity for quantity in line.parameters}
+    sines = {quantity.name: quantity.std for quantity in survey.fingerprint.parameters}
+    return {
+        "seed": seed,
+        "cpu_s": time.process_time() - begin,
+        "limits": list(line.limits),
+        "z": {n: (found[n].value - true[n]) / found[n].std for n in JUDGED if n in found},
+        "std": {n: found[n].std / abs(true[n]) for n in JUDGED if n in found},
+        "gain": {n: sines[n] / found[n].std for n in JUDGED if n in sines},
+    }
+
+
+def _true(truth: Truth, tug: Tug, share: float, signals: Signals) -> Mapping[str, float]:
+    """Return the truth, normalised at the measured working point."""
+    point, gear = signals.working_point, VESSEL.gearbox
+    brake_nm = point.shaft_torque_nm / (gear.ratio * gear.efficiency)
+    speed_rpm = 60.0 * point.engine_speed_rev_s
+    full_nm = share * np.interp(speed_rpm, VESSEL.engine.full_load_speed_rpm, VESSEL.engine.full_load_torque_nm)
+    levels = {
+        "m_max": float(full_nm) / brake_nm,
+        "m_min": -tug.motoring_torque_nm / brake_nm,
+        "T_aw": tug.anti_windup_s,
+    }
+    return fingerprint_truth(truth, structure("GAUGE-CLOSED"), signals) | levels
+
+
+def table(outcomes: Sequence[Mapping[str, object]]) -> str:
+    """Return a row for each number, in Markdown."""
+    fitted = [one for one in outcomes if "refused" not in one]
+    lines = [
+        f"{len(fitted)} recordings, {len(outcomes) - len(fitted)} refused; CPU time of limits and joint fit "
+        f"{np.median([one['cpu_s'] for one in fitted]):.0f} s.",
+        "",
+        "| number | recordings | stated deviation | sines alone, times as much | rms z | mean z | covered |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    inside: list[bool] = []
+    for name in JUDGED:
+        z = np.array([one["z"][name] for one in fitted if name in one["z"] and np.isfinite(one["z"][name])])  # type: ignore[index,operator]
+        if z.size == 0:
+            continue
+        std = np.median([one["std"][name] for one in fitted if name in one["std"]])  # type: ignore[index,operator]
+        gain = [one["gain"][name] for one in fitted if name in one["gain"]]  # type: ignore[index,operator]
+        covered = np.abs(z) <= NORMAL_95
+        inside += covered.tolist()
+        times = f"{np.median(gain):.1f}" if gain else ""
+        lines.append(
+            f"| `{name}` | {z.size} | {100.0 * std:.2g} % | {times} | {np.sqrt(np.mean(z**2)):.2f} | "
+            f"{np.mean(z):.2f} | {100.0 * np.mean(covered):.0f} % |"
+        )
+    return "\n".join([*lines, f"| all | | | | | | {100.0 * np.mean(inside):.1f} % |"])
+
+
+def main() -> None:
+    """Sail and fit what is not there, and print the table of what is."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, default=100, help="number of recordings")
+    parser.add_argument("--first", type=int, default=0, help="number of the first")
+    parser.add_argument("--outcomes", type=Path, default=Path("build/one_fit"), help="folder of the outcomes")
+    parser.add_argument("--write", action="store_true", help="put the table into its page")
+    options = parser.parse_args()
+    options.outcomes.mkdir(parents=True, exist_ok=True)
+    found = []
+    for seed in range(options.first, options.first + options.seeds):
+        path = options.outcomes / f"{seed:03d}.json"
+        if not path.exists():
+            path.write_text(json.dumps(outcome(seed)), encoding="utf-8")
+        found.append(json.loads(path.read_text(encoding="utf-8")))
+        print(json.dumps(found[-1]), flush=True)
+    text = table(found)
+    print(text)
+    if options.write:
+        page = PAGE.read_text(encoding="utf-8")
+        before, _, rest = page.partition(BEGIN)
+        PAGE.write_text(f"{before}{BEGIN}{text}\n{END}{rest.partition(END)[2]}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,157 @@
+"""Everything of a test in one fit: sines, staircases and chirps, the line and its limits.
+
+A quarter of an hour of sines knows the governor to 10 %; its one staircase knows it better. The joint fit of
+``time_domain`` takes both, with levels that begin where ``limits`` finds them and are held near by what it states.
+Disturbances of the ship reach a limit that no step alone would, and its simulation has none: so the levels that are
+kept are those that the measured speed asks for beside the governor of the joint fit.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.catalogue import limited
+from shaftprint.fingerprint import Fingerprint, Quantity
+from shaftprint.identify import Identification, Prior
+from shaftprint.limits import LimitFit, identify_limits, levels_beside
+from shaftprint.survey._fits import priors_of
+from shaftprint.survey._line_with_limits import expect_limitable, limit_number, line_with_limits
+from shaftprint.survey._progress import SILENT, Progress
+from shaftprint.survey._survey import Survey
+from shaftprint.time_domain import (
+    LimitedModel,
+    NonlinearSettings,
+    full_load_shape,
+    identify_nonlinear,
+    structure_for,
+)
+
+ONE_START = NonlinearSettings(starts=1, better=1, kept=1)
+"""The line and its limits are known already: there is nothing to search for."""
+
+
+def with_everything(survey: Survey, *, rng: np.random.Generator, progress: Progress = SILENT) -> Survey:
+    """Return a survey whose fingerprint has the line with its limits, found from all of the test in one fit.
+
+    Parameters
+    ----------
+    rng
+        For the runs with noise that show where a chirp jumps.
+
+    Raises
+    ------
+    SignalError
+        If the recording does not hold the tests of the campaign, or the campaign has legs only.
+    IdentificationError
+        If the campaign has neither staircase nor chirp, or no start reached a stable model.
+    FingerprintError
+        If the first structure is another than GAUGE-CLOSED.
+    """
+    expect_limitable(survey.fingerprint)
+    signals, campaign, vessel = survey.signals, survey.campaign, survey.vessel
+    limits = identify_limits(signals, campaign, vessel, progress=progress.tell)
+    progress.tell("Fitting everything at once", "")
+    model = _model(survey, limits)
+    joint = identify_nonlinear(
+        signals,
+        campaign,
+        vessel,
+        model,
+        rng=rng,
+        linear=survey.identification,
+        priors=_priors(survey, model, limits),
+        settings=ONE_START,
+    )
+    line_fit = of_joint_fit(survey.fingerprint, survey.identification, joint.identification)
+    progress.tell("Putting the limits into the line", "")
+    levels = levels_beside(
+        {quantity.name: quantity.value for quantity in line_fit.parameters} | line_fit.held,
+        signals,
+        campaign,
+        vessel,
+        kinds=limits.kinds,
+        start=limits.start,
+    )
+    line = line_with_limits(
+        line_fit,
+        levels,
+        vessel=vessel,
+        working_point=signals.working_point,
+        numbers=[limit_number(one) for one in limits.numbers],
+        not_seen=list(limits.not_seen.values()),
+    )
+    line = line.model_copy(update={"found_by": "joint fit"})
+    return replace(survey, limit_fit=limits, fingerprint=survey.fingerprint.model_copy(update={"with_limits": line}))
+
+
+def of_joint_fit(fingerprint: Fingerprint, sines: Identification, joint: Identification) -> Fingerprint:
+    """Return a fingerprint with the parameters of a joint fit in place of those of its sines.
+
+    What the working point adds to the covariance, by which all data are divided, is the same for both fits.
+
+    Parameters
+    ----------
+    fingerprint
+        That of the sines.
+    sines, joint
+        The fit that it is of, and the one that takes all of the test.
+    """
+    names = [quantity.name for quantity in fingerprint.parameters]
+    added = _finite(fingerprint.covariance_of(names)) - _finite(_of(sines, names))
+    of_joint = _of(joint, names)
+    lost = ~np.isfinite(np.diag(of_joint))
+    covariance = np.where(lost[:, None] | lost[None, :], 0.0, of_joint + added) + np.diag(np.where(lost, np.inf, 0.0))
+    found = {estimate.name: estimate for estimate in joint.parameters}
+    return fingerprint.model_copy(
+        update={
+            "parameters": tuple(
+                _quantity(quantity, found[quantity.name].value, float(variance), at_bound=found[quantity.name].at_bound)
+                for quantity, variance in zip(fingerprint.parameters, np.diag(covariance), strict=True)
+            ),
+            "covariance": tuple(tuple(row) for row in covariance.tolist()),
+        }
+    )
+
+
+def _quantity(before: Quantity, value: float, variance: float, *, at_bound: bool) -> Quantity:
+    """Return a number with another value; its interval, of the profile of another likelihood, goes."""
+    return before.model_copy(
+        update={
+            "value": value,
+            "std": float(np.sqrt(variance)),
+            "interval_95": None,
+            "interval_open": (False, False),
+            "at_bound": at_bound,
+        }
+    )
+
+
+def _of(fit: Identification, names: list[str]) -> FloatArray:
+    """Return the covariance of some parameters of a fit, shape (names, names)."""
+    order = [estimate.name for estimate in fit.parameters]
+    places = [order.index(name) for name in names]
+    return np.asarray(fit.covariance[np.ix_(places, places)])
+
+
+def _finite(covariance: FloatArray) -> FloatArray:
+    return np.where(np.isfinite(covariance), covariance, 0.0)
+
+
+def _model(survey: Survey, limits: LimitFit) -> LimitedModel:
+    """Return the limited structure; what the fit of the sines held stays."""
+    point, chosen = survey.signals.working_point, limits.structure_limits
+    if chosen:
+        model = structure_for(chosen, survey.vessel, point, start=limits.start)
+    else:
+        model = LimitedModel(structure=limited(curve=full_load_shape(survey.vessel, point)), limits=(), start={})
+    held = {name: value for name, value in survey.fingerprint.held.items() if name in model.structure.names}
+    return replace(model, structure=model.structure.held_at(**held))
+
+
+def _priors(survey: Survey, model: LimitedModel, limits: LimitFit) -> Mapping[str, Prior]:
+    """Return what vessel file, user and ``limits`` know before."""
+    stated = {one.name: Prior(one.value, one.std) for one in limits.numbers if one.name in model.names}
+    known = dict(survey.identification.settings.priors)
+    return priors_of(model.structure, survey.vessel, survey.signals, known) | stated
