@@ -14,6 +14,8 @@ from shaftprint.fingerprint import (
     read_fingerprint,
     write_fingerprint,
 )
+from shaftprint.limits import Kind, Levels
+from shaftprint.survey import line_with_limits
 
 CURVE = ((-0.5, 0.6), (0.0, 1.0), (0.5, 1.1))
 
@@ -84,3 +86,36 @@ def test_what_cannot_be_a_model_is_refused_in_a_sentence(with_limits, tmp_path, 
     with pytest.raises(FingerprintError) as error:
         read_fingerprint(path)
     assert words in str(error.value)
+
+
+def test_levels_share_the_errors_of_the_governor_that_they_stand_beside(fingerprint, vessel, working_point):
+    """Drawn errors: a level is off by what its own noise and the errors of the governor make of it."""
+    slopes = np.array([[0.3, -2.0], [0.0, 4.0]])
+    alone = np.array([[0.04, 0.01], [0.01, 0.09]]) * 1e-2
+    levels = Levels(
+        kinds=(Kind.TORQUE, Kind.MOTORING),
+        values={"m_max": 2.8, "m_min": -0.6, "T_aw": 0.5},
+        names=("m_max", "m_min", "T_aw"),
+        covariance=np.block([[alone, np.zeros((2, 1))], [np.zeros((1, 2)), np.array([[np.inf]])]]),
+        governor=("K_p", "t_d"),
+        slopes=np.vstack([slopes, [[1.0, 1.0]]]),
+    )
+    line = line_with_limits(fingerprint, levels, vessel=vessel, working_point=working_point)
+    assert line.limits == ("torque",)
+    names = [quantity.name for quantity in line.parameters]
+    joint = np.array(line.covariance)
+    rng = np.random.default_rng(3)
+    linear = [quantity.name for quantity in fingerprint.parameters]
+    errors = rng.multivariate_normal(np.zeros(len(linear)), fingerprint.covariance_of(linear), size=200_000)
+    governor = errors[:, [linear.index(name) for name in levels.governor]]
+    of_levels = governor @ slopes.T + rng.multivariate_normal(np.zeros(2), alone, size=200_000)
+    drawn = np.cov(np.column_stack([errors, of_levels]).T)
+    places = [names.index(name) for name in (*linear, "m_max", "m_min")]
+    std = np.sqrt(np.diag(drawn))
+    np.testing.assert_allclose(
+        joint[np.ix_(places, places)] / np.outer(std, std), drawn / np.outer(std, std), atol=0.02
+    )
+    # of what the data do not show nothing is said
+    lost = names.index("T_aw")
+    assert np.isinf(joint[lost, lost])
+    assert not np.delete(joint[lost], lost).any()

@@ -131,7 +131,9 @@ def _joint(fingerprint: Fingerprint, levels: Levels, names: Sequence[str]) -> Fl
     finite = np.where(known[:, None] & known[None, :], of_line, 0.0)
     own = levels.covariance[np.ix_(places, places)]
     lost = ~np.isfinite(np.diag(own))
-    across = np.where(lost[:, None], 0.0, slopes @ finite)
+    # of what the data do not show nothing is related to anything
+    slopes[lost] = 0.0
+    across = slopes @ finite
     own = np.where(lost[:, None] | lost[None, :], 0.0, own)
-    both = own + slopes @ finite @ slopes.T + np.diag(np.where(lost, np.inf, 0.0))
+    both = own + across @ slopes.T + np.diag(np.where(lost, np.inf, 0.0))
     return np.block([[of_line, across.T], [across, both]])
