@@ -32,6 +32,13 @@ def test_motor_is_identified_from_several_records(motor):
     assert "engine" not in result.output
 
 
+def test_saved_fingerprint_is_shown_as_it_was_printed(motor, run_program):
+    folder, result = motor
+    shown = run_program("show", folder / "result")
+    assert shown.exit_code == 0, shown.output
+    assert result.output.startswith(shown.output.rstrip())
+
+
 def test_page_shows_every_record_and_the_fingerprint(motor):
     folder, _ = motor
     page = (folder / "result" / "index.html").read_text(encoding="utf-8")
@@ -51,7 +58,7 @@ def test_noise_is_that_of_the_sensors(motor):
 def test_fingerprint_of_a_drive_is_told_from_that_of_a_ship(motor):
     folder, _ = motor
     with pytest.raises(
-        FingerprintError, match="expected the fingerprint of a ship, found that of a drive; add --drive"
+        FingerprintError, match="expected the fingerprint of a ship, found that of a drive; show, compare"
     ):
         read_fingerprint(folder / "result" / "fingerprint.json")
     content = json.loads((folder / "result" / "fingerprint.json").read_text(encoding="utf-8"))

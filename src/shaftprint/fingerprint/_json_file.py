@@ -84,7 +84,10 @@ def _fingerprint_text(json_path: Path) -> tuple[str, int | None]:
     text, content = read_json(json_path, noun="fingerprint", where=where, error=FingerprintError)
     schema = content.get("schema_version") if isinstance(content, dict) else None
     if is_of_a_drive(content):
-        raise FingerprintError(f"{json_path}: expected the fingerprint of a ship, found that of a drive; add --drive.")
+        raise FingerprintError(
+            f"{json_path}: expected the fingerprint of a ship, found that of a drive; show, compare, validate --drive "
+            "and export fmu, modelica, matlab, ssp and osp take it."
+        )
     if schema is None:
         raise FingerprintError(f"{json_path}: expected a fingerprint, found JSON without a schema_version.")
     second = _SCHEMA_2.fullmatch(schema) if isinstance(schema, str) else None

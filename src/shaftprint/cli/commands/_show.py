@@ -4,6 +4,8 @@ from pathlib import Path
 
 import click
 
+from shaftprint.cli._drive_identify import print_drive
+from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place
 from shaftprint.cli._fingerprint_tables import print_fingerprint
 from shaftprint.cli.output import fingerprint_at
 
@@ -15,4 +17,7 @@ def command(fingerprint: Path) -> None:
 
     FINGERPRINT is the JSON file, or the folder in which identify or demo has put it.
     """
+    if is_drive_place(fingerprint):
+        print_drive(drive_fingerprint_at(fingerprint))
+        return
     print_fingerprint(fingerprint_at(fingerprint))
