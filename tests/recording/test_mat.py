@@ -32,6 +32,8 @@ def _save_v73(path, variables):
                 dataset.attrs["MATLAB_class"] = np.bytes_("char")
                 continue
             array = np.atleast_2d(np.asarray(value))
+            if min(array.shape) > 1:
+                array = array.T
             if np.iscomplexobj(array):
                 array = array.view([("real", "f8"), ("imag", "f8")])
             dataset = file.create_dataset(name, data=array)
@@ -106,7 +108,7 @@ def test_column_vectors_and_row_vectors_are_the_same(save):
         ({"fs": 0.0, "M_s": TORQUE}, {}, "channel M_s: expected a positive rate"),
         ({"fs": 1.0, "M_s": TORQUE}, {"sample_rate_hz": -1}, "the hint sample_rate_hz cannot be -1"),
         ({"fs": 1.0, "M_s": TORQUE}, {"sample_rate_hz": True}, "the hint sample_rate_hz cannot be True"),
-        ({"fs": 1.0, "M_s": TORQUE}, {"decimal": ","}, "only the hints sample_rate_hz for this format"),
+        ({"fs": 1.0, "M_s": TORQUE}, {"decimal": ","}, "only the hints columns, sample_rate_hz for this format"),
         ({"fs": 1.0, "M_s": TORQUE + 1j}, {}, "M_s: expected real numbers, found complex ones"),
     ],
 )
@@ -311,9 +313,11 @@ def test_version_7_3_is_known_by_what_follows_its_header(tmp_path):
 
 def test_matrices_are_left_out_with_a_reason(save):
     with read_recording(save({"fs": 1.0, "M_s": TORQUE, "a": np.ones((3, 4))})) as recording:
-        reason = "expected a vector, found an array of {}; save each of its columns as a separate variable, in MATLAB"
-        shape = "3 x 4" if recording.format == "MATLAB v4 to v7" else "4 x 3"
-        assert recording.left_out["a"].startswith(reason.format(shape))
+        reason = (
+            "expected a vector, found an array of 3 x 4; say what its columns are (--columns), or save each of them as "
+            "a separate variable, in MATLAB"
+        )
+        assert recording.left_out["a"].startswith(reason)
 
 
 def test_sparse_matrices_and_cells_are_left_out_with_a_reason(tmp_path):
@@ -340,3 +344,16 @@ def test_what_version_7_3_keeps_in_groups_and_references_is_left_out_with_a_reas
         assert recording.channel("on").values(0, 4).tolist() == [0.0, 1.0, 0.0, 1.0]
         assert recording.left_out["a"] == "expected a full vector, found a sparse matrix; in MATLAB: a = full(a)."
         assert recording.left_out["c"].startswith("expected a vector of numbers, found a cell array")
+
+
+def test_the_columns_of_a_table_are_named_by_the_caller(save):
+    time = np.arange(300) / 50.0
+    table = np.column_stack([time, np.sin(time), 3.0 * np.cos(time)])
+    path = save({"log": table, "other": np.ones((300, 2))})
+    with read_recording(path, columns="time [s],U,M_s [kN m]") as recording:
+        assert set(recording.channels) == {"U", "M_s"}
+        torque = recording.channel("M_s")
+        assert (torque.rate_hz, torque.unit, torque.count) == (50.0, "kN m", 300)
+        assert np.array_equal(torque.values(0, 300), table[:, 2])
+        assert recording.channel("U").values(7, 9).tolist() == table[7:9, 1].tolist()
+        assert "found an array of 300 x 2; say what its columns are (--columns)" in recording.left_out["other"]

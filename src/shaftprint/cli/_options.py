@@ -67,7 +67,9 @@ def reading_options(command: Callable[..., Any]) -> Callable[..., Any]:
     """Add the options that say what a file does not say itself: its rate, its columns, its letters, its messages."""
     rate = click.option("--sample-rate", type=float, help="Samples a second, where the file has no clock [Hz].")
     columns = click.option(
-        "--columns", metavar="NAME,...", help='Titles of a text file without them, such as "time [s],u,y [rad/s]".'
+        "--columns",
+        metavar="NAME,...",
+        help='Titles of a text file or MATLAB table without them, such as "time [s],u,y [rad/s]".',
     )
     delimiter = click.option("--delimiter", help="What stands between the columns of a text file.")
     decimal = click.option("--decimal", type=click.Choice([".", ","]), help="Decimal sign of a text file.")

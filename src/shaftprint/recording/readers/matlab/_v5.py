@@ -9,6 +9,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from shaftprint.recording._channel import Source
 from shaftprint.recording._recording import Recording
 from shaftprint.recording._spool import Spool
 from shaftprint.recording.readers._damage import told_as_damage
@@ -19,9 +20,9 @@ from shaftprint.recording.readers.matlab._variables import (
     MatVariables,
     cell_reason,
     gather_variables,
-    matrix_reason,
     object_reason,
     sparse_reason,
+    titles_of,
 )
 
 NAME = "MATLAB v4 to v7"
@@ -46,18 +47,18 @@ def is_mine(path: Path) -> bool:
 def read(path: Path, **hints: object) -> Recording:
     """Read a MATLAB file into temporary files, one variable after the other.
 
-    Hint: ``sample_rate_hz`` where the file has no clock.
+    Hints: ``sample_rate_hz`` where the file has no clock; ``columns``, what the columns of a table are.
 
     Raises
     ------
     RecordingError
         If the file is damaged, or has no channels or no clock.
     """
-    rate = rate_hint(path, hints)
+    rate = rate_hint(path, hints, {"columns": str})
     with told_as_damage(path, "MATLAB"):
         spool = Spool(path, ())
         try:
-            gathered = gather_variables(path, _survey(path, spool), rate_hz=rate)
+            gathered = gather_variables(path, _survey(path, spool, titles_of(hints)), rate_hz=rate)
             spool.finish()
             return gathered.recording_from_second_zero(NAME, spool.close)
         except BaseException:
@@ -85,9 +86,9 @@ def _is_v4(begin: bytes) -> bool:
     return False
 
 
-def _survey(path: Path, spool: Spool) -> MatVariables:
+def _survey(path: Path, spool: Spool, titles: tuple[str, ...]) -> MatVariables:
     """Load one variable after the other and keep its numbers on disk."""
-    variables = MatVariables()
+    variables = MatVariables(titles=titles)
     for header in _headers(path):
         name = header.name
         if header.is_object:
@@ -145,4 +146,10 @@ def _keep_array(name: str, group: str, array: NDArray[Any], spool: Spool, variab
         spool.append_column(number, array)
         variables.vectors.append(Vector(name=name, group=group, count=array.size, source=spool.source(number)))
     else:
-        variables.left_out[inside] = matrix_reason(name, array.shape)
+
+        def column(number: int) -> Source:
+            place = spool.add_column(f"{inside}({number + 1})")
+            spool.append_column(place, array[:, number])
+            return spool.source(place)
+
+        variables.add_table(inside, array.shape, column)

@@ -19,9 +19,9 @@ from shaftprint.recording.readers.matlab._variables import (
     MatVariables,
     cell_reason,
     gather_variables,
-    matrix_reason,
     object_reason,
     sparse_reason,
+    titles_of,
 )
 
 NAME = "MATLAB v7.3"
@@ -50,19 +50,19 @@ def is_mine(path: Path) -> bool:
 def read(path: Path, **hints: object) -> Recording:
     """Open a MATLAB file; samples are read as channels are asked for them.
 
-    Hint: ``sample_rate_hz`` where the file has no clock.
+    Hints: ``sample_rate_hz`` where the file has no clock; ``columns``, what the columns of a table are.
 
     Raises
     ------
     RecordingError
         If the file is damaged, or has no channels or no clock.
     """
-    rate = rate_hint(path, hints)
+    rate = rate_hint(path, hints, {"columns": str})
     file = open_hdf5(path, "MATLAB")
     opened = Opened(path, file.close)
     try:
         with told_as_damage(path, "MATLAB"):
-            variables = MatVariables()
+            variables = MatVariables(titles=titles_of(hints))
             _survey(path, file, "", opened, variables)
             gathered = gather_variables(path, variables, rate_hz=rate)
             return gathered.recording_from_second_zero(NAME, opened.close)
@@ -108,7 +108,21 @@ def _keep(path: Path, item: Any, key: str, group: str, kind: bytes, opened: Open
             Vector(name=key, group=group, count=int(item.size), source=_source(path, key, item, opened))
         )
     else:
-        variables.left_out[inside] = matrix_reason(key, item.shape[::-1])
+        expect_storage(path, inside, item)
+        variables.add_table(inside, item.shape[::-1], lambda number: _column(path, key, item, number, opened))
+
+
+def _column(path: Path, name: str, dataset: Any, number: int, opened: Opened) -> Source:
+    """Return the source of a column of a table; MATLAB's columns are rows of the file."""
+
+    def read_samples(start: int, stop: int) -> NDArray[Any]:
+        opened.expect_open(name)
+        try:
+            return np.asarray(dataset[number, start:stop], dtype=np.float64)
+        except (OSError, RuntimeError) as error:
+            raise RecordingError(f"{path}, channel {name}: samples [{start}, {stop}) are damaged ({error}).") from None
+
+    return read_samples
 
 
 def _source(path: Path, name: str, dataset: Any, opened: Opened) -> Source:

@@ -1,13 +1,16 @@
 """What the variables of a MATLAB file mean, whatever its version: vectors, numbers, texts, and objects."""
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from shaftprint.recording._channel import Source
 from shaftprint.recording.readers._gather import Gathered
 from shaftprint.recording.readers._vectors import Vector, gather_vectors
 
 _UNIT = "_unit"
+_TITLE = re.compile(r"(.*?)\s*\[(.*)\]")
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -22,6 +25,42 @@ class MatVariables:
     """Every char variable, by group and name."""
     left_out: dict[str, str] = field(default_factory=dict)
     """Why others cannot be read, by name."""
+    titles: tuple[str, ...] = ()
+    """Names of the columns of tables, with units in brackets, where the caller knows them."""
+
+    def add_table(self, name: str, shape: Sequence[int], columns: Callable[[int], Source]) -> None:
+        """Add the columns of an array of two dimensions as vectors, or why it is none that the titles fit.
+
+        Parameters
+        ----------
+        name
+            Its name with the structures that it is in, which are the group of its columns.
+        shape
+            Rows and columns.
+        columns
+            Gives the source of a column.
+        """
+        if len(shape) != 2 or shape[1] != len(self.titles):
+            self.left_out[name] = matrix_reason(name.rpartition("/")[2], shape)
+            return
+        for number, title in enumerate(self.titles):
+            found = _TITLE.fullmatch(title.strip())
+            plain, unit = (title.strip(), None) if found is None else (found[1], found[2])
+            self.vectors.append(
+                Vector(
+                    name=plain,
+                    group=name,
+                    count=shape[0],
+                    source=columns(number),
+                    attributes={} if unit is None else {"unit": unit},
+                )
+            )
+
+
+def titles_of(hints: Mapping[str, object]) -> tuple[str, ...]:
+    """Return the titles of the hint ``columns``; none where it is not given."""
+    columns = hints.get("columns")
+    return tuple(columns.split(",")) if isinstance(columns, str) else ()
 
 
 def object_reason(name: str, kind: str) -> str:
@@ -57,8 +96,8 @@ def matrix_reason(name: str, shape: Sequence[int]) -> str:
     """Return why an array of several columns is not read, and what to do in MATLAB."""
     size = " x ".join(map(str, shape))
     return (
-        f"expected a vector, found an array of {size}; save each of its columns as a separate variable, in MATLAB: "
-        f"{name}_1 = {name}(:, 1)."
+        f"expected a vector, found an array of {size}; say what its columns are (--columns), or save each of "
+        f"them as a separate variable, in MATLAB: {name}_1 = {name}(:, 1)."
     )
 
 
@@ -95,7 +134,10 @@ def gather_variables(path: Path, variables: MatVariables, *, rate_hz: float | No
     RecordingError
         If two clocks of one group disagree.
     """
-    named = [replace(vector, attributes=_unit(vector, variables.texts)) for vector in variables.vectors]
+    named = [
+        replace(vector, attributes={**vector.attributes, **_unit(vector, variables.texts)})
+        for vector in variables.vectors
+    ]
     scalars: Mapping[str, Mapping[str, float]] = {
         group: {name.lower(): value for name, value in numbers.items()} for group, numbers in variables.scalars.items()
     }
