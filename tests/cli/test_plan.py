@@ -145,7 +145,18 @@ def test_an_option_that_cannot_be_meant_says_what_was_expected(run, tmp_path, wo
         ((*SHIP, *LINE, "--within", "5min", "--structure", "OL5"), 1, "a plan needs the closed loop"),
         # at 1.15 of the speed the shaft carries 2281 N m; one sample in 10,000 has 1.3 * 60 % of it on top
         (
-            (*SHIP, *LINE, "--within", "5min", "--limit", "full-scale=3.9kNm", "--limit", "ripple=60%"),
+            (
+                *SHIP,
+                *LINE,
+                "--within",
+                "5min",
+                "--limit",
+                "full-scale=3.9kNm",
+                "--limit",
+                "ripple=60%",
+                "--speeds",
+                "1.15,0.78",
+            ),
             1,
             "full_scale_nm of [sensors.shaft_torque]: expected more than 4061 N m for a leg at 1361.37 rpm, whose "
             "shaft torque is 2281 N m with orders and noise of 78 % on it, found a gauge that shows up to 3900 N m",

@@ -140,7 +140,7 @@ def test_a_motoring_limit_that_is_known_is_free(vessel):
 def test_limits_by_name(vessel):
     assert structure_for(("smoke",), vessel, POINT).limits == ("torque", "smoke")
     assert structure_for(("deadband",), vessel, POINT).names == ("d_e",)
-    with pytest.raises(IdentificationError, match="expected some of torque, rate, deadband, smoke, found speed"):
+    with pytest.raises(IdentificationError, match="expected some of torque, rate, deadband, ramp, smoke, found speed"):
         structure_for(("speed",), vessel, POINT)
     with pytest.raises(IdentificationError, match="found none"):
         structure_for((), vessel, POINT)
