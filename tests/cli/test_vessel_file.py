@@ -38,6 +38,16 @@ def test_sail_predict_and_inspect_say_the_same(run, aboard):
     assert [contradictions(result) for result in (sailed, predicted, inspected)] == 3 * [SENTENCE]
 
 
+def test_plan_says_so_before_the_leg_that_is_refused_for_it(run, aboard):
+    overloaded = (aboard / "ship.toml").read_text().replace("shaft_torque_nm = 1725", "shaft_torque_nm = 5500")
+    (aboard / "ship.toml").write_text(overloaded)
+    line = ("--rpm-per-volt", "-251", "--offset", "-5", "--limit", "set-point=1.0V")
+    result = run("plan", "--vessel", "ship.toml", *line, "--within", "5min", "-o", aboard / "plan")
+    assert result.exit_code == 1
+    assert TITLE in result.output
+    assert "working_point.shaft_torque_nm" in result.output
+
+
 def test_quiet_does_not_hide_a_contradiction(run, aboard):
     result = run("predict", "--vessel", "ship.toml", "--campaign", "5min", "--quiet")
     assert result.exit_code == 0

@@ -13,6 +13,7 @@ from shaftprint.cli._options import vessel_option
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._plan_options import seconds_of, wish_from, wish_of
 from shaftprint.cli._plan_tables import print_planned_test
+from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import Steps, force_option, no_progress_option, output_folder, progress
 from shaftprint.design import RATE_HZ, PlannedTest, Wish, plan_test, write_plan_files
 from shaftprint.rehearsal import rehearse_on_tug
@@ -84,6 +85,7 @@ def command(
     wish = wish_from(wishes)
     _expect_a_goal(wish, within_s, is_shortest=is_shortest)
     stated = stated_ship(vessel, structure_name, options)
+    print_disagreements(stated.vessel, vessel)
     with output_folder(output, of="plan", force=force) as folder, progress(hidden=no_progress) as steps:
         planned = plan_test(
             knowledge_of(stated, steps=steps),
