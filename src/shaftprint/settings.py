@@ -167,7 +167,7 @@ def shipped_names(shipped: Traversable) -> tuple[str, ...]:
 
 
 def write_template(
-    kind: Literal["vessel", "campaign", "drive"], path: str | Path, *, shipped: str | None = None
+    kind: Literal["vessel", "campaign", "conditions", "drive"], path: str | Path, *, shipped: str | None = None
 ) -> None:
     """Write a commented settings file that can be loaded as it stands, to be filled in or changed.
 
@@ -186,8 +186,8 @@ def write_template(
         If there is no shipped file of that name, the file exists already or cannot be written; nothing is left
         half-written.
     """
-    folder = files("shaftprint") / kind
-    source = folder / "template.toml"
+    folder = files("shaftprint") / ("campaign" if kind == "conditions" else kind)
+    source = folder / ("conditions.toml" if kind == "conditions" else "template.toml")
     if shipped is not None:
         source = _shipped_file(shipped, folder / "shipped")
     text = source.read_text(encoding="utf-8")

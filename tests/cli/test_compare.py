@@ -1,5 +1,7 @@
 """``shaftprint compare`` on the fingerprint of the short demo and changed copies of it."""
 
+import json
+import re
 from dataclasses import replace
 
 import pytest
@@ -49,6 +51,26 @@ def test_what_the_vessel_files_state_alike_is_said(run, demo, later):
     (common,) = [line for line in output.splitlines() if line.startswith("Stated alike for both tests")]
     assert "TVC" in common
     assert "gauge scale" in common
+
+
+def test_time_and_ship_of_the_tests_stand_beside_each_other(run, demo, later):
+    content = json.loads(later.read_text(encoding="utf-8"))
+    content["conditions"] |= {
+        "tested_at": "2026-03-13T14:05:00+01:00",
+        "ship": {"name": "Meander", "imo_number": 9074729, "line": "port"},
+        "draught_m": 1.8,
+    }
+    later.write_text(json.dumps(content), encoding="utf-8")
+    printed = run("compare", demo[0], later).output.partition("Stated of the tests")[2]
+    rows = [re.split(r"\s{2,}", line.strip()) for line in printed.splitlines()]
+    cells = {row[0]: row[1:] for row in rows}
+    assert cells["tested"][1] == "2026-03-13 14:05 +01:00"
+    assert cells["ship"][1] == "Meander, port, IMO 9074729"
+    assert cells["draught"][1] == "1.80 m"
+    document = json.loads(run("compare", demo[0], later, "--json").output)
+    assert document["result"]["conditions"]["later"]["ship"]["imo_number"] == 9074729
+    shown = run("show", later).output
+    assert "ship Meander, port, IMO 9074729; tested 2026-03-13 14:05 +01:00" in shown
 
 
 def test_folders_of_one_name_are_told_apart_by_their_path(run, demo, later, tmp_path):

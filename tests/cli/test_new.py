@@ -2,8 +2,15 @@
 
 import pytest
 
-from shaftprint.campaign import load_campaign
+from shaftprint.campaign import load_campaign, load_trial_conditions
 from shaftprint.vessel import load_vessel
+
+
+def test_conditions_of_a_test_can_be_filled_in(run, tmp_path):
+    result = run("new", "conditions", tmp_path / "today.toml")
+    assert result.exit_code == 0
+    assert result.output.endswith("today.toml: the conditions of a test to fill in.\n")
+    assert load_trial_conditions(tmp_path / "today.toml").wind_m_s == 3.0
 
 
 @pytest.mark.parametrize(("kind", "load"), [("vessel", load_vessel), ("campaign", load_campaign)])

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from expected_exports import EXPORTS
 
-from shaftprint.campaign import load_campaign
+from shaftprint.campaign import load_campaign, load_trial_conditions
 from shaftprint.catalogue import structure
 from shaftprint.design import read_plan
 from shaftprint.fingerprint import read_fingerprint
@@ -51,9 +51,10 @@ def expect_demo(folder, printed, words):
 
 
 def expect_settings(folder, printed, words):
-    load = {"vessel": load_vessel, "campaign": load_campaign}[words[1]]
+    load = {"vessel": load_vessel, "campaign": load_campaign, "conditions": load_trial_conditions}[words[1]]
     (file,) = (word for word in words if word.endswith(".toml"))
-    assert load(folder / file).name
+    loaded = load(folder / file)
+    assert loaded.place if words[1] == "conditions" else loaded.name
 
 
 def expect_prediction(folder, printed, words):

@@ -157,7 +157,7 @@ def gauge_fit():
 
 @pytest.fixture(scope="session")
 def take(signals, signal_to_noise, vessel, campaign):
-    def fingerprint(identification, *, now=NOW, signals=signals):
+    def fingerprint(identification, *, now=NOW, signals=signals, vessel=vessel, **stated):
         return take_fingerprint(
             identification,
             signals=signals,
@@ -170,6 +170,7 @@ def take(signals, signal_to_noise, vessel, campaign):
             ),
             now=now,
             tested_at=BEGAN,
+            **stated,
         )
 
     return fingerprint

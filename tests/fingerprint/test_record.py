@@ -7,10 +7,12 @@ from zoneinfo import ZoneInfo
 import numpy as np
 import pytest
 
+from shaftprint.campaign import TrialConditions
 from shaftprint.catalogue import ShipRole
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint import Quantity, read_fingerprint, write_fingerprint
 from shaftprint.identify import Prior, Settings, Unweighted
+from shaftprint.vessel import Ship
 
 NOW = datetime(2026, 3, 14, 9, 30, tzinfo=UTC)
 
@@ -40,6 +42,21 @@ def test_place_and_date_of_the_test_are_kept(fingerprint, path):
     conditions = written_and_read(fingerprint, path).conditions
     assert conditions.place == "Quay 12, Rotterdam"
     assert conditions.tested_at.isoformat() == "2026-03-13T14:05:00"
+
+
+def test_ship_and_water_of_the_test_are_kept(gauge_fit, take, vessel, path):
+    """``K_Q`` is made with the measured density: 1025/1000 times that with the density of the vessel file."""
+    ship = Ship(name="Meander", imo_number=9074729, line="port", class_name="Stan Tug 1205")
+    trial = TrialConditions(place="Dock", draught_m=1.8, water_temperature_c=4.0, water_density_kg_m3=1000.0)
+    fresh = vessel.model_copy(update={"ship": ship, "water_density_kg_m3": 1000.0})
+    kept = written_and_read(take(gauge_fit, vessel=fresh, trial_conditions=trial), path)
+    conditions = kept.conditions
+    assert conditions.ship.model_dump() == ship.model_dump()
+    assert (conditions.place, conditions.draught_m, conditions.water_temperature_c) == ("Dock", 1.8, 4.0)
+    assert (conditions.water_density_kg_m3, conditions.depth_m, conditions.trim_m) == (1000.0, None, None)
+    sea = take(gauge_fit)
+    assert kept.quantity("K_Q").value == pytest.approx(1.025 * sea.quantity("K_Q").value, rel=1e-12)
+    assert sea.conditions.ship is None
 
 
 def test_loads_back_equal_with_all_that_a_number_can_be(fingerprint, path):
@@ -135,7 +152,7 @@ def test_time_without_zone_is_refused(gauge_fit, take):
 
 
 def test_keeps_what_is_needed_to_judge_it_in_ten_years(fingerprint):
-    assert fingerprint.schema_version == "2.1"
+    assert fingerprint.schema_version == "2.2"
     assert [(s.role, s.name, s.sha256[:2]) for s in fingerprint.sources] == [
         ("recording", "port.nc", "ab"),
         ("vessel", "tug.toml", "cd"),
@@ -265,7 +282,7 @@ def test_cut_file(fingerprint, path):
 
 def test_unknown_fields_are_refused_with_their_place(fingerprint, path):
     with_field(fingerprint, path, lambda c: c.update(colour="red"))
-    with pytest.raises(FingerprintError, match=r"not a fingerprint of schema 2.1: colour: Extra inputs"):
+    with pytest.raises(FingerprintError, match=r"not a fingerprint of schema 2.2: colour: Extra inputs"):
         read_fingerprint(path)
     with_field(fingerprint, path, lambda c: c["conditions"].update(tide_m=1.2))
     with pytest.raises(FingerprintError, match=r"conditions\.tide_m: Extra inputs"):

@@ -41,6 +41,15 @@ def of_legs(fingerprint):
     )
 
 
+WATER = ("draught_m", "trim_m", "water_temperature_c", "water_density_kg_m3", "depth_m", "wind_m_s")
+
+
+def before_2_2(content):
+    """Take out what schema 2.2 has added."""
+    for name in ("ship", *WATER):
+        del content["conditions"][name]
+
+
 def write_changed(fingerprint, path, change):
     content = json.loads(fingerprint.model_dump_json())
     change(content)
@@ -63,7 +72,7 @@ def test_legs_and_noise_come_back_as_they_were(of_legs, path):
     assert np.array_equal(levels.density, LEVELS.density)
     assert np.array_equal(levels.at([0.2]), LEVELS.at([0.2]))
     content = json.loads(path.read_text(encoding="utf-8"))
-    assert content["schema_version"] == "2.1"
+    assert content["schema_version"] == "2.2"
     assert content["torque_ripple"] == 0.51
     assert content["noise"][0]["density_imaginary"][0] == [[0.0, 5e-7], [-5e-7, 0.0]]
 
@@ -71,6 +80,7 @@ def test_legs_and_noise_come_back_as_they_were(of_legs, path):
 def test_a_file_of_schema_1_is_read(fingerprint, path):
     def as_schema_1(content):
         del content["legs"], content["noise"], content["with_limits"], content["validation"]
+        before_2_2(content)
         content["schema_version"] = 1
 
     write_changed(fingerprint, path, as_schema_1)
@@ -82,6 +92,7 @@ def test_a_file_of_schema_1_is_read(fingerprint, path):
 def test_a_file_of_schema_2_0_is_read(of_legs, path):
     def as_schema_2_0(content):
         del content["with_limits"], content["validation"]
+        before_2_2(content)
         content["schema_version"] = "2.0"
 
     write_changed(of_legs, path, as_schema_2_0)
@@ -89,8 +100,48 @@ def test_a_file_of_schema_2_0_is_read(of_legs, path):
 
 
 def test_a_file_of_schema_2_0_with_limits_is_refused(of_legs, path):
-    write_changed(of_legs, path, lambda content: content.update(schema_version="2.0"))
+    def as_schema_2_0(content):
+        before_2_2(content)
+        content["schema_version"] = "2.0"
+
+    write_changed(of_legs, path, as_schema_2_0)
     with pytest.raises(FingerprintError, match=r"with_limits: expected no such field in schema 2\.0"):
+        read_fingerprint(path)
+
+
+def test_a_file_of_schema_2_1_is_read(of_legs, path):
+    def as_schema_2_1(content):
+        before_2_2(content)
+        content["schema_version"] = "2.1"
+
+    write_changed(of_legs, path, as_schema_2_1)
+    assert read_fingerprint(path) == of_legs
+
+
+@pytest.mark.parametrize("name", ["ship", "depth_m"])
+def test_a_file_of_schema_2_1_with_conditions_of_2_2_is_refused(of_legs, path, name):
+    def spoil(content):
+        before_2_2(content)
+        content["conditions"][name] = None
+        content["schema_version"] = "2.1"
+
+    write_changed(of_legs, path, spoil)
+    with pytest.raises(FingerprintError, match=rf"conditions\.{name}: expected no such field in schema 2\.1"):
+        read_fingerprint(path)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"depth_m": "NaN"}, r"conditions\.depth_m: Input should be a finite number"),
+        ({"ship": {"name": "A", "line": "port", "imo_number": 9074728}}, "expected an IMO number, seven digits"),
+        ({"ship": {"name": "A" * 101, "line": "port"}}, r"conditions\.ship\.name: String should have at most 100"),
+        ({"ship": {"name": "A"}}, r"conditions\.ship\.line: Field required"),
+    ],
+)
+def test_conditions_that_cannot_be_are_refused(of_legs, path, change, message):
+    write_changed(of_legs, path, lambda content: content["conditions"].update(change))
+    with pytest.raises(FingerprintError, match=message):
         read_fingerprint(path)
 
 
@@ -111,11 +162,11 @@ def test_every_later_2_is_read_and_says_what_it_left_out(of_legs, path):
     kept = read_fingerprint(path)
     assert kept.model_copy(update={"findings": of_legs.findings}) == of_legs
     (finding,) = kept.findings[len(of_legs.findings) :]
-    assert finding.startswith("The file is of schema 2.7; what is not known in 2.1 was left out: ")
+    assert finding.startswith("The file is of schema 2.7; what is not known in 2.2 was left out: ")
     for name in ("hull", "legs.1.orders", "noise.0.shaft_orders", "parameters.0.drift"):
         assert name in finding
     # nothing new: nothing to say
-    write_changed(of_legs, path, lambda content: content.update(schema_version="2.2"))
+    write_changed(of_legs, path, lambda content: content.update(schema_version="2.3"))
     assert read_fingerprint(path) == of_legs
 
 

@@ -8,7 +8,7 @@ from typing import get_args
 
 import pytest
 
-from shaftprint.fingerprint import Quantity
+from shaftprint.fingerprint import Quantity, ShipIdentity
 from shaftprint.reasons import Reason, ReasonKind
 from shaftprint.report.sections import cover_of, summary_section
 
@@ -138,6 +138,17 @@ def test_date_and_place_are_facts_of_the_first_page(fingerprint):
     told = fingerprint.model_copy(update={"conditions": fingerprint.conditions.model_copy(update=stated)})
     assert dict(cover_of(told).facts) == {"Tested": "2026-03-13 14:05", "Place": "Quay 12", "Test": "short test"}
     assert dict(cover_of(fingerprint).facts)["Tested"] == "date not stated"
+
+
+def test_ship_and_water_are_facts_of_the_first_page_where_they_are_stated(fingerprint):
+    ship = ShipIdentity(name="Meander", imo_number=9074729, line="port")
+    stated = {"tested_at": datetime.fromisoformat("2026-03-13T14:05+01:00"), "ship": ship, "draught_m": 1.8}
+    told = fingerprint.model_copy(update={"conditions": fingerprint.conditions.model_copy(update=stated)})
+    facts = dict(cover_of(told).facts)
+    assert facts["Ship"] == "Meander, port, IMO 9074729"
+    assert facts["Tested"] == "2026-03-13 14:05 +01:00"
+    assert facts["Draught"] == "1.80 m"
+    assert "Depth" not in facts
 
 
 def test_an_earlier_test_is_compared_in_the_headline(fingerprint):

@@ -25,6 +25,7 @@ from shaftprint.campaign._file_text import campaign_text, tests_text
 from shaftprint.campaign._leg import Leg
 from shaftprint.campaign._multisine import Multisine
 from shaftprint.campaign._setpoint import setpoint
+from shaftprint.campaign._trial_conditions import TrialConditions, load_trial_conditions
 
 __all__ = [
     "BinarySequence",
@@ -35,8 +36,10 @@ __all__ = [
     "Multisine",
     "Sine",
     "Staircase",
+    "TrialConditions",
     "campaign_text",
     "load_campaign",
+    "load_trial_conditions",
     "setpoint",
     "tests_text",
 ]

@@ -20,7 +20,7 @@ SECTIONS = {
         "demo": "Simulate the Stan Tug 1205 and identify it from its recording.",
     },
     "Plan a test": {
-        "new": "Write a commented vessel, campaign or drive file to fill in.",
+        "new": "Write a commented vessel, campaign, conditions or drive file to fill in.",
         "predict": "Predict the accuracy of a planned test.",
         "sensitivity": "Draw the effect of each parameter of a structure on its response.",
         "inertia": "Calculate inertia and torsional modes from the vessel file.",

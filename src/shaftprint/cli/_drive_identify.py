@@ -30,7 +30,7 @@ def identify_on_the_bench(
     no_progress: bool,
 ) -> None:
     """Identify a drive from its records, print what was found, and write fingerprint and page into a folder."""
-    expect_not_given("vessel", "campaign", "legs", "tested_at", "previous", "pdf")
+    expect_not_given("vessel", "campaign", "legs", "tested_at", "conditions", "previous", "pdf")
     (one,) = equipped_drive(drive_file, names if is_given("names") else (), options)
     with output_folder(output, of="identify", force=force) as folder:
         with progress(hidden=no_progress) as steps:

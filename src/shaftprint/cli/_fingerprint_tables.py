@@ -15,6 +15,9 @@ from shaftprint.tables import (
     parameter_table,
     physical_table,
     quantity_table,
+    ship_text,
+    tested_text,
+    water_facts,
 )
 
 
@@ -51,6 +54,10 @@ def print_fingerprint(fingerprint: Fingerprint, *, truth: Mapping[str, float] = 
 def _print_conditions(fingerprint: Fingerprint) -> None:
     conditions = fingerprint.conditions
     say(f"{conditions.vessel}; {conditions.campaign}; structure {fingerprint.structure}")
+    facts = {"ship": ship_text(conditions.ship), "tested": tested_text(conditions.tested_at)}
+    facts |= {"at": conditions.place or ""} | {title.lower(): text for title, text in water_facts(conditions)}
+    if any(facts.values()):
+        say("; ".join(f"{title} {text}" for title, text in facts.items() if text), indent="  ")
     for quantity in (conditions.engine_speed, conditions.shaft_torque):
         value = stated(quantity.value, quantity.std, quantity.unit)
         say(f"{quantity.meaning}: {quantity.name} = {value}", indent="  ")

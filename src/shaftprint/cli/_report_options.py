@@ -9,11 +9,19 @@ from typing import Any
 
 import click
 
+from shaftprint.campaign import TrialConditions, load_trial_conditions
 from shaftprint.cli.output import fingerprint_at
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.report import expect_reportlab
 
-DATE_FORMATS = ["%Y-%m-%d", "%Y-%m-%dT%H:%M", "%Y-%m-%d %H:%M", "%Y-%m-%dT%H:%M:%S"]
+DATE_FORMATS = [
+    "%Y-%m-%d",
+    "%Y-%m-%dT%H:%M",
+    "%Y-%m-%d %H:%M",
+    "%Y-%m-%dT%H:%M:%S",
+    "%Y-%m-%dT%H:%M%z",
+    "%Y-%m-%dT%H:%M:%S%z",
+]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -22,6 +30,8 @@ class ReportOptions:
 
     tested_at: datetime | None
     """When the recording began; None where its file may say so."""
+    conditions: TrialConditions | None
+    """When, where and in what water the test was made; None where nobody says."""
     previous: Fingerprint | None
     """Fingerprint of an earlier test, with which this one is compared."""
     pdf: bool
@@ -29,21 +39,31 @@ class ReportOptions:
 
 
 def report_options(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Add the options ``--tested-at``, ``--previous`` and ``--pdf``, handed over as ``about``."""
+    """Add the options ``--tested-at``, ``--conditions``, ``--previous`` and ``--pdf``, handed over as ``about``."""
 
     @wraps(command)
-    def with_options(*, tested_at: datetime | None, previous: Path | None, pdf: bool, **options: Any) -> Any:
+    def with_options(
+        *, tested_at: datetime | None, conditions: Path | None, previous: Path | None, pdf: bool, **options: Any
+    ) -> Any:
         # read before anything is made: a file that cannot be used leaves no folder
         if pdf:
             expect_reportlab()
         earlier = None if previous is None else fingerprint_at(previous)
-        return command(about=ReportOptions(tested_at=tested_at, previous=earlier, pdf=pdf), **options)
+        of_trial = None if conditions is None else load_trial_conditions(conditions)
+        about = ReportOptions(tested_at=tested_at, conditions=of_trial, previous=earlier, pdf=pdf)
+        return command(about=about, **options)
 
     tested_option = click.option(
         "--tested-at",
         type=click.DateTime(DATE_FORMATS),
         metavar="DATE",
-        help="When the recording began, such as 2026-03-31 or 2026-03-31T09:30; by default as its file says.",
+        help="When the recording began, such as 2026-03-31T09:30+02:00; by default as its file says.",
+    )
+    conditions_option = click.option(
+        "--conditions",
+        type=click.Path(path_type=Path),
+        metavar="FILE",
+        help="When, where and in what water the test was made; `shaftprint new conditions` writes such a file.",
     )
     previous_option = click.option(
         "--previous",
@@ -52,4 +72,4 @@ def report_options(command: Callable[..., Any]) -> Callable[..., Any]:
         help="Result of an earlier test, a folder or a fingerprint: the report says what has changed since.",
     )
     pdf_option = click.option("--pdf", is_flag=True, help="Write the first pages of the report as report.pdf too.")
-    return tested_option(previous_option(pdf_option(with_options)))
+    return tested_option(conditions_option(previous_option(pdf_option(with_options))))

@@ -14,6 +14,7 @@ gauge zero share    %           zero offset of the torque gauge over the working
 """
 
 from shaftprint.fingerprint._clock_influence import NOTABLE_SHIFT, ClockInfluence, clock_findings, clock_influences
+from shaftprint.fingerprint._conditions import WATER, Conditions, ShipIdentity
 from shaftprint.fingerprint._drive_fingerprint import (
     DriveFingerprint,
     DriveRecord,
@@ -22,7 +23,7 @@ from shaftprint.fingerprint._drive_fingerprint import (
     read_drive_fingerprint,
     write_drive_fingerprint,
 )
-from shaftprint.fingerprint._fingerprint import Conditions, Fingerprint, Quality, SourceFile
+from shaftprint.fingerprint._fingerprint import Fingerprint, Quality, SourceFile
 from shaftprint.fingerprint._inertia import inertia_beside
 from shaftprint.fingerprint._json_file import fingerprint_sha256, read_fingerprint, write_fingerprint
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum, leg_record, noise_spectra
@@ -41,6 +42,7 @@ __all__ = [
     "GAUGE_ZERO",
     "NOTABLE_SHIFT",
     "TVC",
+    "WATER",
     "ClockInfluence",
     "Conditions",
     "DriveFingerprint",
@@ -54,6 +56,7 @@ __all__ = [
     "NoiseSpectrum",
     "Quality",
     "Quantity",
+    "ShipIdentity",
     "SourceFile",
     "StretchRecord",
     "ValidationRecord",

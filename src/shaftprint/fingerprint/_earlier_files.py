@@ -12,6 +12,7 @@ from pydantic import ValidationError
 
 from shaftprint.catalogue import ROLES, ShipRole, shipped_structure
 from shaftprint.errors import FingerprintError, StructureError
+from shaftprint.fingerprint._conditions import WATER
 from shaftprint.fingerprint._fingerprint import SCHEMA_VERSION, Fingerprint
 from shaftprint.fingerprint._physical import GAUGE_ZERO
 from shaftprint.fingerprint._quantity import Quantity
@@ -25,11 +26,15 @@ PHYSICAL: Mapping[str, Role] = {
 }
 
 
-NEW_IN_2_1 = ("with_limits", "validation")
+NEW_IN: Mapping[int, tuple[str, ...]] = {
+    1: ("with_limits", "validation"),
+    2: ("conditions.ship", *(f"conditions.{name}" for name in WATER)),
+}
+"""Fields that came with each schema 2.N, dots between their steps."""
 
 
 def of_earlier_schema(text: str) -> Fingerprint:
-    """Return the fingerprint of a file of schema 1, which has neither legs nor noise, or 2.0, which has no limits.
+    """Return the fingerprint of a file of an earlier schema: 1 has neither legs nor noise, 2.0 no limits.
 
     Raises
     ------
@@ -38,10 +43,20 @@ def of_earlier_schema(text: str) -> Fingerprint:
     """
     content = json.loads(text)
     earlier = Fingerprint.model_validate_json(json.dumps(content | {"schema_version": SCHEMA_VERSION}))
-    for name in NEW_IN_2_1:
-        if name in content:
-            raise FingerprintError(f"{name}: expected no such field in schema {content['schema_version']}.")
+    schema = str(content["schema_version"])
+    minor = int(schema.partition(".")[2] or 0)
+    for name in (name for later, names in NEW_IN.items() if later > minor for name in names):
+        if _is_there(content, name.split(".")):
+            raise FingerprintError(f"{name}: expected no such field in schema {schema}.")
     return earlier
+
+
+def _is_there(content: Any, steps: Sequence[str]) -> bool:
+    for step in steps:
+        if not isinstance(content, dict) or step not in content:
+            return False
+        content = content[step]
+    return True
 
 
 def of_later_schema(text: str) -> Fingerprint:

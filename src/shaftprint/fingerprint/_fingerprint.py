@@ -1,7 +1,6 @@
 """The noun of the room: what is kept of one test, as a JSON record."""
 
 from collections.abc import Sequence
-from datetime import datetime
 from typing import Final, Literal, Self
 
 import numpy as np
@@ -10,6 +9,7 @@ from pydantic import AwareDatetime, Field, NonNegativeFloat, model_validator
 from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import ShipRole
 from shaftprint.errors import FingerprintError
+from shaftprint.fingerprint._conditions import Conditions
 from shaftprint.fingerprint._covariance_check import covariance_fault
 from shaftprint.fingerprint._labelled_numbers import labelled_numbers
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
@@ -21,7 +21,7 @@ from shaftprint.identify import NoiseLevels, Prior, Verdict
 from shaftprint.identify.uncertainty import Budget
 from shaftprint.notebook import Labelled, LabelledData, Shown, Summary, shortened
 
-SCHEMA_VERSION: Final = "2.1"
+SCHEMA_VERSION: Final = "2.2"
 """Version of the layout: the second number grows with what is added to it, see ``docs/fingerprint-file.md``."""
 
 
@@ -34,33 +34,6 @@ class SourceFile(FrozenRecord):
     """File name or the name of a shipped file."""
     sha256: str
     """SHA-256 of its content."""
-
-
-class Conditions(FrozenRecord):
-    """Under which conditions the fingerprint holds."""
-
-    vessel: str
-    """Name of the vessel and shaft line."""
-    campaign: str
-    """Name of the test."""
-    place: str | None = None
-    """Where it was made; None where the campaign file does not say."""
-    tested_at: datetime | None = None
-    """When the recording began, by the logger's clock or as stated; None where neither says."""
-    engine_speed: Quantity
-    """Working-point engine speed."""
-    shaft_torque: Quantity
-    """Working-point shaft torque at the gauge."""
-    set_point_v: float
-    """Mean set-point voltage of the working point [V]."""
-    speed_channel: str
-    """Speed sensor that was identified."""
-    mode: Literal["shaftprint", "thesis"]
-    """How the signals were prepared."""
-    lines_used: tuple[str, ...]
-    """Test lines that were fitted."""
-    lines_left_out: dict[str, str]
-    """Test lines that were not, with the reason."""
 
 
 class Quality(FrozenRecord):
@@ -97,7 +70,7 @@ class Quality(FrozenRecord):
 class Fingerprint(Shown, Labelled, FrozenRecord):
     """Physical and normalised parameters of one propulsion line with uncertainty, margins and conditions."""
 
-    schema_version: Literal["2.1"] = SCHEMA_VERSION
+    schema_version: Literal["2.2"] = SCHEMA_VERSION
     """Version of this record's layout."""
     shaftprint_version: str
     """Version of shaftprint that made it."""

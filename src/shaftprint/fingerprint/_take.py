@@ -15,9 +15,10 @@ from shaftprint.catalogue import ShipRole
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._assumptions import assumptions_of
 from shaftprint.fingerprint._calibration import calibration_quantities
+from shaftprint.fingerprint._conditions import Conditions, conditions_stated
 from shaftprint.fingerprint._contradictions import contradictions
 from shaftprint.fingerprint._findings import findings_of
-from shaftprint.fingerprint._fingerprint import Conditions, Fingerprint, Quality, SourceFile
+from shaftprint.fingerprint._fingerprint import Fingerprint, Quality, SourceFile
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
 from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
@@ -38,7 +39,7 @@ from shaftprint.reasons import Reason
 from shaftprint.units import SECONDS_PER_MINUTE
 
 if TYPE_CHECKING:
-    from shaftprint.campaign import Campaign
+    from shaftprint.campaign import Campaign, TrialConditions
     from shaftprint.signals import Signals, WorkingPoint
     from shaftprint.spectra import SignalToNoise
     from shaftprint.vessel import Vessel
@@ -55,6 +56,7 @@ def take_fingerprint(
     settings_files: tuple[SourceFile, ...],
     now: datetime,
     tested_at: datetime | None = None,
+    trial_conditions: "TrialConditions | None" = None,
     legs: Sequence[LegRecord] = (),
     reasons: Sequence[Reason] = (),
     noise: Sequence[NoiseSpectrum] = (),
@@ -74,6 +76,8 @@ def take_fingerprint(
         Time of making, with time zone.
     tested_at
         When the recording began, where that is known.
+    trial_conditions
+        Where and in what water the test was made, as far as that is known.
     legs, noise
         Legs that were fitted, and the noise at each speed, where they are known.
     torque_ripple
@@ -98,7 +102,8 @@ def take_fingerprint(
     left_out = _left_out(identification)
     profiled = profile(identification, margins) if identification.is_likelihood else None
     reported = _Reported(stated, {} if profiled is None else profiled.intervals, _meanings(identification))
-    conditions = _conditions(identification, signals, vessel, campaign, left_out, tested_at)
+    stated_conditions = conditions_stated(vessel, campaign, trial_conditions, tested_at)
+    conditions = _conditions(identification, signals, left_out, stated_conditions)
     margin = margin_quantities(identification, profiled, stated)
     verdict = assess(
         identification,
@@ -177,17 +182,12 @@ def _left_out(identification: Identification) -> dict[str, str]:
 def _conditions(
     identification: Identification,
     signals: "Signals",
-    vessel: "Vessel",
-    campaign: "Campaign",
     left_out: dict[str, str],
-    tested_at: datetime | None,
+    stated: Mapping[str, object],
 ) -> Conditions:
     speed, torque = _working_point(signals.working_point)
     return Conditions(
-        vessel=vessel.name,
-        campaign=campaign.name,
-        place=campaign.place,
-        tested_at=tested_at,
+        **stated,
         engine_speed=speed,
         shaft_torque=torque,
         set_point_v=signals.working_point.set_point_v,

@@ -28,6 +28,7 @@ from shaftprint.report.comparison import (
     Difference,
     difference_table,
     differences,
+    stated_table,
     vessel_file_sentences,
 )
 from shaftprint.report.figures import (
@@ -123,6 +124,7 @@ __all__ = [
     "signal_to_noise_chart",
     "simulation_chart",
     "staircase_chart",
+    "stated_table",
     "step_chart",
     "strip_chart",
     "validation_chart",

@@ -12,7 +12,7 @@ from typing import TypeAlias
 import numpy as np
 
 from shaftprint.arguments import refusing_none
-from shaftprint.campaign import Campaign
+from shaftprint.campaign import Campaign, TrialConditions
 from shaftprint.catalogue import shipped_structure
 from shaftprint.errors import IdentificationError, SettingsError
 from shaftprint.fingerprint import (
@@ -132,6 +132,7 @@ def run(
     rng: np.random.Generator | None = None,
     now: datetime | None = None,
     tested_at: datetime | None = None,
+    conditions: str | Path | TrialConditions | None = None,
     legs: Sequence[str] = (),
     judge: bool = True,
     progress: Progress = SILENT,
@@ -157,7 +158,9 @@ def run(
     now
         When the fingerprint is made.
     tested_at
-        When the recording began; where it is not given, by the logger's clock if its file says so.
+        When the recording began; where it is not given, as the conditions or the logger's clock say.
+    conditions
+        When, where and in what water the test was made: a path, or loaded.
     legs
         Names of the legs of the campaign to use; all when not given.
     judge
@@ -170,17 +173,27 @@ def run(
         If a file cannot be used, or the recording does not give what a structure describes.
     """
     rng = np.random.default_rng(1) if rng is None else rng
-    trial = load_trial(vessel, campaign)
+    trial = load_trial(vessel, campaign, conditions)
     trial = replace(trial, sources=(*trial.sources, *sources))
     chosen = tuple(one if isinstance(one, Structure) else shipped_structure(one) for one in structures)
     measurement = of_legs(measure(recording, trial, mode=mode, progress=progress), legs)
-    if tested_at is not None:
-        measurement = replace(measurement, began=tested_at)
+    measurement = replace(measurement, began=_began(tested_at, measurement.began, trial))
     by_name = settings_by_name(chosen, measurement, trial, settings or _with_priors)
     fits = fit(chosen, measurement, settings=by_name, rng=rng, progress=progress)
     alone = legs_alone(fits[0], measurement, settings=by_name, rng=rng)
     survey = _of_fits(fits, measurement, trial, now=now, progress=progress, alone=alone)
     return judged(survey, rng=rng, progress=progress) if judge else survey
+
+
+def _began(stated: datetime | None, by_the_recording: datetime | None, trial: Trial) -> datetime | None:
+    """Return when a test began, in the zone of its conditions where it is known without an offset."""
+    conditions = trial.conditions
+    if stated is not None:
+        conditions = conditions.model_copy(update={"tested_at": stated})
+    try:
+        return conditions.began(by_the_recording)
+    except ValueError as error:
+        raise SettingsError(f"When the test began: {error}.") from None
 
 
 def fingerprint_of(
@@ -210,6 +223,7 @@ def _fingerprint(
         settings_files=trial.sources,
         now=now or datetime.now(UTC),
         tested_at=measurement.began,
+        trial_conditions=trial.conditions,
         legs=_fitted_legs(measurement, tests),
         reasons=reasons,
         noise=_measured_noise(measurement, trial),

@@ -1,12 +1,12 @@
 """What was tested and what was asked of it, with the files that say so."""
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib.resources import files
 from pathlib import Path
 from typing import Literal
 
-from shaftprint.campaign import Campaign, load_campaign
+from shaftprint.campaign import Campaign, TrialConditions, load_campaign, load_trial_conditions
 from shaftprint.fingerprint import SourceFile
 from shaftprint.notebook import Shown
 from shaftprint.settings import shipped_names
@@ -23,10 +23,25 @@ class Trial(Shown):
     """What was asked of it."""
     sources: tuple[SourceFile, ...] = ()
     """The files with their hashes; none for what was made in a program."""
+    conditions: TrialConditions = field(default_factory=TrialConditions)
+    """When, where and in what water it was tested, as far as somebody says so."""
 
 
-def load_trial(vessel: str | Path | Vessel, campaign: str | Path | Campaign) -> Trial:
+def load_trial(
+    vessel: str | Path | Vessel,
+    campaign: str | Path | Campaign,
+    conditions: str | Path | TrialConditions | None = None,
+) -> Trial:
     """Return vessel and campaign, each from a path, by a shipped name, or as it is.
+
+    A density of the water that the conditions state takes the place of that of the vessel file.
+
+    Parameters
+    ----------
+    vessel, campaign
+        What was tested and what was asked of it.
+    conditions
+        When, where and in what water: a path, or loaded; nothing where it is not given.
 
     Raises
     ------
@@ -42,7 +57,11 @@ def load_trial(vessel: str | Path | Vessel, campaign: str | Path | Campaign) -> 
         name = str(campaign)
         campaign = load_campaign(name)
         sources.append(_source("campaign", name))
-    return Trial(vessel=vessel, campaign=campaign, sources=tuple(sources))
+    if not isinstance(conditions, TrialConditions):
+        conditions = TrialConditions() if conditions is None else load_trial_conditions(conditions)
+    if conditions.water_density_kg_m3 is not None:
+        vessel = vessel.model_copy(update={"water_density_kg_m3": conditions.water_density_kg_m3})
+    return Trial(vessel=vessel, campaign=campaign, sources=tuple(sources), conditions=conditions)
 
 
 def settings_text(kind: Literal["vessel", "campaign"], path_or_name: str) -> bytes:

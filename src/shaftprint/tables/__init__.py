@@ -15,6 +15,7 @@ its letters (±, a true minus sign, a narrow space between thousands) into those
 """
 
 from shaftprint.digits import interval, p_value_text, plain, rounded, to_digit_of, unit_text, with_deviation
+from shaftprint.tables._conditions import ship_text, tested_text, water_facts
 from shaftprint.tables._drive import (
     drive_assumed_table,
     drive_difference_table,
@@ -116,6 +117,7 @@ __all__ = [
     "quantity_table",
     "repair_table",
     "rounded",
+    "ship_text",
     "speed_table",
     "standing_leg_table",
     "standing_table",
@@ -123,6 +125,7 @@ __all__ = [
     "step_table",
     "strip_table",
     "structure_tables",
+    "tested_text",
     "texts",
     "time_comparison_table",
     "to_digit_of",
@@ -130,6 +133,7 @@ __all__ = [
     "two_mass_sentence",
     "unit_text",
     "validated_drive_table",
+    "water_facts",
     "water_table",
     "window_table",
     "wish_table",

@@ -42,6 +42,7 @@ from shaftprint.vessel._sensors import (
 )
 from shaftprint.vessel._set_point import SetPointSensor
 from shaftprint.vessel._shaft_torque import GaugedShaft, ShaftTorqueSensor
+from shaftprint.vessel._ship import ImoNumber, Ship, ShortName, is_imo_number
 from shaftprint.vessel._vessel import Vessel, load_vessel
 from shaftprint.vessel._wheel import SAMPLES_A_TOOTH, Wheel
 
@@ -54,6 +55,7 @@ __all__ = [
     "GaugedShaft",
     "Gearbox",
     "Hull",
+    "ImoNumber",
     "InertiaRow",
     "Logger",
     "OperatingLimits",
@@ -66,10 +68,13 @@ __all__ = [
     "SetPointSensor",
     "ShaftLink",
     "ShaftTorqueSensor",
+    "Ship",
     "ShipSpeedSensor",
+    "ShortName",
     "SpeedSensor",
     "Vessel",
     "Wheel",
     "WorkingPoint",
+    "is_imo_number",
     "load_vessel",
 ]

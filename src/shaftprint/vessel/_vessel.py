@@ -18,6 +18,7 @@ from shaftprint.vessel._links import ShaftLink, wrong_links
 from shaftprint.vessel._machinery import Engine, Gearbox, Propeller, WorkingPoint
 from shaftprint.vessel._orders import Order, orders_of
 from shaftprint.vessel._sensors import Logger, Sensors
+from shaftprint.vessel._ship import Ship
 from shaftprint.vessel._usual import INERTIA_STD
 
 
@@ -48,6 +49,8 @@ class Vessel(Shown, Settings):
     """The ship around the shaft lines, for tests underway."""
     logger: Logger | None = None
     """The instrument that recorded."""
+    ship: Ship | None = None
+    """The ship and its line by number and name, for fingerprints of many years; None where not stated."""
 
     def summary(self) -> Summary:
         """Return engine, gearbox, propeller, working point, inertias and sensors."""

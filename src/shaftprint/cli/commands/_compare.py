@@ -17,6 +17,7 @@ from shaftprint.report import (
     difference_table,
     differences,
     render_comparison,
+    stated_table,
     vessel_file_sentences,
 )
 
@@ -86,10 +87,14 @@ def command(
             words = f"It cannot be told: not trustworthy: {', '.join(doubtful)}."
         answer(f"Has the ship changed{f', {name}' if len(others) > 1 else ''}? {words}")
     give("differences", apart)
+    give("conditions", {name: fingerprint.conditions for name, fingerprint in named.items()})
     for name, other in others:
         _print_tables(first_name, name, apart[name])
         for sentence in vessel_file_sentences(first, other):
             say(sentence)
+    stated = stated_table(named)
+    if stated.rows:
+        print_tables([stated])
     if output is not None:
         echo(f"Report: {output / REPORT}")
 

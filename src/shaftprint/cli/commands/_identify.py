@@ -91,6 +91,7 @@ def command(
                 sources=(*trial.sources, *structure_sources(names)),
                 rng=rng,
                 tested_at=about.tested_at,
+                conditions=about.conditions,
                 legs=legs,
                 judge=False,
                 progress=steps,

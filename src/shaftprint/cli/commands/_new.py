@@ -21,10 +21,11 @@ TESTS: Mapping[str, str] = {
     "thesis": "the thesis' 3.2 hours",
 }
 """Shipped campaigns to begin with, and what they are."""
+_CALLED = {"vessel": "a vessel", "campaign": "a campaign", "conditions": "the conditions of a test", "drive": "a drive"}
 
 
 @click.command("new")
-@click.argument("kind", type=click.Choice(["vessel", "campaign", "drive"]))
+@click.argument("kind", type=click.Choice(["vessel", "campaign", "conditions", "drive"]))
 @click.argument("file", type=click.Path(path_type=Path), required=False)
 @click.option(
     "--test",
@@ -42,7 +43,7 @@ TESTS: Mapping[str, str] = {
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="The file, in place of FILE.")
 @card_options
 def command(
-    kind: Literal["vessel", "campaign", "drive"],
+    kind: Literal["vessel", "campaign", "conditions", "drive"],
     file: Path | None,
     test: str | None,
     recorded: Path | None,
@@ -50,7 +51,7 @@ def command(
     output: Path | None,
     **said: object,
 ) -> None:
-    """Write a commented vessel, campaign or drive file to fill in.
+    """Write a commented vessel, campaign, conditions or drive file to fill in.
 
     FILE must not exist yet. It can be loaded as it stands; every key carries its unit in its name. The campaigns of
     --test are made for the Stan Tug 1205: predict says what they would ask of another ship.
@@ -82,7 +83,7 @@ def command(
         answer(f"{path}: a vessel file from the card; its comments say what was derived and what is usual only.")
         return
     write_template(kind, path, shipped=test)
-    answer(f"{path}: a {kind} to fill in." if test is None else f"{path}: {TESTS[test]}, for the Stan Tug 1205.")
+    answer(f"{path}: {_CALLED[kind]} to fill in." if test is None else f"{path}: {TESTS[test]}, for the Stan Tug 1205.")
 
 
 def _path(file: Path | None, output: Path | None) -> Path:

@@ -15,9 +15,12 @@ from shaftprint.tables import (
     p_value_text,
     plain,
     rounded,
+    ship_text,
+    tested_text,
     texts,
     to_digit_of,
     unit_text,
+    water_facts,
     with_deviation,
 )
 
@@ -124,6 +127,7 @@ def condition_table(fingerprints: "Mapping[str, Fingerprint]") -> Table:
     rows = (
         ("vessel", *(f.conditions.vessel for f in fingerprints.values())),
         ("test", *(f.conditions.campaign for f in fingerprints.values())),
+        *_stated_rows(fingerprints),
         ("made", *(f.created.strftime("%Y-%m-%d %H:%M %Z") for f in fingerprints.values())),
         ("engine speed", *(_working(f.conditions.engine_speed) for f in fingerprints.values())),
         ("shaft torque", *(_working(f.conditions.shaft_torque) for f in fingerprints.values())),
@@ -133,6 +137,23 @@ def condition_table(fingerprints: "Mapping[str, Fingerprint]") -> Table:
         ("verdict", *(f.verdict.reason for f in fingerprints.values())),
     )
     return Table(title="Conditions of the tests", columns=texts("what", *fingerprints), rows=rows)
+
+
+def _stated_rows(fingerprints: "Mapping[str, Fingerprint]") -> list[tuple[str, ...]]:
+    """Return what somebody has stated of the tests, a row for each thing that is stated of one of them."""
+    stated = [
+        {"ship": ship_text(one.ship), "tested": tested_text(one.tested_at), "place": one.place or ""}
+        | {title.lower(): text for title, text in water_facts(one)}
+        for one in (fingerprint.conditions for fingerprint in fingerprints.values())
+    ]
+    titles = dict.fromkeys(title for one in stated for title, text in one.items() if text)
+    return [(title, *(one.get(title) or NOT_THERE for one in stated)) for title in titles]
+
+
+def stated_table(fingerprints: "Mapping[str, Fingerprint]") -> Table:
+    """Return ship, time, place and water of all fingerprints; no row where nothing is stated."""
+    rows = tuple(_stated_rows(fingerprints))
+    return Table(title="Stated of the tests", columns=texts("what", *fingerprints), rows=rows)
 
 
 def _working(quantity: "Quantity") -> str:

@@ -9,11 +9,9 @@ from shaftprint.report.sections.first_page._line_answers import hunting, inertia
 from shaftprint.report.sections.first_page._line_sketch import line_sketch
 from shaftprint.report.sections.first_page._number_table import number_table
 from shaftprint.report.sections.first_page._test_answers import gauge, measured, predicts, usable
-from shaftprint.tables import plain, unit_text
+from shaftprint.tables import plain, ship_text, tested_text, unit_text, water_facts
 
 if TYPE_CHECKING:
-    from datetime import datetime
-
     from shaftprint.fingerprint import Fingerprint
     from shaftprint.validation import Validation
     from shaftprint.vessel import Vessel
@@ -84,16 +82,11 @@ def _known(fingerprint: "Fingerprint") -> str:
 
 def _facts(fingerprint: "Fingerprint") -> list[tuple[str, str]]:
     conditions = fingerprint.conditions
+    ship = ship_text(conditions.ship)
     return [
-        ("Tested", _date_text(conditions.tested_at) or "date not stated"),
+        *([("Ship", ship)] if ship else []),
+        ("Tested", tested_text(conditions.tested_at) or "date not stated"),
         ("Place", conditions.place or "not stated"),
         ("Test", conditions.campaign),
+        *water_facts(conditions),
     ]
-
-
-def _date_text(moment: "datetime | None") -> str:
-    """Return a date, with its time where it has one; nothing where it is not known."""
-    if moment is None:
-        return ""
-    midnight = (moment.hour, moment.minute, moment.second) == (0, 0, 0)
-    return moment.strftime("%Y-%m-%d" if midnight else "%Y-%m-%d %H:%M")
