@@ -141,7 +141,8 @@ def _engine_load(vessel: Vessel) -> Iterator[Disagreement]:
         field="working_point.shaft_torque_nm",
         expected=f"{expected} at {point.engine_speed_rpm:g} rpm",
         found=f"{found} with {point.shaft_torque_nm:g} N m at the shaft",
-        advice="correct the torque (N m at the propeller shaft), gearbox.ratio, the full-load curve or rated_power_kw",
+        advice="correct the torque (N m at the propeller shaft) or what it was worked out from (diameter_m and "
+        "pitch_ratio of [propeller]), gearbox.ratio, the full-load curve or rated_power_kw",
         is_contradiction=load > _CURVE_TOLERANCE,
     )
 
