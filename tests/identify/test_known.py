@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 
 from shaftprint.catalogue import structure
-from shaftprint.identify import Prior, priors_from_vessel
+from shaftprint.identify import Prior, expected_from_vessel, priors_from_vessel
 from shaftprint.identify.likelihood import PRIOR_OF_G
 from shaftprint.vessel import load_vessel
 
@@ -14,6 +14,8 @@ def vessel(inertia_std=2.7, scale_std=0.02, latency_std=0.002):
     return SimpleNamespace(
         inertia_upstream_kg_m2=54.006,
         inertia_upstream_std_kg_m2=inertia_std,
+        inertia_downstream_kg_m2=17.0,
+        inertia_downstream_std_kg_m2=2.0 * inertia_std,
         gearbox=SimpleNamespace(ratio=3.82),
         sensors=SimpleNamespace(
             shaft_torque=SimpleNamespace(scale_std=scale_std, latency_s=0.005, latency_std=latency_std),
@@ -35,6 +37,17 @@ def test_inertia_time_is_the_thesis_number_with_the_deviations_of_calculation_an
     assert known["tau_up"].sources == pytest.approx({"TVC": 0.050790, "gauge scale": -0.020320}, rel=1e-3)
     assert known["g"] == PRIOR_OF_G == Prior(mean=0.0, std=0.1)
     assert known["t_gauge"] == Prior(mean=0.0, std=0.002, sources={"telemetry latency": 0.002})
+
+
+def test_the_inertia_that_a_test_checks_is_expected_by_a_plan_and_no_prior_of_a_fit():
+    """17 kg m2 at 1183.8 rpm over 3.82, 1725 N m: 2 pi 17 5.165 / 1725 = 0.31983 s; 5.4 of 17 and 2 % make 31.8 %."""
+    gauge_aware = structure("GAUGE-CLOSED")
+    known = priors_from_vessel(gauge_aware, vessel(), WORKING_POINT)
+    expected = expected_from_vessel(gauge_aware, vessel(), WORKING_POINT)
+    assert "tau_dn" not in known
+    assert expected["tau_dn"].mean == pytest.approx(0.31983, abs=0.00005)
+    assert expected["tau_dn"].std / expected["tau_dn"].mean == pytest.approx(0.31828, abs=0.00005)
+    assert {name: one for name, one in expected.items() if name != "tau_dn"} == known
 
 
 def test_thesis_mode_leaves_the_latency_of_the_telemetry_in_the_torque():

@@ -23,7 +23,14 @@ from shaftprint.design import (
     usual_speeds,
 )
 from shaftprint.fingerprint import Fingerprint
-from shaftprint.identify import STAN_TUG_NOISE_AT_SPEEDS, NoiseLevels, Prior, noise_at, priors_from_vessel
+from shaftprint.identify import (
+    STAN_TUG_NOISE_AT_SPEEDS,
+    NoiseLevels,
+    Prior,
+    expected_from_vessel,
+    noise_at,
+    priors_from_vessel,
+)
 from shaftprint.models import Structure
 from shaftprint.survey import load_trial, measure, noise_at_speeds, stated_working_point
 from shaftprint.units import rpm_from_rev_s
@@ -111,17 +118,23 @@ def knowledge_of(stated: Stated, *, steps: Steps) -> Knowledge:
     outputs = stated.structure.outputs
     levels, source = _noise(stated, recorded)
     noise = {share: noise_at(levels, share * point_rpm) for share in speeds}
-    priors = priors_from_vessel(stated.structure, stated.vessel, stated_working_point(stated.vessel))
-    priors = {name: prior for name, prior in (priors | dict(options.priors)).items() if name not in options.freed}
+    point = stated_working_point(stated.vessel)
+    priors = _known(options, priors_from_vessel(stated.structure, stated.vessel, point))
+    expected = _known(options, expected_from_vessel(stated.structure, stated.vessel, point))
     return Knowledge(
         vessel=stated.vessel.name,
-        ship=_ship(stated, priors),
+        ship=_ship(stated, expected),
         limits=limits,
         line=line,
         noise={share: level.of_outputs(*outputs) for share, level in noise.items()},
         noise_source=source,
         priors=priors,
     )
+
+
+def _known(options: KnownShipOptions, of_vessel: Mapping[str, Prior]) -> dict[str, Prior]:
+    """Return what the vessel file and the user know, without what the user frees."""
+    return {name: one for name, one in (dict(of_vessel) | dict(options.priors)).items() if name not in options.freed}
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -195,7 +208,7 @@ def _limits(stated: Stated, line: SetPointLine, recorded: _Recorded | None) -> L
     return limits_with(limits, stated.options.limits)
 
 
-def _ship(stated: Stated, priors: Mapping[str, Prior]) -> AssumedShip:
+def _ship(stated: Stated, expected: Mapping[str, Prior]) -> AssumedShip:
     if stated.first_test is not None:
         return ship_of_fingerprint(stated.first_test, stated.structure)
-    return ship_before_test(stated.structure, priors, dict(stated.options.values))
+    return ship_before_test(stated.structure, expected, dict(stated.options.values))

@@ -35,6 +35,7 @@ from shaftprint.identify.likelihood import (
     Prior,
     StudentT,
     Unweighted,
+    expected_from_vessel,
     fit_percent,
     priors_from_vessel,
 )
@@ -69,6 +70,7 @@ __all__ = [
     "assess",
     "bootstrap",
     "compare_structures",
+    "expected_from_vessel",
     "expected_response",
     "fit_percent",
     "identifiability",

@@ -18,6 +18,7 @@ inertias                     kg m2      referred to the propeller shaft, split a
 """
 
 from shaftprint.tug._ideal import IdealSignals, simulate_signals
+from shaftprint.tug._like_stan_tug import like_stan_tug_1205
 from shaftprint.tug._linearise import linearised_response
 from shaftprint.tug._noise import Noise
 from shaftprint.tug._sail import sail
@@ -35,6 +36,7 @@ __all__ = [
     "StripTruth",
     "Truth",
     "Tug",
+    "like_stan_tug_1205",
     "linearised_response",
     "normalised_truth",
     "read_truth",

@@ -1,6 +1,6 @@
 """The truth that a simulated tug is built from."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Self
 
 from shaftprint.tug._noise import Noise
@@ -8,9 +8,6 @@ from shaftprint.tug._sailing import Sailing
 
 # Table 3.4 of the thesis, "Fingerprinting II": angles between the reflection strips [degree]; printed sum 360.02.
 STRIP_ANGLES_DEG = (90.40, 87.24, 90.74, 91.64)
-
-# What the default line asks for at -5 V, the working point of the Stan Tug.
-_STAN_TUG_RPM = 1183.8
 
 USUAL_MOTORING_NM = 300.0
 """Motoring torque at the working point [N m] where neither the truth nor the vessel file states one.
@@ -146,20 +143,3 @@ class Tug:
     def stan_tug_1205(cls) -> Self:
         """Return the reference truth of the shipped Stan Tug 1205."""
         return cls()
-
-    @classmethod
-    def like_stan_tug_1205(cls, engine_speed_rpm: float) -> Self:
-        """Return that truth for another ship, whose lever asks for its own speed where that of the tug asks for 1183.8.
-
-        Parameters
-        ----------
-        engine_speed_rpm
-            Engine speed of the ship's working point [rpm]; volts are those of the tug.
-        """
-        tug = cls.stan_tug_1205()
-        share = engine_speed_rpm / _STAN_TUG_RPM
-        return replace(
-            tug,
-            set_point_slope_rpm_per_v=share * tug.set_point_slope_rpm_per_v,
-            set_point_intercept_rpm=share * tug.set_point_intercept_rpm,
-        )

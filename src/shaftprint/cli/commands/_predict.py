@@ -1,6 +1,6 @@
 """``shaftprint predict``: what a test would find, before it is made."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -18,13 +18,14 @@ from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_struc
 from shaftprint.cli._prediction_tables import print_prediction
 from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import no_progress_option, progress
-from shaftprint.design import expected_operation, limit_uses, stated_limits
+from shaftprint.design import expected_operation, limit_uses, ship_before_test, stated_limits
 from shaftprint.errors import StructureError
 from shaftprint.identify import (
     STAN_TUG_NOISE,
     STAN_TUG_NOISE_AT_SPEEDS,
     NoiseLevels,
     Prior,
+    expected_from_vessel,
     expected_response,
     identifiability,
     noise_at,
@@ -156,7 +157,7 @@ def command(
     assumed_priors = {
         parameter: prior for parameter, prior in (dict(ship.priors) | dict(priors)).items() if parameter not in freed
     }
-    assumed = _values_of(chosen, assumed_priors) | dict(values)
+    assumed = _values_of(chosen, ship.vessel, assumed_priors, freed, values)
     pairs = _planned(chosen, planned, ship)
     possible = identifiability(chosen, rng=np.random.default_rng(SEED))
     print_prediction(
@@ -168,19 +169,18 @@ def command(
         predict_joint_intervals(pairs, values=assumed, priors=assumed_priors),
     )
     if ship.vessel is not None:
-        _print_limits(planned, ship.vessel, ship, dict(priors), dict(values))
+        _print_limits(planned, ship.vessel, ship, dict(priors), values)
 
 
 def _print_limits(
-    planned: Campaign, vessel: Vessel, ship: _Ship, priors: Mapping[str, Prior], values: Mapping[str, float]
+    planned: Campaign, vessel: Vessel, ship: _Ship, priors: Mapping[str, Prior], values: Sequence[tuple[str, float]]
 ) -> None:
     """Print where the campaign would leave the limits of the vessel file, and how near it comes to each.
 
     Whatever structure the test is for, it moves the whole closed loop.
     """
     loop = structure(CLOSED_LOOP)
-    beforehand = dict(priors_from_vessel(loop, vessel, stated_working_point(vessel))) | dict(priors)
-    assumed = _values_of(loop, beforehand) | dict(values)
+    assumed = _values_of(loop, vessel, priors, (), values)
     operation = expected_operation(planned, vessel, assumed, slope_rpm_per_v=ship.slope_rpm_per_v)
     print_limit_uses(limit_uses(operation, stated_limits(vessel)), is_expected=True)
 
@@ -260,10 +260,17 @@ def _assumed_of_legs(planned: Campaign, per_v: float) -> dict[float, NoiseLevels
     }
 
 
-def _values_of(chosen: Structure, priors: Mapping[str, Prior]) -> dict[str, float]:
-    """Return the means of what is known beforehand, within the bounds."""
-    bounds = {parameter.name: (parameter.lower, parameter.upper) for parameter in chosen.free}
-    return {name: float(np.clip(prior.mean, *bounds[name])) for name, prior in priors.items() if name in bounds}
+def _values_of(
+    chosen: Structure,
+    vessel: Vessel | None,
+    known: Mapping[str, Prior],
+    freed: Sequence[str],
+    values: Sequence[tuple[str, float]],
+) -> dict[str, float]:
+    """Return the values that are assumed: what is stated, what the vessel file expects, the structure's own."""
+    expected = {} if vessel is None else expected_from_vessel(chosen, vessel, stated_working_point(vessel))
+    expected = {name: one for name, one in expected.items() if name not in freed}
+    return ship_before_test(chosen, expected | dict(known), dict(values)).by_name
 
 
 def _planned(chosen: Structure, campaign: Campaign, ship: _Ship) -> list[tuple[Structure, FrequencyResponse]]:

@@ -9,7 +9,7 @@ from shaftprint.cli._vessel_file import print_disagreements
 from shaftprint.cli.output import no_progress_option, progress
 from shaftprint.recording import expect_known_ending
 from shaftprint.survey import load_trial
-from shaftprint.tug import Tug, sail_as, truth_path
+from shaftprint.tug import like_stan_tug_1205, sail_as, truth_path
 
 
 @click.command("sail")
@@ -29,7 +29,8 @@ def command(vessel: str, campaign: str, output: Path, seed: int, force: bool, no
     """Simulate a tug in a campaign and write its raw recording.
 
     VESSEL and CAMPAIGN are files, or names of shipped ones such as stan-tug-1205 and thesis. Governor, delays and noise
-    are those of the Stan Tug 1205; at -5 V the lever asks for the working speed of the vessel file. What was put
+    are those of the Stan Tug 1205, the gains as much smaller as the line has less inertia; at -5 V the lever asks for
+    the working speed of the vessel file. What was put
     into the recording goes to a file of its own beside it, which nothing that identifies will open.
     """
     if output.is_dir():
@@ -39,7 +40,7 @@ def command(vessel: str, campaign: str, output: Path, seed: int, force: bool, no
     print_disagreements(trial.vessel, vessel)
     with progress(hidden=no_progress) as steps:
         steps.begin("Sailing", total=1.0)
-        tug = Tug.like_stan_tug_1205(trial.vessel.working_point.engine_speed_rpm)
+        tug = like_stan_tug_1205(trial.vessel)
         sail_as(trial.vessel, trial.campaign, output, tug=tug, seed=seed, overwrite=force, progress=steps.reach)
     answer(f"{output}: the raw recording of {trial.campaign.duration_s:g} s.")
     answer(f"{truth_path(output)}: what was put into it.")

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from shaftprint.vessel import Vessel
 
 _GAINS = (ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN, ShipRole.DERIVATIVE_GAIN)
-# How far from hunting a governor is left, and the smallest share of the usual gains that is tried.
+# How many times as large the gains may be before the line hunts, as those of the Stan Tug 1205 may be 1.6 times, and
+# the smallest share of the usual gains that is tried.
 _GAIN_MARGIN, _LEAST_SHARE, _SHARES = 1.6, 0.02, 60
 
 
@@ -37,23 +38,23 @@ def ship_before_test(
         What is known beforehand, by parameter: where it is known better than ships usually are, with its deviation.
     values
         Assumed values by name; means of priors, or the structure's own, where not given. Gains of the governor that
-        nobody states are lowered until the loop is stable: the governor of a light line is not set as that of a heavy
-        one.
+        nobody states are lowered until they are a usual distance from hunting: the governor of a light line is not set
+        as that of a heavy one.
     """
     bounds = {p.name: (p.lower, p.upper) for p in structure.free}
     means = {name: float(np.clip(prior.mean, *bounds[name])) for name, prior in priors.items() if name in bounds}
     stated = means | dict(values or {})
     usual = assumed_ship(structure, stated)
-    usual = assumed_ship(structure, stated | _stable_gains(usual, stated))
+    usual = assumed_ship(structure, stated | _usual_gains(usual, stated))
     std = dict(zip(structure.names, np.sqrt(np.diag(usual.covariance)).tolist(), strict=True))
     std |= {name: min(std[name], prior.std) for name, prior in priors.items() if name in bounds}
     return assumed_ship(structure, usual.by_name, std=std)
 
 
-def _stable_gains(ship: AssumedShip, stated: Mapping[str, float]) -> dict[str, float]:
-    """Return the gains that are not stated, by name, lowered where the loop is unstable with them."""
+def _usual_gains(ship: AssumedShip, stated: Mapping[str, float]) -> dict[str, float]:
+    """Return the gains that are not stated, by name, lowered where the line is near to hunting with them."""
     gains = [p.name for p in ship.structure.free if p.role in _GAINS and p.name not in stated]
-    if not gains or stable_rows(ship.structure, ship.values[np.newaxis])[0]:
+    if not gains:
         return {}
     shares = np.geomspace(1.0, _LEAST_SHARE, _SHARES)
     rows = np.tile(ship.values, (_SHARES, 1))

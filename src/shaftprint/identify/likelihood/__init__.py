@@ -4,7 +4,12 @@ from shaftprint.identify.likelihood._build_objective import Source, build_joint_
 from shaftprint.identify.likelihood._experiment import Experiment, ResponseRepeats
 from shaftprint.identify.likelihood._fit_percent import fit_ceiling, fit_percent
 from shaftprint.identify.likelihood._fitted_response import FittedResponse, channel_names, channels_of
-from shaftprint.identify.likelihood._known import PRIOR_OF_G, inertia_from_vessel, priors_from_vessel
+from shaftprint.identify.likelihood._known import (
+    PRIOR_OF_G,
+    expected_from_vessel,
+    inertia_from_vessel,
+    priors_from_vessel,
+)
 from shaftprint.identify.likelihood._line_test import LineTest
 from shaftprint.identify.likelihood._load_factors import load_factors, with_load
 from shaftprint.identify.likelihood._objective import Objective, Redrawn
@@ -42,6 +47,7 @@ __all__ = [
     "channels_of",
     "estimated_shapes",
     "estimated_tails",
+    "expected_from_vessel",
     "fit_ceiling",
     "fit_percent",
     "inertia_from_vessel",

@@ -30,10 +30,11 @@ SHAFT_TORQUE = "M_s"
 def priors_from_vessel(
     structure: Structure, vessel: "Vessel", working_point: "WorkingPoint", *, mode: "Mode" = "shaftprint"
 ) -> dict[str, Prior]:
-    """Return what is known of a structure's free parameters, by their roles.
+    """Return what a fit may know beforehand of a structure's free parameters, by their roles.
 
     It is the inertia upstream of the gauge and with it the slope of the engine torque; the latencies of gauge, set
-    point and rack; and the inertia downstream where the structure has no shaft torque to show it.
+    point and rack; and the inertia downstream where the structure has no shaft torque to show it. Where it shows, the
+    test is to check the vessel file's inertia, so that the fit does not know it.
 
     Parameters
     ----------
@@ -49,23 +50,33 @@ def priors_from_vessel(
     StructureError
         If a parameter has the name and unit of one of the catalogue, but no role.
     """
+    left_out = set()
+    if SHAFT_TORQUE in (*structure.inputs, *structure.outputs):
+        left_out.add(ShipRole.INERTIA_DOWNSTREAM)
+    if ShipRole.INERTIA_UPSTREAM not in _free_names(structure):
+        left_out.add(ShipRole.ENGINE_SPEED_SLOPE)
+    expected = expected_from_vessel(structure, vessel, working_point, mode=mode)
+    return {name: prior for name, prior in expected.items() if structure.roles[name] not in left_out}
+
+
+def expected_from_vessel(
+    structure: Structure, vessel: "Vessel", working_point: "WorkingPoint", *, mode: "Mode" = "shaftprint"
+) -> dict[str, Prior]:
+    """Return all that a vessel file states of a structure's free parameters, for those who plan or predict a test.
+
+    It is what a fit may know (``priors_from_vessel``, which has the parameters and errors) and what the test is to
+    check: the inertia downstream of the gauge.
+    """
     expect_roles(structure)
-    free = {
-        structure.roles[parameter.name]: parameter.name
-        for parameter in structure.free
-        if parameter.name in structure.roles
-    }
+    names = _free_names(structure)
     test = _Test(vessel=vessel, point=working_point, is_late=mode == "thesis")
-    unshown = SHAFT_TORQUE not in (*structure.inputs, *structure.outputs)
-    priors = {}
-    for role, prior_of in PRIORS.items():
-        if role not in free or (role == ShipRole.ENGINE_SPEED_SLOPE and ShipRole.INERTIA_UPSTREAM not in free):
-            continue
-        if role == ShipRole.INERTIA_DOWNSTREAM and not unshown:
-            continue
-        if (prior := prior_of(test)) is not None:
-            priors[free[role]] = prior
-    return priors
+    stated = {names[role]: prior_of(test) for role, prior_of in PRIORS.items() if role in names}
+    return {name: prior for name, prior in stated.items() if prior is not None}
+
+
+def _free_names(structure: Structure) -> dict[Role, str]:
+    """Return the free parameters by their roles."""
+    return {structure.roles[p.name]: p.name for p in structure.free if p.name in structure.roles}
 
 
 def inertia_from_vessel(role: Role | None, vessel: "Vessel") -> tuple[float, float] | None:
