@@ -86,6 +86,7 @@ _INNER_ROOMS = (
     "publication",
     "reasons",
     "spelling",
+    "zones",
 )
 """What the rooms are made with; no word of the field, so a session does not offer it."""
 

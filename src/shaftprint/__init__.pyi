@@ -41,6 +41,7 @@ from shaftprint import tug as tug
 from shaftprint import units as units
 from shaftprint import validation as validation
 from shaftprint import vessel as vessel
+from shaftprint import zones as zones
 from shaftprint.survey import run as open_survey  # noqa: F401
 
 __version__: str
