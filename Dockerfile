@@ -4,7 +4,7 @@ FROM python:3.13-slim-trixie AS build
 WORKDIR /source
 COPY requirements/readers.txt requirements/
 RUN python -m venv /opt/shaftprint
-RUN /opt/shaftprint/bin/pip install --no-cache-dir --require-hashes --requirement requirements/readers.txt
+RUN /opt/shaftprint/bin/pip install --no-cache-dir --no-deps --require-hashes --requirement requirements/readers.txt
 COPY pyproject.toml README.md LICENSE ./
 COPY src src
 RUN /opt/shaftprint/bin/pip install --no-cache-dir --no-deps --no-build-isolation .

@@ -66,8 +66,9 @@ $(VENV)/bin/python:
 	$(PYTHON) -m venv $(VENV)
 
 # One stamp a set of requirements; the project itself is installed so that changes to src/ take effect at once.
+# The lists are complete: pip resolves nothing, or a newer release of what a dependency asks for by an extra would stop it.
 $(VENV)/run $(VENV)/test $(VENV)/lint $(VENV)/docs $(VENV)/benchmark: $(VENV)/%: requirements/%.txt pyproject.toml | $(VENV)/bin/python
 	@echo "Installing requirements/$*.txt into $(VENV) (a minute or two) ..."
-	@$(PIP) install --quiet --require-hashes --requirement requirements/$*.txt
+	@$(PIP) install --quiet --no-deps --require-hashes --requirement requirements/$*.txt
 	@$(PIP) install --quiet --no-deps --no-build-isolation --editable .
 	@touch $@
