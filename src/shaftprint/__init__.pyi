@@ -9,6 +9,7 @@ from shaftprint import clocks as clocks
 from shaftprint import design as design
 from shaftprint import digits as digits
 from shaftprint import distributions as distributions
+from shaftprint import drift as drift
 from shaftprint import drive as drive
 from shaftprint import errors as errors
 from shaftprint import escape as escape

@@ -27,7 +27,8 @@ def test_what_has_changed_is_said_and_reported(run, demo, later, tmp_path):
     assert " differs " in row
     row = next(line for line in result.output.splitlines() if line.strip().startswith("gain margin"))
     assert " no difference seen " in row
-    assert "Has the ship changed? Yes: I_dn by 50.0 %" in result.output
+    assert "Has the ship changed? Yes: more inertia behind the torque gauge, by 50.0" in result.output
+    assert "later: what has changed" in result.output
     moving = result.output.partition("normalised numbers, which move with the working point")[2].splitlines()
     left_out = [line.split()[0] for line in moving if "cannot be compared" in line]
     assert left_out == ["K_p", "K_i", "tau_dn", "tau_up", "k_q"]
@@ -37,11 +38,28 @@ def test_what_has_changed_is_said_and_reported(run, demo, later, tmp_path):
 
 def test_whether_the_ship_has_changed_is_said_first(run, demo, later):
     first, *_ = run("compare", demo[0], later).output.splitlines()
-    assert first.startswith("Has the ship changed? Yes: I_dn by 50.0 %")
+    assert first.startswith("Has the ship changed? Yes: more inertia behind the torque gauge, by 50.0")
     result = run("compare", demo[0], later, demo[0], "--name", "2024", "--name", "2025", "--name", "2026")
-    one, two, *_ = result.output.splitlines()
-    assert one.startswith("Has the ship changed, 2025? Yes: I_dn by 50.0 %")
+    one, two = (line for line in result.output.splitlines() if line.startswith("Has the ship changed"))
+    assert one.startswith("Has the ship changed, 2025? Yes: more inertia behind the torque gauge, by 50.0")
     assert two.startswith("Has the ship changed, 2026? No: ")
+
+
+def test_each_number_may_be_judged_by_itself(run, demo, later):
+    result = run("compare", demo[0], later, "--each-number")
+    assert result.output.startswith("Has the ship changed? Yes: I_dn by 50.0 %")
+    assert "what has changed" not in result.output
+
+
+def test_a_fingerprint_of_an_earlier_version_is_judged_number_by_number(run, demo, later):
+    content = json.loads(later.read_text(encoding="utf-8"))
+    del content["joint"]
+    later.write_text(json.dumps(content), encoding="utf-8")
+    document = json.loads(run("compare", demo[0], later, "--json").output)
+    assert "has no joint covariance" in document["result"]["causes"]["later"]["because"]
+    printed = " ".join(run("compare", demo[0], later).output.split())
+    assert "Yes: I_dn by 50.0 %" in printed
+    assert "Judged number by number: a fingerprint of an earlier version has no joint covariance" in printed
 
 
 def test_what_the_vessel_files_state_alike_is_said(run, demo, later):
@@ -92,7 +110,8 @@ def test_more_load_from_day_to_day_hides_more(run, demo, tmp_path):
     first = read_fingerprint(demo[0] / "fingerprint.json")
     physical = tuple(q.model_copy(update={"value": 1.08 * q.value}) if q.name == "K_Q" else q for q in first.physical)
     write_fingerprint(first.model_copy(update={"physical": physical}), tmp_path / "fouled.json")
-    assert "changed? Yes: K_Q by 8.0 %" in run("compare", demo[0], tmp_path / "fouled.json").output
+    found = run("compare", demo[0], tmp_path / "fouled.json").output
+    assert "changed? Yes: more propeller torque at the same speed: fouled, damaged, or more draught, by 8.0 " in found
     result = run("compare", demo[0], tmp_path / "fouled.json", "--load-repeatability", "10")
     assert "Has the ship changed? No: " in result.output
 

@@ -73,7 +73,12 @@ def test_loads_back_equal_with_all_that_a_number_can_be(fingerprint, path):
         meaning='delay "t_d", 80 % in äußerst schwerer See',
     )
     unusual = fingerprint.model_copy(
-        update={"parameters": (odd, odd), "covariance": ((np.inf, -1e-17), (-1e-17, 0.1 + 0.2)), "findings": ()}
+        update={
+            "parameters": (odd, odd),
+            "covariance": ((np.inf, -1e-17), (-1e-17, 0.1 + 0.2)),
+            "joint": None,
+            "findings": (),
+        }
     )
     assert written_and_read(unusual, path) == unusual
 

@@ -46,8 +46,13 @@ WATER = ("draught_m", "trim_m", "water_temperature_c", "water_density_kg_m3", "d
 
 def before_2_2(content):
     """Take out what schema 2.2 has added."""
+    del content["joint"]
     for name in ("ship", *WATER):
         del content["conditions"][name]
+
+
+def without_joint(fingerprint):
+    return fingerprint.model_copy(update={"joint": None})
 
 
 def write_changed(fingerprint, path, change):
@@ -85,7 +90,7 @@ def test_a_file_of_schema_1_is_read(fingerprint, path):
 
     write_changed(fingerprint, path, as_schema_1)
     kept = read_fingerprint(path)
-    assert kept == fingerprint
+    assert kept == without_joint(fingerprint)
     assert (kept.legs, kept.noise) == ((), ())
 
 
@@ -96,7 +101,7 @@ def test_a_file_of_schema_2_0_is_read(of_legs, path):
         content["schema_version"] = "2.0"
 
     write_changed(of_legs, path, as_schema_2_0)
-    assert read_fingerprint(path) == of_legs
+    assert read_fingerprint(path) == without_joint(of_legs)
 
 
 def test_a_file_of_schema_2_0_with_limits_is_refused(of_legs, path):
@@ -115,7 +120,7 @@ def test_a_file_of_schema_2_1_is_read(of_legs, path):
         content["schema_version"] = "2.1"
 
     write_changed(of_legs, path, as_schema_2_1)
-    assert read_fingerprint(path) == of_legs
+    assert read_fingerprint(path) == without_joint(of_legs)
 
 
 @pytest.mark.parametrize("name", ["ship", "depth_m"])

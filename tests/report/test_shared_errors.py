@@ -2,11 +2,12 @@
 
 import pytest
 
+from shaftprint.drift import shared_errors
 from shaftprint.fingerprint import SourceFile, vessel_fields
 from shaftprint.identify import Prior
 from shaftprint.identify.uncertainty import Budget, BudgetRow
 from shaftprint.report import vessel_file_sentences
-from shaftprint.report.comparison import shared_errors, vessel_file_table
+from shaftprint.report.comparison import vessel_file_table
 from shaftprint.vessel import Vessel
 
 STATED = ("TVC", "gauge scale", "telemetry latency", "prior of g")

@@ -25,6 +25,7 @@ from shaftprint.fingerprint._drive_fingerprint import (
 )
 from shaftprint.fingerprint._fingerprint import Fingerprint, Quality, SourceFile
 from shaftprint.fingerprint._inertia import inertia_beside
+from shaftprint.fingerprint._joint_numbers import JointNumbers
 from shaftprint.fingerprint._json_file import fingerprint_sha256, read_fingerprint, write_fingerprint
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum, leg_record, noise_spectra
 from shaftprint.fingerprint._line_with_limits import LimitNumber, LineWithLimits
@@ -50,6 +51,7 @@ __all__ = [
     "FieldValue",
     "Fingerprint",
     "IdentifiedModel",
+    "JointNumbers",
     "LegRecord",
     "LimitNumber",
     "LineWithLimits",

@@ -28,7 +28,7 @@ PHYSICAL: Mapping[str, Role] = {
 
 NEW_IN: Mapping[int, tuple[str, ...]] = {
     1: ("with_limits", "validation"),
-    2: ("conditions.ship", *(f"conditions.{name}" for name in WATER)),
+    2: ("joint", "conditions.ship", *(f"conditions.{name}" for name in WATER)),
 }
 """Fields that came with each schema 2.N, dots between their steps."""
 

@@ -11,6 +11,7 @@ from shaftprint.catalogue import ShipRole
 from shaftprint.errors import FingerprintError
 from shaftprint.fingerprint._conditions import Conditions
 from shaftprint.fingerprint._covariance_check import covariance_fault
+from shaftprint.fingerprint._joint_numbers import JointNumbers
 from shaftprint.fingerprint._labelled_numbers import labelled_numbers
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
 from shaftprint.fingerprint._line_with_limits import LineWithLimits
@@ -103,6 +104,9 @@ class Fingerprint(Shown, Labelled, FrozenRecord):
     """Physical values, each with what was expected."""
     margins: tuple[Quantity, ...]
     """Stability margins; empty for a structure without feedback."""
+    joint: JointNumbers | None = None
+    """Covariance of the numbers of the ship together, by which two tests are compared along causes; None in the file of
+    an earlier version."""
     budget: Budget
     """Which source contributes how much to the variance of parameters, combinations, physical values and margins; a
     number of which the test says nothing is left out."""
@@ -142,6 +146,10 @@ class Fingerprint(Shown, Labelled, FrozenRecord):
         fault = covariance_fault(self.covariance, [quantity.std for quantity in self.parameters])
         if fault:
             raise ValueError(f"covariance: {fault}")
+        there = {quantity.name for quantities in self.numbers.values() for quantity in quantities}
+        foreign = [] if self.joint is None else [name for name in self.joint.names if name not in there]
+        if foreign:
+            raise ValueError(f"joint: expected names of its numbers, found {foreign[0][:100]!r}")
         return self
 
     @property

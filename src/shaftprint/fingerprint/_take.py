@@ -19,6 +19,7 @@ from shaftprint.fingerprint._conditions import Conditions, conditions_stated
 from shaftprint.fingerprint._contradictions import contradictions
 from shaftprint.fingerprint._findings import findings_of
 from shaftprint.fingerprint._fingerprint import Fingerprint, Quality, SourceFile
+from shaftprint.fingerprint._joint_numbers import joint_numbers
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum
 from shaftprint.fingerprint._margin_numbers import margin_numbers
 from shaftprint.fingerprint._margins import margin_quantities
@@ -132,6 +133,7 @@ def take_fingerprint(
         combinations=tuple(reported.quantity(e) for e in identification.combinations),
         physical=physical,
         margins=margin,
+        joint=joint_numbers(identification, signals.working_point, vessel, shifts),
         budget=Budget(sources=stated.sources, rows=tuple(row for row in stated.rows if row.variances)),
         vessel_fields=vessel_fields(vessel),
         calibration=calibration_quantities(signals),

@@ -24,8 +24,8 @@ from shaftprint.report._plot import plot
 from shaftprint.report._render import render_pdf, render_report
 from shaftprint.report.charts import Chart, save_chart
 from shaftprint.report.comparison import (
-    LOAD_REPEATABILITY,
     Difference,
+    cause_table,
     difference_table,
     differences,
     stated_table,
@@ -75,7 +75,6 @@ from shaftprint.report.thesis import (
 )
 
 __all__ = [
-    "LOAD_REPEATABILITY",
     "Chart",
     "Curve",
     "Difference",
@@ -85,6 +84,7 @@ __all__ = [
     "budget_chart",
     "calibration_chart",
     "campaign_chart",
+    "cause_table",
     "change_in_words",
     "chirp_chart",
     "closed_loop_curve",

@@ -6,13 +6,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from shaftprint.catalogue import STRUCTURES, structure
+from shaftprint.drift import LOAD_REPEATABILITY, Finding, differ
 from shaftprint.errors import ReportError
 from shaftprint.report._curve import fingerprint_curve
 from shaftprint.report._page import Page, write_page
 from shaftprint.report.comparison import (
-    LOAD_REPEATABILITY,
     Difference,
     beside_table,
+    cause_table,
     condition_table,
     difference_table,
     differences,
@@ -71,17 +72,44 @@ def render_comparison(
         )
     (first_name, first), *others = fingerprints.items()
     comparisons = {name: differences(first, other, load_repeatability=load_repeatability) for name, other in others}
+    findings = {name: differ(first, other, load_repeatability=load_repeatability) for name, other in others}
     page = Page(
         title="Fingerprints compared",
         subtitle=f"{', '.join(name for name, _ in others)} compared with {first_name}",
         created=max(fingerprint.created for fingerprint in fingerprints.values()),
         version=first.shaftprint_version,
-        cover=comparison_cover(fingerprints, comparisons),
-        sections=_sections(fingerprints, comparisons, structures or {}, load_repeatability),
+        cover=comparison_cover(fingerprints, comparisons, findings),
+        sections=[
+            *_cause_sections(findings),
+            *_sections(fingerprints, comparisons, structures or {}, load_repeatability),
+        ],
         files=_files(fingerprints),
         ending="± is one standard deviation throughout; bands, intervals and error bars hold 95 %.",
     )
     return write_page(directory, page, pictures=pictures, overwrite=overwrite, progress=None)
+
+
+def _cause_sections(findings: Mapping[str, Finding]) -> list[Section]:
+    """Return what may have changed, a table for each comparison that could be judged along causes."""
+    judged = {name: finding for name, finding in findings.items() if not finding.because}
+    words = (
+        "All numbers of the ship are judged together, along what may have changed: numbers of one test are known to a "
+        "few per cent each and to a few per mille against each other. A cause counts where chance makes the largest "
+        "score of all causes in fewer than one of twenty comparisons of an unchanged ship. Odds are how much more "
+        "likely the difference is under the first cause than under another; what is not in the table may have changed "
+        "too.",
+    )
+    not_judged = tuple(f"{name}: {finding.because}." for name, finding in findings.items() if finding.because)
+    if not judged:
+        return []
+    return [
+        Section(
+            key="causes",
+            title="What may have changed",
+            paragraphs=(*words, *not_judged),
+            tables=tuple(cause_table(name, finding) for name, finding in judged.items()),
+        )
+    ]
 
 
 def _sections(

@@ -9,10 +9,11 @@ from shaftprint.cli._drive_options import drive_fingerprint_at, is_drive_place
 from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName, chosen_structures
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.cli.output import FINGERPRINT, REPORT, fingerprint_at, force_option, give, output_folder, print_tables
+from shaftprint.drift import LOAD_REPEATABILITY, Finding, differ, finding_sentences
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.report import (
-    LOAD_REPEATABILITY,
     Difference,
+    cause_table,
     change_in_words,
     difference_table,
     differences,
@@ -50,6 +51,7 @@ PERCENT = 100.0
     metavar="PERCENT",
     help="Standard deviation of the propeller's torque at one speed from day to day.",
 )
+@click.option("--each-number", is_flag=True, help="Judge each number by itself, not all of them along causes.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for a report on the comparison.")
 @force_option
 def command(
@@ -57,6 +59,7 @@ def command(
     names: tuple[str, ...],
     own: tuple[TypedName, ...],
     load_percent: float,
+    each_number: bool,
     output: Path | None,
     force: bool,
 ) -> None:
@@ -80,15 +83,19 @@ def command(
         with output_folder(output, of="compare", force=force) as folder:
             render_comparison(folder, named, structures=structures, load_repeatability=load)
     apart = {name: differences(first, other, load_repeatability=load) for name, other in others}
+    along = {} if each_number else {name: differ(first, other, load_repeatability=load) for name, other in others}
     for name, other in others:
         doubtful = [label for label, one in ((first_name, first), (name, other)) if not one.verdict.trustworthy]
-        words = change_in_words(apart[name])
+        words = _judged(apart[name], along.get(name))
         if doubtful:
             words = f"It cannot be told: not trustworthy: {', '.join(doubtful)}."
         answer(f"Has the ship changed{f', {name}' if len(others) > 1 else ''}? {words}")
     give("differences", apart)
+    give("causes", along)
     give("conditions", {name: fingerprint.conditions for name, fingerprint in named.items()})
     for name, other in others:
+        if name in along and not along[name].because:
+            print_tables([cause_table(name, along[name])])
         _print_tables(first_name, name, apart[name])
         for sentence in vessel_file_sentences(first, other):
             say(sentence)
@@ -97,6 +104,15 @@ def command(
         print_tables([stated])
     if output is not None:
         echo(f"Report: {output / REPORT}")
+
+
+def _judged(found: tuple[Difference, ...], finding: Finding | None) -> str:
+    """Return whether the ship has changed: along causes, or number by number where that was asked for or must do."""
+    if finding is None:
+        return change_in_words(found)
+    if finding.because:
+        return f"{change_in_words(found)} Judged number by number: {finding.because}."
+    return " ".join(finding_sentences(finding))
 
 
 def _named(places: tuple[Path, ...], names: tuple[str, ...]) -> dict[str, Fingerprint]:

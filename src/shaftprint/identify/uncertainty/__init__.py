@@ -3,6 +3,7 @@
 from shaftprint.identify.uncertainty._band import ResponseBand, StepBand, model_band, response_band, step_band
 from shaftprint.identify.uncertainty._bootstrap import Bootstrap, BootstrapEstimate, bootstrap
 from shaftprint.identify.uncertainty._budget import Budget, BudgetRow, budget
+from shaftprint.identify.uncertainty._joint import JointCovariance, joint_covariance
 from shaftprint.identify.uncertainty._profile import Interval, Profile, profile, profile_intervals
 from shaftprint.identify.uncertainty._profile_curve import ProfileCurve, profile_curve
 from shaftprint.identify.uncertainty._propagation import propagation
@@ -13,12 +14,14 @@ __all__ = [
     "Budget",
     "BudgetRow",
     "Interval",
+    "JointCovariance",
     "Profile",
     "ProfileCurve",
     "ResponseBand",
     "StepBand",
     "bootstrap",
     "budget",
+    "joint_covariance",
     "model_band",
     "profile",
     "profile_curve",

@@ -25,8 +25,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, TypeAlias
 
 from shaftprint.distributions import NORMAL_95, normal_cdf
+from shaftprint.drift import LOAD_REPEATABILITY, shared_errors
 from shaftprint.fingerprint import GAUGE_ZERO
-from shaftprint.report.comparison._shared_errors import shared_errors
 from shaftprint.tables import limits
 
 if TYPE_CHECKING:
@@ -36,9 +36,6 @@ Outcome: TypeAlias = Literal["differs", "perhaps", "no difference seen", "cannot
 
 # A difference that chance makes in fewer than this share of pairs counts.
 UNLIKELY = 0.05
-# Standard deviation of the torque that one propeller takes at one speed from day to day, as a share, beside what the
-# windows of a test show of it. No test of one day tells it; see docs/watching.md.
-LOAD_REPEATABILITY = 0.005
 TORQUE_COEFFICIENT = "K_Q"
 
 

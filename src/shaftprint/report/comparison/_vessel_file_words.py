@@ -3,12 +3,12 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from shaftprint.report.comparison._shared_errors import shared_errors
+from shaftprint.drift import shared_errors
 from shaftprint.tables import Table, texts
 
 if TYPE_CHECKING:
+    from shaftprint.drift import FieldChange
     from shaftprint.fingerprint import FieldValue, Fingerprint
-    from shaftprint.report.comparison._shared_errors import FieldChange
 
 MOST_NAMED = 4
 MOST_NUMBERS = 6

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
+from shaftprint.drift import Finding, finding_sentences
 from shaftprint.report.figures import in_percent
 from shaftprint.report.sections._cover import Card, Cover, State
 from shaftprint.tables import plain, unit_text
@@ -17,7 +18,11 @@ MOST_NAMED = 4
 PERCENT = 100.0
 
 
-def comparison_cover(fingerprints: "Mapping[str, Fingerprint]", found: "Mapping[str, Sequence[Difference]]") -> Cover:
+def comparison_cover(
+    fingerprints: "Mapping[str, Fingerprint]",
+    found: "Mapping[str, Sequence[Difference]]",
+    findings: Mapping[str, Finding],
+) -> Cover:
     """Return the first screen of a comparison.
 
     Parameters
@@ -26,10 +31,12 @@ def comparison_cover(fingerprints: "Mapping[str, Fingerprint]", found: "Mapping[
         Fingerprints by name, the first of them the one that others are compared with.
     found
         Differences from it, by the name of the other.
+    findings
+        The same judged along causes.
     """
     (_, first), *others = fingerprints.items()
     cards = [_usable(fingerprints), _alike(first, dict(others))]
-    cards += [_changed(name, rows) for name, rows in found.items()]
+    cards += [_changed(name, rows, findings[name]) for name, rows in found.items()]
     usable = all(fingerprint.verdict.trustworthy for fingerprint in fingerprints.values())
     state, headline = _headline(cards[2:], usable=usable)
     names = list(fingerprints)
@@ -87,8 +94,11 @@ def not_alike(first: "Fingerprint", name: str, other: "Fingerprint") -> list[str
     return sentences
 
 
-def _changed(name: str, differences: "Sequence[Difference]") -> Card:
+def _changed(name: str, differences: "Sequence[Difference]", finding: Finding) -> Card:
     question = f"Has anything changed: {name}?"
+    if not finding.because:
+        judged: State = "look" if finding.changes else "fine"
+        return Card(question=question, state=judged, sentence=" ".join(finding_sentences(finding)))
     of_the_ship = [one for one in differences if not one.normalised]
     changed = any(one.outcome == "differs" for one in of_the_ship)
     comparable = any(one.p_value is not None for one in of_the_ship)
@@ -97,7 +107,7 @@ def _changed(name: str, differences: "Sequence[Difference]") -> Card:
 
 
 def change_in_words(found: "Sequence[Difference]") -> str:
-    """Return in a sentence whether numbers that stand for the ship have changed by more than chance, and which.
+    """Return in a sentence whether numbers that stand for the ship have changed, each judged by itself, and which.
 
     Parameters
     ----------

@@ -1,0 +1,38 @@
+"""Whether a ship has changed between tests, and what has changed: arithmetic on fingerprints, no database.
+
+================ ====== ==========================================================================================
+quantity         unit   meaning
+================ ====== ==========================================================================================
+``size``         -, s   change of a cause: a share of what it moves, negative where it has become less; of delays a time
+``score``        -      size over its standard deviation
+``odds``         -      likelihood of the difference under the best cause over that under another
+================ ====== ==========================================================================================
+"""
+
+from shaftprint.drift._along import Whitened, p_value_of_largest, whitened
+from shaftprint.drift._causes import CAUSES, Cause
+from shaftprint.drift._differ import LOAD_REPEATABILITY, differ
+from shaftprint.drift._finding import Candidate, Change, Finding
+from shaftprint.drift._pair import Pair, pair_of
+from shaftprint.drift._shared_errors import FieldChange, SharedErrors, shared_errors
+from shaftprint.drift._words import finding_sentences, size_text
+
+__all__ = [
+    "CAUSES",
+    "LOAD_REPEATABILITY",
+    "Candidate",
+    "Cause",
+    "Change",
+    "FieldChange",
+    "Finding",
+    "Pair",
+    "SharedErrors",
+    "Whitened",
+    "differ",
+    "finding_sentences",
+    "p_value_of_largest",
+    "pair_of",
+    "shared_errors",
+    "size_text",
+    "whitened",
+]

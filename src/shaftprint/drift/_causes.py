@@ -1,0 +1,128 @@
+"""What may change on a ship, and which numbers of its fingerprint move with it.
+
+A cause moves numbers together: a weaker injection takes the same share of both governor actions, a longer delay nothing
+but the delay. So it is a direction in the space of the numbers, and how far two tests are apart along it is known much
+better than each number. The directions follow from the roles of the numbers. That of the torque gauge is read off the
+fingerprint: which numbers its scale moves depends on what was known beforehand (``JointNumbers.loadings``).
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Final
+
+from shaftprint.catalogue import ShipRole
+from shaftprint.models import Role
+
+PERCENT, MILLISECONDS = 100.0, 1000.0
+GAUGE_SCALE: Final = "gauge scale"
+"""Source of the budget that is a cause too."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Cause:
+    """One thing that may have changed."""
+
+    name: str
+    """Part of the ship, as it stands in tables."""
+    less: str
+    """What is said when it has become less."""
+    more: str
+    """What is said when it has become more."""
+    told_by: str
+    """What shows whether it is this one."""
+    roles: tuple[tuple[Role, ...], ...]
+    """Roles of the numbers that it moves, all by the same share or by the same time; what stands for the same in
+    different structures, such as the inertias, stands together."""
+    is_share: bool = True
+    """Whether its size is a share of the numbers; else it is a time [s]."""
+
+    @property
+    def unit(self) -> str:
+        """Unit in which its size is stated."""
+        return "%" if self.is_share else "ms"
+
+
+CAUSES: tuple[Cause, ...] = (
+    Cause(
+        name="injection or turbocharger",
+        less="less torque for the same rack: injection or turbocharger",
+        more="more torque for the same rack: injection or turbocharger",
+        told_by="log the fuel rack in the next test",
+        roles=((ShipRole.PROPORTIONAL_GAIN,), (ShipRole.INTEGRAL_GAIN,)),
+    ),
+    Cause(
+        name="proportional gain of the governor",
+        less="a lower proportional gain of the governor",
+        more="a higher proportional gain of the governor",
+        told_by="read the gains in the control unit",
+        roles=((ShipRole.PROPORTIONAL_GAIN,),),
+    ),
+    Cause(
+        name="integral gain of the governor",
+        less="a lower integral gain of the governor",
+        more="a higher integral gain of the governor",
+        told_by="read the gains in the control unit",
+        roles=((ShipRole.INTEGRAL_GAIN,),),
+    ),
+    Cause(
+        name="delay of governor and fuel",
+        less="a shorter delay of governor and fuel",
+        more="a longer delay of governor and fuel",
+        told_by="test at two speeds, which tell the delay from the latency of the set point",
+        roles=((ShipRole.LOOP_DELAY,),),
+        is_share=False,
+    ),
+    Cause(
+        name="latency of the set point",
+        less="a set point that acts earlier",
+        more="a set point that acts later",
+        told_by="test at two speeds, which tell the delay from the latency of the set point",
+        roles=((ShipRole.SET_POINT_LATENCY,),),
+        is_share=False,
+    ),
+    Cause(
+        name="fuel actuator",
+        less="a slower fuel actuator",
+        more="a faster fuel actuator",
+        told_by="log the fuel rack in the next test",
+        roles=((ShipRole.ACTUATOR_FREQUENCY,),),
+    ),
+    Cause(
+        name="propeller",
+        less="less propeller torque at the same speed: cleaned, damaged, or less draught",
+        more="more propeller torque at the same speed: fouled, damaged, or more draught",
+        told_by="look at the propeller, and note draught and water of each test",
+        roles=((ShipRole.TORQUE,),),
+    ),
+    Cause(
+        name="inertia behind the gauge",
+        less="less inertia behind the torque gauge",
+        more="more inertia behind the torque gauge",
+        told_by="look at the propeller",
+        roles=((ShipRole.INERTIA_DOWNSTREAM, ShipRole.INERTIA),),
+    ),
+)
+"""What moves numbers by their roles."""
+
+GAUGE = Cause(
+    name="scale of the torque gauge",
+    less="a torque gauge that shows less than before",
+    more="a torque gauge that shows more than before",
+    told_by="calibrate the torque gauge",
+    roles=(),
+)
+"""What moves the numbers as the fingerprint states of its gauge."""
+
+
+def by_role(cause: Cause, roles: Mapping[str, Role | None]) -> tuple[str, ...]:
+    """Return the numbers that a cause moves by their roles; none where one that it should move is not there.
+
+    Parameters
+    ----------
+    cause
+        The cause.
+    roles
+        Role of each number.
+    """
+    moved = [tuple(name for name, role in roles.items() if role in alike) for alike in cause.roles]
+    return tuple(name for names in moved for name in names) if all(moved) else ()

@@ -1,0 +1,98 @@
+"""Whether a ship has changed between two tests, and what: judged along causes, not number by number."""
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.drift._along import Whitened, p_value_of_largest, whitened
+from shaftprint.drift._causes import Cause
+from shaftprint.drift._finding import Candidate, Change, Finding
+from shaftprint.drift._pair import pair_of
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint
+
+UNLIKELY = 0.05
+"""A change that chance makes in fewer than this share of unchanged pairs counts."""
+LOAD_REPEATABILITY = 0.005
+"""Standard deviation of the torque that one propeller takes at one speed from day to day, as a share, beside what the
+windows of a test show of it. No test of one day tells it; see docs/watching.md."""
+MOST_CHANGES = 3
+_LARGEST_LOGARITHM, _LARGEST_EXPONENT = 10.0, 700.0
+
+OF_EARLIER_VERSION = "a fingerprint of an earlier version has no joint covariance; identify its recording again"
+NOT_TOLD = "no number of both fingerprints can be judged"
+NOT_DETERMINED = "the covariance of the numbers is not positive definite"
+
+
+def differ(first: "Fingerprint", other: "Fingerprint", *, load_repeatability: float = LOAD_REPEATABILITY) -> Finding:
+    """Return whether a ship has changed from one test to another, by how much, and what may have changed.
+
+    Numbers of one test are known to a few per cent each and to a few per mille against each other: governor gains,
+    actuator and delay all hang on what the test tells least. A cause moves them in a way of its own, and is seen along
+    it. Where the largest of all causes is beyond chance (5 %, the number of causes considered), it is taken out, and
+    the others are asked again.
+
+    Parameters
+    ----------
+    first, other
+        Two fingerprints of one ship, the earlier one first.
+    load_repeatability
+        Standard deviation of the torque that a propeller takes at one speed from day to day, as a share.
+    """
+    pair = pair_of(first, other, load_repeatability=load_repeatability)
+    if pair is None:
+        return _nothing(OF_EARLIER_VERSION, {})
+    if not pair.causes:
+        return _nothing(NOT_TOLD, pair.left_out)
+    try:
+        white = whitened(pair.difference, pair.covariance, pair.directions)
+    except np.linalg.LinAlgError:
+        return _nothing(NOT_DETERMINED, pair.left_out)
+    chosen: list[int] = []
+    changes: list[Change] = []
+    nearest = _largest(white, pair.causes, chosen)
+    while nearest is not None and nearest.p_value <= UNLIKELY and len(changes) < MOST_CHANGES:
+        changes.append(nearest)
+        chosen.append(pair.causes.index(nearest.best.cause))
+        nearest = _largest(white, pair.causes, chosen)
+    return Finding(
+        changes=tuple(changes),
+        nearest=nearest,
+        rest_p_value=white.rest_p_value(tuple(chosen)),
+        names=pair.names,
+        left_out=pair.left_out,
+    )
+
+
+def _nothing(because: str, left_out: dict[str, str]) -> Finding:
+    return Finding(changes=(), nearest=None, rest_p_value=None, names=(), left_out=left_out, because=because)
+
+
+def _largest(white: Whitened, causes: tuple[Cause, ...], chosen: list[int]) -> Change | None:
+    """Return the clearest further change beside those that are chosen; None where no cause is left."""
+    scores = white.scores(tuple(chosen))
+    ordered = [at for at in np.argsort(-np.abs(scores), kind="stable").tolist() if at not in chosen and scores[at]]
+    if not ordered:
+        return None
+    best = abs(scores[ordered[0]])
+    candidates = []
+    for at in ordered:
+        size, std = (float(column[-1]) for column in white.sizes((*chosen, at)))
+        share = causes[at].is_share
+        # a cause that has nothing to do with a large change may ask for any size
+        factor = math.exp(min(size, _LARGEST_LOGARITHM))
+        candidates.append(
+            Candidate(
+                cause=causes[at],
+                # of a logarithm
+                size=factor - 1.0 if share else size,
+                std=factor * std if share else std,
+                score=float(scores[at]),
+                odds=math.exp(min(0.5 * (best**2 - float(scores[at]) ** 2), _LARGEST_EXPONENT)),
+            )
+        )
+    return Change(
+        candidates=tuple(candidates), p_value=p_value_of_largest(best, white.cosines(tuple(chosen), tuple(ordered)))
+    )

@@ -1,0 +1,173 @@
+"""Two fingerprints as one difference with its covariance, and the directions of the causes in it.
+
+What is a share, such as a gain or an inertia, is compared by its logarithm, a time as it is. The covariance of the
+difference is what each test left open, and of what was stated beforehand only what does not cancel: where both vessel
+files state the same scale of the gauge, its error moves both tests alike (``_shared_errors``).
+"""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.catalogue import ShipRole
+from shaftprint.drift._causes import CAUSES, GAUGE, GAUGE_SCALE, Cause, by_role
+from shaftprint.drift._shared_errors import shared_errors
+from shaftprint.identify.fit import Estimate
+from shaftprint.identify.judgement import AFFECTED, depends_on
+
+if TYPE_CHECKING:
+    from shaftprint.fingerprint import Fingerprint, JointNumbers, Quantity
+    from shaftprint.models import Role
+
+SHARES = (ShipRole.TORQUE, ShipRole.ACTUATOR_FREQUENCY, ShipRole.ACTUATOR_DAMPING)
+"""Roles of numbers that are larger than zero, beside those of physical values."""
+NOT_POSITIVE = "it is not larger than zero"
+AT_BOUND = "the search stopped at its bound"
+NOT_IN_BOTH = "it is not in both fingerprints"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Pair:
+    """The difference of two fingerprints."""
+
+    names: tuple[str, ...]
+    """Numbers that are judged together."""
+    left_out: dict[str, str]
+    """Why others are not, by name."""
+    difference: FloatArray
+    """Other minus first: of logarithms, and of times [s]; shape (numbers,)."""
+    covariance: FloatArray
+    """Its covariance where nothing changed, shape (numbers, numbers)."""
+    causes: tuple[Cause, ...]
+    """What may have moved these numbers."""
+    directions: FloatArray
+    """What a change of each cause by 1, or by a second, does to the numbers; shape (numbers, causes)."""
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class _Test:
+    """One of the two, with the numbers that are judged in the coordinates of the comparison."""
+
+    values: FloatArray
+    """Logarithms, and times [s]; shape (numbers,)."""
+    own: FloatArray
+    """Covariance that the test left open, shape (numbers, numbers)."""
+    loadings: dict[str, FloatArray]
+    """Change of the numbers for one standard deviation of each source that was stated, shape (numbers,) each."""
+
+
+def pair_of(first: "Fingerprint", other: "Fingerprint", *, load_repeatability: float) -> Pair | None:
+    """Return the difference of two fingerprints; None where one of them does not hold its numbers together.
+
+    Parameters
+    ----------
+    first, other
+        Two fingerprints of one ship, the earlier one first.
+    load_repeatability
+        Standard deviation of the torque that a propeller takes at one speed from day to day, as a share.
+    """
+    if first.joint is None or other.joint is None:
+        return None
+    both = ((first, first.joint), (other, other.joint))
+    every = dict.fromkeys((*first.joint.names, *other.joint.names))
+    doubts = {name: next(filter(None, (_doubt(name, *one) for one in both)), "") for name in every}
+    names = tuple(name for name, doubt in doubts.items() if not doubt)
+    roles = {name: first.quantity(name).role for name in names}
+    before, after = (_test(fingerprint, joint, names) for fingerprint, joint in both)
+    # the propeller takes another torque on another day
+    load = np.array([load_repeatability * (role == ShipRole.TORQUE) for role in roles.values()])
+    causes, directions = _directions(roles, before.loadings.get(GAUGE_SCALE))
+    return Pair(
+        names=names,
+        left_out={name: doubt for name, doubt in doubts.items() if doubt},
+        difference=after.values - before.values,
+        covariance=_covariance(before, after, shared_errors(first, other).common, alike=_alike(first, other))
+        + 2.0 * np.diag(load**2),
+        causes=causes,
+        directions=directions,
+    )
+
+
+def is_share(role: "Role | None") -> bool:
+    """Return whether a change of a number is a share of it; times and slopes may be zero."""
+    return role is not None and (role.physical is not None or role in SHARES)
+
+
+def _doubt(name: str, fingerprint: "Fingerprint", joint: "JointNumbers") -> str:
+    """Return why a number of a fingerprint is not judged; empty where it is."""
+    if name not in joint.names:
+        return NOT_IN_BOTH
+    number = fingerprint.quantity(name)
+    kinds = (reason.kind for reason in fingerprint.verdict.reasons)
+    if doubt := next((AFFECTED[kind][1] for kind in kinds if depends_on(_estimate(number), kind)), ""):
+        return doubt
+    if any(one.at_bound and one.role == number.role for one in fingerprint.parameters):
+        return AT_BOUND
+    return NOT_POSITIVE if is_share(number.role) and number.value <= 0.0 else ""
+
+
+def _estimate(number: "Quantity") -> Estimate:
+    return Estimate(name=number.name, unit=number.unit, value=number.value, std=number.std, role=number.role)
+
+
+def _test(fingerprint: "Fingerprint", joint: "JointNumbers", names: tuple[str, ...]) -> _Test:
+    numbers = [fingerprint.quantity(name) for name in names]
+    values = np.array([number.value for number in numbers])
+    shares = np.array([is_share(number.role) for number in numbers], dtype=bool)
+    size = np.where(shares, values, 1.0)
+    return _Test(
+        values=np.where(shares, np.log(size), values),
+        own=_misfit(fingerprint) * joint.covariance_of(names) / np.outer(size, size),
+        loadings={source: change / size for source, change in joint.loadings_of(names).items()},
+    )
+
+
+def _misfit(fingerprint: "Fingerprint") -> float:
+    """Return by how much the residuals of a fit are larger than its noise, as a variance; 1 at least."""
+    quality = fingerprint.quality
+    if quality.chi_square is None or quality.degrees_of_freedom <= 0:
+        return 1.0
+    return max(quality.chi_square / quality.degrees_of_freedom, 1.0)
+
+
+def _alike(first: "Fingerprint", other: "Fingerprint") -> bool:
+    """Return whether two tests weigh what was stated against their data alike: the same lines, the same structure."""
+    campaigns = [{one.sha256 for one in test.sources if one.role == "campaign"} for test in (first, other)]
+    return campaigns[0] == campaigns[1] and first.structure == other.structure
+
+
+def _covariance(before: _Test, after: _Test, common: tuple[str, ...], *, alike: bool) -> FloatArray:
+    """Return the covariance of the difference where nothing changed.
+
+    What was stated in common cancels where it moves both alike. Of tests with the same lines and structure it does: by
+    how much its effects differ is noise of the estimates at which they were worked out, which is in their covariance.
+    """
+    covariance = before.own + after.own
+    nothing = np.zeros(len(covariance))
+    for source in dict.fromkeys((*before.loadings, *after.loadings)):
+        one, two = (test.loadings.get(source, nothing) for test in (before, after))
+        for part in (() if alike else (two - one,)) if source in common else (one, two):
+            covariance = covariance + np.outer(part, part)
+    return covariance
+
+
+def _directions(roles: "dict[str, Role | None]", scale: FloatArray | None) -> tuple[tuple[Cause, ...], FloatArray]:
+    """Return what may have moved the numbers, and how.
+
+    Parameters
+    ----------
+    roles
+        Role of each number.
+    scale
+        What one standard deviation of the scale of the gauge does to them; None where it is known exactly.
+    """
+    names = list(roles)
+    moved = {cause: by_role(cause, roles) for cause in CAUSES}
+    columns = {cause: np.isin(names, there).astype(np.float64) for cause, there in moved.items() if there}
+    torque = list(roles.values()).index(ShipRole.TORQUE) if ShipRole.TORQUE in roles.values() else None
+    if scale is not None and torque is not None and scale[torque]:
+        # the torque coefficient goes with the scale itself
+        columns[GAUGE] = scale / abs(scale[torque])
+    return tuple(columns), np.array(list(columns.values())).T.reshape(len(names), len(columns))

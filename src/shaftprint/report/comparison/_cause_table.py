@@ -1,0 +1,50 @@
+"""The table of causes: what may have changed between two tests, by how much, and how likely each is."""
+
+from typing import TYPE_CHECKING
+
+from shaftprint.drift import size_text
+from shaftprint.tables import Table, numbers, p_value_text, plain, texts
+
+if TYPE_CHECKING:
+    from shaftprint.drift import Candidate, Change, Finding
+
+MOST_ODDS = 1000.0
+
+
+def cause_table(name: str, finding: "Finding") -> Table:
+    """Return every cause with its size, score and odds: of each change that was seen, else of what comes nearest.
+
+    Parameters
+    ----------
+    name
+        Name of the later test.
+    finding
+        What was found.
+    """
+    changes = finding.changes or (() if finding.nearest is None else (finding.nearest,))
+    rows = [_cells(change, one, at) for change in changes for at, one in enumerate(change.candidates)]
+    return Table(
+        title=f"{name}: {'what has changed' if finding.changes else 'no change beyond chance; what comes nearest'}",
+        columns=(*texts("what may have changed"), *numbers("by", "size / deviation", "odds against it", "p")),
+        rows=tuple(rows),
+        note=_note(finding),
+    )
+
+
+def _cells(change: "Change", one: "Candidate", place: int) -> tuple[str, ...]:
+    odds = f"> {MOST_ODDS:g} : 1" if one.odds > MOST_ODDS else f"{plain(one.odds, 1)} : 1"
+    sign = "−" if one.size < 0.0 else ""
+    return (
+        one.words,
+        f"{sign}{size_text(one)}",
+        plain(one.score, 1),
+        odds if place else "–",
+        p_value_text(change.p_value) if place == 0 else "",
+    )
+
+
+def _note(finding: "Finding") -> str:
+    together = f"Judged together: {', '.join(finding.names)}."
+    if not finding.left_out:
+        return together
+    return f"{together} Left out: {'; '.join(f'{name}, {why}' for name, why in finding.left_out.items())}."
