@@ -3,8 +3,10 @@
 Simulated ships are tested, a raw recording each, and their fingerprints compared as ``shaftprint compare`` does. No two
 tests are made on the same day: strength of the wandering inflow, surge, combustion noise and hunting, the torque of the
 propeller, the zero of the gauge, how well that was taken anew for the vessel file, and the set point are drawn for
-each. So no two tests have the same vessel file. Run ``python benchmarks/watching.py``; with ``--write`` the
-tables go into the document. A test takes 2 s of a processor, all of them 13 minutes.
+each. So no two tests have the same vessel file. Other ships have what the model does not know: a deadband of the
+governor, dynamic inflow, another draught and other water at each test. Run ``python benchmarks/watching.py``; with
+``--write`` the tables go into the document. A test takes 3 s of a processor, all of them a quarter of an hour;
+fingerprints that ``--outcomes FOLDER`` holds are not made again.
 """
 
 import argparse
@@ -28,7 +30,8 @@ sys.path.insert(0, str(ROOT))
 from benchmarks.monte_carlo_tables import write_between_marks  # noqa: E402
 from shaftprint.catalogue import structure  # noqa: E402
 from shaftprint.distributions import NORMAL_95  # noqa: E402
-from shaftprint.fingerprint import GAUGE_ZERO, Fingerprint  # noqa: E402
+from shaftprint.drift import Candidate, Finding, differ  # noqa: E402
+from shaftprint.fingerprint import GAUGE_ZERO, Fingerprint, read_fingerprint, write_fingerprint  # noqa: E402
 from shaftprint.identify import Settings  # noqa: E402
 from shaftprint.report import Difference, differences  # noqa: E402
 from shaftprint.survey import Trial, fingerprint_of, fit, load_trial, measure, priors_of  # noqa: E402
@@ -38,7 +41,7 @@ from shaftprint.vessel import Vessel  # noqa: E402
 DOCUMENT = ROOT / "docs" / "watching.md"
 BEGIN, END = ("<!-- tables of benchmarks/watching.py: begin -->", "<!-- tables of benchmarks/watching.py: end -->")
 STRUCTURE = "GAUGE-CLOSED"
-SEED, POWER = 29, 0.8
+SEED = 29
 REFERENCE = Tug.stan_tug_1205()
 TORQUE_NM = 1725.0
 WATER_KG_M2 = 17.0 / 100.0
@@ -58,8 +61,12 @@ class Change:
     """Sizes that are tried, smallest first."""
     tug: Callable[[Tug, float], Tug]
     """The ship with a change of a size."""
+    cause: str
+    """Name of the cause in ``drift.CAUSES``."""
+    sign: int = 1
+    """Whether the cause becomes more or less."""
     right: tuple[str, ...]
-    """Numbers that tell what has changed."""
+    """Numbers that tell what has changed, judged one by one."""
 
 
 def weaker_injection(tug: Tug, percent: float) -> Tug:
@@ -106,39 +113,64 @@ CHANGES = (
     Change(
         name="injection or turbocharger: less torque for the same rack",
         unit="%",
-        sizes=(5.0, 10.0, 15.0, 20.0),
+        sizes=(2.5, 5.0),
         tug=weaker_injection,
+        cause="injection or turbocharger",
+        sign=-1,
         right=(*ACTIONS, *INTEGRAL),
     ),
     Change(
         name="governor: lower proportional gain",
         unit="%",
-        sizes=(7.5, 12.5, 17.5, 25.0),
+        sizes=(2.5, 5.0),
         tug=lower_gain,
+        cause="proportional gain of the governor",
+        sign=-1,
         right=(*ACTIONS, "K_p / K_i"),
     ),
     Change(
         name="longer delay of the fuel",
         unit="ms",
-        sizes=(4.0, 6.0, 8.0, 20.0),
+        sizes=(4.0, 8.0),
         tug=longer_delay,
+        cause="delay of governor and fuel",
         right=("t_d + t_sp", "t_d", "t_sp"),
     ),
     Change(
         name="fouled propeller: more torque at the same speed",
         unit="%",
-        sizes=(2.5, 4.0, 6.0, 8.0),
+        sizes=(5.0, 10.0),
         tug=fouled_propeller,
+        cause="propeller",
         right=("K_Q",),
     ),
     Change(
         name="more inertia behind the gauge",
         unit="%",
-        sizes=(0.5, 0.75, 1.0, 1.5),
+        sizes=(1.0, 2.0),
         tug=heavier_propeller,
+        cause="inertia behind the gauge",
         right=("I_dn",),
     ),
 )
+DEADBAND_RPM, INFLOW_GAIN, INFLOW_TIME_S = 1.0, 0.3, 0.3
+# K_Q of a ship at bollard pull by draught [1/m] (two per cent a metre) and by the water, from 5 to 25 degrees.
+DRAUGHT_M, TORQUE_PER_M = 0.3, 0.02
+WATER_C, DENSITY_PER_C, DENSITY_15 = (5.0, 25.0), -2.1e-4, 1025.9
+# Ships with something that the model does not know, and whether draught and water are others in each test.
+OTHERS = {
+    f"deadband of the governor of {DEADBAND_RPM:g} rpm": (
+        replace(REFERENCE, governor_deadband_rpm=DEADBAND_RPM),
+        False,
+    ),
+    "dynamic inflow": (replace(REFERENCE, inflow_gain=INFLOW_GAIN, inflow_time_s=INFLOW_TIME_S), False),
+    "draught ± 0.3 m, water of 5 to 25 °C": (REFERENCE, True),
+}
+HEADER = (
+    "change", "size", "seen number by number", "seen along causes", "right cause first, of those seen",
+    "within odds of 3 : 1", "size, mean ± stated deviation", "95 % interval holds the true size",
+)  # fmt: skip
+ALIKE = 3.0
 
 
 def other_day(tug: Tug, rng: np.random.Generator) -> Tug:
@@ -171,11 +203,32 @@ def zero_taken(trial: Trial, tug: Tug, rng: np.random.Generator, seed: int) -> T
     return replace(trial, vessel=Vessel.model_validate(content), sources=sources)
 
 
-def tested(tug: Tug, campaign: str, seed: int) -> Fingerprint:
+def other_water(trial: Trial, tug: Tug, rng: np.random.Generator) -> tuple[Trial, Tug]:
+    """Return the ship at another draught in other water, of which the density was measured and the draught was not."""
+    density = DENSITY_15 * (1.0 + DENSITY_PER_C * (float(rng.uniform(*WATER_C)) - 15.0))
+    factor = density / trial.vessel.water_density_kg_m3
+    tug = with_load(tug, factor * (1.0 + TORQUE_PER_M * float(rng.uniform(-DRAUGHT_M, DRAUGHT_M))))
+    return replace(trial, vessel=trial.vessel.model_copy(update={"water_density_kg_m3": density})), tug
+
+
+def kept_or_made(kept: Path | None, tug: Tug, campaign: str, seed: int, *, waters: bool) -> Fingerprint:
+    """Return the fingerprint of one test of a ship, from the file where it stands there already."""
+    path = None if kept is None else kept / f"{campaign}-{seed}.json"
+    if path is not None and path.exists():
+        return read_fingerprint(path)
+    fingerprint = tested(tug, campaign, seed, waters=waters)
+    if path is not None:
+        write_fingerprint(fingerprint, path)
+    return fingerprint
+
+
+def tested(tug: Tug, campaign: str, seed: int, *, waters: bool) -> Fingerprint:
     """Return the fingerprint of one test of a ship, as ``shaftprint identify`` makes it."""
     trial, chosen = load_trial("stan-tug-1205", campaign), structure(STRUCTURE)
     rng = np.random.default_rng([SEED, seed])
     tug = other_day(tug, rng)
+    if waters:
+        trial, tug = other_water(trial, tug, rng)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "recording.nc"
         sail(trial.vessel, trial.campaign, path, tug=tug, seed=seed)
@@ -192,7 +245,7 @@ def of_the_ship(first: Fingerprint, other: Fingerprint) -> list[Difference]:
 
 
 def named(first: Fingerprint, other: Fingerprint) -> list[str]:
-    """Return the numbers that a comparison calls different."""
+    """Return the numbers that a comparison number by number calls different."""
     return [one.first.name for one in of_the_ship(first, other) if one.outcome == "differs"]
 
 
@@ -200,6 +253,8 @@ def main() -> None:
     """Test unchanged and changed ships, compare, and print the tables."""
     options = _options()
     os.environ.setdefault("OMP_NUM_THREADS", "1")
+    if options.outcomes:
+        options.outcomes.mkdir(parents=True, exist_ok=True)
     with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
         text = "\n".join(_tables(pool, options))
     print(text)
@@ -209,49 +264,87 @@ def main() -> None:
 
 def _options() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--pairs", type=int, default=60, help="independent pairs of tests of an unchanged ship")
-    parser.add_argument("--tests", type=int, default=12, help="tests of each change of each size")
+    parser.add_argument("--tests", type=int, default=40, help="tests of the unchanged ship, and of each change")
+    parser.add_argument("--others", type=int, default=20, help="tests of each other ship")
     parser.add_argument("--campaign", default="short", help="campaign that is sailed")
     parser.add_argument("--processes", type=int, default=os.cpu_count(), help="processes; as many as there are cores")
+    parser.add_argument("--outcomes", type=Path, help="folder in which fingerprints are kept")
     parser.add_argument("--write", action="store_true", help=f"put the tables into {DOCUMENT.relative_to(ROOT)}")
     return parser.parse_args()
 
 
 def _tables(pool: ProcessPoolExecutor, options: argparse.Namespace) -> Iterator[str]:
-    count = 2 * options.pairs
-    unchanged = _tests(pool, REFERENCE, options.campaign, range(1, count + 1))
-    yield _false_alarms(unchanged, count)
-    yield _scatter(unchanged)
+    unchanged = _tests(pool, REFERENCE, options, 1, options.tests)
+    yield _false_alarms(unchanged, options.tests)
     first, rows = 10_000, []
     for change in CHANGES:
-        found = []
         for size in change.sizes:
-            seeds = range(first, first + options.tests)
+            # as many tests of each change as of the unchanged ship, both sizes together
+            count = options.tests // len(change.sizes)
+            changed = _tests(pool, change.tug(REFERENCE, size), options, first, count)
             first += options.tests
-            changed = _tests(pool, change.tug(REFERENCE, size), options.campaign, seeds)
-            pairs = [named(before, after) for before in unchanged for after in changed]
-            found.append((size, pairs))
-        rows.append(_row(change, found))
-    header = ("change", "size: seen in so many comparisons", "cause named, of those seen", "smallest with 80 % power")
-    yield f"{options.tests} tests of each change and size, each compared with all of the unchanged ship.\n"
-    yield _table(header, rows)
+            rows.append(_row(change, size, [(before, after) for before in unchanged for after in changed]))
+    yield (
+        f"{options.tests // 2} tests of each change and size, each compared with all {len(unchanged)} of the unchanged "
+        "ship: pairs share tests.\n"
+    )
+    yield _table(HEADER, rows)
+    yield _other_ships(pool, options)
+    yield _scatter(unchanged)
 
 
-def _tests(pool: ProcessPoolExecutor, tug: Tug, campaign: str, seeds: Sequence[int]) -> list[Fingerprint]:
+def _tests(
+    pool: ProcessPoolExecutor,
+    tug: Tug,
+    options: argparse.Namespace,
+    first: int,
+    count: int,
+    *,
+    waters: bool = False,
+) -> list[Fingerprint]:
     """Return the fingerprints that are trustworthy: no others are compared."""
-    found = pool.map(partial(tested, tug, campaign), seeds)
+    test = partial(kept_or_made, options.outcomes, tug, options.campaign, waters=waters)
+    found = pool.map(test, range(first, first + count))
     return [fingerprint for fingerprint in found if fingerprint.verdict.trustworthy]
 
 
 def _false_alarms(unchanged: Sequence[Fingerprint], count: int) -> str:
     independent = list(zip(unchanged[:-1:2], unchanged[1::2], strict=True))
     every = list(combinations(unchanged, 2))
-    counts = [sum(bool(named(*pair)) for pair in pairs) for pairs in (independent, every)]
+    alarms = [[bool(differ(*pair).changes) for pair in pairs] for pairs in (independent, every)]
+    one_by_one = np.mean([bool(named(*pair)) for pair in every])
     return (
         f"{count} tests of an unchanged ship, {len(unchanged)} of them trustworthy. Stated: at most 5 % of comparisons "
-        f"find a change. Found: {counts[0]} of {len(independent)} independent pairs, {counts[1]} of all {len(every)} "
-        f"pairs ({100.0 * counts[1] / len(every):.1f} %).\n"
+        f"find a change. Found: {sum(alarms[0])} of {len(independent)} independent pairs, {sum(alarms[1])} of all "
+        f"{len(every)} pairs ({100.0 * np.mean(alarms[1]):.1f} %); number by number {100.0 * one_by_one:.1f} %.\n"
     )
+
+
+def _other_ships(pool: ProcessPoolExecutor, options: argparse.Namespace) -> str:
+    """Return what comparisons of ships say that have what the model does not know, unchanged and changed."""
+    count, rows = options.others, []
+    for place, (name, (tug, waters)) in enumerate(OTHERS.items()):
+        first = 20_000 + 1000 * place
+        unchanged = _tests(pool, tug, options, first, count, waters=waters)
+        weaker = _tests(pool, lower_gain(tug, 5.0), options, first + 500, count, waters=waters)
+        alarms = [bool(differ(*pair).changes) for pair in combinations(unchanged, 2)]
+        found = [differ(before, after) for before in unchanged for after in weaker]
+        seen = [finding for finding in found if finding.changes]
+        right = [finding.changes[0].best.cause.name == CHANGES[1].cause for finding in seen]
+        trusted = f"{len(unchanged) + len(weaker)} of {2 * count}"
+        rows.append((name, trusted, _percent(alarms), _percent([bool(one.changes) for one in found]), _percent(right)))
+    header = (
+        "ship",
+        "tests that are trustworthy",
+        "unchanged: called changed",
+        "governor gain 5 % lower: seen",
+        "right cause first",
+    )
+    return f"{count} tests of each ship and as many with a lower gain.\n\n{_table(header, rows)}"
+
+
+def _percent(found: Sequence[bool]) -> str:
+    return f"{100.0 * np.mean(found):.1f} %" if found else "–"
 
 
 def _scatter(unchanged: Sequence[Fingerprint]) -> str:
@@ -278,24 +371,31 @@ def _scatter(unchanged: Sequence[Fingerprint]) -> str:
     return _table(header, rows)
 
 
-def _row(change: Change, found: Sequence[tuple[float, Sequence[Sequence[str]]]]) -> tuple[str, ...]:
-    flagged = [float(np.mean([bool(names) for names in pairs])) for _, pairs in found]
-    shares = ", ".join(
-        f"{size:g} {change.unit}: {100.0 * share:.0f} %" for (size, _), share in zip(found, flagged, strict=True)
+def _row(change: Change, size: float, pairs: Sequence[tuple[Fingerprint, Fingerprint]]) -> tuple[str, ...]:
+    """Return how often a change is seen, which cause is named, and how its size comes out."""
+    findings = [differ(*pair) for pair in pairs]
+    seen = [finding for finding in findings if finding.changes]
+    first = [finding.changes[0].best.cause.name == change.cause for finding in seen]
+    near = [any(one.cause.name == change.cause and one.odds < ALIKE for one in _candidates(f)) for f in seen]
+    sized = [next(one for one in _candidates(f) if one.cause.name == change.cause) for f in findings]
+    factor = 100.0 if sized[0].cause.is_share else 1000.0
+    sizes, stds = (factor * np.array([getattr(one, name) for one in sized]) for name in ("size", "std"))
+    covered = np.abs(sizes - change.sign * size) <= NORMAL_95 * stds
+    return (
+        change.name,
+        f"{size:g} {change.unit}",
+        _percent([bool(named(*pair)) for pair in pairs]),
+        _percent([bool(finding.changes) for finding in findings]),
+        _percent(first),
+        _percent(near),
+        f"{sizes.mean():.2f} ± {stds.mean():.2f} {change.unit}",
+        _percent(covered.tolist()),
     )
-    seen = [names for _, pairs in found for names in pairs if names]
-    right = np.mean([bool(set(names) & set(change.right)) for names in seen]) if seen else 0.0
-    return change.name, shares, f"{100.0 * right:.0f} %", _smallest([size for size, _ in found], flagged, change.unit)
 
 
-def _smallest(sizes: Sequence[float], flagged: Sequence[float], unit: str) -> str:
-    """Return the size at which straight lines between the sizes that were tried cross the power."""
-    if flagged[0] >= POWER:
-        return f"under {sizes[0]:g} {unit}"
-    for place in range(1, len(sizes)):
-        if flagged[place] >= POWER:
-            return f"{np.interp(POWER, flagged[place - 1 : place + 1], sizes[place - 1 : place + 1]):.2g} {unit}"
-    return f"over {sizes[-1]:g} {unit}"
+def _candidates(finding: Finding) -> tuple[Candidate, ...]:
+    change = finding.changes[0] if finding.changes else finding.nearest
+    return () if change is None else change.candidates
 
 
 def _table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

@@ -13,26 +13,39 @@ from shaftprint.drift._along import Whitened, p_value_of_largest, whitened
 from shaftprint.drift._causes import CAUSES, Cause
 from shaftprint.drift._differ import LOAD_REPEATABILITY, differ
 from shaftprint.drift._finding import Candidate, Change, Finding
+from shaftprint.drift._history import EVENTS, DatedTest, Event, History, history_of
 from shaftprint.drift._pair import Pair, pair_of
 from shaftprint.drift._shared_errors import FieldChange, SharedErrors, shared_errors
-from shaftprint.drift._words import finding_sentences, size_text
+from shaftprint.drift._watch import Course, Drift, WatchFinding, watch
+from shaftprint.drift._words import course_text, finding_sentences, size_text, watch_sentences
 
 __all__ = [
     "CAUSES",
+    "EVENTS",
     "LOAD_REPEATABILITY",
     "Candidate",
     "Cause",
     "Change",
+    "Course",
+    "DatedTest",
+    "Drift",
+    "Event",
     "FieldChange",
     "Finding",
+    "History",
     "Pair",
     "SharedErrors",
+    "WatchFinding",
     "Whitened",
+    "course_text",
     "differ",
     "finding_sentences",
+    "history_of",
     "p_value_of_largest",
     "pair_of",
     "shared_errors",
     "size_text",
+    "watch",
+    "watch_sentences",
     "whitened",
 ]

@@ -14,18 +14,19 @@ from shaftprint.arrays import FloatArray
 from shaftprint.catalogue import ShipRole
 from shaftprint.drift._causes import CAUSES, GAUGE, GAUGE_SCALE, Cause, by_role
 from shaftprint.drift._shared_errors import shared_errors
+from shaftprint.errors import FingerprintError
 from shaftprint.identify.fit import Estimate
 from shaftprint.identify.judgement import AFFECTED, depends_on
 
 if TYPE_CHECKING:
-    from shaftprint.fingerprint import Fingerprint, JointNumbers, Quantity
+    from shaftprint.fingerprint import Fingerprint, Quantity
     from shaftprint.models import Role
 
 SHARES = (ShipRole.TORQUE, ShipRole.ACTUATOR_FREQUENCY, ShipRole.ACTUATOR_DAMPING)
 """Roles of numbers that are larger than zero, beside those of physical values."""
 NOT_POSITIVE = "it is not larger than zero"
 AT_BOUND = "the search stopped at its bound"
-NOT_IN_BOTH = "it is not in both fingerprints"
+NOT_IN_ALL = "it is not in all fingerprints"
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
@@ -47,8 +48,8 @@ class Pair:
 
 
 @dataclass(frozen=True, kw_only=True, slots=True, eq=False)
-class _Test:
-    """One of the two, with the numbers that are judged in the coordinates of the comparison."""
+class SingleTest:
+    """One test, with the numbers that are judged in the coordinates in which tests are compared."""
 
     values: FloatArray
     """Logarithms, and times [s]; shape (numbers,)."""
@@ -70,20 +71,18 @@ def pair_of(first: "Fingerprint", other: "Fingerprint", *, load_repeatability: f
     """
     if first.joint is None or other.joint is None:
         return None
-    both = ((first, first.joint), (other, other.joint))
-    every = dict.fromkeys((*first.joint.names, *other.joint.names))
-    doubts = {name: next(filter(None, (_doubt(name, *one) for one in both)), "") for name in every}
+    doubts = doubts_of(first, other)
     names = tuple(name for name, doubt in doubts.items() if not doubt)
     roles = {name: first.quantity(name).role for name in names}
-    before, after = (_test(fingerprint, joint, names) for fingerprint, joint in both)
+    before, after = (single_test(one, names) for one in (first, other))
     # the propeller takes another torque on another day
     load = np.array([load_repeatability * (role == ShipRole.TORQUE) for role in roles.values()])
-    causes, directions = _directions(roles, before.loadings.get(GAUGE_SCALE))
+    causes, directions = directions_of(roles, before.loadings.get(GAUGE_SCALE))
     return Pair(
         names=names,
         left_out={name: doubt for name, doubt in doubts.items() if doubt},
         difference=after.values - before.values,
-        covariance=_covariance(before, after, shared_errors(first, other).common, alike=_alike(first, other))
+        covariance=_covariance(before, after, shared_errors(first, other).common, unmoved=alike(first, other))
         + 2.0 * np.diag(load**2),
         causes=causes,
         directions=directions,
@@ -95,10 +94,17 @@ def is_share(role: "Role | None") -> bool:
     return role is not None and (role.physical is not None or role in SHARES)
 
 
-def _doubt(name: str, fingerprint: "Fingerprint", joint: "JointNumbers") -> str:
+def doubts_of(*fingerprints: "Fingerprint") -> dict[str, str]:
+    """Return why each number of several fingerprints is not judged; empty for those that are."""
+    joints = [fingerprint.joint for fingerprint in fingerprints if fingerprint.joint is not None]
+    every = dict.fromkeys(name for joint in joints for name in joint.names)
+    return {name: next(filter(None, (_doubt(name, one) for one in fingerprints)), "") for name in every}
+
+
+def _doubt(name: str, fingerprint: "Fingerprint") -> str:
     """Return why a number of a fingerprint is not judged; empty where it is."""
-    if name not in joint.names:
-        return NOT_IN_BOTH
+    if fingerprint.joint is None or name not in fingerprint.joint.names:
+        return NOT_IN_ALL
     number = fingerprint.quantity(name)
     kinds = (reason.kind for reason in fingerprint.verdict.reasons)
     if doubt := next((AFFECTED[kind][1] for kind in kinds if depends_on(_estimate(number), kind)), ""):
@@ -112,12 +118,22 @@ def _estimate(number: "Quantity") -> Estimate:
     return Estimate(name=number.name, unit=number.unit, value=number.value, std=number.std, role=number.role)
 
 
-def _test(fingerprint: "Fingerprint", joint: "JointNumbers", names: tuple[str, ...]) -> _Test:
+def single_test(fingerprint: "Fingerprint", names: tuple[str, ...]) -> SingleTest:
+    """Return a test with some of its numbers, in the coordinates in which tests are compared.
+
+    Raises
+    ------
+    FingerprintError
+        If the fingerprint does not hold its numbers together.
+    """
+    joint = fingerprint.joint
+    if joint is None:
+        raise FingerprintError(f"{fingerprint.conditions.campaign}: expected a joint covariance, found none.")
     numbers = [fingerprint.quantity(name) for name in names]
     values = np.array([number.value for number in numbers])
     shares = np.array([is_share(number.role) for number in numbers], dtype=bool)
     size = np.where(shares, values, 1.0)
-    return _Test(
+    return SingleTest(
         values=np.where(shares, np.log(size), values),
         own=_misfit(fingerprint) * joint.covariance_of(names) / np.outer(size, size),
         loadings={source: change / size for source, change in joint.loadings_of(names).items()},
@@ -132,13 +148,13 @@ def _misfit(fingerprint: "Fingerprint") -> float:
     return max(quality.chi_square / quality.degrees_of_freedom, 1.0)
 
 
-def _alike(first: "Fingerprint", other: "Fingerprint") -> bool:
+def alike(first: "Fingerprint", other: "Fingerprint") -> bool:
     """Return whether two tests weigh what was stated against their data alike: the same lines, the same structure."""
     campaigns = [{one.sha256 for one in test.sources if one.role == "campaign"} for test in (first, other)]
     return campaigns[0] == campaigns[1] and first.structure == other.structure
 
 
-def _covariance(before: _Test, after: _Test, common: tuple[str, ...], *, alike: bool) -> FloatArray:
+def _covariance(before: SingleTest, after: SingleTest, common: tuple[str, ...], *, unmoved: bool) -> FloatArray:
     """Return the covariance of the difference where nothing changed.
 
     What was stated in common cancels where it moves both alike. Of tests with the same lines and structure it does: by
@@ -148,12 +164,12 @@ def _covariance(before: _Test, after: _Test, common: tuple[str, ...], *, alike: 
     nothing = np.zeros(len(covariance))
     for source in dict.fromkeys((*before.loadings, *after.loadings)):
         one, two = (test.loadings.get(source, nothing) for test in (before, after))
-        for part in (() if alike else (two - one,)) if source in common else (one, two):
+        for part in (() if unmoved else (two - one,)) if source in common else (one, two):
             covariance = covariance + np.outer(part, part)
     return covariance
 
 
-def _directions(roles: "dict[str, Role | None]", scale: FloatArray | None) -> tuple[tuple[Cause, ...], FloatArray]:
+def directions_of(roles: "dict[str, Role | None]", scale: FloatArray | None) -> tuple[tuple[Cause, ...], FloatArray]:
     """Return what may have moved the numbers, and how.
 
     Parameters

@@ -49,7 +49,7 @@ def shared_errors(first: "Fingerprint", other: "Fingerprint") -> SharedErrors:
         Two fingerprints.
     """
     sources = [source for source in first.budget.sources if source in other.budget.sources and _is_stated(source)]
-    common = tuple(source for source in sources if _is_common(source, first, other))
+    common = tuple(source for source in sources if is_common(source, first, other))
     return SharedErrors(
         common=common, apart=tuple(source for source in sources if source not in common), changes=_changes(first, other)
     )
@@ -59,7 +59,8 @@ def _is_stated(source: str) -> bool:
     return source in BEHIND or source == TVC or source.startswith(PRIOR)
 
 
-def _is_common(source: str, first: "Fingerprint", other: "Fingerprint") -> bool:
+def is_common(source: str, first: "Fingerprint", other: "Fingerprint") -> bool:
+    """Return whether two tests were given the same figures for a source of error, so that its error is the same."""
     if _vessel_file(first) is not None and _vessel_file(first) == _vessel_file(other):
         return True
     if source.startswith(PRIOR):

@@ -1,10 +1,12 @@
 """What two tests say about a change of the ship, in sentences: what, by how much, and with which odds."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from shaftprint.digits import p_value_text, plain_letters, stated
-from shaftprint.drift._causes import MILLISECONDS, PERCENT
+from shaftprint.drift._causes import MILLISECONDS, PERCENT, Cause
 from shaftprint.drift._finding import Candidate, Change, Finding
+from shaftprint.drift._history import History
+from shaftprint.drift._watch import Course, Drift, WatchFinding
 
 # Causes whose likelihoods differ by less than this factor are named together.
 ALIKE = 3.0
@@ -51,20 +53,65 @@ def _of_change(change: Change) -> str:
     alike = [one for one in change.candidates if one.odds < ALIKE]
     named = ", or ".join(f"{one.words}, by {size_text(one)}" for one in alike)
     rest = change.candidates[len(alike) :]
-    odds = f" Odds {_odds(rest[0])} against {rest[0].words}." if rest else ""
-    told = "" if len(alike) == 1 else f" {_how_to_tell(alike)}"
+    odds = f" Odds {_odds(rest[0].odds)} against {rest[0].words}." if rest else ""
+    told = (
+        "" if len(alike) == 1 else f" This pair of tests hardly tells them apart: {_ways(one.cause for one in alike)}."
+    )
     return f"{named}.{odds}{told}"
 
 
-def _odds(candidate: Candidate) -> str:
-    odds = candidate.odds
+def _odds(odds: float) -> str:
     return f"more than {MOST_ODDS:g} : 1" if odds > MOST_ODDS else f"{odds:.0f} : 1"
 
 
-def _how_to_tell(alike: Sequence[Candidate]) -> str:
-    ways = dict.fromkeys(one.cause.told_by for one in alike)
-    return f"This pair of tests hardly tells them apart: {'; '.join(ways)}."
+def _ways(causes: Iterable[Cause]) -> str:
+    return "; ".join(dict.fromkeys(cause.told_by for cause in causes))
 
 
 def _p(p_value: float) -> str:
     return plain_letters(f"p = {p_value_text(p_value)}")
+
+
+def watch_sentences(finding: WatchFinding, history: History) -> tuple[str, ...]:
+    """Return whether a ship drifts, since when and how fast, and what may have changed, the answer first.
+
+    Parameters
+    ----------
+    finding
+        What ``watch`` has found.
+    history
+        The tests in which it was found.
+    """
+    if finding.because:
+        return (f"It cannot be told: {finding.because}.",)
+    days = [f"{test.at:%Y-%m-%d}" for test in history.tests]
+    if not finding.drifts:
+        return (f"No change beyond chance in {len(days)} tests from {days[0]} to {days[-1]}.",)
+    sentences = [f"Yes: {_of_drift(finding.drifts[0], days)}"]
+    return (*sentences, *(f"Beside it {_of_drift(drift, days)}" for drift in finding.drifts[1:]))
+
+
+def course_text(course: Course, days: Sequence[str]) -> str:
+    """Return what a course says: what has happened, by how much, and since when.
+
+    Parameters
+    ----------
+    course
+        The course.
+    days
+        When each test was made, in words.
+    """
+    factor = PERCENT if course.cause.is_share else MILLISECONDS
+    size = stated(factor * abs(course.size), factor * course.std, course.cause.unit)
+    if course.shape == "ramp":
+        return f"{course.words}, by {size} a year since {days[course.since]}"
+    return f"{course.words}, by {size}, between {days[course.since - 1]} and {days[course.since]}"
+
+
+def _of_drift(drift: Drift, days: Sequence[str]) -> str:
+    alike = [one for one in drift.courses if one.odds < ALIKE]
+    rest = drift.courses[len(alike) :]
+    named = ", or ".join(course_text(one, days) for one in alike)
+    odds = f" Odds {_odds(rest[0].odds)} against {rest[0].words}." if rest else ""
+    told = "" if len(alike) == 1 else f" These tests hardly tell them apart: {_ways(one.cause for one in alike)}."
+    return f"{named}.{odds}{told}"

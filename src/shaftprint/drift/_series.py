@@ -1,0 +1,130 @@
+"""All tests of a history as one vector of numbers with its covariance: what ``watch`` looks for changes in."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from shaftprint.arrays import FloatArray
+from shaftprint.catalogue import ShipRole
+from shaftprint.drift._causes import GAUGE_SCALE, Cause
+from shaftprint.drift._history import EVENTS, SECONDS_PER_YEAR, History
+from shaftprint.drift._pair import SingleTest, alike, directions_of, doubts_of, single_test
+from shaftprint.drift._shared_errors import is_common
+
+if TYPE_CHECKING:
+    from shaftprint.models import Role
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class Series:
+    """Numbers of all tests; times in years since the first test."""
+
+    names: tuple[str, ...]
+    """Numbers that are judged together."""
+    left_out: dict[str, str]
+    """Why others are not, by name."""
+    time_a: FloatArray
+    """When each test was made [years since the first], shape (tests,)."""
+    values: FloatArray
+    """Logarithms, and times [s]; shape (tests, numbers)."""
+    covariance: FloatArray
+    """Covariance of all numbers of all tests, those of one test together, shape (tests * numbers,) squared."""
+    baseline: FloatArray
+    """What may be another after an event, and the level of all; shape (tests * numbers, columns)."""
+    causes: tuple[Cause, ...]
+    """What may have moved the numbers."""
+    directions: FloatArray
+    """What a change of each cause by 1, or by a second, does to the numbers of a test; shape (numbers, causes)."""
+
+
+def series_of(history: History, *, made: int, load_repeatability: float) -> Series:
+    """Return the numbers that all tests of a history have, with their covariance.
+
+    Parameters
+    ----------
+    history
+        The tests, with copies of the last one for those that are still to come.
+    made
+        Number of tests that were made.
+    load_repeatability
+        Standard deviation of the torque that a propeller takes at one speed from day to day, as a share.
+    """
+    fingerprints = [test.fingerprint for test in history.tests]
+    doubts = doubts_of(*fingerprints)
+    names = tuple(name for name, doubt in doubts.items() if not doubt)
+    roles = {name: fingerprints[0].quantity(name).role for name in names}
+    singles = [single_test(one, names) for one in fingerprints]
+    start = history.tests[0].at
+    time_a = np.array([(test.at - start).total_seconds() / SECONDS_PER_YEAR for test in history.tests])
+    load = np.diag([(load_repeatability * (role == ShipRole.TORQUE)) ** 2 for role in roles.values()])
+    causes, directions = directions_of(roles, singles[0].loadings.get(GAUGE_SCALE))
+    return Series(
+        names=names,
+        left_out={name: doubt for name, doubt in doubts.items() if doubt},
+        time_a=time_a,
+        values=np.array([one.values for one in singles]),
+        covariance=_covariance(history, singles, load, made),
+        baseline=_baseline(history, roles),
+        causes=causes,
+        directions=directions,
+    )
+
+
+def _covariance(history: History, singles: list[SingleTest], load: FloatArray, made: int) -> FloatArray:
+    size, count = len(load), len(singles)
+    covariance = np.zeros((count * size, count * size))
+    for at, own in enumerate(_own_covariances(history, singles, made)):
+        place = slice(at * size, (at + 1) * size)
+        covariance[place, place] = own + load
+    for stated in _stated_errors(history, singles):
+        along = stated.reshape(-1)
+        covariance += np.outer(along, along)
+    return covariance
+
+
+def _own_covariances(history: History, singles: list[SingleTest], made: int) -> Iterator[FloatArray]:
+    """Yield what each test left open, of the mean shape of all tests with the same lines and structure.
+
+    In its tightest directions a covariance holds at its own estimates alone: each test's turns a little as these move
+    along the valley of delay and gains. Taken as they are, many of them would cut each other's ellipsoids to a point.
+    """
+    tests = [test.fingerprint for test in history.tests]
+    variances = np.array([np.diag(one.own) for one in singles])
+    for at in range(len(tests)):
+        one = min(at, made - 1)
+        kin = [other for other in range(made) if alike(tests[one], tests[other])]
+        # how noisy a test is beside its kin, as the geometric mean over its numbers
+        noisy = np.exp(np.log(variances[kin] / variances[kin].mean(axis=0)).mean(axis=1))
+        shape = np.mean([singles[other].own / scale for other, scale in zip(kin, noisy, strict=True)], axis=0)
+        yield noisy[kin.index(one)] * shape
+
+
+def _stated_errors(history: History, singles: list[SingleTest]) -> Iterator[FloatArray]:
+    """Yield what each error that was stated beforehand does to the tests that share it, shape (tests, numbers)."""
+    tests = [test.fingerprint for test in history.tests]
+    for source in dict.fromkeys(name for one in singles for name in one.loadings):
+        left = [at for at, one in enumerate(singles) if source in one.loadings]
+        while left:
+            first = left[0]
+            sharing = [at for at in left if at == first or is_common(source, tests[first], tests[at])]
+            left = [at for at in left if at not in sharing]
+            moved = np.zeros((len(singles), len(singles[0].values)))
+            for at in sharing:
+                # of tests alike it is the same: what it differs by is noise of the estimates, see ``pair_of``
+                kin = [other for other in sharing if alike(tests[at], tests[other])]
+                moved[at] = np.mean([singles[other].loadings[source] for other in kin], axis=0)
+            yield moved
+
+
+def _baseline(history: History, roles: "dict[str, Role | None]") -> FloatArray:
+    """Return the columns that are free: a level of each number, and another one after what was done to it."""
+    count, size = len(history.tests), len(roles)
+    columns = [np.kron(np.ones(count), unit) for unit in np.eye(size)]
+    for event in history.events:
+        after = np.array([float(test.at >= event.at) for test in history.tests])
+        if 0.0 < after.sum() < count:
+            concerned = [at for at, role in enumerate(roles.values()) if role in EVENTS[event.kind]]
+            columns += [np.kron(after, np.eye(size)[at]) for at in concerned]
+    return np.array(columns).reshape(len(columns), count * size).T

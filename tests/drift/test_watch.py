@@ -1,0 +1,163 @@
+"""Steps and ramps in histories of a known line: found, dated, sized, and taken for nothing after what was done."""
+
+from dataclasses import replace
+from datetime import UTC, datetime, timedelta
+
+import numpy as np
+import pytest
+from tests.drift.test_differ import PRIORS
+from tests.known_fits import TRUTH, fitted, taken
+
+from shaftprint.drift import Event, differ, history_of, watch, watch_sentences
+from shaftprint.errors import FingerprintError
+from shaftprint.identify import Settings
+
+FIRST = datetime(2024, 1, 1, tzinfo=UTC)
+QUARTER = timedelta(days=91.3125)
+
+
+def made(place, base, **factors):
+    """Return a test of a quarter: a fingerprint with some numbers multiplied, of a recording of its own."""
+    physical = tuple(one.model_copy(update={"value": one.value * factors.get(one.name, 1.0)}) for one in base.physical)
+    parameters = tuple(
+        one.model_copy(update={"value": one.value * factors.get(one.name, 1.0)}) for one in base.parameters
+    )
+    sources = tuple(
+        one.model_copy(update={"sha256": f"{place:064x}"}) if one.role == "recording" else one for one in base.sources
+    )
+    conditions = base.conditions.model_copy(update={"tested_at": FIRST + place * QUARTER})
+    return base.model_copy(
+        update={"physical": physical, "parameters": parameters, "sources": sources, "conditions": conditions}
+    )
+
+
+def looked_at(fingerprints, events=()):
+    history = history_of({f"t{place}": one for place, one in enumerate(fingerprints)}, events)
+    return history, watch(history, rng=np.random.default_rng(1), draws=300)
+
+
+@pytest.fixture(scope="module")
+def base():
+    return taken(fitted("GAUGE-CLOSED", TRUTH, share=0.002, settings=Settings(starts=20, priors=PRIORS)))
+
+
+P_ACTION, I_ACTION = "governor proportional action", "governor integral action"
+
+
+def test_an_unchanged_ship_has_no_drift(base):
+    history, finding = looked_at([made(place, base) for place in range(5)])
+    assert finding.drifts == ()
+    assert watch_sentences(finding, history) == ("No change beyond chance in 5 tests from 2024-01-01 to 2024-12-31.",)
+
+
+def test_a_step_is_found_with_its_size_and_the_test_at_which_it_began(base):
+    tests = [made(place, base, **({P_ACTION: 0.95} if place >= 3 else {})) for place in range(6)]
+    history, finding = looked_at(tests)
+    (drift,) = finding.drifts
+    best = drift.best
+    assert (best.cause.name, best.shape, best.since) == ("proportional gain of the governor", "step", 3)
+    assert best.size == pytest.approx(-0.05, abs=1e-6)
+    assert drift.p_value < 1e-3
+    sentence = watch_sentences(finding, history)[0]
+    assert sentence.startswith("Yes: a lower proportional gain of the governor, by 5.0")
+    assert "between 2024-07-01 and 2024-09-30" in sentence
+
+
+def test_a_ramp_is_found_with_its_slope_and_beginning(base):
+    """Three per cent a year from the third test on, in logarithms."""
+    tests = [made(place, base, I_dn=float(np.exp(0.03 * max(place - 2, 0) / 4.0))) for place in range(12)]
+    history, finding = looked_at(tests)
+    best = finding.drifts[0].best
+    assert (best.cause.name, best.shape, best.since) == ("inertia behind the gauge", "ramp", 2)
+    # 91.3125 days are a quarter of 365.25
+    assert best.size == pytest.approx(np.expm1(0.03), rel=1e-6)
+    assert "by 3.0" in watch_sentences(finding, history)[0]
+    assert "a year since 2024-07-01" in watch_sentences(finding, history)[0]
+
+
+def test_what_was_done_to_the_governor_is_no_drift_of_it(base):
+    tests = [made(place, base, **({P_ACTION: 0.9, I_ACTION: 0.8} if place >= 3 else {})) for place in range(6)]
+    event = Event(kind="governor", at=FIRST + 2.5 * QUARTER)
+    assert looked_at(tests)[1].drifts
+    assert looked_at(tests, [event])[1].drifts == ()
+    # a propeller that was polished at that time does not explain the gains
+    assert looked_at(tests, [Event(kind="polish", at=event.at)])[1].drifts
+
+
+def test_fouling_goes_on_after_a_docking(base):
+    """K_Q grows by 4 % a year, falls back in the dock and grows again: one slope, a level of each epoch."""
+    growth = [0.01 * place for place in range(6)] + [0.01 * place for place in range(6)]
+    tests = [made(place, base, K_Q=float(np.exp(share))) for place, share in enumerate(growth)]
+    _, finding = looked_at(tests, [Event(kind="docking", at=FIRST + 5.5 * QUARTER)])
+    best = finding.drifts[0].best
+    assert (best.cause.name, best.shape) == ("propeller", "ramp")
+    assert best.size == pytest.approx(np.expm1(0.04), rel=1e-6)
+    assert len(finding.drifts) == 1
+
+
+def test_two_tests_say_what_a_comparison_says(base):
+    """The size is that of the pair; the probability is of a ship that is looked at for years."""
+    tests = [made(0, base), made(1, base, omega_n=0.97)]
+    pair = differ(*tests).changes[0].best
+    best = looked_at(tests)[1].drifts[0].best
+    assert best.cause == pair.cause
+    assert best.size == pytest.approx(pair.size, rel=1e-6)
+    assert best.std == pytest.approx(pair.std, rel=0.01)
+
+
+def test_a_recording_counts_once(base):
+    again = made(1, base)
+    history = history_of(
+        {
+            "a": made(0, base),
+            "b": made(1, base),
+            "c": again.model_copy(update={"created": datetime(2030, 1, 1, tzinfo=UTC)}),
+        }
+    )
+    assert [test.name for test in history.tests] == ["a", "c"]
+    assert history.left_out == {"b": "it is of the same recording as c"}
+
+
+def test_tests_that_cannot_be_judged_are_left_out(base):
+    doubtful = made(1, base)
+    doubtful = doubtful.model_copy(update={"verdict": replace(doubtful.verdict, trustworthy=False)})
+    earlier = made(2, base).model_copy(update={"joint": None})
+    history, finding = looked_at([made(0, base), doubtful, earlier])
+    assert set(history.left_out) == {"t1", "t2"}
+    assert watch_sentences(finding, history) == (
+        "It cannot be told: expected 2 tests that can be judged or more, found 1.",
+    )
+
+
+def test_a_test_without_its_time_is_refused(base):
+    with pytest.raises(FingerprintError, match="t1: expected when the test was made, with time zone, found nothing"):
+        history_of(
+            {
+                "t0": made(0, base),
+                "t1": base.model_copy(update={"conditions": base.conditions.model_copy(update={"tested_at": None})}),
+            }
+        )
+
+
+@pytest.mark.parametrize(("kind", "at"), [("paint", FIRST), ("docking", datetime(2024, 1, 1))])  # noqa: DTZ001
+def test_events_that_cannot_be_are_refused(kind, at):
+    with pytest.raises(FingerprintError, match="event"):
+        Event(kind=kind, at=at)
+
+
+@pytest.mark.slow
+def test_false_alarms_are_as_rare_as_stated(base):
+    """Forty ships of ten tests, drawn with the covariance that the tests state: 5 % is two of them, six are 1 in 70."""
+    rng = np.random.default_rng(3)
+    values = np.array([base.quantity(name).value for name in base.joint.names])
+    alarms = 0
+    for ship in range(40):
+        drawn = rng.multivariate_normal(np.zeros(values.size), np.array(base.joint.own_covariance), size=10)
+        tests = [
+            made(place, base, **dict(zip(base.joint.names, 1.0 + errors / values, strict=True)))
+            for place, errors in enumerate(drawn)
+        ]
+        history = history_of({f"t{place}": one for place, one in enumerate(tests)})
+        found = watch(history, rng=np.random.default_rng(ship), draws=300, load_repeatability=0.0, horizon=10)
+        alarms += bool(found.drifts)
+    assert alarms <= 5
