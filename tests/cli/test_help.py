@@ -25,6 +25,7 @@ def test_commands_are_those_that_were_asked_for():
         "identify",
         "compare",
         "compare-structures",
+        "drift",
         "structures",
         "sensitivity",
         "inertia",

@@ -10,7 +10,7 @@ quantity         unit   meaning
 """
 
 from shaftprint.drift._along import Whitened, p_value_of_largest, whitened
-from shaftprint.drift._causes import CAUSES, Cause
+from shaftprint.drift._causes import ALL_CAUSES, CAUSES, Cause
 from shaftprint.drift._differ import LOAD_REPEATABILITY, differ
 from shaftprint.drift._finding import Candidate, Change, Finding
 from shaftprint.drift._history import EVENTS, DatedTest, Event, History, history_of
@@ -20,6 +20,7 @@ from shaftprint.drift._watch import Course, Drift, WatchFinding, watch
 from shaftprint.drift._words import course_text, finding_sentences, size_text, watch_sentences
 
 __all__ = [
+    "ALL_CAUSES",
     "CAUSES",
     "EVENTS",
     "LOAD_REPEATABILITY",

@@ -113,6 +113,9 @@ GAUGE = Cause(
 )
 """What moves the numbers as the fingerprint states of its gauge."""
 
+ALL_CAUSES: tuple[Cause, ...] = (*CAUSES, GAUGE)
+"""Every cause, in the order of tables."""
+
 
 def by_role(cause: Cause, roles: Mapping[str, Role | None]) -> tuple[str, ...]:
     """Return the numbers that a cause moves by their roles; none where one that it should move is not there.

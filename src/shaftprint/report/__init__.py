@@ -19,6 +19,7 @@ Every ``plot_*`` function returns a matplotlib ``Figure`` that belongs to nobody
 from shaftprint.report._comparison import render_comparison
 from shaftprint.report._curve import Curve, closed_loop_curve, open_loop_curve
 from shaftprint.report._drive_page import render_drive
+from shaftprint.report._history_page import render_history, sizes_of_tests
 from shaftprint.report._page import expect_reportlab
 from shaftprint.report._plot import plot
 from shaftprint.report._render import render_pdf, render_report
@@ -26,8 +27,10 @@ from shaftprint.report.charts import Chart, save_chart
 from shaftprint.report.comparison import (
     Difference,
     cause_table,
+    course_table,
     difference_table,
     differences,
+    history_table,
     stated_table,
     vessel_file_sentences,
 )
@@ -43,6 +46,7 @@ from shaftprint.report.figures import (
     difference_chart,
     excitation_chart,
     fit_chart,
+    history_chart,
     limit_chart,
     missing_damping_chart,
     mode_chart,
@@ -89,6 +93,7 @@ __all__ = [
     "chirp_chart",
     "closed_loop_curve",
     "correlation_chart",
+    "course_table",
     "damping_table",
     "delay_chart",
     "difference_chart",
@@ -100,6 +105,8 @@ __all__ = [
     "explanation_sentences",
     "fit_chart",
     "gain_table",
+    "history_chart",
+    "history_table",
     "inertia_table",
     "integral_table",
     "limit_chart",
@@ -113,6 +120,7 @@ __all__ = [
     "profile_chart",
     "render_comparison",
     "render_drive",
+    "render_history",
     "render_pdf",
     "render_plan",
     "render_report",
@@ -123,6 +131,7 @@ __all__ = [
     "signal_chart",
     "signal_to_noise_chart",
     "simulation_chart",
+    "sizes_of_tests",
     "staircase_chart",
     "stated_table",
     "step_chart",

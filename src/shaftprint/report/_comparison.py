@@ -17,12 +17,13 @@ from shaftprint.report.comparison import (
     condition_table,
     difference_table,
     differences,
+    source_table,
     vessel_file_sentences,
     vessel_file_table,
 )
 from shaftprint.report.figures import bode_chart, difference_chart, shown_names
 from shaftprint.report.sections import Picture, Section, comparison_cover, not_alike
-from shaftprint.tables import Table, texts
+from shaftprint.tables import Table
 
 if TYPE_CHECKING:
     from shaftprint.fingerprint import Fingerprint
@@ -83,7 +84,7 @@ def render_comparison(
             *_cause_sections(findings),
             *_sections(fingerprints, comparisons, structures or {}, load_repeatability),
         ],
-        files=_files(fingerprints),
+        files=source_table(fingerprints),
         ending="± is one standard deviation throughout; bands, intervals and error bars hold 95 %.",
     )
     return write_page(directory, page, pictures=pictures, overwrite=overwrite, progress=None)
@@ -216,16 +217,3 @@ def _responses(fingerprints: "Mapping[str, Fingerprint]", structures: "Mapping[s
         chart=partial(bode_chart, shown),
     )
     return [Section(key="responses", title="Responses", paragraphs=words, pictures=(picture,))]
-
-
-def _files(fingerprints: "Mapping[str, Fingerprint]") -> Table:
-    rows = tuple(
-        (name, source.name, source.role, source.sha256)
-        for name, fingerprint in fingerprints.items()
-        for source in fingerprint.sources
-    )
-    return Table(
-        title="Files that went into the fingerprints",
-        columns=texts("fingerprint", "file", "what it is", "SHA-256"),
-        rows=rows,
-    )

@@ -158,3 +158,17 @@ def stated_table(fingerprints: "Mapping[str, Fingerprint]") -> Table:
 
 def _working(quantity: "Quantity") -> str:
     return f"{with_deviation(quantity.value, quantity.std)} {unit_text(quantity.unit)}"
+
+
+def source_table(fingerprints: "Mapping[str, Fingerprint]") -> Table:
+    """Return the files that went into fingerprints, with their hashes."""
+    rows = tuple(
+        (name, source.name, source.role, source.sha256)
+        for name, fingerprint in fingerprints.items()
+        for source in fingerprint.sources
+    )
+    return Table(
+        title="Files that went into the fingerprints",
+        columns=texts("fingerprint", "file", "what it is", "SHA-256"),
+        rows=rows,
+    )

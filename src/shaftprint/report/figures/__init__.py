@@ -8,6 +8,7 @@ from shaftprint.report.figures._differences import difference_chart, in_percent,
 from shaftprint.report.figures._envelope import channel_envelope, envelope
 from shaftprint.report.figures._explanation import missing_damping_chart
 from shaftprint.report.figures._fit import fit_chart
+from shaftprint.report.figures._history import history_chart
 from shaftprint.report.figures._limits import limit_chart
 from shaftprint.report.figures._modes import mode_chart
 from shaftprint.report.figures._nyquist import nyquist_chart
@@ -48,6 +49,7 @@ __all__ = [
     "envelope",
     "excitation_chart",
     "fit_chart",
+    "history_chart",
     "in_percent",
     "length_chart",
     "limit_chart",

@@ -2,7 +2,7 @@
 
 from shaftprint.report.sections._clocks import clock_sentences
 from shaftprint.report.sections._comparison_cover import change_in_words, comparison_cover, not_alike
-from shaftprint.report.sections._cover import Card, Cover
+from shaftprint.report.sections._cover import Card, Cover, State
 from shaftprint.report.sections._engineer import budget_section, number_section, verdict_section
 from shaftprint.report.sections._inertia import inertia_section
 from shaftprint.report.sections._measurement import time_section
@@ -23,6 +23,7 @@ __all__ = [
     "Picture",
     "Section",
     "Sketch",
+    "State",
     "budget_section",
     "change_in_words",
     "clock_sentences",

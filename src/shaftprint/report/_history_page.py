@@ -1,0 +1,131 @@
+"""The page on the history of a line: whether it drifts, since when, and each cause over time."""
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from shaftprint.drift import ALL_CAUSES, Candidate, differ, watch_sentences
+from shaftprint.report._page import Page, write_page
+from shaftprint.report.comparison import course_table, history_table, source_table
+from shaftprint.report.figures import history_chart
+from shaftprint.report.sections import Card, Cover, Picture, Section, State
+
+if TYPE_CHECKING:
+    from datetime import datetime
+
+    from shaftprint.drift import History, WatchFinding
+
+
+HEADLINES: Mapping[State, str] = {
+    "look": "The ship has changed by more than chance",
+    "fine": "No change is seen",
+    "open": "It cannot be told",
+}
+
+
+def render_history(
+    directory: str | Path,
+    title: str,
+    history: "History",
+    finding: "WatchFinding",
+    *,
+    now: "datetime",
+    load_repeatability: float,
+    pictures: bool = False,
+    overwrite: bool = False,
+) -> Path:
+    """Write a page on the history of a line, ``index.html`` with its figure; return its path.
+
+    Parameters
+    ----------
+    directory
+        Where the page goes; made if it does not exist.
+    title
+        What the line is called.
+    history, finding
+        The tests, and what ``watch`` has found in them.
+    now
+        Time of making, with time zone.
+    load_repeatability
+        As in ``watch``.
+    pictures
+        Whether the chart is written as SVG, PDF and PNG too.
+    overwrite
+        Whether an earlier page there may be replaced.
+
+    Raises
+    ------
+    FileExistsError
+        If there is a page already and ``overwrite`` is false.
+    """
+    sizes = sizes_of_tests(history, load_repeatability=load_repeatability)
+    sentences = watch_sentences(finding, history)
+    state: State = "look" if finding.drifts else "open" if finding.because else "fine"
+    days = f"{history.tests[0].at:%Y-%m-%d} to {history.tests[-1].at:%Y-%m-%d}" if history.tests else ""
+    page = Page(
+        title=f"History of {title}",
+        subtitle=f"{len(history.tests)} tests, {days}",
+        created=now,
+        version=history.tests[-1].fingerprint.shaftprint_version if history.tests else "",
+        cover=Cover(
+            headline=HEADLINES[state],
+            state=state,
+            opening="Every cause is judged in all tests together, against an unchanged ship that is tested for years.",
+            cards=[Card(question="Has the ship changed?", state=state, sentence=" ".join(sentences))],
+        ),
+        sections=_sections(history, finding, sizes),
+        files=source_table({test.name: test.fingerprint for test in history.tests}),
+        ending="± is one standard deviation throughout; intervals hold 95 %.",
+    )
+    return write_page(directory, page, pictures=pictures, overwrite=overwrite, progress=None)
+
+
+def sizes_of_tests(history: "History", *, load_repeatability: float) -> dict[str, list[Candidate | None]]:
+    """Return the size of each cause of every test against the first one, by the name of the cause."""
+    if not history.tests:
+        return {}
+    first = history.tests[0].fingerprint
+    rows: list[Mapping[str, Candidate]] = []
+    for test in history.tests[1:]:
+        finding = differ(first, test.fingerprint, load_repeatability=load_repeatability)
+        change = finding.changes[0] if finding.changes else finding.nearest
+        rows.append({one.cause.name: one for one in (() if change is None else change.candidates)})
+    names = [cause.name for cause in ALL_CAUSES if any(cause.name in row for row in rows)]
+    return {name: [None, *(row.get(name) for row in rows)] for name in names}
+
+
+def _sections(
+    history: "History", finding: "WatchFinding", sizes: Mapping[str, Sequence[Candidate | None]]
+) -> list[Section]:
+    pictures = (
+        [
+            Picture(
+                name="history",
+                caption="How far each test is from the first one, if it is this cause alone.",
+                alt="A strip for each cause: points with intervals over the years, upright lines where work was done.",
+                chart=partial(history_chart, history, sizes),
+            )
+        ]
+        if sizes
+        else []
+    )
+    left_out = [f"Left out: {name}, {why}." for name, why in (history.left_out | finding.left_out).items()]
+    return [
+        Section(
+            key="courses",
+            title="What may have changed",
+            paragraphs=(
+                "A step stays, a ramp grows. The probability is that of an unchanged ship in all its tests up to "
+                "twenty, so that five years of quarterly tests give one false alarm in twenty ships.",
+            ),
+            tables=(course_table(finding, history),) if not finding.because else (),
+        ),
+        Section(
+            key="history",
+            title="Test by test",
+            points=left_out,
+            tables=(history_table(history, sizes),),
+            pictures=pictures,
+        ),
+    ]

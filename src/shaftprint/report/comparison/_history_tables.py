@@ -1,0 +1,96 @@
+"""Tables of a history: courses of what may have changed, and the size of each cause test by test."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+from shaftprint.digits import with_deviation
+from shaftprint.tables import Column, Table, numbers, p_value_text, plain, texts
+
+if TYPE_CHECKING:
+    from shaftprint.drift import Candidate, Course, History, WatchFinding
+
+PERCENT, MILLISECONDS = 100.0, 1000.0
+MOST_ODDS = 1000.0
+MOST_CAUSES = 4
+NOT_THERE = "–"
+
+
+def course_table(finding: "WatchFinding", history: "History") -> Table:
+    """Return the best course of each cause, of each change that was seen, else of what comes nearest.
+
+    Parameters
+    ----------
+    finding
+        What was found.
+    history
+        The tests in which it was found.
+    """
+    drifts = finding.drifts or (() if finding.nearest is None else (finding.nearest,))
+    days = [f"{test.at:%Y-%m-%d}" for test in history.tests]
+    rows = [
+        (
+            one.words,
+            _size(one),
+            f"ramp since {days[one.since]}" if one.shape == "ramp" else f"step by {days[one.since]}",
+            plain(one.score, 1),
+            (f"> {MOST_ODDS:g} : 1" if one.odds > MOST_ODDS else f"{plain(one.odds, 1)} : 1") if place else NOT_THERE,
+            "" if place else p_value_text(drift.p_value),
+        )
+        for drift in drifts
+        for place, one in enumerate(drift.courses)
+    ]
+    return Table(
+        title="What has changed" if finding.drifts else "No change beyond chance; what comes nearest",
+        columns=(
+            *texts("what may have changed"),
+            *numbers("by"),
+            *texts("course"),
+            *numbers("size / deviation", "odds against it", "p"),
+        ),
+        rows=tuple(rows),
+        note=f"Judged together: {', '.join(finding.names)}.",
+    )
+
+
+def _size(one: "Course") -> str:
+    factor = PERCENT if one.cause.is_share else MILLISECONDS
+    unit = f"{one.cause.unit}/year" if one.shape == "ramp" else one.cause.unit
+    return f"{with_deviation(factor * one.size, factor * one.std)} {unit}"
+
+
+def history_table(history: "History", sizes: "Mapping[str, Sequence[Candidate | None]]") -> Table:
+    """Return every test with the size of the causes that vary most, and what was done to the ship, in order of time.
+
+    Parameters
+    ----------
+    history
+        The tests, and what was done to the ship.
+    sizes
+        Size of each cause against the first test, by the name of the cause, in the order of the tests.
+    """
+    largest = {name: max((abs(one.score) for one in column if one), default=0.0) for name, column in sizes.items()}
+    chosen = sorted(largest, key=lambda name: -largest[name])[:MOST_CAUSES]
+    rows = [
+        (test.at, (f"{test.at:%Y-%m-%d}", test.name, *(_cell(sizes[name][place]) for name in chosen)))
+        for place, test in enumerate(history.tests)
+    ]
+    rows += [
+        (
+            event.at,
+            (f"{event.at:%Y-%m-%d}", f"{event.kind}{f': {event.note}' if event.note else ''}", *("" for _ in chosen)),
+        )
+        for event in history.events
+    ]
+    return Table(
+        title="Change of each test against the first, by cause",
+        columns=(*texts("date", "test or event"), *(Column(name, number=True) for name in chosen)),
+        rows=tuple(row for _, row in sorted(rows, key=lambda one: one[0])),
+        note="Each column as if it were this cause alone.",
+    )
+
+
+def _cell(one: "Candidate | None") -> str:
+    if one is None:
+        return NOT_THERE
+    factor = PERCENT if one.cause.is_share else MILLISECONDS
+    return f"{with_deviation(factor * one.size, factor * one.std)} {one.cause.unit}"
