@@ -211,15 +211,12 @@ def other_water(trial: Trial, tug: Tug, rng: np.random.Generator) -> tuple[Trial
     return replace(trial, vessel=trial.vessel.model_copy(update={"water_density_kg_m3": density})), tug
 
 
-def kept_or_made(kept: Path | None, tug: Tug, campaign: str, seed: int, *, waters: bool) -> Fingerprint:
-    """Return the fingerprint of one test of a ship, from the file where it stands there already."""
-    path = None if kept is None else kept / f"{campaign}-{seed}.json"
-    if path is not None and path.exists():
-        return read_fingerprint(path)
-    fingerprint = tested(tug, campaign, seed, waters=waters)
-    if path is not None:
-        write_fingerprint(fingerprint, path)
-    return fingerprint
+def make(folder: Path, tug: Tug, campaign: str, seed: int, *, waters: bool) -> Path:
+    """Make the fingerprint of one test of a ship, unless it stands there already; return its file."""
+    path = folder / f"{campaign}-{seed}.json"
+    if not path.exists():
+        write_fingerprint(tested(tug, campaign, seed, waters=waters), path)
+    return path
 
 
 def tested(tug: Tug, campaign: str, seed: int, *, waters: bool) -> Fingerprint:
@@ -253,10 +250,11 @@ def main() -> None:
     """Test unchanged and changed ships, compare, and print the tables."""
     options = _options()
     os.environ.setdefault("OMP_NUM_THREADS", "1")
-    if options.outcomes:
+    with tempfile.TemporaryDirectory() as folder:
+        options.outcomes = options.outcomes or Path(folder)
         options.outcomes.mkdir(parents=True, exist_ok=True)
-    with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
-        text = "\n".join(_tables(pool, options))
+        with ProcessPoolExecutor(options.processes, mp_context=get_context("spawn")) as pool:
+            text = "\n".join(_tables(pool, options))
     print(text)
     if options.write:
         write_between_marks(DOCUMENT, text, BEGIN, END)
@@ -303,8 +301,8 @@ def _tests(
     waters: bool = False,
 ) -> list[Fingerprint]:
     """Return the fingerprints that are trustworthy: no others are compared."""
-    test = partial(kept_or_made, options.outcomes, tug, options.campaign, waters=waters)
-    found = pool.map(test, range(first, first + count))
+    test = partial(make, options.outcomes, tug, options.campaign, waters=waters)
+    found = map(read_fingerprint, pool.map(test, range(first, first + count)))
     return [fingerprint for fingerprint in found if fingerprint.verdict.trustworthy]
 
 

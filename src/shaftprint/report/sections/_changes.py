@@ -1,6 +1,7 @@
-"""The section of a report on an earlier test: what has changed since, number by number."""
+"""The section of a report on an earlier test: what has changed since, along causes and number by number."""
 
-from shaftprint.report.comparison import difference_table, differences, vessel_file_sentences
+from shaftprint.drift import differ
+from shaftprint.report.comparison import cause_table, difference_table, differences, vessel_file_sentences
 from shaftprint.report.sections._comparison_cover import not_alike
 from shaftprint.report.sections._sections import Inputs, Section
 
@@ -13,12 +14,16 @@ def change_section(inputs: Inputs) -> list[Section]:
     if previous is None:
         return []
     tested = previous.conditions.tested_at or previous.created
+    finding = differ(previous, fingerprint)
     of_the_ship = [one for one in differences(previous, fingerprint) if not one.normalised]
     return [
         Section(
             key="changes",
             title=f"Changes since {tested:%Y-%m-%d}",
             paragraphs=(*not_alike(previous, LATER, fingerprint), *vessel_file_sentences(previous, fingerprint)),
-            tables=(difference_table(EARLIER, LATER, of_the_ship),) if of_the_ship else (),
+            tables=(
+                *(() if finding.because else (cause_table(LATER, finding),)),
+                *((difference_table(EARLIER, LATER, of_the_ship),) if of_the_ship else ()),
+            ),
         )
     ]

@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from shaftprint.drift import differ, finding_sentences
 from shaftprint.report.comparison import differences
 from shaftprint.report.figures import in_percent
 from shaftprint.report.sections._cover import Card
@@ -20,6 +21,7 @@ WORDS = {
     "gauge zero share": "the zero of the torque gauge",
 }
 """Numbers as a superintendent calls them; others by their meaning."""
+ASK = "Ask what was done to propeller, governor, gear and torque gauge between the two tests."
 
 
 def change_answer(previous: "Fingerprint", fingerprint: "Fingerprint") -> Card:
@@ -35,6 +37,14 @@ def change_answer(previous: "Fingerprint", fingerprint: "Fingerprint") -> Card:
             sentence=f"It cannot be told: {which} is not trustworthy.",
             action="Compare with another test that can be trusted.",
         )
+    finding = differ(previous, fingerprint)
+    if not finding.because:
+        return Card(
+            question=question,
+            state="look" if finding.changes else "fine",
+            sentence=" ".join(finding_sentences(finding)),
+            action=ASK if finding.changes else "",
+        )
     of_the_ship = [one for one in differences(previous, fingerprint) if not one.normalised]
     changed = [one for one in of_the_ship if one.outcome == "differs"]
     compared = sum(one.p_value is not None for one in of_the_ship)
@@ -43,7 +53,7 @@ def change_answer(previous: "Fingerprint", fingerprint: "Fingerprint") -> Card:
             question=question,
             state="look",
             sentence=f"Yes: {_listed(changed)}.",
-            action="Ask what was done to propeller, governor, gear and torque gauge between the two tests.",
+            action=ASK,
         )
     if not compared:
         return Card(
