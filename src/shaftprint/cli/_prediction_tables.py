@@ -6,13 +6,16 @@ from collections.abc import Mapping, Sequence
 from shaftprint.campaign import Campaign
 from shaftprint.cli._fingerprint_tables import print_assumed
 from shaftprint.cli._terminal import print_findings, say
-from shaftprint.cli.output import give, print_table
+from shaftprint.cli.output import give, print_table, print_tables
 from shaftprint.digits import fine_unit
+from shaftprint.drift import VisibleChange, visible_changes
 from shaftprint.identify.fit import Estimate
 from shaftprint.identify.prediction import Accuracy, Identifiability
 from shaftprint.identify.uncertainty import Interval
 from shaftprint.spectra import FrequencyResponse
-from shaftprint.tables import MEANING, Symbol, Table, interval, numbers, texts, unit_text, with_deviation
+from shaftprint.tables import MEANING, Symbol, Table, interval, numbers, plain, texts, unit_text, with_deviation
+
+PERCENT, MILLISECONDS = 100.0, 1000.0
 
 
 def print_prediction(
@@ -39,11 +42,30 @@ def print_prediction(
     print_table(_accuracy_table(possible, accuracy, intervals))
     at_all = "at all" if len(responses) == 1 else "at one speed, however long"
     print_findings(f"What these outputs can tell {at_all}", possible.sentences)
+    visible = visible_changes(accuracy)
+    print_tables([_visible_table(visible)])
     say(f"{campaign.name}; {structure.name}: {structure.title}")
     _print_conditions(responses, noise, accuracy)
     give("parameters", accuracy.parameters)
     give("combinations", accuracy.combinations)
+    give("visible_changes", visible)
     give("intervals_95", {name: (ends.lower, ends.upper) for name, ends in intervals.items()})
+
+
+def _visible_table(visible: Sequence[VisibleChange]) -> Table:
+    rows = tuple(
+        (
+            one.cause.name,
+            f"{plain(PERCENT * one.size, 1)} %" if one.cause.is_share else f"{plain(MILLISECONDS * one.size, 1)} ms",
+        )
+        for one in visible
+    )
+    return Table(
+        title="What a second test like it would see of a change",
+        columns=(*texts("what may change"), *numbers("seen in four of five pairs")),
+        rows=rows,
+        note="With this noise in both tests, and one cause alone. A change of the propeller is not predicted.",
+    )
 
 
 def _print_conditions(responses: Sequence[FrequencyResponse], noise: str, accuracy: Accuracy) -> None:

@@ -16,6 +16,7 @@ from shaftprint.drift._finding import Candidate, Change, Finding
 from shaftprint.drift._history import EVENTS, DatedTest, Event, History, history_of
 from shaftprint.drift._pair import Pair, pair_of
 from shaftprint.drift._shared_errors import FieldChange, SharedErrors, shared_errors
+from shaftprint.drift._visible import VisibleChange, visible_changes
 from shaftprint.drift._watch import Course, Drift, WatchFinding, watch
 from shaftprint.drift._words import course_text, finding_sentences, size_text, watch_sentences
 
@@ -36,6 +37,7 @@ __all__ = [
     "History",
     "Pair",
     "SharedErrors",
+    "VisibleChange",
     "WatchFinding",
     "Whitened",
     "course_text",
@@ -46,6 +48,7 @@ __all__ = [
     "pair_of",
     "shared_errors",
     "size_text",
+    "visible_changes",
     "watch",
     "watch_sentences",
     "whitened",
