@@ -134,3 +134,36 @@ def test_the_answer_is_printed_before_the_model_is_judged_and_the_report_is_draw
     judging, drawing = "Holding the model against records that it has not seen ...", "Writing the report ..."
     order = [result.output.index(words) for words in ("Verdict", "GAUGE-CLOSED", judging, drawing, "Report:  ")]
     assert order == sorted(order)
+
+
+@pytest.mark.slow
+def test_a_fingerprint_alone_is_written_without_page_and_takes_the_place_of_one_with(run, recording, tmp_path):
+    assert run("identify", recording, *GIVEN, "-o", tmp_path / "out").exit_code == 0
+    assert (tmp_path / "out" / "index.html").exists()
+    whole = read_fingerprint(tmp_path / "out" / "fingerprint.json")
+    alone = run("identify", recording, *GIVEN, "--no-report", "-o", tmp_path / "out")
+    assert alone.exit_code == 0, alone.stderr
+    assert "Report:" not in alone.output
+    shown = [path.name for path in (tmp_path / "out").iterdir() if not path.name.startswith(".")]
+    assert shown == ["fingerprint.json"]
+    fingerprint = read_fingerprint(tmp_path / "out" / "fingerprint.json")
+    assert fingerprint.validation is None
+    assert fingerprint.parameters == whole.parameters
+    assert run("show", tmp_path / "out").exit_code == 0
+
+
+def test_a_fingerprint_alone_has_no_pictures(run, recording, tmp_path):
+    result = run(
+        "identify",
+        recording,
+        "--vessel",
+        "stan-tug-1205",
+        "--campaign",
+        "short",
+        "--no-report",
+        "--figures",
+        "-o",
+        tmp_path / "o",
+    )
+    assert result.exit_code == 2
+    assert "--no-report is for ships, and goes with neither --figures nor --pdf" in " ".join(result.stderr.split())

@@ -155,7 +155,9 @@ def test_an_earlier_test_is_compared_in_the_headline(fingerprint):
     earlier = with_verdict(with_physical(fingerprint, "I_dn", value=12.0), trustworthy=True)
     later = with_verdict(fingerprint, trustworthy=True)
     cover = cover_of(later, previous=earlier)
-    assert cover.change.startswith("Has anything changed since 2026-01-02? Yes: more inertia behind the torque gauge, by ")
+    assert cover.change.startswith(
+        "Has anything changed since 2026-01-02? Yes: more inertia behind the torque gauge, by "
+    )
     same = cover_of(later, previous=later)
     assert "? No: " in same.change
     doubtful = cover_of(later, previous=with_verdict(earlier, trustworthy=False))

@@ -68,10 +68,11 @@ def write_results(
         )
 
 
-def print_paths(output: Path) -> None:
+def print_paths(output: Path, *, report: bool = True) -> None:
     """Print where fingerprint and report are."""
     echo(f"Fingerprint: {output / FINGERPRINT}")
-    echo(f"Report:      {output / REPORT}")
+    if report:
+        echo(f"Report:      {output / REPORT}")
 
 
 def print_comparison(comparison: StructureComparison, *, is_answer: bool = False) -> None:

@@ -15,7 +15,16 @@ from shaftprint.cli._own_structure import OWN_FILE_HELP, TypedName
 from shaftprint.cli._report_options import ReportOptions, report_options
 from shaftprint.cli._results import print_comparison, print_paths, write_results
 from shaftprint.cli._terminal import print_findings, say
-from shaftprint.cli.output import Steps, force_option, no_progress_option, output_folder, print_table, progress
+from shaftprint.cli.output import (
+    FINGERPRINT,
+    Steps,
+    force_option,
+    no_progress_option,
+    output_folder,
+    print_table,
+    progress,
+)
+from shaftprint.fingerprint import write_fingerprint
 from shaftprint.survey import Survey, judged, load_trial, run, with_everything, with_limits
 from shaftprint.tables import fits_table, leg_test_table
 
@@ -42,6 +51,12 @@ from shaftprint.tables import fits_table, leg_test_table
     type=click.Choice(["limits", "all"]),
     help="limits: find the limits too, and put them into the line; all: fit sines, steps, chirps and limits at once.",
 )
+@click.option(
+    "--no-report",
+    "no_report",
+    is_flag=True,
+    help="Write the fingerprint alone: without page, validation and comparison of structures, in a few seconds.",
+)
 @fit_options
 @click.option("-o", "--output", required=True, type=click.Path(path_type=Path), help="Folder for the results.")
 @report_options
@@ -56,6 +71,7 @@ def command(
     figures: bool,
     legs: tuple[str, ...],
     more: str | None,
+    no_report: bool,
     options: FitOptions,
     output: Path,
     about: ReportOptions,
@@ -70,6 +86,8 @@ def command(
     """
     if more is not None and (drive_file is not None or options.mode != "shaftprint"):
         raise click.UsageError(f"--with {more} is for ships, and for signals of --mode shaftprint: leave it out.")
+    if no_report and (drive_file is not None or figures or about.pdf):
+        raise click.UsageError("--no-report is for ships, and goes with neither --figures nor --pdf.")
     if drive_file is not None:
         identify_on_the_bench(
             recordings, drive_file, names, options, output, pictures=figures, force=force, no_progress=no_progress
@@ -101,14 +119,29 @@ def command(
         with progress(hidden=no_progress) as steps:
             survey = _with_more(survey, more, rng=rng, steps=steps)
         _print_line(survey)
-        with progress(hidden=no_progress) as steps:
-            survey = judged(survey, rng=rng, progress=steps)
-        _print_judgement(survey)
-        with progress(hidden=no_progress) as steps:
-            write_results(
-                folder, recording, survey, steps=steps, pictures=figures, previous=about.previous, pdf=about.pdf
-            )
-    print_paths(output)
+        if no_report:
+            write_fingerprint(survey.fingerprint, folder / FINGERPRINT)
+        else:
+            _judge_and_report(folder, recording, survey, rng=rng, pictures=figures, about=about, hidden=no_progress)
+    print_paths(output, report=not no_report)
+
+
+def _judge_and_report(
+    folder: Path,
+    recording: Path,
+    survey: Survey,
+    *,
+    rng: np.random.Generator,
+    pictures: bool,
+    about: ReportOptions,
+    hidden: bool,
+) -> None:
+    """Validate the model, compare structures, print what came out, and write all of it."""
+    with progress(hidden=hidden) as steps:
+        survey = judged(survey, rng=rng, progress=steps)
+    _print_judgement(survey)
+    with progress(hidden=hidden) as steps:
+        write_results(folder, recording, survey, steps=steps, pictures=pictures, previous=about.previous, pdf=about.pdf)
 
 
 def _with_more(survey: Survey, more: str | None, *, rng: np.random.Generator, steps: Steps) -> Survey:
