@@ -22,16 +22,16 @@ def ship_called(reader: "Reader", name: str) -> "ShipRow":
     StoreError
         If there is none, or several ships have the name.
     """
-    ships = reader.ships()
-    number = re.fullmatch(r"(?:IMO ?)?(\d{7})", name)
-    found = [one for one in ships if number is not None and one.ship.imo_number == int(number[1])]
-    found = found or [one for one in ships if one.ship.name == name]
+    number = re.fullmatch(r"(?:IMO ?)?([0-9]{7})", name)
+    found = [] if number is None else reader.ships(imo_number=int(number[1]))
+    # PostgreSQL takes no NUL, and no ship has one
+    found = found or ([] if "\0" in name else reader.ships(name=name))
     if len(found) == 1:
         return found[0]
     if found:
         numbers = ", ".join(f"IMO {one.ship.imo_number or 'unknown'}" for one in found)
         raise StoreError(f"{name}: expected one ship of that name, found {numbers}; name the ship by its IMO number.")
-    names = [one.ship.name for one in ships]
+    names = [one.ship.name for one in reader.ships()]
     advice = meant(name, names) or (
         f" It has {_listed(names)}." if names else " It has none yet: shaftprint store add."
     )

@@ -13,22 +13,24 @@ from shaftprint.store.database._tables import LINE, SHIP
 
 
 class Fleet:
-    """The ships and lines that are there, with what is put in."""
+    """The ships and lines that are there, looked up when they are needed, with what is put in."""
 
     def __init__(self, connection: sa.Connection) -> None:
         self.connection = connection
-        self.ships = {row.id: ship_of_row(row) for row in connection.execute(sa.select(SHIP))}
-        self.by_number = {ship.imo_number: key for key, ship in self.ships.items() if ship.imo_number is not None}
-        self.by_name: dict[str, set[int]] = {}
-        for key, ship in self.ships.items():
-            self.by_name.setdefault(ship.name, set()).add(key)
-        self.lines = {row.id: (row.ship_id, row.position) for row in connection.execute(sa.select(LINE))}
-        self.by_position = {place: key for key, place in self.lines.items()}
+        # what was looked up or put in since the transaction began; nobody else writes meanwhile
+        self._ships: dict[int, Ship] = {}
+        self._by_number: dict[int, int | None] = {}
+        self._by_name: dict[str, set[int]] = {}
+        self._lines: dict[tuple[int, str], int | None] = {}
+        self._places: dict[int, tuple[int, str]] = {}
 
     def line(self, line_id: int) -> Line:
         """Return a line by its number."""
-        ship_id, position = self.lines[line_id]
-        return Line(ship=self.ships[ship_id], position=position)
+        if line_id not in self._places:
+            row = self.connection.execute(sa.select(LINE).where(LINE.c.id == line_id)).one()
+            self._places[line_id] = (row.ship_id, row.position)
+        ship_id, position = self._places[line_id]
+        return Line(ship=self._ship(ship_id), position=position)
 
     def ship_id(self, ship: Ship, *, named: str) -> int:
         """Return the number of a ship: by its IMO number, else by its name; a new one is put in.
@@ -40,32 +42,58 @@ class Fleet:
         StoreError
             If several ships have the name and no IMO number says which.
         """
-        alike = self.by_name.get(ship.name, set())
+        if ship.imo_number is not None:
+            same = self._with_number(ship.imo_number)
+            if same is not None:
+                return same
+        alike = self._with_name(ship.name)
         if ship.imo_number is None:
             if len(alike) > 1:
-                numbers = ", ".join(sorted(f"IMO {self.ships[key].imo_number or 'unknown'}" for key in alike))
+                numbers = ", ".join(sorted(f"IMO {self._ships[key].imo_number or 'unknown'}" for key in alike))
                 raise StoreError(f"{named}: expected one ship of the name {ship.name!r}, found {numbers}; state --imo.")
             return next(iter(alike)) if alike else self._new_ship(ship)
-        same = self.by_number.get(ship.imo_number)
-        without = [key for key in alike if self.ships[key].imo_number is None]
-        if same is None and without:
+        without = [key for key in alike if self._ships[key].imo_number is None]
+        if without:
             self.change_ship(without[0], ship)
             return without[0]
-        return self._new_ship(ship) if same is None else same
+        return self._new_ship(ship)
 
     def line_id(self, ship_id: int, position: str) -> int:
         """Return the number of a line of a ship; a new one is put in."""
-        found = self.by_position.get((ship_id, position))
+        key = (ship_id, position)
+        if key not in self._lines:
+            same = sa.and_(LINE.c.ship_id == ship_id, LINE.c.position == position)
+            self._lines[key] = self.connection.execute(sa.select(LINE.c.id).where(same)).scalar()
+        found = self._lines[key]
         if found is None:
-            found = max(self.lines, default=0) + 1
+            found = self._lines[key] = self._free(LINE)
             self._insert(LINE, {"id": found, "ship_id": ship_id, "position": position})
-            self.lines[found] = (ship_id, position)
-            self.by_position[ship_id, position] = found
+        self._places[found] = key
         return found
+
+    def _ship(self, number: int) -> Ship:
+        if number not in self._ships:
+            self._ships[number] = ship_of_row(self.connection.execute(sa.select(SHIP).where(SHIP.c.id == number)).one())
+        return self._ships[number]
+
+    def _with_number(self, imo_number: int) -> int | None:
+        if imo_number not in self._by_number:
+            row = self.connection.execute(sa.select(SHIP).where(SHIP.c.imo == imo_number)).first()
+            self._by_number[imo_number] = None if row is None else row.id
+            if row is not None:
+                self._ships[row.id] = ship_of_row(row)
+        return self._by_number[imo_number]
+
+    def _with_name(self, name: str) -> set[int]:
+        if name not in self._by_name:
+            rows = self.connection.execute(sa.select(SHIP).where(SHIP.c.name == name)).all()
+            self._ships |= {row.id: ship_of_row(row) for row in rows}
+            self._by_name[name] = {row.id for row in rows}
+        return self._by_name[name]
 
     def change_ship(self, number: int, ship: Ship) -> None:
         """Let a ship have another name or class, and an IMO number if it had none."""
-        known = self.ships[number]
+        known = self._ship(number)
         changed = Ship(
             name=ship.name,
             imo_number=known.imo_number or ship.imo_number,
@@ -74,20 +102,23 @@ class Fleet:
         if changed != known:
             row = _row(number, changed)
             self.connection.execute(SHIP.update().where(SHIP.c.id == number).values(**sealed(SHIP, row)))
-            self.by_name[known.name].discard(number)
+            self._with_name(known.name).discard(number)
             self._remember(number, changed)
 
     def _new_ship(self, ship: Ship) -> int:
-        number = max(self.ships, default=0) + 1
+        number = self._free(SHIP)
         self._insert(SHIP, _row(number, ship))
         self._remember(number, ship)
         return number
 
     def _remember(self, number: int, ship: Ship) -> None:
-        self.ships[number] = ship
-        self.by_name.setdefault(ship.name, set()).add(number)
+        self._ships[number] = ship
+        self._with_name(ship.name).add(number)
         if ship.imo_number is not None:
-            self.by_number[ship.imo_number] = number
+            self._by_number[ship.imo_number] = number
+
+    def _free(self, table: sa.Table) -> int:
+        return (self.connection.execute(sa.select(sa.func.max(table.c.id))).scalar() or 0) + 1
 
     def _insert(self, table: sa.Table, row: Mapping[str, Any]) -> None:
         self.connection.execute(table.insert(), sealed(table, row))

@@ -20,7 +20,6 @@ from shaftprint.store.database._tables import DOCUMENT, EVENT, FINGERPRINT, LINE
 _AT_A_TIME = 100
 _EARLIER = FINGERPRINT.alias("earlier")
 _LATER = FINGERPRINT.alias("later")
-_QUANTITY_COLUMNS = (QUANTITY.c.kind, QUANTITY.c.name, QUANTITY.c.unit)
 _VALUE_COLUMNS = (VALUE.c.value, VALUE.c.std, VALUE.c.low, VALUE.c.high, VALUE.c.trusted)
 
 
@@ -41,9 +40,14 @@ class Reader:
     connection: sa.Connection
     """The connection."""
 
-    def ships(self) -> list[ShipRow]:
-        """Return all ships, by IMO number and name."""
-        rows = self.connection.execute(sa.select(SHIP.c.id, SHIP.c.imo, SHIP.c.name, SHIP.c.class_of))
+    def ships(self, *, imo_number: int | None = None, name: str | None = None) -> list[ShipRow]:
+        """Return all ships, or those of a number or a name, by IMO number and name."""
+        query = sa.select(SHIP.c.id, SHIP.c.imo, SHIP.c.name, SHIP.c.class_of)
+        if imo_number is not None:
+            query = query.where(SHIP.c.imo == imo_number)
+        if name is not None:
+            query = query.where(SHIP.c.name == name)
+        rows = self.connection.execute(query).all()
         found = [ShipRow(id=row.id, ship=ship_of_row(row)) for row in rows]
         # here, for databases put letters in different orders
         return sorted(found, key=lambda one: (one.ship.imo_number or 0, one.ship.name))
@@ -54,7 +58,7 @@ class Reader:
         query = sa.select(LINE.c.id, LINE.c.ship_id, LINE.c.position)
         if len(ships) == 1:
             query = query.where(LINE.c.ship_id == ships[0].id)
-        rows = [row for row in self.connection.execute(query) if row.ship_id in ship_of]
+        rows = [row for row in self.connection.execute(query).all() if row.ship_id in ship_of]
         order = {one.id: place for place, one in enumerate(ships)}
         rows.sort(key=lambda row: (order[row.ship_id], row.position))
         return {row.id: Line(ship=ship_of[row.ship_id], position=row.position) for row in rows}
@@ -85,7 +89,7 @@ class Reader:
         )
         if not superseded:
             query = query.where(_LATER.c.id.is_(None))
-        rows = self.connection.execute(query)
+        rows = self.connection.execute(query).all()
         return {row.id: fingerprint_of_row(row, lines[row.line_id]) for row in rows}
 
     def entries(
@@ -103,9 +107,9 @@ class Reader:
             Whether those come too whose place another one has taken.
         """
         found = self.fingerprints(lines, superseded=superseded)
+        quantities = self._quantities(number)
         query = (
-            sa.select(VALUE.c.fingerprint_id, *_QUANTITY_COLUMNS, *_VALUE_COLUMNS)
-            .join(QUANTITY, QUANTITY.c.id == VALUE.c.quantity_id)
+            sa.select(VALUE.c.fingerprint_id, VALUE.c.quantity_id, *_VALUE_COLUMNS)
             .where(
                 VALUE.c.fingerprint_id.in_(
                     sa.select(FINGERPRINT.c.id)
@@ -116,11 +120,11 @@ class Reader:
             .order_by(VALUE.c.fingerprint_id, VALUE.c.quantity_id)
         )
         if number is not None:
-            query = query.where(QUANTITY.c.name == number)
+            query = query.where(VALUE.c.quantity_id.in_(list(quantities)))
         numbers: dict[int, list[StoredNumber]] = {one: [] for one in found}
-        for fingerprint_id, *row in self.connection.execute(query):
+        for fingerprint_id, quantity_id, *row in self.connection.execute(query).all():
             if fingerprint_id in numbers:
-                numbers[fingerprint_id].append(number_of_row(row))
+                numbers[fingerprint_id].append(number_of_row(quantities.get(quantity_id), row))
         return [HistoryEntry(fingerprint=one, numbers=tuple(numbers[key])) for key, one in found.items()]
 
     def events(self, lines: Mapping[int, Line]) -> list[Event]:
@@ -132,18 +136,40 @@ class Reader:
         """Return every line with its newest test, and a number of that test by its name."""
         lines = self.lines(self.ships())
         counting = sa.select(TRIAL.c.line_id, sa.func.count()).group_by(TRIAL.c.line_id)
-        counts: dict[int, int] = {row[0]: row[1] for row in self.connection.execute(counting)}
-        rows = {row.line_id: row for row in self.connection.execute(_newest(number))}
+        counts: dict[int, int] = {row[0]: row[1] for row in self.connection.execute(counting).all()}
+        tests = {row.line_id: row for row in self.connection.execute(_newest()).all()}
+        numbers = {} if number is None else self._newest_number(number)
         return [
             LineSummary(
                 line=line,
                 tests=counts.get(key, 0),
-                tested_at=row.tested_at if (row := rows.get(key)) is not None else None,
+                tested_at=row.tested_at if (row := tests.get(key)) is not None else None,
                 trustworthy=None if row is None else bool(row.trustworthy),
-                number=None if row is None or number is None or row.kind is None else number_of_row(row[3:]),
+                number=numbers.get(key),
             )
             for key, line in lines.items()
         ]
+
+    def _newest_number(self, name: str) -> dict[int, StoredNumber]:
+        """Return a number of the newest test of every line; of several kinds of that name the first that was kept."""
+        quantities = self._quantities(name)
+        query = _newest().join(VALUE, VALUE.c.fingerprint_id == FINGERPRINT.c.id)
+        query = query.where(VALUE.c.quantity_id.in_(list(quantities)))
+        query = query.with_only_columns(LINE.c.id, VALUE.c.quantity_id, *_VALUE_COLUMNS).order_by(VALUE.c.quantity_id)
+        found: dict[int, StoredNumber] = {}
+        for line_id, quantity_id, *row in map(tuple, self.connection.execute(query).all()):
+            found.setdefault(line_id, number_of_row(quantities.get(quantity_id), row))
+        return found
+
+    def _quantities(self, name: str | None) -> dict[int, Any]:
+        """Return kind, name and unit of quantities by their number: of all, or of those of a name.
+
+        They are looked up by themselves: joined, some planners would read every value for them.
+        """
+        query = sa.select(QUANTITY.c.id, QUANTITY.c.kind, QUANTITY.c.name, QUANTITY.c.unit)
+        if name is not None:
+            query = query.where(QUANTITY.c.name == name)
+        return {key: row for key, *row in self.connection.execute(query).all()}
 
     def stated(self, fingerprints: Sequence[int]) -> dict[int, str]:
         """Return what was stated by hand of fingerprints, as JSON."""
@@ -156,16 +182,15 @@ class Reader:
 
     def numbers(self, fingerprints: Sequence[int]) -> Iterator[list[StoredNumber] | None]:
         """Give the numbers of each fingerprint in their order, not all at once; None for those that are damaged."""
+        quantities = self._quantities(None)
         for begin in range(0, len(fingerprints), _AT_A_TIME):
             some = fingerprints[begin : begin + _AT_A_TIME]
-            query = (
-                sa.select(VALUE.c.fingerprint_id, *_QUANTITY_COLUMNS, *_VALUE_COLUMNS)
-                .join(QUANTITY, QUANTITY.c.id == VALUE.c.quantity_id)
-                .where(VALUE.c.fingerprint_id.in_(some))
-            )
+            query = sa.select(VALUE.c.fingerprint_id, VALUE.c.quantity_id, *_VALUE_COLUMNS)
             rows: dict[int, list[Any]] = {key: [] for key in some}
-            for fingerprint_id, *row in self.connection.execute(query):
-                rows[fingerprint_id].append(row)
+            for fingerprint_id, quantity_id, *row in self.connection.execute(
+                query.where(VALUE.c.fingerprint_id.in_(some))
+            ):
+                rows[fingerprint_id].append((quantities.get(quantity_id), row))
             yield from (_numbers_of_rows(rows[key]) for key in some)
 
     def documents(self, fingerprints: Sequence[int]) -> Iterator[tuple[int, Any]]:
@@ -188,12 +213,12 @@ class Reader:
 
 def _numbers_of_rows(rows: Sequence[Any]) -> list[StoredNumber] | None:
     try:
-        return [number_of_row(row) for row in rows]
+        return [number_of_row(quantity, row) for quantity, row in rows]
     except StoreError:
         return None
 
 
-def _newest(number: str | None) -> sa.Select[Any]:
+def _newest() -> sa.Select[Any]:
     """Return the query for the newest test of every line: one look into an index for each, and no sorting of all."""
     newest = (
         sa.select(FINGERPRINT.c.id)
@@ -205,10 +230,5 @@ def _newest(number: str | None) -> sa.Select[Any]:
         .correlate(LINE)
         .scalar_subquery()
     )
-    test = FINGERPRINT.join(TRIAL, TRIAL.c.id == FINGERPRINT.c.trial_id)
-    columns = (LINE.c.id.label("line_id"), TRIAL.c.tested_at, FINGERPRINT.c.trustworthy)
-    if number is None:
-        return sa.select(*columns).select_from(LINE.join(test, FINGERPRINT.c.id == newest))
-    wanted = VALUE.join(QUANTITY, sa.and_(QUANTITY.c.id == VALUE.c.quantity_id, QUANTITY.c.name == number))
-    rows = LINE.join(test, FINGERPRINT.c.id == newest).outerjoin(wanted, VALUE.c.fingerprint_id == FINGERPRINT.c.id)
-    return sa.select(*columns, *_QUANTITY_COLUMNS, *_VALUE_COLUMNS).select_from(rows)
+    rows = LINE.join(FINGERPRINT, FINGERPRINT.c.id == newest).join(TRIAL, TRIAL.c.id == FINGERPRINT.c.trial_id)
+    return sa.select(LINE.c.id.label("line_id"), TRIAL.c.tested_at, FINGERPRINT.c.trustworthy).select_from(rows)

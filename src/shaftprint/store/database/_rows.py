@@ -61,9 +61,12 @@ def fingerprint_of_row(row: Any, line: Line) -> StoredFingerprint:
     )
 
 
-def number_of_row(row: Any) -> StoredNumber:
-    """Return the number of a row: its kind, name and unit, then its value and what belongs to it."""
-    kind, name, unit, value, std, low, high, trusted = row
+def number_of_row(quantity: Any, row: Any) -> StoredNumber:
+    """Return the number of a row, from kind, name and unit of its quantity, and its value with what belongs to it."""
+    if quantity is None:
+        raise _damaged("a number that is known", "none")
+    kind, name, unit = quantity
+    value, std, low, high, trusted = row
     return StoredNumber(
         kind=_text(kind),
         name=_text(name),
