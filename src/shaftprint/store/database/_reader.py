@@ -13,6 +13,7 @@ from shaftprint.store.database._rows import (
     event_of_row,
     fingerprint_of_row,
     number_of_row,
+    quantity_of_row,
     ship_of_row,
 )
 from shaftprint.store.database._tables import DOCUMENT, EVENT, FINGERPRINT, LINE, QUANTITY, SHIP, TRIAL, VALUE
@@ -157,11 +158,11 @@ class Reader:
         query = query.where(VALUE.c.quantity_id.in_(list(quantities)))
         query = query.with_only_columns(LINE.c.id, VALUE.c.quantity_id, *_VALUE_COLUMNS).order_by(VALUE.c.quantity_id)
         found: dict[int, StoredNumber] = {}
-        for line_id, quantity_id, *row in map(tuple, self.connection.execute(query).all()):
-            found.setdefault(line_id, number_of_row(quantities.get(quantity_id), row))
+        for row in self.connection.execute(query).all():
+            found.setdefault(row[0], number_of_row(quantities.get(row[1]), row[2:]))
         return found
 
-    def _quantities(self, name: str | None) -> dict[int, Any]:
+    def _quantities(self, name: str | None) -> dict[int, tuple[str, str, str]]:
         """Return kind, name and unit of quantities by their number: of all, or of those of a name.
 
         They are looked up by themselves: joined, some planners would read every value for them.
@@ -169,7 +170,7 @@ class Reader:
         query = sa.select(QUANTITY.c.id, QUANTITY.c.kind, QUANTITY.c.name, QUANTITY.c.unit)
         if name is not None:
             query = query.where(QUANTITY.c.name == name)
-        return {key: row for key, *row in self.connection.execute(query).all()}
+        return {row.id: quantity_of_row(row) for row in self.connection.execute(query).all()}
 
     def stated(self, fingerprints: Sequence[int]) -> dict[int, str]:
         """Return what was stated by hand of fingerprints, as JSON."""

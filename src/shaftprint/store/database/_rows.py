@@ -67,16 +67,18 @@ def number_of_row(quantity: Any, row: Any) -> StoredNumber:
         raise _damaged("a number that is known", "none")
     kind, name, unit = quantity
     value, std, low, high, trusted = row
+    for one in (value, std, low, high):
+        # SQLite keeps anything anywhere
+        if one.__class__ is not float and one is not None and not isinstance(one, int):
+            raise _damaged("a number", one)
     return StoredNumber(
-        kind=_text(kind),
-        name=_text(name),
-        unit=_text(unit),
-        value=_number(value),
-        std=_number(std),
-        low=_number(low),
-        high=_number(high),
-        trusted=bool(trusted),
+        kind=kind, name=name, unit=unit, value=value, std=std, low=low, high=high, trusted=bool(trusted)
     )
+
+
+def quantity_of_row(row: Any) -> tuple[str, str, str]:
+    """Return kind, name and unit of a quantity."""
+    return _text(row.kind), _text(row.name), _text(row.unit)
 
 
 def event_of_row(row: Any, line: Line) -> Event:
