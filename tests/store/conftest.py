@@ -3,8 +3,10 @@
 import itertools
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
+import time
 from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -57,10 +59,24 @@ class Server:
 
     def start(self):
         options = f"-k {self.folder} -c listen_addresses="
-        self.call("pg_ctl", "-D", self.folder / "data", "-w", "-l", self.folder / "log", "-o", options, "start")
+        words = ("pg_ctl", "-D", self.folder / "data", "-w", "-l", self.folder / "log", "-o", options, "start")
+        for _ in range(20):
+            with suppress(AssertionError):
+                return self.call(*words)
+            # what was killed a moment ago may still hold its memory
+            time.sleep(0.5)
+        return self.call(*words)
 
     def stop(self, mode="fast"):
         self.call("pg_ctl", "-D", self.folder / "data", "-w", "-m", mode, "stop")
+
+    def kill(self):
+        """Kill every process of the server at once; what only its memory held is gone."""
+        first = int((self.folder / "data" / "postmaster.pid").read_text().split()[0])
+        children = Path(f"/proc/{first}/task/{first}/children").read_text().split()
+        for process in (first, *map(int, children)):
+            with suppress(ProcessLookupError):
+                os.kill(process, signal.SIGKILL)
 
     def url(self, database, password=""):
         return f"postgresql://postgres:{password}@/{database}?host={self.folder}"
