@@ -4,16 +4,17 @@ It makes a store with many ships in a temporary folder, or in the empty database
 """
 
 import argparse
+import itertools
+import os
 import random
 import shutil
 import signal
-import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from typing import NoReturn
 
 from benchmarks.store_documents import IMO_NUMBER, document
 from benchmarks.timing import print_table
@@ -35,20 +36,6 @@ NOW = datetime(2026, 11, 24, tzinfo=UTC)
 LINES, AT_A_TIME = 1000, 200
 # The vessel file of a tug has so many fields: the document has the length of a real one, 50 kB.
 FILLING = 500
-WRITER = """
-import random, sys
-from datetime import UTC, datetime
-from benchmarks.store_documents import IMO_NUMBER, document
-from shaftprint.store import add_document, open_store
-
-with open_store(sys.argv[1]) as store:
-    for place in range(10**6):
-        recording = f"{int(sys.argv[2]):032x}{place:032x}"
-        made = document(recording=recording, ship={"name": "Meander", "imo_number": IMO_NUMBER, "line": "port"})
-        added = add_document(store, made, named="written", now=datetime.now(UTC))
-        sys.stdout.write(added.sha256 + "\\n")
-        sys.stdout.flush()
-"""
 
 
 def ships(count: int) -> list[dict[str, object]]:
@@ -118,22 +105,42 @@ def durable_add_ms(store: Store) -> float:
     return 1e3 * sorted(times)[len(times) // 2]
 
 
-def killed(url: str, kills: int, rng: random.Random) -> tuple[int, int, int]:
+def killed(url: str, kills: int, rng: random.Random, *, life_s: float) -> tuple[int, int, int]:
     """Kill writers; return how many records were acknowledged, how many of them are lost, and how many are damaged."""
     acknowledged: set[str] = set()
     for kill in range(kills):
-        command = [sys.executable, "-c", WRITER, url, str(kill)]
-        with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as writer:
-            if writer.stdout is None:
-                continue
-            acknowledged.add(writer.stdout.readline().strip())
-            time.sleep(rng.uniform(0.0, 0.3))
-            writer.send_signal(signal.SIGKILL)
+        reading, writing = os.pipe()
+        writer = os.fork()
+        if writer == 0:
+            os.close(reading)
+            write(url, kill, writing)
+        os.close(writing)
+        time.sleep(rng.uniform(0.0, life_s))
+        os.kill(writer, signal.SIGKILL)
+        os.waitpid(writer, 0)
+        with os.fdopen(reading) as lines:
             # a line that was cut off was not acknowledged
-            acknowledged |= {line.strip() for line in writer.stdout if line.endswith("\n")}
+            acknowledged |= {line.strip() for line in lines if line.endswith("\n")}
     with open_store(url) as store:
-        there = {entry.fingerprint.sha256 for entry in history(store, "Meander", superseded=True).entries}
+        there = (
+            {entry.fingerprint.sha256 for entry in history(store, "Meander", superseded=True).entries}
+            if acknowledged
+            else set()
+        )
         return len(acknowledged), len(acknowledged - there), len(check(store))
+
+
+def write(url: str, kill: int, writing: int) -> NoReturn:
+    """Put in one fingerprint after the other, and acknowledge each, until the process is killed."""
+    ship = {"name": "Meander", "imo_number": IMO_NUMBER, "line": "port"}
+    try:
+        with open_store(url) as store:
+            for place in itertools.count():
+                one = document(recording=f"{kill:032x}{place:032x}", ship=ship)
+                added = add_document(store, one, named="document", now=datetime.now(UTC))
+                os.write(writing, f"{added.sha256}\n".encode())
+    finally:
+        os._exit(1)
 
 
 def measure(url: str, count: int) -> list[tuple[str, str, str]]:
@@ -168,6 +175,7 @@ def main() -> None:
     parser.add_argument("--kills", type=int, default=1000, help="writers that are killed")
     parser.add_argument("--store", metavar="URL", help="an empty database; by default a temporary file")
     parser.add_argument("--killed-store", metavar="URL", help="another empty database, for the writers that are killed")
+    parser.add_argument("--life", type=float, default=0.3, help="how long a writer lives at the most [s]")
     parser.add_argument("--seed", type=int, default=1, help="when they are killed")
     options = parser.parse_args()
     folder = Path(tempfile.mkdtemp())
@@ -176,7 +184,7 @@ def main() -> None:
         if options.kills:
             url = options.killed_store or str(folder / "killed.db")
             create_store(url).close()
-            count, lost, damaged = killed(url, options.kills, random.Random(options.seed))  # noqa: S311
+            count, lost, damaged = killed(url, options.kills, random.Random(options.seed), life_s=options.life)  # noqa: S311
             rows.append((f"{options.kills} writers killed: lost of {count} acknowledged", "0", str(lost)))
             rows.append(("damaged records", "0", str(damaged)))
     finally:

@@ -6,8 +6,7 @@ import click
 import pytest
 from benchmarks.store_documents import IMO_NUMBER, document
 
-from shaftprint.cli.commands._store import ACTIONS
-from shaftprint.cli.commands._store import command as group
+from shaftprint.cli import shaftprint
 
 
 @pytest.fixture
@@ -28,8 +27,9 @@ STATED = ("--ship", "Meander", "--imo", IMO_NUMBER, "--line", "port", "--time-zo
 
 
 def test_every_action_is_listed_with_its_help(run):
+    group = shaftprint.get_command(None, "store")
     text = " ".join(run("store", "--help").output.split())
-    for name, words in ACTIONS.items():
+    for name, words in group.helps.items():
         assert f"{name} {words}" in text
         action = group.get_command(None, name)
         assert action.get_short_help_str(limit=200) == words
