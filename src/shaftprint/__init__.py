@@ -28,6 +28,7 @@ room            nouns                       verbs
 ``bench``       ``DriveFit``                ``equipped``, ``read_records``, ``identify_drive``
 ``tables``      ``Table``                   ``parameter_table``, ``physical_table``
 ``report``                                  ``render_report``, ``plot``, ``bode_chart``
+``store``       ``Store``, ``History``      ``create_store``, ``open_store``, ``add``, ``history``, ``newest``
 ``tug``         ``Truth``                   ``sail``
 =============== =========================== ==========================================================================
 
@@ -63,6 +64,7 @@ _ROOMS = (
     "signals",
     "simulation",
     "spectra",
+    "store",
     "survey",
     "tables",
     "time_domain",

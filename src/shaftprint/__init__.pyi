@@ -34,6 +34,7 @@ from shaftprint import signals as signals
 from shaftprint import simulation as simulation
 from shaftprint import spectra as spectra
 from shaftprint import spelling as spelling
+from shaftprint import store as store
 from shaftprint import survey as survey
 from shaftprint import tables as tables
 from shaftprint import time_domain as time_domain

@@ -17,6 +17,7 @@
     ├── FingerprintError      a fingerprint file that cannot be read or compared
     ├── PublicationError      a folder into which results cannot be put, or not as a whole
     ├── ReportError           a report that cannot be written
+    ├── StoreError            a store of fingerprints that cannot be used, or a record that it refuses
     └── ExportError           a model that cannot be written for another program
 
 Every message says which file, channel, second or field, what was expected, what was found and what to do.
@@ -81,6 +82,10 @@ class PublicationError(ShaftprintError):
 
 class ReportError(ShaftprintError):
     """A report cannot be written."""
+
+
+class StoreError(ShaftprintError):
+    """A store of fingerprints cannot be used, or a record cannot be kept in it."""
 
 
 class ExportError(ShaftprintError):

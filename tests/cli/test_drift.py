@@ -45,7 +45,7 @@ def test_an_unchanged_line_and_a_line_whose_governor_was_exchanged_have_no_drift
         "No change beyond chance in 5 tests from 2021-03-01 to 2025-03-01." in run("drift", *years(lower_from=9)).output
     )
     changed = years()
-    event = ("--event", "governor=2023-09-01", "--time-zone", "Europe/Amsterdam")
+    event = ("--event", "governor-changed=2023-09-01", "--time-zone", "Europe/Amsterdam")
     result = run("drift", *changed, *event)
     assert result.output.startswith("Has the ship changed? No change beyond chance")
     assert "governor" in result.output.partition("2023-09-01")[2].splitlines()[0]
@@ -87,3 +87,18 @@ def test_one_fingerprint_is_no_history(run, years):
     result = run("drift", years()[0])
     assert result.exit_code == 2
     assert "expected two or more fingerprints, found 1" in result.stderr
+
+
+def test_a_ship_of_the_store_is_watched_with_what_was_noted_as_done_to_it(run, years, tmp_path):
+    pytest.importorskip("sqlalchemy", reason="the store is an extra")
+    store = ("--store", tmp_path / "yard.db")
+    assert run("store", "init", *store).exit_code == 0
+    assert run("store", "add", *years(), "--ship", "Meander", "--line", "port", *store).exit_code == 0
+    found = run("drift", "Meander", *store)
+    assert "Yes: a lower proportional gain of the governor, by 20.0" in " ".join(found.output.split())
+    exchanged = ("governor-changed", "--at", "2023-09-01T08:00+02:00")
+    assert run("store", "event", "Meander", *exchanged, *store).exit_code == 0
+    assert run("drift", "Meander", *store).output.startswith("Has the ship changed? No change beyond chance")
+    missing = run("drift", "Maas", *store)
+    assert missing.exit_code == 1
+    assert "expected the name or IMO number of a ship in the store, found none" in missing.stderr

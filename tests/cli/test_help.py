@@ -10,7 +10,19 @@ import pytest
 from shaftprint import __version__
 from shaftprint.cli import shaftprint
 
-HEAVY = ("numpy", "scipy", "numba", "h5py", "pydantic", "matplotlib", "rich", "jinja2", "tomlkit")
+HEAVY = (
+    "numpy",
+    "scipy",
+    "numba",
+    "h5py",
+    "pydantic",
+    "matplotlib",
+    "rich",
+    "jinja2",
+    "tomlkit",
+    "sqlalchemy",
+    "alembic",
+)
 
 
 def test_commands_are_those_that_were_asked_for():
@@ -38,6 +50,7 @@ def test_commands_are_those_that_were_asked_for():
         "simulate",
         "validate",
         "new",
+        "store",
     }
 
 
@@ -142,4 +155,7 @@ def test_a_mistyped_word_is_answered_with_the_one_that_was_meant(run, arguments,
 def test_commands_stand_under_what_they_are_for(run):
     lines = run("--help").output.splitlines()
     sections = [line for line in lines if line.endswith(":") and not line.startswith(" ") and line != "Options:"]
-    assert sections == ["Begin:", "Plan a test:", "Prepare a recording:", "Identify:", "Judge:", "Use the model:"]
+    assert sections == [
+        *("Begin:", "Plan a test:", "Prepare a recording:", "Identify:", "Judge:", "Use the model:"),
+        "Keep over the years:",
+    ]

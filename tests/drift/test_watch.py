@@ -77,11 +77,11 @@ def test_a_ramp_is_found_with_its_slope_and_beginning(base):
 
 def test_what_was_done_to_the_governor_is_no_drift_of_it(base):
     tests = [made(place, base, **({P_ACTION: 0.9, I_ACTION: 0.8} if place >= 3 else {})) for place in range(6)]
-    event = Event(kind="governor", at=FIRST + 2.5 * QUARTER)
+    event = Event(kind="governor-changed", at=FIRST + 2.5 * QUARTER)
     assert looked_at(tests)[1].drifts
     assert looked_at(tests, [event])[1].drifts == ()
     # a propeller that was polished at that time does not explain the gains
-    assert looked_at(tests, [Event(kind="polish", at=event.at)])[1].drifts
+    assert looked_at(tests, [Event(kind="propeller-polished", at=event.at)])[1].drifts
 
 
 def test_fouling_goes_on_after_a_docking(base):

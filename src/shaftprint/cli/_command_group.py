@@ -51,6 +51,9 @@ SECTIONS = {
         "simulate": "Simulate speed and torque for a set point, with limits where the model has them.",
         "export": "Write the model of a fingerprint for another program.",
     },
+    "Keep over the years": {
+        "store": "Keep the fingerprints of many ships, with their history.",
+    },
 }
 
 NOT_REACHED = 3

@@ -10,18 +10,10 @@ from typing import Any
 import click
 
 from shaftprint.campaign import TrialConditions, load_trial_conditions
+from shaftprint.cli._dates import DATE_FORMATS
 from shaftprint.cli.output import fingerprint_at
 from shaftprint.fingerprint import Fingerprint
 from shaftprint.report import expect_reportlab
-
-DATE_FORMATS = [
-    "%Y-%m-%d",
-    "%Y-%m-%dT%H:%M",
-    "%Y-%m-%d %H:%M",
-    "%Y-%m-%dT%H:%M:%S",
-    "%Y-%m-%dT%H:%M%z",
-    "%Y-%m-%dT%H:%M:%S%z",
-]
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)

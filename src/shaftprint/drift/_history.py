@@ -24,14 +24,16 @@ _TORQUES = (
 )  # fmt: skip
 EVENTS: dict[str, "tuple[Role, ...]"] = {
     "docking": (ShipRole.TORQUE, ShipRole.INERTIA_DOWNSTREAM, ShipRole.INERTIA),
-    "polish": (ShipRole.TORQUE,),
-    "propeller": (ShipRole.TORQUE, ShipRole.INERTIA_DOWNSTREAM, ShipRole.INERTIA),
-    "governor": _GOVERNOR,
-    "injection": (ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN, ShipRole.LOOP_DELAY),
-    "gauge": _TORQUES,
-    "program": (*_GOVERNOR, *_TORQUES),
+    "propeller-polished": (ShipRole.TORQUE,),
+    "propeller-changed": (ShipRole.TORQUE, ShipRole.INERTIA_DOWNSTREAM, ShipRole.INERTIA),
+    "governor-changed": _GOVERNOR,
+    "injectors-changed": (ShipRole.PROPORTIONAL_GAIN, ShipRole.INTEGRAL_GAIN, ShipRole.LOOP_DELAY),
+    "gauge-calibrated": _TORQUES,
+    "program-changed": (*_GOVERNOR, *_TORQUES),
+    "other": (),
 }
-"""What may be done to a ship, and the numbers that may be others after it, by their roles."""
+"""What may be done to a ship, and the numbers that may be others after it, by their roles; of ``other`` those that are
+named."""
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
@@ -42,6 +44,8 @@ class Event:
     """One of ``EVENTS``."""
     at: datetime
     """When, with time zone."""
+    numbers: tuple[str, ...] = ()
+    """Names of further numbers that may be others after it."""
     note: str = ""
     """What was done, in the words of who did it."""
 

@@ -125,6 +125,10 @@ def _baseline(history: History, roles: "dict[str, Role | None]") -> FloatArray:
     for event in history.events:
         after = np.array([float(test.at >= event.at) for test in history.tests])
         if 0.0 < after.sum() < count:
-            concerned = [at for at, role in enumerate(roles.values()) if role in EVENTS[event.kind]]
+            concerned = [
+                at
+                for at, (name, role) in enumerate(roles.items())
+                if role in EVENTS[event.kind] or name in event.numbers
+            ]
             columns += [np.kron(after, np.eye(size)[at]) for at in concerned]
     return np.array(columns).reshape(len(columns), count * size).T

@@ -26,7 +26,12 @@ from shaftprint.fingerprint._drive_fingerprint import (
 from shaftprint.fingerprint._fingerprint import Fingerprint, Quality, SourceFile
 from shaftprint.fingerprint._inertia import inertia_beside
 from shaftprint.fingerprint._joint_numbers import JointNumbers
-from shaftprint.fingerprint._json_file import fingerprint_sha256, read_fingerprint, write_fingerprint
+from shaftprint.fingerprint._json_file import (
+    fingerprint_sha256,
+    parse_fingerprint,
+    read_fingerprint,
+    write_fingerprint,
+)
 from shaftprint.fingerprint._leg_records import LegRecord, NoiseSpectrum, leg_record, noise_spectra
 from shaftprint.fingerprint._line_with_limits import LimitNumber, LineWithLimits
 from shaftprint.fingerprint._margin_numbers import margin_numbers
@@ -75,6 +80,7 @@ __all__ = [
     "model_with_limits",
     "named_structure",
     "noise_spectra",
+    "parse_fingerprint",
     "physical_numbers",
     "physical_quantities",
     "read_drive_fingerprint",

@@ -1,8 +1,10 @@
 """Fingerprints in files: JSON, written whole or not at all, read with every wrong field named."""
 
 import hashlib
+import json
 import re
 from pathlib import Path
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -53,17 +55,56 @@ def read_fingerprint(path: str | Path) -> Fingerprint:
     """
     json_path = Path(path)
     complete(json_path.parent)
-    text, minor = _fingerprint_text(json_path)
+    where = "name the file, or the folder in which identify or demo has put it"
+    text, content = read_json(json_path, noun="fingerprint", where=where, error=FingerprintError)
+    return _fingerprint_of(text, content, named=str(json_path))
+
+
+@refusing_none(FingerprintError)
+def parse_fingerprint(document: bytes, *, named: str) -> Fingerprint:
+    """Read a fingerprint from the bytes of its file, as ``read_fingerprint`` reads the file.
+
+    Parameters
+    ----------
+    document
+        Content of the file.
+    named
+        What the document is called in an error, such as the path it came from.
+
+    Raises
+    ------
+    FingerprintError
+        If it is no fingerprint, is of another schema, or has fields that are wrong; all of them are listed.
+    """
+    try:
+        fingerprint = Fingerprint.model_validate_json(document)
+        # a document that does not state its schema has the default, and is refused below
+        if "schema_version" in fingerprint.model_fields_set:
+            return with_roles(fingerprint)
+    except (ValidationError, ShaftprintError):
+        # of another schema, or wrong: what follows says which
+        pass
+    try:
+        text = document.decode()
+        content = json.loads(text)
+    except (ValueError, RecursionError) as fault:
+        raise FingerprintError(f"{named}: expected a fingerprint in JSON, found something else: {fault}.") from None
+    return _fingerprint_of(text, content, named=named)
+
+
+def _fingerprint_of(text: str, content: Any, *, named: str) -> Fingerprint:
+    """Return the fingerprint of a document, whatever schema it states."""
+    minor = _minor_of(content, named)
     try:
         if minor is None or minor < MINOR:
             return with_roles(of_earlier_schema(text))
         return with_roles(of_later_schema(text) if minor > MINOR else Fingerprint.model_validate_json(text))
     except ValidationError as error:
         wrong = "; ".join(_described(details["loc"], details["msg"]) for details in error.errors())
-        raise FingerprintError(f"{json_path} is not a fingerprint of schema {SCHEMA_VERSION}: {wrong}.") from None
+        raise FingerprintError(f"{named} is not a fingerprint of schema {SCHEMA_VERSION}: {wrong}.") from None
     except ShaftprintError as error:
         # what other rooms ask of their own nouns, such as a prior
-        raise FingerprintError(f"{json_path} is not a fingerprint of schema {SCHEMA_VERSION}: {error}") from None
+        raise FingerprintError(f"{named} is not a fingerprint of schema {SCHEMA_VERSION}: {error}") from None
 
 
 def _described(field: tuple[int | str, ...], message: str) -> str:
@@ -72,28 +113,20 @@ def _described(field: tuple[int | str, ...], message: str) -> str:
     return f"{'.'.join(str(part) for part in field)}: {words}" if field else words
 
 
-def _fingerprint_text(json_path: Path) -> tuple[str, int | None]:
-    """Return the content of a file that claims to be a fingerprint, and the second number of its schema.
-
-    Returns
-    -------
-    text, minor
-        The content, and N of schema 2.N; None for schema 1.
-    """
-    where = "name the file, or the folder in which identify or demo has put it"
-    text, content = read_json(json_path, noun="fingerprint", where=where, error=FingerprintError)
+def _minor_of(content: Any, named: str) -> int | None:
+    """Return N of schema 2.N of a document that claims to be a fingerprint; None for schema 1."""
     schema = content.get("schema_version") if isinstance(content, dict) else None
     if is_of_a_drive(content):
         raise FingerprintError(
-            f"{json_path}: expected the fingerprint of a ship, found that of a drive; show, compare, validate --drive "
+            f"{named}: expected the fingerprint of a ship, found that of a drive; show, compare, validate --drive "
             "and export fmu, modelica, matlab, ssp and osp take it."
         )
     if schema is None:
-        raise FingerprintError(f"{json_path}: expected a fingerprint, found JSON without a schema_version.")
+        raise FingerprintError(f"{named}: expected a fingerprint, found JSON without a schema_version.")
     second = _SCHEMA_2.fullmatch(schema) if isinstance(schema, str) else None
     if second is None and (type(schema) is not int or schema != 1):
         raise FingerprintError(
-            f"{json_path}: expected a fingerprint of schema 1 or 2, found schema {schema}; read it with the version of "
+            f"{named}: expected a fingerprint of schema 1 or 2, found schema {schema}; read it with the version of "
             "shaftprint that wrote it, or a newer one."
         )
-    return text, None if second is None else int(second[1])
+    return None if second is None else int(second[1])

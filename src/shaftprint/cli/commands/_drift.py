@@ -6,12 +6,14 @@ from pathlib import Path
 import click
 import numpy as np
 
-from shaftprint.cli._report_options import DATE_FORMATS
+from shaftprint.cli._dates import DATE_FORMATS, zone_option
+from shaftprint.cli._store_options import instant, store_option
 from shaftprint.cli._terminal import answer, echo, say
 from shaftprint.cli.output import REPORT, fingerprint_at, force_option, give, output_folder, print_tables
-from shaftprint.drift import EVENTS, LOAD_REPEATABILITY, Event, history_of, watch, watch_sentences
+from shaftprint.drift import EVENTS, LOAD_REPEATABILITY, Event, History, history_of, watch, watch_sentences
+from shaftprint.fingerprint import Fingerprint
 from shaftprint.report import course_table, history_table, render_history, sizes_of_tests
-from shaftprint.zones import in_zone, time_zone
+from shaftprint.store import line_history, open_store
 
 FEWEST = 2
 PERCENT = 100.0
@@ -32,15 +34,10 @@ class EventAt(click.ParamType):  # type: ignore[type-arg]
         return kind, at
 
 
-def _zone(_: click.Context, option: click.Parameter, value: str) -> tzinfo:
-    try:
-        return time_zone(value)
-    except ValueError as error:
-        raise click.BadParameter(f"{error}.", param=option) from None
-
-
 @click.command("drift")
-@click.argument("fingerprints", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("tests", metavar="SHIP|FINGERPRINT...", nargs=-1, required=True)
+@store_option
+@click.option("--line", metavar="NAME", help="Shaft line of the ship in the store, where it has several.")
 @click.option(
     "--event",
     "events",
@@ -49,15 +46,7 @@ def _zone(_: click.Context, option: click.Parameter, value: str) -> tzinfo:
     metavar="KIND=DATE",
     help=f"What was done to the ship: {', '.join(EVENTS)}; numbers that it concerns begin anew. May be repeated.",
 )
-@click.option(
-    "--time-zone",
-    "zone",
-    default="UTC",
-    callback=_zone,
-    show_default=True,
-    metavar="ZONE",
-    help="Zone of dates of events without an offset, such as Europe/Amsterdam.",
-)
+@zone_option("Zone of dates of events without an offset, such as Europe/Amsterdam; UTC by default.")
 @click.option(
     "--load-repeatability",
     "load_percent",
@@ -70,47 +59,65 @@ def _zone(_: click.Context, option: click.Parameter, value: str) -> tzinfo:
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Folder for a page with a chart over the years.")
 @force_option
 def command(
-    fingerprints: tuple[Path, ...],
+    tests: tuple[str, ...],
+    url: str,
+    *,
+    line: str | None,
     events: tuple[tuple[str, datetime], ...],
-    zone: tzinfo,
+    zone: tzinfo | None,
     load_percent: float,
     output: Path | None,
     force: bool,
 ) -> None:
     """Watch a line over the years: what has changed, since when, and how fast.
 
-    FINGERPRINTS are the JSON files of all tests of one line, or the folders in which identify has put them, in any
-    order: each says when its test was made. Steps and ramps are looked for in all of them together.
+    Takes the name or IMO number of a SHIP in the store, or the FINGERPRINTs of all tests of one line, in any order:
+    JSON files, or the folders in which identify has put them. Each says when its test was made. Steps and ramps are
+    looked for in all of them together.
     """
-    if len(fingerprints) < FEWEST:
-        raise click.UsageError(f"expected two or more fingerprints, found {len(fingerprints)}; name another one.")
-    named = {_called(path): fingerprint_at(path) for path in fingerprints}
-    if len(named) < len(fingerprints):
-        raise click.UsageError("expected fingerprints in folders or files of different names, found two alike.")
-    done = [_event(kind, moment, zone) for kind, moment in events]
-    history, load = history_of(named, done), load_percent / PERCENT
+    done = [Event(kind=kind, at=instant(moment, zone or UTC, option="--event")) for kind, moment in events]
+    title, fingerprints, kept = _of_files(tests) if _are_files(tests) else _of_ship(tests[0], url, line)
+    history, load = history_of(fingerprints, (*kept, *done)), load_percent / PERCENT
     finding = watch(history, rng=np.random.default_rng(SEED), load_repeatability=load)
-    ship = next((one.conditions.vessel for one in named.values()), "")
     if output is not None:
         with output_folder(output, of="drift", force=force) as folder:
-            render_history(folder, ship, history, finding, now=datetime.now(UTC), load_repeatability=load)
+            render_history(folder, title, history, finding, now=datetime.now(UTC), load_repeatability=load)
     answer(f"Has the ship changed? {' '.join(watch_sentences(finding, history))}")
-    for name, why in history.left_out.items():
-        say(f"Left out: {name}, {why}.")
     give("finding", finding)
-    give("tests", [{"name": test.name, "at": test.at.isoformat()} for test in history.tests])
-    give("left_out", history.left_out)
-    sizes = sizes_of_tests(history, load_repeatability=load)
-    print_tables([history_table(history, sizes), *([] if finding.because else [course_table(finding, history)])])
+    _print_history(history, load)
+    print_tables([] if finding.because else [course_table(finding, history)])
     if output is not None:
         echo(f"Report: {output / REPORT}")
 
 
-def _event(kind: str, moment: datetime, zone: tzinfo) -> Event:
-    try:
-        return Event(kind=kind, at=in_zone(moment, zone))
-    except ValueError as error:
-        raise click.UsageError(f"--event {kind}: {error}.") from None
+def _print_history(history: History, load: float) -> None:
+    for name, why in history.left_out.items():
+        say(f"Left out: {name}, {why}.")
+    give("tests", [{"name": test.name, "at": test.at.isoformat()} for test in history.tests])
+    give("left_out", history.left_out)
+    print_tables([history_table(history, sizes_of_tests(history, load_repeatability=load))])
+
+
+def _are_files(tests: tuple[str, ...]) -> bool:
+    """Return whether files are named, not a ship of the store: one that is not there is a mistyped file."""
+    return len(tests) > 1 or Path(tests[0]).exists()
+
+
+def _of_files(tests: tuple[str, ...]) -> tuple[str, dict[str, Fingerprint], tuple[Event, ...]]:
+    """Return what a line is called, and its fingerprints by the names of their folders or files."""
+    if len(tests) < FEWEST:
+        raise click.UsageError(f"expected two or more fingerprints, found {len(tests)}; name another one.")
+    named = {_called(Path(path)): fingerprint_at(Path(path)) for path in tests}
+    if len(named) < len(tests):
+        raise click.UsageError("expected fingerprints in folders or files of different names, found two alike.")
+    return next(iter(named.values())).conditions.vessel, named, ()
+
+
+def _of_ship(ship: str, url: str, line: str | None) -> tuple[str, dict[str, Fingerprint], tuple[Event, ...]]:
+    """Return what a line of the store is called, its fingerprints by the day of their test, and what was done to it."""
+    with open_store(url) as store:
+        found = line_history(store, ship, line=line)
+    return f"{found.line.ship.name}, {found.line.position}", found.fingerprints, found.events
 
 
 def _called(path: Path) -> str:

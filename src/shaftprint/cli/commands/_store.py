@@ -1,0 +1,37 @@
+"""``shaftprint store``: fingerprints of many ships over years, one file an action."""
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+import click
+
+from shaftprint.cli._command_group import LazyGroup
+
+# The one-line help of every action; asking its file for it would import the fingerprint's room.
+ACTIONS = {
+    "init": "Make an empty store.",
+    "add": "Put fingerprints into the store.",
+    "list": "List the shaft lines with their newest test.",
+    "history": "Show the tests of a ship in the order of time.",
+    "event": "Note what was done to a shaft line, such as a docking.",
+    "export": "Write all records into one file: a backup, or the way to another database.",
+    "import": "Put the records of an export into the store.",
+    "check": "Check that every record is as it was written.",
+    "upgrade": "Bring a store of an earlier version up to date.",
+}
+
+
+class ActionGroup(LazyGroup):
+    """The actions by name."""
+
+    sections: ClassVar[Mapping[str, Mapping[str, str]]] = {"Actions": ACTIONS}
+    folder = "shaftprint.cli.commands.store"
+
+
+@click.group("store", cls=ActionGroup, subcommand_metavar="ACTION [ARGS]...")
+def command() -> None:
+    """Keep the fingerprints of many ships, with their history.
+
+    A store is a file of SQLite on this computer, shaftprint.db by default, or a database of PostgreSQL for several
+    computers: --store names it, or the variable SHAFTPRINT_STORE. Begin with `shaftprint store init`.
+    """

@@ -1,0 +1,1 @@
+"""The actions of ``shaftprint store``, one file each."""

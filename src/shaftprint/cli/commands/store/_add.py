@@ -1,0 +1,69 @@
+"""``shaftprint store add``: fingerprints into the store."""
+
+from datetime import UTC, datetime, tzinfo
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._dates import zone_option
+from shaftprint.cli._store_options import moment_option, store_option
+from shaftprint.cli._terminal import answer
+from shaftprint.cli.output import fingerprint_at, fingerprint_file, give
+from shaftprint.store import Added, Stated, add, open_store
+
+SHOWN_HASH = 12
+
+
+@click.command("add")
+@click.argument("results", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="RESULT...")
+@store_option
+@click.option("--ship", metavar="NAME", help="Name of the ship, where the fingerprint does not say it.")
+@click.option(
+    "--imo", type=int, metavar="NUMBER", help="IMO number of the ship, where the fingerprint does not say it."
+)
+@click.option("--line", metavar="NAME", help="Shaft line, such as port, where the fingerprint does not say it.")
+@moment_option("--tested-at", "When the recording began, where the fingerprint does not say it.")
+@zone_option("Zone of a time without an offset, such as Europe/Amsterdam.")
+def command(
+    results: tuple[Path, ...],
+    url: str,
+    *,
+    ship: str | None,
+    imo: int | None,
+    line: str | None,
+    tested_at: datetime | None,
+    zone: tzinfo | None,
+) -> None:
+    """Put fingerprints into the store.
+
+    RESULT is a fingerprint's JSON file, or the folder in which identify or demo has put it. Ship, line and time of the
+    test come from it; what it does not say is stated by the options. Another fingerprint of the same recording takes
+    the place of the earlier one, which stays: history --all shows it.
+    """
+    if tested_at is not None and len(results) > 1:
+        raise click.UsageError(f"--tested-at: expected one RESULT, found {len(results)}; each test has its own time.")
+    stated = Stated(ship=ship, imo_number=imo, line=line, tested_at=tested_at)
+    outcomes = []
+    with open_store(url) as store:
+        for place in results:
+            if place.is_dir():
+                # a folder whose page shows another fingerprint is refused
+                fingerprint_at(place)
+            added = add(store, fingerprint_file(place), now=datetime.now(UTC), stated=stated, zone=zone)
+            outcomes.append(added)
+            answer(f"{place}: {_in_words(added)}")
+    give("added", outcomes)
+
+
+def _in_words(added: Added) -> str:
+    name, line = f"fingerprint {added.sha256[:SHOWN_HASH]}", f"{added.line.ship.name}, {added.line.position}"
+    other = "" if added.other is None else added.other[:SHOWN_HASH]
+    match added.outcome:
+        case "known":
+            return f"{name} of {line} is in the store already; it is not kept twice."
+        case "supersedes":
+            return f"{name} of {line} takes the place of {other}, which is of the same recording and is kept."
+        case "superseded":
+            return f"{name} of {line} is kept; {other}, made later of the same recording, stays in its place."
+        case "added":
+            return f"{name} of {line} is kept."

@@ -1,0 +1,34 @@
+"""``shaftprint store check``: whether every record is as it was written."""
+
+import click
+
+from shaftprint.cli._store_options import store_option
+from shaftprint.cli._terminal import answer, print_document, print_findings
+from shaftprint.cli.output import give, no_progress_option, progress
+from shaftprint.store import check, open_store
+
+DAMAGED = 1
+
+
+@click.command("check")
+@store_option
+@no_progress_option
+@click.pass_context
+def command(context: click.Context, url: str, *, no_progress: bool) -> None:
+    """Check that every record is as it was written.
+
+    Documents are held against their SHA-256, numbers against their documents, and every row against its seal. A record
+    that is not as it was written is named, and the command ends with 1.
+    """
+    with open_store(url) as store, progress(hidden=no_progress) as steps:
+        steps.begin("Checking the records")
+        faults = check(store, report=steps.reach)
+        name = store.name
+    give("faults", faults)
+    if not faults:
+        answer(f"{name}: every record is as it was written.")
+        return
+    title = f"{name}: not as it was written; put a backup in its place"
+    print_findings(title, [f"{fault.record}: {fault.found}" for fault in faults], is_answer=True)
+    print_document()
+    context.exit(DAMAGED)

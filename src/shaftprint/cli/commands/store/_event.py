@@ -1,0 +1,45 @@
+"""``shaftprint store event``: what was done to a shaft line."""
+
+from datetime import datetime, tzinfo
+
+import click
+
+from shaftprint.cli._dates import zone_option
+from shaftprint.cli._store_options import instant, moment_option, store_option
+from shaftprint.cli._terminal import answer
+from shaftprint.cli.output import give
+from shaftprint.store import KINDS, open_store, record_event
+from shaftprint.zones import utc_text
+
+
+@click.command("event")
+@click.argument("ship")
+@click.argument("kind", type=click.Choice(KINDS))
+@store_option
+@moment_option("--at", "When it was done.", required=True)
+@zone_option("Zone of a time without an offset, such as Europe/Amsterdam.")
+@click.option("--line", "lines", multiple=True, metavar="NAME", help="Shaft line, where the ship has several.")
+@click.option("--number", "numbers", multiple=True, metavar="NAME", help="A number that it affects, such as K_Q.")
+@click.option("--note", default="", metavar="TEXT", help="What else is to be said.")
+def command(
+    ship: str,
+    kind: str,
+    url: str,
+    *,
+    at: datetime,
+    zone: tzinfo | None,
+    lines: tuple[str, ...],
+    numbers: tuple[str, ...],
+    note: str,
+) -> None:
+    """Note what was done to a shaft line, such as a docking.
+
+    SHIP is its name or its IMO number. --line and --number may be repeated.
+    """
+    when = instant(at, zone, option="--at")
+    with open_store(url) as store:
+        events = record_event(store, ship, kind, at=when, lines=lines, numbers=numbers, note=note)
+    give("events", [event for event, _ in events])
+    for event, is_new in events:
+        kept = "is kept" if is_new else "is in the store already"
+        answer(f"{event.line.ship.name}, {event.line.position}: {event.kind} of {utc_text(event.at)} {kept}.")

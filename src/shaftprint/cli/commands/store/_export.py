@@ -1,0 +1,28 @@
+"""``shaftprint store export``: all records in one file."""
+
+from pathlib import Path
+
+import click
+
+from shaftprint.cli._store_options import store_option
+from shaftprint.cli._terminal import answer
+from shaftprint.cli.output import expect_free
+from shaftprint.store import export_store, open_store
+
+
+@click.command("export")
+@click.argument("file", type=click.Path(path_type=Path))
+@store_option
+@click.option("--force", is_flag=True, help="Replace an earlier export.")
+def command(file: Path, url: str, *, force: bool) -> None:
+    """Write all records into one file: a backup, or the way to another database.
+
+    FILE is written whole or not at all, as JSON lines. Others may add records meanwhile: it holds what was there when
+    it was begun.
+    """
+    with open_store(url) as store:
+        if file.exists() and Path(store.name).exists() and file.samefile(store.name):
+            raise click.ClickException(f"{file}: expected another file than the store itself; choose another name.")
+        expect_free(file, force=force)
+        count = export_store(store, file, overwrite=force)
+    answer(f"{file} holds all records; their number is {count}.")

@@ -1,0 +1,176 @@
+"""The records of an export are put into a store, all of them or none; what is there already is not put in twice."""
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from shaftprint.arguments import refusing_none
+from shaftprint.errors import FingerprintError, StoreError
+from shaftprint.files import reason
+from shaftprint.store._lines import HEADER, LONGEST_LINE, record_of_line
+from shaftprint.store._nouns import KINDS, Event, Line, Ship
+from shaftprint.store._record import Record, record_of
+from shaftprint.store._stated import Stated
+from shaftprint.store._store import Store
+from shaftprint.store._text import LONGEST_TEXT, expect_short
+from shaftprint.vessel import is_imo_number
+
+if TYPE_CHECKING:
+    from shaftprint.store.database import Writer
+
+_AT_A_TIME = 200
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Imported:
+    """What an import has put in."""
+
+    fingerprints: int
+    """Fingerprints that were not there."""
+    known: int
+    """Fingerprints that were there already."""
+    events: int
+    """Events that were not there."""
+
+
+@refusing_none(StoreError)
+def import_store(store: Store, path: str | Path) -> Imported:
+    """Put all records of an export into a store, or none.
+
+    Parameters
+    ----------
+    store
+        The store.
+    path
+        The file.
+
+    Raises
+    ------
+    StoreError
+        If the file cannot be read, was cut off or changed, or a record cannot be kept.
+    """
+    file = Path(path)
+    try:
+        with store.database.writing() as connection:
+            return _put(store.database.writer(connection), file)
+    except OSError as refusal:
+        raise StoreError(f"{file}: expected an export of a store, but it cannot be read: {reason(refusal)}.") from None
+
+
+def _put(writer: "Writer", file: Path) -> Imported:
+    waiting: list[tuple[Record, Ship, datetime]] = []
+    counts = {"added": 0, "known": 0, "events": 0}
+
+    def settle() -> None:
+        for one in writer.put(waiting, newest_names=False):
+            counts["known" if one.outcome == "known" else "added"] += 1
+        waiting.clear()
+
+    for named, record in _records(file):
+        try:
+            match record["kind"]:
+                case "ship":
+                    writer.fleet.ship_id(_ship(record, record.get("class_name")), named=named)
+                case "line":
+                    ship_id = writer.fleet.ship_id(_ship(record["ship"]), named=named)
+                    writer.fleet.line_id(ship_id, _short(record["position"], "shaft line"))
+                case "event":
+                    counts["events"] += _put_event(writer, record, named)
+                case "fingerprint":
+                    waiting.append(_fingerprint(record, named))
+                    if len(waiting) == _AT_A_TIME:
+                        settle()
+                case kind:
+                    raise StoreError(f"expected a ship, line, event or fingerprint, found {kind[:40]!r}")
+        except (KeyError, TypeError, ValueError, AttributeError, StoreError, FingerprintError) as fault:
+            raise StoreError(_sentence(named, fault)) from None
+    settle()
+    return Imported(fingerprints=counts["added"], known=counts["known"], events=counts["events"])
+
+
+def _sentence(named: str, fault: Exception) -> str:
+    if isinstance(fault, StoreError | FingerprintError):
+        words = str(fault)
+        return words if words.startswith(named) else f"{named}: {words}"
+    return f"{named}: expected a record of a store's export, found one with a field that is missing or of another kind."
+
+
+def _records(file: Path) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Give the records of a file with the name of each; the end of the file is held against what was read."""
+    digest, count = hashlib.sha256(), 0
+    with file.open("rb") as opened:
+        first = opened.readline(LONGEST_LINE)
+        if not first or record_of_line(first, named=f"{file}, line 1") != HEADER:
+            raise StoreError(f"{file}: expected an export of a store of format 1, found another file.")
+        digest.update(first)
+        while line := opened.readline(LONGEST_LINE):
+            named = f"{file}, line {count + 2}"
+            record = record_of_line(line, named=named)
+            if record["kind"] == "end":
+                if (record.get("records"), record.get("sha256")) != (count, digest.hexdigest()) or opened.read(1):
+                    raise StoreError(
+                        f"{file}: it is not as it was written: its end states another content; export it again."
+                    )
+                return
+            digest.update(line)
+            count += 1
+            yield named, record
+    raise StoreError(f"{file}: expected a record that ends the file, found none: it was cut off; export it once more.")
+
+
+def _ship(content: Mapping[str, Any], class_name: object = None) -> Ship:
+    number = content["imo_number"]
+    if number is not None and (type(number) is not int or not is_imo_number(number)):
+        raise StoreError(f"expected an IMO number, found {str(number)[:40]!r}")
+    of_class = None if class_name is None else _short(class_name, "class of ships")
+    return Ship(name=_short(content["name"], "name of a ship"), imo_number=number, class_name=of_class)
+
+
+def _short(text: object, what: str, *, longest: int | None = None) -> str:
+    if not isinstance(text, str):
+        raise TypeError(what)
+    if longest is None:
+        expect_short(text, what, named="record")
+    else:
+        expect_short(text or None, what, named="record", longest=longest)
+    return text
+
+
+def _moment(text: object) -> datetime:
+    if not isinstance(text, str):
+        raise TypeError("time")
+    moment = datetime.fromisoformat(text)
+    if moment.tzinfo is None:
+        raise ValueError("time")
+    return moment.astimezone(UTC)
+
+
+def _put_event(writer: "Writer", record: Mapping[str, Any], named: str) -> bool:
+    ship = _ship(record["ship"])
+    line_id = writer.fleet.line_id(writer.fleet.ship_id(ship, named=named), _short(record["line"], "shaft line"))
+    if record["what"] not in KINDS:
+        raise StoreError(f"expected what was done, one of {', '.join(KINDS)}, found {str(record['what'])[:40]!r}")
+    event = Event(
+        line=Line(ship=ship, position=record["line"]),
+        at=_moment(record["at"]),
+        kind=record["what"],
+        numbers=tuple(_short(name, "name of a number") for name in record["numbers"]),
+        note=_short(record["note"], "note", longest=LONGEST_TEXT),
+    )
+    return writer.event(event, line_id)
+
+
+def _fingerprint(content: Mapping[str, Any], named: str) -> tuple[Record, Ship, datetime]:
+    said = dict(content["stated"])
+    if "tested_at" in said:
+        said["tested_at"] = _moment(said["tested_at"])
+    record = record_of(content["document"].encode(), Stated(**said), named=named)
+    if record.sha256 != content["sha256"]:
+        raise StoreError(f"{named}: its document is not as it was written; export it once more.")
+    ship = _ship(content["ship"])
+    if record.ship.line != content["line"] or record.ship.imo_number not in (None, ship.imo_number):
+        raise StoreError(f"{named}: its document is of another ship or line than the record; export it once more.")
+    return record, ship, _moment(content["added_at"])

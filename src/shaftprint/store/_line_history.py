@@ -1,0 +1,64 @@
+"""The tests of one line as ``drift`` takes them: fingerprints with their times, and what was done between them."""
+
+from dataclasses import dataclass, field
+
+from shaftprint.arguments import refusing_none
+from shaftprint.drift import Event
+from shaftprint.errors import StoreError
+from shaftprint.fingerprint import Fingerprint, parse_fingerprint
+from shaftprint.store._history import SHOWN_HASH, document, history
+from shaftprint.store._nouns import Line
+from shaftprint.store._store import Store
+
+
+@dataclass(frozen=True, kw_only=True, slots=True, eq=False)
+class LineHistory:
+    """What is known of a line over the years."""
+
+    line: Line
+    """The line."""
+    fingerprints: dict[str, Fingerprint] = field(repr=False)
+    """Its fingerprints, none of which was superseded, by the time of their test."""
+    events: tuple[Event, ...]
+    """What was done to it."""
+
+
+@refusing_none(StoreError)
+def line_history(store: Store, ship: str, *, line: str | None = None) -> LineHistory:
+    """Return the fingerprints of one line in the order of time, with the times that the store knows of them.
+
+    Parameters
+    ----------
+    store
+        The store.
+    ship
+        Name or IMO number of the ship.
+    line
+        Which of its lines; a ship with one line needs none.
+
+    Raises
+    ------
+    StoreError
+        If there is no such ship or line, it has no test, or it is not said which of several lines.
+    """
+    found = history(store, ship, lines=() if line is None else (line,))
+    lines = list(dict.fromkeys(entry.fingerprint.line.position for entry in found.entries))
+    if len(lines) != 1:
+        raise StoreError(
+            f"{ship}: expected one shaft line, found {', '.join(lines) if lines else 'no test'}; "
+            f"{'name it with --line' if lines else 'add its fingerprints with shaftprint store add'}."
+        )
+    fingerprints: dict[str, Fingerprint] = {}
+    for entry in found.entries:
+        kept = entry.fingerprint
+        name = f"{kept.trial.tested_at:%Y-%m-%d %H:%M}"
+        name = f"{name} {kept.sha256[:SHOWN_HASH]}" if name in fingerprints else name
+        fingerprint = parse_fingerprint(document(store, kept.sha256), named=name)
+        conditions = fingerprint.conditions.model_copy(update={"tested_at": kept.trial.tested_at})
+        fingerprints[name] = fingerprint.model_copy(update={"conditions": conditions})
+    events = tuple(
+        Event(kind=event.kind, at=event.at, numbers=event.numbers, note=event.note)
+        for event in found.events
+        if event.line.position == lines[0]
+    )
+    return LineHistory(line=found.entries[0].fingerprint.line, fingerprints=fingerprints, events=events)

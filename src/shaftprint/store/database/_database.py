@@ -1,0 +1,163 @@
+"""The connection to a store: how SQLite and PostgreSQL are asked to keep what they have acknowledged."""
+
+import contextlib
+import sqlite3
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+import sqlalchemy as sa
+
+from shaftprint.errors import StoreError
+from shaftprint.store._mounts import network_file_system
+from shaftprint.store.database._location import Location
+from shaftprint.store.database._reader import Reader
+from shaftprint.store.database._refusals import refusals_in_words
+from shaftprint.store.database._writer import Writer
+
+# Writers of PostgreSQL wait for each other, as those of SQLite do: two that add the same ship at one time are in order.
+_WRITERS: Final = 0x73686166
+_BEGIN: Final = "shaftprint_begin"
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Database:
+    """A database that is there."""
+
+    location: Location
+    """Where it is."""
+    engine: sa.Engine
+    """Its connections."""
+    busy_s: float
+    """How long another writer is waited for [s]."""
+
+    @property
+    def is_file(self) -> bool:
+        """Whether it is a file of SQLite."""
+        return self.location.path is not None
+
+    @contextlib.contextmanager
+    def reading(self) -> Iterator[sa.Connection]:
+        """Give a connection that sees the store as it is at one instant, whoever writes meanwhile."""
+        with refusals_in_words(self.location, busy_s=self.busy_s), self.engine.connect() as connection:
+            if not self.is_file:
+                connection = connection.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
+            with connection.begin():
+                yield connection
+
+    @contextlib.contextmanager
+    def writing(self) -> Iterator[sa.Connection]:
+        """Give the one connection that writes; what it wrote is on the disk when the block has ended, or not there."""
+        with refusals_in_words(self.location, busy_s=self.busy_s), self.engine.connect() as connection:
+            connection = connection.execution_options(**{_BEGIN: "BEGIN IMMEDIATE"})
+            with connection.begin():
+                if not self.is_file:
+                    self._wait_for_other_writers(connection)
+                yield connection
+
+    def _wait_for_other_writers(self, connection: sa.Connection) -> None:
+        connection.exec_driver_sql(f"SET LOCAL lock_timeout = {round(1000 * self.busy_s)}")
+        # an acknowledged record is on the disk of the server, whatever its settings
+        connection.exec_driver_sql("SET LOCAL synchronous_commit = on")
+        connection.execute(sa.select(sa.func.pg_advisory_xact_lock(_WRITERS)))
+
+    @contextlib.contextmanager
+    def unlocked(self) -> Iterator[Any]:
+        """Give the driver's own connection to a file, outside of a transaction."""
+        with refusals_in_words(self.location, busy_s=self.busy_s):
+            pooled = self.engine.raw_connection()
+            try:
+                yield pooled.driver_connection
+            finally:
+                pooled.close()
+
+    def reader(self, connection: sa.Connection) -> Reader:
+        """Return what reads through a connection."""
+        return Reader(connection=connection)
+
+    def writer(self, connection: sa.Connection) -> Writer:
+        """Return what writes through a connection."""
+        return Writer(connection)
+
+    def close(self) -> None:
+        """End its connections."""
+        self.engine.dispose()
+
+
+def connect(location: Location, *, create: bool = False, busy_s: float = 30.0, mounts: str | None = None) -> Database:
+    """Return the database at a place; whether it holds a store is not looked at.
+
+    Parameters
+    ----------
+    location
+        Where it is.
+    create
+        Whether a file that is not there is made.
+    busy_s
+        How long another writer is waited for [s].
+    mounts
+        Table of mounts, see ``network_file_system``.
+
+    Raises
+    ------
+    StoreError
+        If it is a file on a network file system, or no file is there.
+    """
+    if location.path is None:
+        return Database(location=location, engine=_server(location), busy_s=busy_s)
+    kind = network_file_system(location.path, mounts=mounts)
+    if kind is not None:
+        raise StoreError(
+            f"{location.shown}: expected a disk of this computer, found {kind}: over a network the locks of SQLite do "
+            "not hold, and records would be lost; choose a local folder, or for several computers PostgreSQL."
+        )
+    if location.path.is_dir():
+        raise StoreError(f"{location.shown}: expected a file, found a folder; add the name of a file.")
+    if not create and not location.path.exists():
+        raise StoreError(
+            f"{location.shown}: expected a store, found nothing there; make one with shaftprint store init."
+        )
+    return Database(location=location, engine=_file(location, create=create, busy_s=busy_s), busy_s=busy_s)
+
+
+def _file(location: Location, *, create: bool, busy_s: float) -> sa.Engine:
+    if location.path is None:
+        raise StoreError("expected a file, found none.")
+    name = f"{location.path.resolve().as_uri()}?mode={'rwc' if create else 'rw'}"
+
+    def opened() -> sqlite3.Connection:
+        # transactions are begun below, not by the driver
+        connection = sqlite3.connect(name, uri=True, timeout=busy_s, isolation_level=None, check_same_thread=False)
+        try:
+            for pragma in ("foreign_keys=ON", "synchronous=FULL", "trusted_schema=OFF", "cell_size_check=ON"):
+                connection.execute(f"PRAGMA {pragma}")
+        except BaseException:
+            connection.close()
+            raise
+        return connection
+
+    engine = sa.create_engine("sqlite://", creator=opened, poolclass=sa.pool.QueuePool, pool_size=1)
+    sa.event.listen(engine, "begin", _begin)
+    return engine
+
+
+def _begin(connection: sa.Connection) -> None:
+    # A transaction that begins as a reader and goes on as a writer is refused at once where another one writes: the
+    # driver's waiting does not apply to it. So a writer says so when it begins.
+    connection.exec_driver_sql(connection.get_execution_options().get(_BEGIN, "BEGIN"))
+
+
+def _server(location: Location) -> sa.Engine:
+    if location.url is None:
+        raise StoreError("expected the URL of a database, found none.")
+    url = (
+        location.url
+        if "connect_timeout" in location.url.query
+        else location.url.update_query_dict({"connect_timeout": "10"})
+    )
+    try:
+        return sa.create_engine(url, connect_args={"application_name": "shaftprint"}, pool_size=1)
+    except ModuleNotFoundError:
+        raise StoreError(
+            'PostgreSQL: expected the package psycopg, found none; pip install "shaftprint[store]".'
+        ) from None
